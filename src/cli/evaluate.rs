@@ -1,0 +1,92 @@
+//! `kinefront evaluate`.
+
+use std::io::{BufRead, Write};
+
+use kinefront::evaluation::{Evaluation, GridChoice, Model};
+use kinefront::mechanism::{Design, WorkingMode};
+use miette::miette;
+
+use super::json::EvaluationJson;
+use super::{Ending, Failure, GridArgument, load_study, tables, to_json};
+
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// The design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
+    #[arg(long, required_unless_present = "stdin", conflicts_with = "stdin")]
+    design: Option<String>,
+    /// Study file, or the name of a study that comes with the program [default: paper].
+    #[arg(long, value_name = "FILE")]
+    study: Option<String>,
+    /// Grid of poses.
+    #[arg(long, value_enum, default_value = "reference")]
+    grid: GridArgument,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+    /// Read a design a line from standard input, write a JSON object a line.
+    #[arg(long)]
+    stdin: bool,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
+    let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
+    let server = Server {
+        model: study.model(),
+        mode: study.working_mode,
+        grid: arguments.grid.into(),
+    };
+    match &arguments.design {
+        None => server.serve()?,
+        Some(text) => {
+            let evaluation = server
+                .evaluate(text)
+                .map_err(|message| Failure::Input(miette!("{message}")))?;
+            let mut out = std::io::stdout().lock();
+            if arguments.json {
+                writeln!(
+                    out,
+                    "{}",
+                    to_json(&EvaluationJson::from(&evaluation)).map_err(Failure::Runtime)?
+                )?;
+            } else {
+                writeln!(out, "{}", tables::evaluation(&evaluation, &server.model))?;
+            }
+        }
+    }
+    Ok(Ending::Done)
+}
+
+struct Server {
+    model: Model,
+    mode: WorkingMode,
+    grid: GridChoice,
+}
+
+impl Server {
+    fn evaluate(&self, text: &str) -> Result<Evaluation, String> {
+        let design = Design::parse(text, self.mode).map_err(|error| error.to_string())?;
+        self.model
+            .evaluate(&design, self.grid)
+            .map_err(|error| error.to_string())
+    }
+
+    /// A line in, a line out, in order; a bad line gets an error object and the stream goes on.
+    fn serve(&self) -> Result<(), Failure> {
+        let mut input = std::io::stdin().lock();
+        let mut out = std::io::stdout().lock();
+        let mut line = Vec::new();
+        loop {
+            line.clear();
+            if input.read_until(b'\n', &mut line)? == 0 {
+                return Ok(());
+            }
+            let answer = std::str::from_utf8(&line)
+                .map_err(|_| "the line is not UTF-8".to_owned())
+                .and_then(|text| self.evaluate(text))
+                .and_then(|evaluation| to_json(&EvaluationJson::from(&evaluation)).map_err(|error| error.to_string()))
+                .unwrap_or_else(|message| serde_json::json!({ "error": message }).to_string());
+            writeln!(out, "{answer}")?;
+            out.flush()?;
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Arguments to one of the commands, and errors to exit codes.
+
+mod evaluate;
+mod json;
+mod optimize;
+mod pose;
+mod progress;
+mod study;
+mod tables;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use kinefront::evaluation::GridChoice;
+use kinefront::study::{BUILTIN, Builtin, Study};
+use miette::{IntoDiagnostic, Report, Result, miette};
+
+/// Design explorer for planar parallel manipulators.
+#[derive(Debug, Parser)]
+#[command(name = "kinefront", version, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Mass, regular workspace and constraint margins of a design, or of a stream of designs.
+    Evaluate(evaluate::Arguments),
+    /// Joints, dexterity and stiffness of a design at one pose.
+    Pose(pose::Arguments),
+    /// Search for light designs with a large regular workspace, without a window.
+    Optimize(optimize::Arguments),
+    /// List, show, check and write study files.
+    Study(study::Arguments),
+}
+
+/// How a command ends when nothing went wrong with its input.
+enum Ending {
+    Done,
+    Interrupted,
+}
+
+/// Why a command did not do what was asked.
+enum Failure {
+    /// The input was wrong: exit code 2.
+    Input(Report),
+    /// Something else failed: exit code 1.
+    Runtime(Report),
+    /// Whoever read our output has left.
+    BrokenPipe,
+}
+
+impl Failure {
+    fn input(error: impl Into<Report>) -> Self {
+        Self::Input(error.into())
+    }
+
+    fn runtime(error: impl std::error::Error + Send + Sync + 'static) -> Self {
+        Self::Runtime(Report::from_err(error))
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        match error.kind() {
+            std::io::ErrorKind::BrokenPipe => Self::BrokenPipe,
+            _ => Self::runtime(error),
+        }
+    }
+}
+
+/// Reads the arguments and does what they say.
+pub fn run() -> ExitCode {
+    let outcome = match Arguments::parse().command {
+        Command::Evaluate(arguments) => evaluate::run(&arguments),
+        Command::Pose(arguments) => pose::run(&arguments),
+        Command::Optimize(arguments) => optimize::run(&arguments),
+        Command::Study(arguments) => study::run(&arguments),
+    };
+    match outcome {
+        Ok(Ending::Done) | Err(Failure::BrokenPipe) => ExitCode::SUCCESS,
+        Ok(Ending::Interrupted) => ExitCode::from(130),
+        Err(Failure::Input(report)) => {
+            eprintln!("{report:?}");
+            ExitCode::from(2)
+        }
+        Err(Failure::Runtime(report)) => {
+            eprintln!("{report:?}");
+            ExitCode::from(1)
+        }
+    }
+}
+
+/// The study of an argument: a file, the name of one that comes with the program, or the paper's.
+fn load_study(argument: Option<&str>) -> Result<Study> {
+    let Some(argument) = argument else {
+        return Ok(BUILTIN[0].study()?);
+    };
+    let path = Path::new(argument);
+    match Builtin::find(argument) {
+        Some(builtin) if !path.exists() => Ok(builtin.study()?),
+        None if !path.exists() => Err(miette!(
+            help = format!("studies that come with the program: {}", builtin_names()),
+            "there is no study file `{argument}`, and no study of that name"
+        )),
+        _ => Ok(Study::read(path)?),
+    }
+}
+
+fn builtin_names() -> String {
+    BUILTIN.map(|builtin| builtin.name).join(", ")
+}
+
+/// The grid of an argument.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum GridArgument {
+    /// The grid that designs are searched on.
+    Reference,
+    /// The grid that reported designs are verified on.
+    Fine,
+}
+
+impl From<GridArgument> for GridChoice {
+    fn from(argument: GridArgument) -> Self {
+        match argument {
+            GridArgument::Reference => GridChoice::Reference,
+            GridArgument::Fine => GridChoice::Fine,
+        }
+    }
+}
+
+fn to_json(value: &impl serde::Serialize) -> Result<String> {
+    serde_json::to_string(value).into_diagnostic()
+}

@@ -1,0 +1,88 @@
+//! What a run tells while it goes: a bar on a terminal, plain lines where output is piped, nothing when quiet.
+
+use std::io::IsTerminal;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use kinefront::study::GenerationSummary;
+
+/// Progress of a run.
+pub enum Progress {
+    /// `--quiet`.
+    Quiet,
+    /// A bar on a terminal.
+    Bar(ProgressBar),
+    /// A line now and then.
+    Lines {
+        /// Evaluations in all.
+        budget: usize,
+        /// Twentieths of the budget told so far.
+        told: usize,
+    },
+}
+
+impl Progress {
+    /// For a run of `budget` evaluations.
+    pub fn new(budget: usize, quiet: bool) -> Self {
+        if quiet {
+            return Self::Quiet;
+        }
+        if !std::io::stderr().is_terminal() {
+            return Self::Lines { budget, told: 0 };
+        }
+        let style =
+            ProgressStyle::with_template("{bar:30.cyan/blue} {pos}/{len} evaluations  {per_sec:.0}  {eta} left  {msg}")
+                .unwrap_or_else(|_| ProgressStyle::default_bar());
+        let bar = ProgressBar::with_draw_target(Some(budget as u64), ProgressDrawTarget::stderr_with_hz(10))
+            .with_style(style);
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Self::Bar(bar)
+    }
+
+    /// A generation is done.
+    pub fn generation(&mut self, summary: &GenerationSummary) {
+        match self {
+            Self::Quiet => {}
+            Self::Bar(bar) => {
+                bar.set_position(summary.evaluations as u64);
+                bar.set_message(format!(
+                    "front {}  hypervolume {:.1}",
+                    summary.front_size, summary.hypervolume
+                ));
+            }
+            Self::Lines { budget, told } => {
+                let reached = 20 * summary.evaluations / *budget;
+                if reached > *told {
+                    *told = reached;
+                    eprintln!(
+                        "generation {}: {}/{budget} evaluations, {} feasible, front {}, hypervolume {:.1} kg m",
+                        summary.generation,
+                        summary.evaluations,
+                        summary.feasible,
+                        summary.front_size,
+                        summary.hypervolume
+                    );
+                }
+            }
+        }
+    }
+
+    /// The front is being verified.
+    pub fn verifying(&mut self, done: usize, total: usize) {
+        match self {
+            Self::Quiet => {}
+            Self::Bar(bar) => bar.set_message(format!("verifying the front on the fine grid: {done}/{total}")),
+            Self::Lines { .. } if done == 0 => {
+                eprintln!("verifying {total} designs of the front on the fine grid")
+            }
+            Self::Lines { .. } => {}
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! Tables for people.
+
+use comfy_table::presets::UTF8_FULL_CONDENSED;
+use comfy_table::{CellAlignment, Table};
+use kinefront::evaluation::{Evaluation, Model, PoseReport, Unreachable};
+use kinefront::mechanism::Design;
+use kinefront::spatial::Pose;
+use kinefront::study::{FrontMember, RunSummary};
+
+fn table<const N: usize>(header: [&str; N], right: &[usize]) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED).set_header(header);
+    for &column in right {
+        if let Some(column) = table.column_mut(column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+/// A number with four significant digits, in plain form where that is short.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e5).contains(&size) {
+        let digits = (3 - size.log10().floor() as i32).max(0) as usize;
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+fn pose_text(pose: &Pose) -> String {
+    format!(
+        "({:.4}, {:.4}) m, {:.2}°",
+        pose.position.x,
+        pose.position.y,
+        pose.phi.to_degrees()
+    )
+}
+
+/// One evaluated design.
+pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
+    let design = &evaluation.design;
+    let mut facts = table(["design", &design.to_string()], &[]);
+    facts.add_row([
+        "mass in motion".to_owned(),
+        format!(
+            "{:.3} kg (legs {:.3}, platform {:.3})",
+            evaluation.mass,
+            model.legs_mass(design),
+            model.platform_mass(design)
+        ),
+    ]);
+    match (&evaluation.home, evaluation.home_phi_deg) {
+        (Some(home), Some(phi_deg)) => {
+            facts.add_row([
+                "regular workspace".to_owned(),
+                format!("R_w = {:.5} m", evaluation.workspace_radius),
+            ]);
+            let centre = home.position;
+            facts.add_row([
+                "home".to_owned(),
+                format!("({}, {}) m, φ_c = {phi_deg}°", centre.x, centre.y),
+            ]);
+        }
+        _ => {
+            facts.add_row(["regular workspace", "none: infeasible"]);
+        }
+    }
+    let mut constraints = table(
+        [
+            "",
+            "constraint",
+            "least value",
+            "threshold",
+            "unit",
+            "margin",
+            "active",
+            "where",
+        ],
+        &[2, 3, 5],
+    );
+    for report in &evaluation.constraints {
+        constraints.add_row([
+            report.constraint.id().to_owned(),
+            report.constraint.name().to_owned(),
+            report.value.map(number).unwrap_or_else(|| "–".to_owned()),
+            number(report.threshold),
+            report.constraint.unit().to_owned(),
+            format!("{:+.1} %", 100.0 * report.margin),
+            if report.active { "yes" } else { "" }.to_owned(),
+            report.pose.as_ref().map(pose_text).unwrap_or_default(),
+        ]);
+    }
+    format!("{facts}\n{constraints}")
+}
+
+/// One design at one pose.
+pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseReport, Unreachable>) -> String {
+    let mut facts = table(["design", &design.to_string()], &[]);
+    facts.add_row(["pose".to_owned(), pose_text(pose)]);
+    let report = match outcome {
+        Err(unreachable) => {
+            facts.add_row(["not reachable".to_owned(), unreachable.to_string()]);
+            return facts.to_string();
+        }
+        Ok(report) => report,
+    };
+    let unit = design.architecture.actuator().unit();
+    let mut joints = table(["leg", "actuator", "B [m]", "C [m]"], &[]);
+    let point = |p: [f64; 2]| format!("({:.6}, {:.6})", p[0], p[1]);
+    for leg in 0..3 {
+        joints.add_row([
+            (leg + 1).to_string(),
+            format!("{:.6} {unit}", report.actuators[leg]),
+            point(report.b[leg]),
+            point(report.c[leg]),
+        ]);
+    }
+    facts.add_row(["distance to a limit".to_owned(), format!("{:.6} m", report.slack)]);
+    facts.add_row([
+        "inverse condition".to_owned(),
+        format!("{:.6}", report.inverse_condition),
+    ]);
+    facts.add_row(["k_xy".to_owned(), format!("{} N/m", number(report.rigidity.k_xy))]);
+    facts.add_row(["k_z".to_owned(), format!("{} N/m", number(report.rigidity.k_z))]);
+    facts.add_row([
+        "k_φz".to_owned(),
+        format!("{} N·m/rad", number(report.rigidity.k_phi_z)),
+    ]);
+    let mut stiffness = table(["K", "x", "y", "z", "φx", "φy", "φz"], &[1, 2, 3, 4, 5, 6]);
+    for (i, name) in ["fx", "fy", "fz", "mx", "my", "mz"].into_iter().enumerate() {
+        let mut row = vec![name.to_owned()];
+        row.extend((0..6).map(|j| number(report.stiffness[(i, j)])));
+        stiffness.add_row(row);
+    }
+    format!("{facts}\n{joints}\n{stiffness}")
+}
+
+/// The verified front of a run, thinned to a screenful.
+pub fn front(summary: &RunSummary) -> String {
+    const MOST_ROWS: usize = 20;
+    let mut table = table(
+        [
+            "#",
+            "architecture",
+            "mass kg",
+            "R_w m",
+            "φ_c °",
+            "R",
+            "r",
+            "Lb",
+            "rj",
+            "rp",
+            "active",
+        ],
+        &[0, 2, 3, 4, 5, 6, 7, 8, 9],
+    );
+    let count = summary.front.len();
+    let rows = count.min(MOST_ROWS);
+    for k in 0..rows {
+        let FrontMember { id, evaluation, .. } =
+            &summary.front[if rows > 1 { k * (count - 1) / (rows - 1) } else { 0 }];
+        let mut row = vec![
+            id.to_string(),
+            evaluation.design.architecture.to_string(),
+            format!("{:.2}", evaluation.mass),
+            format!("{:.4}", evaluation.workspace_radius),
+            evaluation.home_phi_deg.map(|phi| phi.to_string()).unwrap_or_default(),
+        ];
+        row.extend(evaluation.design.values().iter().enumerate().map(|(index, value)| {
+            let digits = if index < 3 { 3 } else { 4 };
+            format!("{value:.digits$}")
+        }));
+        let active: Vec<&str> = evaluation.active().map(|constraint| constraint.id()).collect();
+        row.push(active.join(" "));
+        table.add_row(row);
+    }
+    let left_out = if rows < count {
+        format!("\n({rows} of {count} shown; all are in front.csv)")
+    } else {
+        String::new()
+    };
+    format!("{table}{left_out}")
+}

@@ -1,0 +1,167 @@
+//! The physics of a study: material, actuators, thresholds, definitions, workspace and grids.
+
+use glam::DVec2;
+
+use super::{Evaluation, report};
+use crate::kinematics::{CharacteristicLength, Jacobian};
+use crate::mechanism::with_leg;
+use crate::mechanism::{Design, Leg, LegSettings, Manipulator};
+use crate::spatial::Rotation;
+use crate::stiffness::planar::ActuatorStiffness;
+use crate::stiffness::{Material, StiffnessDefinition, StiffnessModel};
+use crate::workspace::{Grid, GridError, PoseChecker, Thresholds, WorkspaceSpec};
+
+/// Everything but the design that an evaluation depends on. The default is the paper's (SPEC section 6).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Model {
+    /// Material of every bar.
+    pub material: Material,
+    /// Actuator stiffness.
+    pub actuators: ActuatorStiffness,
+    /// Choices about legs.
+    pub legs: LegSettings,
+    /// How many bars of length `r` count in the platform's mass (SPEC section 8, no. 1).
+    pub platform_bars: u32,
+    /// Definition of `k_xy`, `k_z`, `k_φz`.
+    pub stiffness_definition: StiffnessDefinition,
+    /// Characteristic length.
+    pub characteristic_length: CharacteristicLength,
+    /// Thresholds of g3 … g6.
+    pub thresholds: Thresholds,
+    /// Centre, home and rotation range of the regular workspace.
+    pub workspace: WorkspaceSpec,
+    /// Grid on which designs are searched.
+    pub reference_grid: Grid,
+    /// Grid on which reported designs are verified.
+    pub fine_grid: Grid,
+}
+
+/// One of the two grids.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GridChoice {
+    /// For searching.
+    Reference,
+    /// For verifying what is reported.
+    Fine,
+}
+
+impl Default for Model {
+    fn default() -> Self {
+        Self {
+            material: Material::STEEL,
+            actuators: ActuatorStiffness {
+                prismatic: 1e7,
+                revolute: 1e7,
+            },
+            legs: LegSettings::default(),
+            platform_bars: 3,
+            stiffness_definition: StiffnessDefinition::Stiffness,
+            characteristic_length: CharacteristicLength::PlatformRadius,
+            thresholds: Thresholds {
+                inverse_condition: 0.1,
+                k_xy: 1e6,
+                k_z: 1e5,
+                k_phi_z: 10.0 / 1f64.to_radians(),
+            },
+            workspace: WorkspaceSpec {
+                rotation_range_deg: 20.0,
+                centre: DVec2::ZERO,
+                home_phi_deg: None,
+            },
+            reference_grid: Grid::REFERENCE,
+            fine_grid: Grid::FINE,
+        }
+    }
+}
+
+impl Model {
+    /// The grid of a choice.
+    pub fn grid(&self, choice: GridChoice) -> &Grid {
+        match choice {
+            GridChoice::Reference => &self.reference_grid,
+            GridChoice::Fine => &self.fine_grid,
+        }
+    }
+
+    /// `f1`: mass in motion \[kg\], `ν·π·(n·r_j²·L_b + 3·r_p²·r)`.
+    pub fn mass(&self, design: &Design) -> f64 {
+        self.legs_mass(design) + self.platform_mass(design)
+    }
+
+    /// Mass of the bars of all legs \[kg\].
+    pub fn legs_mass(&self, design: &Design) -> f64 {
+        let bars = (3 * design.architecture.bars_per_leg()) as f64;
+        bars * self.bar_mass(design.leg_bar_radius, design.link_length)
+    }
+
+    /// Mass of the platform's bars \[kg\].
+    pub fn platform_mass(&self, design: &Design) -> f64 {
+        f64::from(self.platform_bars) * self.bar_mass(design.platform_bar_radius, design.platform_radius)
+    }
+
+    fn bar_mass(&self, radius: f64, length: f64) -> f64 {
+        self.material.density * std::f64::consts::PI * radius * radius * length
+    }
+
+    /// Evaluates a design on one of the grids.
+    ///
+    /// # Errors
+    /// [`GridError`] when the grid does not fit the rotation range; a study is checked for that when it is read.
+    pub fn evaluate(&self, design: &Design, grid: GridChoice) -> Result<Evaluation, GridError> {
+        with_leg!(design.architecture, L => {
+            let checker = self.checker::<L>(design)?;
+            report::evaluate(self, &checker, design, self.grid(grid))
+        })
+    }
+
+    /// The design made ready for many poses.
+    ///
+    /// # Errors
+    /// As [`Model::evaluate`].
+    pub fn checker<L: Leg>(&self, design: &Design) -> Result<PoseChecker<L>, GridError> {
+        let manipulator = Manipulator::new(design, &self.legs);
+        Ok(PoseChecker {
+            manipulator,
+            stiffness: StiffnessModel::new::<L>(design, &self.material, &self.actuators),
+            definition: self.stiffness_definition,
+            length: self.length(design, &manipulator)?,
+            thresholds: self.thresholds,
+        })
+    }
+
+    /// `ℓ` of a design \[m\].
+    ///
+    /// The isotropic length looks at the reference grid's orientations whatever grid is evaluated, so that one design
+    /// has one length; a design that reaches none of them with `P` at `O` falls back on `r`.
+    fn length<L: Leg>(&self, design: &Design, manipulator: &Manipulator<L>) -> Result<f64, GridError> {
+        match self.characteristic_length {
+            CharacteristicLength::PlatformRadius => Ok(design.platform_radius),
+            CharacteristicLength::Fixed(length) => Ok(length),
+            CharacteristicLength::Isotropic => {
+                let grid = &self.reference_grid;
+                let mut largest = 0.0f64;
+                for k in 0..grid.orientations()? {
+                    let phi = (k as f64 * grid.phi_step_deg).to_radians();
+                    let arms = manipulator.arms(&Rotation::new(phi));
+                    if let Ok(posture) = manipulator.posture_at(DVec2::ZERO, &arms) {
+                        let jacobian = Jacobian::new(&posture);
+                        largest = jacobian
+                            .moment
+                            .iter()
+                            .fold(largest, |max, moment| max.max(moment.abs()));
+                    }
+                }
+                Ok(if largest > 0.0 {
+                    std::f64::consts::SQRT_2 * largest
+                } else {
+                    design.platform_radius
+                })
+            }
+        }
+    }
+
+    /// Whether a turn by 120° about the workspace's centre maps the design on itself.
+    pub fn is_symmetric(&self, design: &Design) -> bool {
+        self.workspace.centre == DVec2::ZERO && design.working_mode.is_uniform()
+    }
+}

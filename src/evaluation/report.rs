@@ -1,0 +1,247 @@
+//! From a search to a report: smallest values and where they are, active constraints, violation.
+
+use glam::DVec2;
+
+use super::{Constraint, ConstraintReport, Evaluation, Model};
+use crate::mechanism::{Design, Leg};
+use crate::spatial::{LEGS, Pose};
+use crate::workspace::{Grid, GridError, PoseChecker, RegularWorkspace, search};
+
+/// Rings of a disc, besides its centre, on which values are looked at; at most: smooth fields need no more.
+const MOST_RINGS: f64 = 24.0;
+
+/// Smallest violation of an infeasible design: feasible means 0, and nothing else does.
+const LEAST_VIOLATION: f64 = 1e-9;
+
+/// Evaluates a design made ready in `checker`.
+pub(super) fn evaluate<L: Leg>(
+    model: &Model,
+    checker: &PoseChecker<L>,
+    design: &Design,
+    grid: &Grid,
+) -> Result<Evaluation, GridError> {
+    let found = search(
+        checker,
+        &model.workspace,
+        grid,
+        design.base_radius,
+        model.is_symmetric(design),
+    )?;
+    let assembled = design.link_length + design.platform_radius >= 0.5 * design.base_radius;
+    let reporter = Reporter {
+        model,
+        checker,
+        design,
+        found: &found,
+    };
+    let (constraints, violation, home) = match found.home.filter(|_| assembled) {
+        Some(home) => (reporter.over_workspace(home, grid), 0.0, Some(home)),
+        None => {
+            let (constraints, violation) = reporter.at_best_centre();
+            (constraints, violation, None)
+        }
+    };
+    let home_phi_deg = home.map(|home| found.orientations[home].phi_deg);
+    let centre = model.workspace.centre;
+    Ok(Evaluation {
+        design: *design,
+        mass: model.mass(design),
+        workspace_radius: if home.is_some() { found.radius } else { 0.0 },
+        home: home_phi_deg.map(|phi_deg| Pose::new(centre.x, centre.y, phi_deg.to_radians())),
+        home_phi_deg,
+        constraints,
+        violation,
+    })
+}
+
+struct Reporter<'a, L> {
+    model: &'a Model,
+    checker: &'a PoseChecker<L>,
+    design: &'a Design,
+    found: &'a RegularWorkspace,
+}
+
+type Reports = [ConstraintReport; Constraint::ALL.len()];
+
+impl<L: Leg> Reporter<'_, L> {
+    /// A report without values yet; g1, which needs no pose, has its own.
+    fn blank(&self) -> Reports {
+        Constraint::ALL.map(|constraint| {
+            let threshold = constraint.threshold(self.design, &self.checker.thresholds);
+            let value = matches!(constraint, Constraint::Assembly)
+                .then(|| self.design.link_length + self.design.platform_radius);
+            ConstraintReport {
+                constraint,
+                value,
+                threshold,
+                margin: value.map_or(-1.0, |value| constraint.margin(value, threshold, self.design)),
+                active: value.is_some_and(|value| !constraint.holds(value, threshold)),
+                pose: None,
+            }
+        })
+    }
+
+    /// Lowers the reports to the values at one pose, `det A` counted in `sign`.
+    fn visit(&self, reports: &mut Reports, position: DVec2, phi_deg: f64, arms: &[DVec2; LEGS], sign: f64) {
+        let pose = Pose {
+            position,
+            phi: phi_deg.to_radians(),
+        };
+        let values = self.checker.values(position, arms);
+        for report in reports
+            .iter_mut()
+            .filter(|report| report.constraint != Constraint::Assembly)
+        {
+            let value = match &values {
+                Ok(values) => Some(report.constraint.value(self.design, values, sign)),
+                Err((_, shortfall)) if report.constraint == Constraint::Reach => Some(shortfall.slack),
+                Err(_) => None,
+            };
+            if let Some(value) = value
+                && report.value.is_none_or(|smallest| value < smallest)
+            {
+                report.value = Some(value);
+                report.margin = report.constraint.margin(value, report.threshold, self.design);
+                report.pose = Some(pose);
+            }
+        }
+    }
+
+    /// Marks the constraints that fail at one pose.
+    fn mark_failing(&self, reports: &mut Reports, position: DVec2, phi_deg: f64, arms: &[DVec2; LEGS], sign: f64) {
+        let mut there = self.blank();
+        self.visit(&mut there, position, phi_deg, arms, sign);
+        for (report, there) in reports.iter_mut().zip(&there) {
+            report.active |= there
+                .value
+                .is_some_and(|value| !there.constraint.holds(value, there.threshold));
+        }
+    }
+
+    /// Smallest values over the regular workspace; active are the constraints that fail just beyond it.
+    fn over_workspace(&self, home: usize, grid: &Grid) -> Reports {
+        let found = self.found;
+        let centre = self.model.workspace.centre;
+        let sign = found.orientations[home].centre_sign.unwrap_or(1.0);
+        let mut reports = self.blank();
+        let spacing = self.design.base_radius / grid.ray_steps as f64;
+        let rings = (found.radius / spacing).ceil().clamp(1.0, MOST_RINGS);
+        for (index, ray) in found.window(home).zip(&found.home_rays) {
+            let orientation = &found.orientations[index];
+            let (phi_deg, arms) = (orientation.phi_deg, &orientation.arms);
+            self.visit(&mut reports, centre, phi_deg, arms, sign);
+            for direction in &found.directions {
+                for ring in 1..=rings as usize {
+                    // The last ring is the rim itself, to the bit.
+                    let radius = if ring == rings as usize {
+                        found.radius
+                    } else {
+                        found.radius * ring as f64 / rings
+                    };
+                    self.visit(&mut reports, centre + *direction * radius, phi_deg, arms, sign);
+                }
+                if ray.radius == found.radius {
+                    self.mark_failing(&mut reports, centre + *direction * ray.beyond, phi_deg, arms, sign);
+                }
+            }
+        }
+        reports
+    }
+
+    /// Values at the centre pose of the best orientation of a design without a workspace, and its violation.
+    ///
+    /// The best orientation is the one with the smallest shortfall at the centre; active are the constraints that fail at
+    /// a centre pose of the best window, which is the one with the smallest mean shortfall.
+    fn at_best_centre(&self) -> (Reports, f64) {
+        let found = self.found;
+        let centre = self.model.workspace.centre;
+        let shortfalls: Vec<(f64, f64)> = found
+            .orientations
+            .iter()
+            .map(|orientation| self.shortfall(centre, &orientation.arms))
+            .collect();
+        let best = smallest(shortfalls.iter().map(|(shortfall, _)| *shortfall)).unwrap_or(0);
+        let homes = found.homes(&self.model.workspace);
+        let mean = |home: usize| {
+            let (mut sum, mut count, mut signs) = (0.0, 0.0, [false; 2]);
+            for index in found.window(home) {
+                let (shortfall, sign) = shortfalls[index];
+                sum += shortfall;
+                count += 1.0;
+                signs[usize::from(sign > 0.0)] |= sign != 0.0;
+            }
+            // A window of both signs is cut by a singularity: as bad as a wholly missed constraint.
+            sum / count + if signs == [true; 2] { 1.0 } else { 0.0 }
+        };
+        let best_home = homes.start + smallest(homes.clone().map(mean)).unwrap_or(0);
+
+        let mut reports = self.blank();
+        let sign_of = |index: usize| if shortfalls[index].1 < 0.0 { -1.0 } else { 1.0 };
+        let orientation = &found.orientations[best];
+        self.visit(
+            &mut reports,
+            centre,
+            orientation.phi_deg,
+            &orientation.arms,
+            sign_of(best),
+        );
+        for index in found.window(best_home) {
+            let orientation = &found.orientations[index];
+            self.mark_failing(
+                &mut reports,
+                centre,
+                orientation.phi_deg,
+                &orientation.arms,
+                sign_of(best_home),
+            );
+        }
+        let assembly = (-reports[Constraint::Assembly as usize].margin).max(0.0);
+        (reports, (mean(best_home) + assembly).max(LEAST_VIOLATION))
+    }
+
+    /// Sum of the relative shortfalls of g2 … g6 at a pose, and the sign of `det A` (0 where unreachable).
+    fn shortfall(&self, position: DVec2, arms: &[DVec2; LEGS]) -> (f64, f64) {
+        const AT_POSES: [Constraint; 4] = [
+            Constraint::Dexterity,
+            Constraint::StiffnessXy,
+            Constraint::StiffnessZ,
+            Constraint::StiffnessPhiZ,
+        ];
+        match self.checker.values(position, arms) {
+            Ok(values) => {
+                let sum = AT_POSES
+                    .iter()
+                    .map(|constraint| {
+                        let threshold = constraint.threshold(self.design, &self.checker.thresholds);
+                        let value = constraint.value(self.design, &values, 1.0);
+                        (-constraint.margin(value, threshold, self.design)).max(0.0)
+                    })
+                    .sum();
+                (
+                    sum,
+                    if values.determinant == 0.0 {
+                        0.0
+                    } else {
+                        values.determinant.signum()
+                    },
+                )
+            }
+            // Out of reach nothing else has a value: every one counts as wholly missed.
+            Err((_, shortfall)) => {
+                let missed = Constraint::Reach.margin(shortfall.slack, 0.0, self.design);
+                (AT_POSES.len() as f64 - missed, 0.0)
+            }
+        }
+    }
+}
+
+/// Index of the smallest number, the first among equals.
+fn smallest(numbers: impl Iterator<Item = f64>) -> Option<usize> {
+    let mut best: Option<(usize, f64)> = None;
+    for (index, number) in numbers.enumerate() {
+        if best.is_none_or(|(_, smallest)| number < smallest) {
+            best = Some((index, number));
+        }
+    }
+    best.map(|(index, _)| index)
+}

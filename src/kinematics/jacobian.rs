@@ -1,0 +1,96 @@
+//! `A t = B q̇` with `t = (vx, vy, ω)`, and the dexterity of its normalised form (SPEC section 2).
+
+use nalgebra::Matrix3;
+
+use crate::mechanism::Posture;
+use crate::spatial::{LEGS, cross};
+
+/// How the Jacobian's rotational column is made comparable with its translational ones (SPEC section 8, no. 6).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CharacteristicLength {
+    /// `ℓ = r`.
+    PlatformRadius,
+    /// `ℓ = √2·max|w|`, `w` the moment of a leg line about `P` with `P` at `O`, over the grid's φ.
+    Isotropic,
+    /// A length given outright \[m\].
+    Fixed(f64),
+}
+
+/// Direct (`A`) and inverse (`B`) Jacobian of one pose, row per leg.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jacobian {
+    /// `x` components of `u_i`: first column of `A`.
+    pub ux: [f64; LEGS],
+    /// `y` components of `u_i`: second column of `A`.
+    pub uy: [f64; LEGS],
+    /// `(C_i − P) × u_i` \[m\]: third column of `A`.
+    pub moment: [f64; LEGS],
+    /// Diagonal of `B`.
+    pub drive: [f64; LEGS],
+}
+
+impl Jacobian {
+    /// The Jacobians at a posture.
+    #[inline]
+    pub fn new(posture: &Posture) -> Self {
+        let legs = &posture.legs;
+        Self {
+            ux: [legs[0].u.x, legs[1].u.x, legs[2].u.x],
+            uy: [legs[0].u.y, legs[1].u.y, legs[2].u.y],
+            moment: [0, 1, 2].map(|i| cross(posture.arms[i], legs[i].u)),
+            drive: [legs[0].drive, legs[1].drive, legs[2].drive],
+        }
+    }
+
+    /// `det A` \[m\]: 0 at a parallel singularity.
+    #[inline]
+    pub fn determinant(&self) -> f64 {
+        let adjugate = self.adjugate_row_xy();
+        self.moment[0] * adjugate[0] + self.moment[1] * adjugate[1] + self.moment[2] * adjugate[2]
+    }
+
+    /// `u_j × u_k` for each leg: the third row of `adj A`.
+    #[inline]
+    fn adjugate_row_xy(&self) -> [f64; LEGS] {
+        [0, 1, 2].map(|i| {
+            let (j, k) = ((i + 1) % LEGS, (i + 2) % LEGS);
+            self.ux[j] * self.uy[k] - self.uy[j] * self.ux[k]
+        })
+    }
+
+    /// `κ_F⁻¹(J)` of `J = diag(1, 1, ℓ) A⁻¹B`, in \[0, 1\]: 1 where isotropic, 0 at any singularity.
+    ///
+    /// `length` is `ℓ` \[m\]. Computed as `3 |det A · det B| / √(Σ a_i² Σ b_i²)` with the denominators of `A⁻¹` and
+    /// `B⁻¹` multiplied out, so that a singular posture gives 0 and no division by zero.
+    #[inline]
+    pub fn inverse_condition(&self, length: f64) -> f64 {
+        let planar = self.adjugate_row_xy();
+        let mut forward = 0.0;
+        let mut inverse = 0.0;
+        let mut determinant = 0.0;
+        for i in 0..LEGS {
+            let (j, k) = ((i + 1) % LEGS, (i + 2) % LEGS);
+            let vx = self.uy[j] * self.moment[k] - self.moment[j] * self.uy[k];
+            let vy = self.moment[j] * self.ux[k] - self.ux[j] * self.moment[k];
+            let w = length * planar[i];
+            determinant += self.moment[i] * planar[i];
+            forward += self.drive[i] * self.drive[i] * (vx * vx + vy * vy + w * w);
+            let lever = self.moment[i] / length;
+            let others = self.drive[j] * self.drive[k];
+            inverse += others * others * (1.0 + lever * lever);
+        }
+        let serial = self.drive[0] * self.drive[1] * self.drive[2];
+        let scale = forward * inverse;
+        if scale > 0.0 {
+            // Rounding may carry an isotropic posture past 1.
+            (LEGS as f64 * (determinant * serial).abs() / scale.sqrt()).min(1.0)
+        } else {
+            0.0
+        }
+    }
+
+    /// `A` as a matrix, rows `[u_ix, u_iy, (C_i − P) × u_i]`.
+    pub fn direct(&self) -> Matrix3<f64> {
+        Matrix3::from_fn(|i, column| [self.ux[i], self.uy[i], self.moment[i]][column])
+    }
+}

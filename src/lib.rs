@@ -1,0 +1,41 @@
+//! # Kinefront
+//!
+//! A design explorer for planar parallel manipulators: which 3-PRR, 3-RPR and 3-RRR are light **and** have a large
+//! regular dexterous workspace.
+//!
+//! Data flows one way: **[`study`] → [`optimize`] → evaluated designs → [`recording`], run folder**. What a design is
+//! worth is one call:
+//!
+//! ```
+//! use kinefront::evaluation::{GridChoice, Model};
+//!
+//! let design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056".parse()?;
+//! let evaluation = Model::default().evaluate(&design, GridChoice::Reference)?;
+//! println!("{:.1} kg, R_w {:.3} m", evaluation.mass, evaluation.workspace_radius);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | module | purpose |
+//! |---|---|
+//! | [`spatial`] | poses, and the one table of notation and frames |
+//! | [`mechanism`] | architectures, designs, inverse kinematics |
+//! | [`kinematics`] | Jacobian, dexterity, forward kinematics |
+//! | [`stiffness`] | bars, legs and platform: closed form, and the 6×6 form as its oracle |
+//! | [`workspace`] | the regular workspace of a design |
+//! | [`evaluation`] | design → objectives, constraints, margins |
+//! | [`optimize`] | problems, algorithms, archive; knows nothing of robots |
+//! | [`study`] | study file, run, run folder |
+//! | [`recording`] | events → Rerun |
+
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+
+pub mod evaluation;
+pub mod kinematics;
+pub mod mechanism;
+pub mod optimize;
+pub mod recording;
+pub mod spatial;
+pub mod stiffness;
+pub mod study;
+pub mod workspace;

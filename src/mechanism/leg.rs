@@ -1,0 +1,209 @@
+//! What a leg type must tell, and the three legs of a manipulator together.
+
+use glam::DVec2;
+
+use super::Design;
+use crate::spatial::{ANCHOR_DIRECTIONS, LEGS, Pose, Rotation};
+
+/// Kind of the actuated joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Actuator {
+    /// Actuator value in metres, stiffness in N/m.
+    Prismatic,
+    /// Actuator value in radians, stiffness in N·m/rad.
+    Revolute,
+}
+
+impl Actuator {
+    /// Unit of the actuator value.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Actuator::Prismatic => "m",
+            Actuator::Revolute => "rad",
+        }
+    }
+}
+
+/// What the beam model takes as the length of a telescopic bar (SPEC section 8, no. 9).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BarLength {
+    /// The leg's current length `ρ_i`.
+    Current,
+    /// The longest length `L_b`, whatever the pose.
+    Longest,
+}
+
+/// What a study decides about legs beyond the design vector.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LegSettings {
+    /// Beam length of a telescopic leg.
+    pub telescopic_bar: BarLength,
+    /// Shortest length of a telescopic leg as a share of `L_b`, in \[0, 1).
+    pub telescopic_shortest: f64,
+}
+
+impl Default for LegSettings {
+    fn default() -> Self {
+        Self {
+            telescopic_bar: BarLength::Current,
+            telescopic_shortest: 0.5,
+        }
+    }
+}
+
+/// A bar's axis in the plane, from its proximal to its distal end, in the base frame \[m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// Proximal end.
+    pub from: DVec2,
+    /// Distal end, the tip.
+    pub to: DVec2,
+}
+
+/// One leg at a pose it reaches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LegPosture {
+    /// `B_i` in the base frame \[m\]; the proximal passive joint (`A_i` for a telescopic leg).
+    pub b: DVec2,
+    /// `u_i`, unit vector along the last link, towards `C_i`.
+    pub u: DVec2,
+    /// `|B_iC_i|`: `L_b`, or `ρ_i` of a telescopic leg \[m\].
+    pub length: f64,
+    /// `B_ii`: speed of `C_i` along `u_i` per unit of actuator speed; 0 at a serial singularity.
+    pub drive: f64,
+    /// Least distance to a joint limit or to the end of reach \[m\], ≥ 0.
+    pub slack: f64,
+}
+
+/// Why a leg does not reach a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ReachReason {
+    /// The links are too short: the inverse kinematics has no real solution.
+    OutOfReach,
+    /// The actuator would be below its lower limit.
+    BelowLimit,
+    /// The actuator would be above its upper limit.
+    AboveLimit,
+    /// Two joints of the leg coincide, and with them the leg's direction is lost.
+    Degenerate,
+}
+
+/// How far a leg is from reaching a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shortfall {
+    /// Signed distance to the limit \[m\], ≤ 0.
+    pub slack: f64,
+    /// Which limit.
+    pub reason: ReachReason,
+}
+
+/// A leg type with the constants of one leg of one design.
+pub trait Leg: Copy + Send + Sync {
+    /// The architecture's name in the paper.
+    const NAME: &'static str;
+    /// Kind of the actuated joint.
+    const ACTUATOR: Actuator;
+    /// Whether the inverse kinematics has two solutions.
+    const HAS_WORKING_MODES: bool;
+    /// Number of moving bars.
+    const BARS: usize;
+
+    /// Leg `index` (0, 1, 2) of `design`.
+    fn new(design: &Design, settings: &LegSettings, index: usize) -> Self;
+
+    /// Inverse kinematics: the posture in which the leg's end is at `c` (base frame, m).
+    ///
+    /// # Errors
+    /// [`Shortfall`] when the working mode has no real solution or a joint limit is passed.
+    fn inverse(&self, c: DVec2) -> Result<LegPosture, Shortfall>;
+
+    /// Actuator value: `ρ_i` \[m\], or the crank's angle to `Ox` in (−π, π] \[rad\].
+    fn actuator(&self, posture: &LegPosture) -> f64;
+
+    /// Unit vector of a prismatic actuator's axis in the base frame; `None` for a revolute one.
+    fn actuator_axis(&self, posture: &LegPosture) -> Option<DVec2>;
+
+    /// Position of the actuated joint's origin, `A_i` \[m\].
+    fn anchor(&self) -> DVec2;
+
+    /// Length of the last bar, along `u_i` up to `C_i`, for the beam model \[m\].
+    fn distal_length(&self, posture: &LegPosture) -> f64;
+
+    /// The bar before the last, clamped to the actuator, for legs that have one.
+    fn proximal_bar(&self, posture: &LegPosture) -> Option<Segment>;
+}
+
+/// The three legs and the platform joints of one design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Manipulator<L> {
+    /// Legs 1, 2, 3.
+    pub legs: [L; LEGS],
+    /// Platform joints in the platform frame, `c_i` \[m\].
+    pub platform_joints: [DVec2; LEGS],
+}
+
+/// All legs at a pose they reach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Posture {
+    /// `C_i − P` in base axes \[m\].
+    pub arms: [DVec2; LEGS],
+    /// The legs.
+    pub legs: [LegPosture; LEGS],
+    /// Least distance of any leg to a joint limit or to the end of reach \[m\]: the value of g2.
+    pub slack: f64,
+}
+
+impl<L: Leg> Manipulator<L> {
+    /// The manipulator of `design`.
+    pub fn new(design: &Design, settings: &LegSettings) -> Self {
+        Self {
+            legs: [0, 1, 2].map(|i| L::new(design, settings, i)),
+            platform_joints: ANCHOR_DIRECTIONS.map(|direction| direction * design.platform_radius),
+        }
+    }
+
+    /// `C_i − P` in base axes \[m\] at platform orientation `rotation`.
+    #[inline]
+    pub fn arms(&self, rotation: &Rotation) -> [DVec2; LEGS] {
+        self.platform_joints.map(|c| rotation.apply(c))
+    }
+
+    /// Inverse kinematics at `pose`.
+    ///
+    /// # Errors
+    /// The index of the leg that falls shortest, and by how much.
+    pub fn posture(&self, pose: &Pose) -> Result<Posture, (usize, Shortfall)> {
+        self.posture_at(pose.position, &self.arms(&Rotation::new(pose.phi)))
+    }
+
+    /// Inverse kinematics with `P` at `position` and the arms of an orientation already at hand.
+    ///
+    /// # Errors
+    /// As [`Manipulator::posture`].
+    #[inline]
+    pub fn posture_at(&self, position: DVec2, arms: &[DVec2; LEGS]) -> Result<Posture, (usize, Shortfall)> {
+        let solved: [_; LEGS] = [0, 1, 2].map(|i| self.legs[i].inverse(position + arms[i]));
+        match solved {
+            [Ok(first), Ok(second), Ok(third)] => Ok(Posture {
+                arms: *arms,
+                legs: [first, second, third],
+                slack: first.slack.min(second.slack).min(third.slack),
+            }),
+            _ => Err(worst(&solved)),
+        }
+    }
+}
+
+/// The leg that misses its target by most, the first among equals.
+#[cold]
+fn worst(solved: &[Result<LegPosture, Shortfall>; LEGS]) -> (usize, Shortfall) {
+    let mut found: Option<(usize, Shortfall)> = None;
+    for (index, leg) in solved.iter().enumerate() {
+        if let Err(shortfall) = leg
+            && found.is_none_or(|(_, other)| shortfall.slack < other.slack)
+        {
+            found = Some((index, *shortfall));
+        }
+    }
+    found.expect("called only when a leg falls short")
+}

@@ -1,0 +1,96 @@
+//! 3-PRR: slider `B_i = A_i + ρ_i e_i` on the side `A_iA_{i+1}` of the base triangle, link `B_iC_i` of `L_b`.
+
+use glam::DVec2;
+
+use super::{Actuator, Design, Leg, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
+use crate::spatial::{ANCHOR_DIRECTIONS, HALF_SQRT_3, LEGS, cross};
+
+/// A leg of the 3-PRR.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PrrLeg {
+    anchor: DVec2,
+    /// `e_i`, from `A_i` to `A_{i+1}`.
+    axis: DVec2,
+    link: f64,
+    /// `√3 R`, the slider's travel.
+    travel: f64,
+    sign: f64,
+}
+
+impl Leg for PrrLeg {
+    const NAME: &'static str = "3-PRR";
+    const ACTUATOR: Actuator = Actuator::Prismatic;
+    const HAS_WORKING_MODES: bool = true;
+    const BARS: usize = 1;
+
+    fn new(design: &Design, _: &LegSettings, index: usize) -> Self {
+        let side = ANCHOR_DIRECTIONS[(index + 1) % LEGS] - ANCHOR_DIRECTIONS[index];
+        Self {
+            anchor: ANCHOR_DIRECTIONS[index] * design.base_radius,
+            axis: side / (2.0 * HALF_SQRT_3),
+            link: design.link_length,
+            travel: 2.0 * HALF_SQRT_3 * design.base_radius,
+            sign: design.working_mode.sign(index),
+        }
+    }
+
+    #[inline]
+    fn inverse(&self, c: DVec2) -> Result<LegPosture, Shortfall> {
+        let from_anchor = c - self.anchor;
+        let along = from_anchor.dot(self.axis);
+        let height = cross(self.axis, from_anchor);
+        let reach = self.link - height.abs();
+        if reach < 0.0 {
+            return Err(Shortfall {
+                slack: reach,
+                reason: ReachReason::OutOfReach,
+            });
+        }
+        // (L − h)(L + h) keeps the digits that L² − h² loses near the end of reach.
+        let foot = (reach * (self.link + height.abs())).sqrt();
+        let actuator = along + self.sign * foot;
+        if actuator < 0.0 {
+            return Err(Shortfall {
+                slack: actuator,
+                reason: ReachReason::BelowLimit,
+            });
+        }
+        if actuator > self.travel {
+            return Err(Shortfall {
+                slack: self.travel - actuator,
+                reason: ReachReason::AboveLimit,
+            });
+        }
+        let b = self.anchor + self.axis * actuator;
+        let u = (c - b) / self.link;
+        Ok(LegPosture {
+            b,
+            u,
+            length: self.link,
+            drive: u.dot(self.axis),
+            slack: reach.min(actuator).min(self.travel - actuator),
+        })
+    }
+
+    fn actuator(&self, posture: &LegPosture) -> f64 {
+        (posture.b - self.anchor).dot(self.axis)
+    }
+
+    fn actuator_axis(&self, _: &LegPosture) -> Option<DVec2> {
+        Some(self.axis)
+    }
+
+    fn anchor(&self) -> DVec2 {
+        self.anchor
+    }
+
+    #[inline]
+    fn distal_length(&self, _: &LegPosture) -> f64 {
+        self.link
+    }
+
+    #[inline]
+    fn proximal_bar(&self, _: &LegPosture) -> Option<Segment> {
+        None
+    }
+}

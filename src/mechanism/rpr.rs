@@ -1,0 +1,87 @@
+//! 3-RPR: telescopic leg `A_iC_i` of length `ρ_i` between a share of `L_b` and `L_b`.
+
+use glam::DVec2;
+
+use super::{Actuator, BarLength, Design, Leg, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
+use crate::spatial::ANCHOR_DIRECTIONS;
+
+/// A leg of the 3-RPR.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RprLeg {
+    anchor: DVec2,
+    shortest: f64,
+    longest: f64,
+    bar: BarLength,
+}
+
+impl Leg for RprLeg {
+    const NAME: &'static str = "3-RPR";
+    const ACTUATOR: Actuator = Actuator::Prismatic;
+    const HAS_WORKING_MODES: bool = false;
+    const BARS: usize = 1;
+
+    fn new(design: &Design, settings: &LegSettings, index: usize) -> Self {
+        Self {
+            anchor: ANCHOR_DIRECTIONS[index] * design.base_radius,
+            shortest: settings.telescopic_shortest * design.link_length,
+            longest: design.link_length,
+            bar: settings.telescopic_bar,
+        }
+    }
+
+    #[inline]
+    fn inverse(&self, c: DVec2) -> Result<LegPosture, Shortfall> {
+        let leg = c - self.anchor;
+        let length = leg.length();
+        if length < self.shortest {
+            return Err(Shortfall {
+                slack: length - self.shortest,
+                reason: ReachReason::BelowLimit,
+            });
+        }
+        if length > self.longest {
+            return Err(Shortfall {
+                slack: self.longest - length,
+                reason: ReachReason::AboveLimit,
+            });
+        }
+        if length == 0.0 {
+            return Err(Shortfall {
+                slack: 0.0,
+                reason: ReachReason::Degenerate,
+            });
+        }
+        Ok(LegPosture {
+            b: self.anchor,
+            u: leg / length,
+            length,
+            drive: 1.0,
+            slack: (length - self.shortest).min(self.longest - length),
+        })
+    }
+
+    fn actuator(&self, posture: &LegPosture) -> f64 {
+        posture.length
+    }
+
+    fn actuator_axis(&self, posture: &LegPosture) -> Option<DVec2> {
+        Some(posture.u)
+    }
+
+    fn anchor(&self) -> DVec2 {
+        self.anchor
+    }
+
+    #[inline]
+    fn distal_length(&self, posture: &LegPosture) -> f64 {
+        match self.bar {
+            BarLength::Current => posture.length,
+            BarLength::Longest => self.longest,
+        }
+    }
+
+    #[inline]
+    fn proximal_bar(&self, _: &LegPosture) -> Option<Segment> {
+        None
+    }
+}

@@ -1,0 +1,193 @@
+//! One design as text: `3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056`, optionally `mode=++-`.
+
+use std::str::FromStr;
+
+use super::{Architecture, Design, DesignError, VARIABLES, WorkingMode};
+
+/// Why a text is not a design, an architecture or a working mode.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TextError {
+    /// Nothing to read.
+    #[error("the design is empty; expected one like `3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056`")]
+    Empty,
+    /// First word is none of the architectures.
+    #[error("unknown architecture `{0}`; expected one of {names}", names = architecture_names())]
+    UnknownArchitecture(String),
+    /// A word without `=`.
+    #[error("`{0}` is not of the form key=value")]
+    NoEquals(String),
+    /// A key that a design has not.
+    #[error("unknown key `{0}`; expected R, r, Lb, rj, rp or mode")]
+    UnknownKey(String),
+    /// A key given twice.
+    #[error("`{0}` is given twice")]
+    Repeated(&'static str),
+    /// A key left out.
+    #[error("`{0}` is missing; a design needs R, r, Lb, rj and rp, in metres")]
+    Missing(&'static str),
+    /// A value that is no number.
+    #[error("`{text}` is not a number (key {key}; metres)")]
+    NotANumber {
+        /// Key of the value.
+        key: &'static str,
+        /// The text found.
+        text: String,
+    },
+    /// A working mode that is not three signs.
+    #[error("`{0}` is not a working mode; expected three signs as in `+++` or `+-+`")]
+    WorkingMode(String),
+    /// A number out of its domain.
+    #[error(transparent)]
+    Domain(#[from] DesignError),
+}
+
+fn architecture_names() -> String {
+    let names: Vec<&str> = Architecture::ALL.iter().map(|a| a.name()).collect();
+    names.join(", ")
+}
+
+impl FromStr for Architecture {
+    type Err = TextError;
+
+    fn from_str(text: &str) -> Result<Self, TextError> {
+        Architecture::ALL
+            .iter()
+            .copied()
+            .find(|architecture| architecture.name() == text)
+            .ok_or_else(|| TextError::UnknownArchitecture(text.to_owned()))
+    }
+}
+
+impl FromStr for WorkingMode {
+    type Err = TextError;
+
+    fn from_str(text: &str) -> Result<Self, TextError> {
+        let error = || TextError::WorkingMode(text.to_owned());
+        let signs: Vec<bool> = text
+            .chars()
+            .map(|c| match c {
+                '+' => Ok(true),
+                '-' | '−' => Ok(false),
+                _ => Err(error()),
+            })
+            .collect::<Result<_, _>>()?;
+        signs.try_into().map(WorkingMode::new).map_err(|_| error())
+    }
+}
+
+/// Text both ways, for study files.
+macro_rules! as_text {
+    ($type:ty) => {
+        impl TryFrom<String> for $type {
+            type Error = TextError;
+
+            fn try_from(text: String) -> Result<Self, TextError> {
+                text.parse()
+            }
+        }
+
+        impl From<$type> for String {
+            fn from(value: $type) -> String {
+                value.to_string()
+            }
+        }
+    };
+}
+
+as_text!(Architecture);
+as_text!(WorkingMode);
+
+impl Design {
+    /// Reads a design; `default_mode` holds where the text names no working mode.
+    ///
+    /// # Errors
+    /// [`TextError`] with what is wrong and what would be right.
+    pub fn parse(text: &str, default_mode: WorkingMode) -> Result<Self, TextError> {
+        let mut words = text.split_whitespace();
+        let architecture: Architecture = words.next().ok_or(TextError::Empty)?.parse()?;
+        let mut working_mode = None;
+        let mut values = [None; VARIABLES.len()];
+        for word in words {
+            let (key, value) = word
+                .split_once('=')
+                .ok_or_else(|| TextError::NoEquals(word.to_owned()))?;
+            if key == "mode" {
+                if working_mode.replace(value.parse()?).is_some() {
+                    return Err(TextError::Repeated("mode"));
+                }
+                continue;
+            }
+            let index = VARIABLES
+                .iter()
+                .position(|variable| variable.key() == key)
+                .ok_or_else(|| TextError::UnknownKey(key.to_owned()))?;
+            let key = VARIABLES[index].key();
+            let number: f64 = value.parse().map_err(|_| TextError::NotANumber {
+                key,
+                text: value.to_owned(),
+            })?;
+            if values[index].replace(number).is_some() {
+                return Err(TextError::Repeated(key));
+            }
+        }
+        let mut numbers = [0.0; VARIABLES.len()];
+        for ((number, value), variable) in numbers.iter_mut().zip(values).zip(VARIABLES) {
+            *number = value.ok_or(TextError::Missing(variable.key()))?;
+        }
+        Ok(Design::new(
+            architecture,
+            working_mode.unwrap_or(default_mode),
+            numbers,
+        )?)
+    }
+}
+
+impl FromStr for Design {
+    type Err = TextError;
+
+    fn from_str(text: &str) -> Result<Self, TextError> {
+        Design::parse(text, WorkingMode::ALL_PLUS)
+    }
+}
+
+impl std::fmt::Display for Design {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", self.architecture)?;
+        for (variable, value) in VARIABLES.into_iter().zip(self.values()) {
+            write!(f, " {}={value}", variable.key())?;
+        }
+        if self.working_mode != WorkingMode::ALL_PLUS {
+            write!(f, " mode={}", self.working_mode)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_design_reads_what_it_writes() {
+        let text = "3-RRR R=3.3658 r=0.2537 Lb=1.9157 rj=0 rp=0.0891 mode=+-+";
+        let design: Design = text.parse().unwrap();
+        assert_eq!(design.to_string(), text);
+        assert_eq!(design.working_mode.signs(), [1, -1, 1]);
+    }
+
+    #[test]
+    fn errors_say_what_is_wrong_and_what_is_right() {
+        let error = |text: &str| text.parse::<Design>().unwrap_err().to_string();
+        assert!(error("").contains("empty"));
+        assert!(error("4-PRR R=1").contains("3-PRR, 3-RPR, 3-RRR"));
+        assert!(error("3-PRR R=1 r=1 Lb=1 rj=1").contains("`rp` is missing"));
+        assert!(error("3-PRR R=1 R=1").contains("twice"));
+        assert!(error("3-PRR R=one").contains("not a number"));
+        assert!(error("3-PRR Q=1").contains("unknown key `Q`"));
+        assert!(error("3-PRR R=NaN r=1 Lb=1 rj=1 rp=1").contains("R is NaN"));
+        assert!(error("3-PRR R=1 r=0 Lb=1 rj=1 rp=1").contains("above 0 m"));
+        assert!(error("3-PRR R=1 r=1 Lb=1 rj=-1 rp=1").contains("at least 0 m"));
+        assert!(error("3-PRR R=1e-9 r=1 Lb=1 rj=1 rp=1").contains("times R"));
+        assert!(error("3-PRR mode=++").contains("three signs"));
+    }
+}

@@ -1,0 +1,103 @@
+//! Pareto dominance with constraints, non-dominated sorting and crowding (Deb et al. 2002).
+
+use std::cmp::Ordering;
+
+use super::Outcome;
+
+/// How two outcomes stand to each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Relation {
+    /// The first is better.
+    Dominates,
+    /// The second is better.
+    Dominated,
+    /// Neither: equal, or each better in one objective.
+    Incomparable,
+}
+
+/// Constraint domination: feasible before infeasible, less violation before more, then Pareto dominance.
+pub fn compare(a: &Outcome, b: &Outcome) -> Relation {
+    match (a.is_feasible(), b.is_feasible()) {
+        (true, false) => Relation::Dominates,
+        (false, true) => Relation::Dominated,
+        (false, false) => match a.violation.total_cmp(&b.violation) {
+            Ordering::Less => Relation::Dominates,
+            Ordering::Greater => Relation::Dominated,
+            Ordering::Equal => Relation::Incomparable,
+        },
+        (true, true) => pareto(&a.objectives, &b.objectives),
+    }
+}
+
+/// Pareto dominance of two pairs of minimised objectives.
+pub fn pareto(a: &[f64; 2], b: &[f64; 2]) -> Relation {
+    let better = a[0] < b[0] || a[1] < b[1];
+    let worse = a[0] > b[0] || a[1] > b[1];
+    match (better, worse) {
+        (true, false) => Relation::Dominates,
+        (false, true) => Relation::Dominated,
+        _ => Relation::Incomparable,
+    }
+}
+
+/// Rank of each outcome under [`compare`]: 0 for the non-dominated ones, 1 for those that only these dominate, ….
+pub fn non_dominated_ranks(outcomes: &[Outcome]) -> Vec<usize> {
+    let count = outcomes.len();
+    let mut dominated_by = vec![0usize; count];
+    let mut dominates: Vec<Vec<usize>> = vec![Vec::new(); count];
+    for i in 0..count {
+        for j in i + 1..count {
+            match compare(&outcomes[i], &outcomes[j]) {
+                Relation::Dominates => {
+                    dominates[i].push(j);
+                    dominated_by[j] += 1;
+                }
+                Relation::Dominated => {
+                    dominates[j].push(i);
+                    dominated_by[i] += 1;
+                }
+                Relation::Incomparable => {}
+            }
+        }
+    }
+    let mut ranks = vec![0; count];
+    let mut front: Vec<usize> = (0..count).filter(|&i| dominated_by[i] == 0).collect();
+    let mut rank = 0;
+    while !front.is_empty() {
+        let mut next = Vec::new();
+        for &i in &front {
+            ranks[i] = rank;
+            for &j in &dominates[i] {
+                dominated_by[j] -= 1;
+                if dominated_by[j] == 0 {
+                    next.push(j);
+                }
+            }
+        }
+        next.sort_unstable();
+        front = next;
+        rank += 1;
+    }
+    ranks
+}
+
+/// Crowding distance of each of `front`'s objectives: infinite at the ends, 0 for a duplicate in a crowd.
+pub fn crowding_distances(front: &[[f64; 2]]) -> Vec<f64> {
+    let mut distances = vec![0.0; front.len()];
+    for objective in 0..2 {
+        let mut order: Vec<usize> = (0..front.len()).collect();
+        order.sort_by(|&a, &b| front[a][objective].total_cmp(&front[b][objective]).then(a.cmp(&b)));
+        let (Some(&first), Some(&last)) = (order.first(), order.last()) else {
+            return distances;
+        };
+        let range = front[last][objective] - front[first][objective];
+        distances[first] = f64::INFINITY;
+        distances[last] = f64::INFINITY;
+        if range > 0.0 {
+            for triple in order.windows(3) {
+                distances[triple[1]] += (front[triple[2]][objective] - front[triple[0]][objective]) / range;
+            }
+        }
+    }
+    distances
+}

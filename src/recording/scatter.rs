@@ -1,0 +1,178 @@
+//! The scatter of mass against `R_w`, drawn in a 2-D view.
+//!
+//! Rerun's 2-D view knows no axes and points y downwards. The plot therefore stands in true coordinates, `log₁₀(mass/kg)`
+//! and `R_w` in metres, under a transform that turns y up and gives both axes a like size, and brings its own axes.
+
+use rerun::{Color, LineStrips2D, Points2D, Radius};
+
+use crate::evaluation::Evaluation;
+use crate::mechanism::Architecture;
+use crate::study::{FrontMember, Study};
+
+/// Width of one decade of mass on screen, in units in which the range of `R_w` is [`HEIGHT`] high.
+const HEIGHT: f32 = 2.5;
+
+pub(super) const AXIS_COLOR: [u8; 3] = [150, 155, 165];
+pub(super) const INFEASIBLE_COLOR: [u8; 3] = [95, 98, 108];
+pub(super) const FRONT_COLOR: [u8; 3] = [250, 250, 250];
+
+/// One colour per architecture, told apart by people with any colour vision (Okabe and Ito).
+pub(super) fn color(architecture: Architecture) -> Color {
+    const PALETTE: [[u8; 3]; 4] = [[86, 180, 233], [230, 159, 0], [0, 190, 140], [204, 121, 167]];
+    let index = Architecture::ALL
+        .iter()
+        .position(|&other| other == architecture)
+        .unwrap_or(0);
+    let [r, g, b] = PALETTE[index % PALETTE.len()];
+    Color::from_rgb(r, g, b)
+}
+
+/// Position of a design in the plot.
+pub(super) fn position(mass: f64, radius: f64) -> [f32; 2] {
+    // A massless design (both radii 0) has no logarithm: a tenth of a gram stands for it.
+    [libm::log10(mass.max(1e-4)) as f32, radius as f32]
+}
+
+/// Points of designs, coloured.
+pub(super) fn points(evaluations: &[&Evaluation], color: Color, size: f32) -> Points2D {
+    Points2D::new(evaluations.iter().map(|e| position(e.mass, e.workspace_radius)))
+        .with_colors(std::iter::repeat_n(color, evaluations.len()))
+        .with_radii(std::iter::repeat_n(Radius::new_ui_points(size), evaluations.len()))
+}
+
+/// The front's designs with a line each to read when one is pointed at.
+pub(super) fn front_points(front: &[FrontMember]) -> Points2D {
+    let positions = front
+        .iter()
+        .map(|m| position(m.evaluation.mass, m.evaluation.workspace_radius));
+    Points2D::new(positions)
+        .with_colors(front.iter().map(|m| color(m.evaluation.design.architecture)))
+        .with_radii(std::iter::repeat_n(Radius::new_ui_points(4.0), front.len()))
+        .with_labels(front.iter().map(|m| {
+            format!(
+                "#{} {}: {:.2} kg, R_w {:.4} m",
+                m.id, m.evaluation.design.architecture, m.evaluation.mass, m.evaluation.workspace_radius
+            )
+        }))
+        .with_show_labels(false)
+        .with_draw_order(40.0)
+}
+
+/// The edge of what the front dominates, from its lightest design to the right end of the plot.
+pub(super) fn staircase(front: &[FrontMember], frame: &Frame) -> LineStrips2D {
+    let mut strip: Vec<[f32; 2]> = Vec::new();
+    for member in front {
+        let [x, y] = position(member.evaluation.mass, member.evaluation.workspace_radius);
+        strip.push([x, strip.last().map_or(0.0, |last| last[1])]);
+        strip.push([x, y]);
+    }
+    if let Some(&[_, y]) = strip.last() {
+        strip.push([frame.decades.1 as f32, y]);
+    }
+    LineStrips2D::new([strip])
+        .with_colors([FRONT_COLOR])
+        .with_radii([Radius::new_ui_points(1.0)])
+        .with_draw_order(35.0)
+}
+
+/// Range of the plot: decades of mass, metres of radius. It only ever grows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Frame {
+    decades: (i32, i32),
+    /// Number of ticks above 0 on the radius axis.
+    ticks: u32,
+    tick: f64,
+}
+
+impl Frame {
+    /// A range for a study: three decades up to the reference mass, radii up to 40 % of the largest base radius.
+    pub(super) fn new(study: &Study) -> Self {
+        let top = libm::log10(study.hypervolume.reference_mass_kg).ceil() as i32;
+        let largest = 0.4 * study.bounds.R_m[1];
+        let decade = libm::pow(10.0, libm::floor(libm::log10(largest)));
+        let tick = [0.1, 0.2, 0.5]
+            .into_iter()
+            .map(|share| share * decade)
+            .find(|tick| largest / tick <= 8.0)
+            .unwrap_or(decade);
+        Self {
+            decades: (top - 3, top),
+            ticks: (largest / tick).ceil() as u32,
+            tick,
+        }
+    }
+
+    /// Widens the range to hold a design; tells whether it had to.
+    pub(super) fn include(&mut self, evaluation: &Evaluation) -> bool {
+        let before = *self;
+        let [x, y] = position(evaluation.mass, evaluation.workspace_radius);
+        if evaluation.is_feasible() {
+            self.decades.0 = self.decades.0.min(x.floor() as i32);
+            self.decades.1 = self.decades.1.max(x.ceil() as i32);
+        }
+        self.ticks = self.ticks.max((f64::from(y) / self.tick).ceil() as u32);
+        *self != before
+    }
+
+    /// Whether a design lies inside; infeasible ones outside are left out of the picture.
+    pub(super) fn holds(&self, evaluation: &Evaluation) -> bool {
+        let [x, _] = position(evaluation.mass, evaluation.workspace_radius);
+        (self.decades.0 as f32..=self.decades.1 as f32).contains(&x)
+    }
+
+    /// Scale from plot coordinates to the view's: y up, radii as high as [`HEIGHT`] decades are wide.
+    pub(super) fn scale(&self) -> [f32; 3] {
+        let height = self.tick as f32 * self.ticks as f32;
+        [1.0, -HEIGHT / height, 1.0]
+    }
+
+    /// Axes, grid lines and staircase of ticks.
+    pub(super) fn lines(&self) -> LineStrips2D {
+        let (left, right) = (self.decades.0 as f32, self.decades.1 as f32);
+        let top = (self.tick * f64::from(self.ticks)) as f32;
+        let mut strips = vec![vec![[left, top], [left, 0.0], [right, 0.0]]];
+        for decade in self.decades.0..=self.decades.1 {
+            strips.push(vec![[decade as f32, 0.0], [decade as f32, top]]);
+        }
+        for k in 1..=self.ticks {
+            let y = (self.tick * f64::from(k)) as f32;
+            strips.push(vec![[left, y], [right, y]]);
+        }
+        let count = strips.len();
+        let faint = |k: usize| if k == 0 { AXIS_COLOR } else { [52, 55, 62] };
+        LineStrips2D::new(strips)
+            .with_colors((0..count).map(faint))
+            .with_radii((0..count).map(|k| Radius::new_ui_points(if k == 0 { 0.8 } else { 0.4 })))
+            .with_draw_order(5.0)
+    }
+
+    /// Numbers at the ticks and titles of the axes.
+    pub(super) fn labels(&self) -> Points2D {
+        let (left, right) = (self.decades.0 as f32, self.decades.1 as f32);
+        let top = (self.tick * f64::from(self.ticks)) as f32;
+        let mut positions = Vec::new();
+        let mut labels = Vec::new();
+        for decade in self.decades.0..=self.decades.1 {
+            positions.push([decade as f32, -0.03 * top]);
+            labels.push(match decade {
+                0..=4 => format!("{}", 10u32.pow(decade.unsigned_abs())),
+                _ => format!("1e{decade}"),
+            });
+        }
+        for k in 1..=self.ticks {
+            positions.push([left - 0.03 * (right - left), (self.tick * f64::from(k)) as f32]);
+            labels.push(format!("{}", (self.tick * f64::from(k) * 1e6).round() / 1e6));
+        }
+        positions.push([0.5 * (left + right), -0.1 * top]);
+        labels.push("mass in motion [kg], lighter is better".to_owned());
+        positions.push([left, 1.06 * top]);
+        labels.push("regular workspace radius R_w [m], larger is better".to_owned());
+        let count = positions.len();
+        Points2D::new(positions)
+            .with_labels(labels)
+            .with_show_labels(true)
+            .with_colors(std::iter::repeat_n(AXIS_COLOR, count))
+            .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.0), count))
+            .with_draw_order(6.0)
+    }
+}

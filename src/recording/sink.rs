@@ -1,0 +1,89 @@
+//! A file sink that tells when the file could not be written.
+//!
+//! The SDK's own file sink reports a full disk to its log only, and errors of the footer to nobody. This one keeps the
+//! first error for whoever asks, and synchronises the file to disk at the end.
+
+use std::fs::File;
+use std::io;
+use std::path::Path;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use rerun::external::re_build_info::CrateVersion;
+use rerun::external::re_log_encoding::{Encoder, EncodingOptions};
+use rerun::log::LogMsg;
+use rerun::sink::{LogSink, SinkFlushError};
+
+/// A recording file being written; clones share it.
+#[derive(Clone)]
+pub(super) struct RrdFile(Arc<Mutex<State>>);
+
+struct State {
+    encoder: Option<Encoder<File>>,
+    file: File,
+    error: Option<String>,
+}
+
+impl RrdFile {
+    /// Creates the file; an existing one is not overwritten.
+    pub(super) fn create(path: &Path) -> io::Result<Self> {
+        let file = File::create_new(path)?;
+        let encoder = Encoder::new_eager(
+            CrateVersion::LOCAL,
+            EncodingOptions::PROTOBUF_COMPRESSED,
+            file.try_clone()?,
+        )
+        .map_err(io::Error::other)?;
+        Ok(Self(Arc::new(Mutex::new(State {
+            encoder: Some(encoder),
+            file,
+            error: None,
+        }))))
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The first error so far.
+    pub(super) fn check(&self) -> io::Result<()> {
+        match &self.state().error {
+            Some(error) => Err(io::Error::other(error.clone())),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes the footer and synchronises the file; to be called once nothing is sent any more.
+    pub(super) fn finish(&self) -> io::Result<()> {
+        self.check()?;
+        let mut state = self.state();
+        if let Some(mut encoder) = state.encoder.take() {
+            encoder.finish().map_err(io::Error::other)?;
+        }
+        state.file.sync_all()
+    }
+}
+
+impl LogSink for RrdFile {
+    fn send(&self, message: LogMsg) {
+        let mut state = self.state();
+        let Some(encoder) = state.encoder.as_mut() else {
+            return;
+        };
+        if let Err(error) = encoder.append(&message) {
+            state.error = Some(error.to_string());
+            // Taken apart rather than dropped: a drop would try to write a footer.
+            if let Some(encoder) = state.encoder.take() {
+                let _ = encoder.into_inner();
+            }
+        }
+    }
+
+    fn flush_blocking(&self, _: Duration) -> Result<(), SinkFlushError> {
+        self.check().map_err(|error| SinkFlushError::failed(error.to_string()))
+    }
+
+    fn defers_finalization_to_shutdown(&self) -> bool {
+        true
+    }
+}

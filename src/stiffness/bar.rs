@@ -1,0 +1,70 @@
+//! Cantilever compliance of a bar of circular section (eq. KiL of the paper).
+
+use nalgebra::Matrix6;
+
+/// Isotropic material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// `E`: Young's modulus \[Pa\].
+    pub youngs_modulus: f64,
+    /// `G`: shear modulus \[Pa\].
+    pub shear_modulus: f64,
+    /// `ν`: density \[kg/m³\].
+    pub density: f64,
+}
+
+impl Material {
+    /// The paper's steel, with `G` = 80 GPa (SPEC section 6).
+    pub const STEEL: Material = Material {
+        youngs_modulus: 210e9,
+        shear_modulus: 80e9,
+        density: 7850.0,
+    };
+}
+
+/// The section's part of a bar's compliance; a length completes it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BarCompliance {
+    /// `1/(EA)` \[1/N\].
+    pub axial: f64,
+    /// `1/(E I_y)` = `1/(E I_z)`, `I = πρ⁴/4` \[1/(N·m²)\].
+    pub bending: f64,
+    /// `1/(G I_x)`, `I_x = I_y + I_z` \[1/(N·m²)\].
+    pub torsion: f64,
+}
+
+impl BarCompliance {
+    /// The compliance of a bar of `radius` \[m\]; `None` where its section is too thin to carry anything that a
+    /// number can tell (a radius of 0, or one whose inertia or its inverse underflows).
+    pub fn new(material: &Material, radius: f64) -> Option<Self> {
+        let area = std::f64::consts::PI * radius * radius;
+        let inertia = 0.25 * area * radius * radius;
+        let compliance = Self {
+            axial: 1.0 / (material.youngs_modulus * area),
+            bending: 1.0 / (material.youngs_modulus * inertia),
+            torsion: 1.0 / (material.shear_modulus * (2.0 * inertia)),
+        };
+        // Squares and products of these are formed later: keep far from the ends of the number range.
+        let usable = |value: f64| value < 1e60;
+        (inertia > 0.0 && usable(compliance.axial) && usable(compliance.bending) && usable(compliance.torsion))
+            .then_some(compliance)
+    }
+
+    /// The 6×6 compliance \[m/N, rad/N, rad/(N·m)\] at the tip of a cantilever of `length` \[m\], in the bar's
+    /// axes (x along the bar), linear first: eq. KiL.
+    pub fn matrix(&self, length: f64) -> Matrix6<f64> {
+        let l = length;
+        let mut c = Matrix6::zeros();
+        c[(0, 0)] = l * self.axial;
+        c[(1, 1)] = l * l * l / 3.0 * self.bending;
+        c[(2, 2)] = c[(1, 1)];
+        c[(3, 3)] = l * self.torsion;
+        c[(4, 4)] = l * self.bending;
+        c[(5, 5)] = c[(4, 4)];
+        c[(1, 5)] = l * l / 2.0 * self.bending;
+        c[(5, 1)] = c[(1, 5)];
+        c[(2, 4)] = -c[(1, 5)];
+        c[(4, 2)] = c[(2, 4)];
+        c
+    }
+}

@@ -1,0 +1,93 @@
+//! The general form: a 6×6 virtual-joint model of each leg (eq. kinetstatomodel of the paper).
+//!
+//! `S_i = Σ J_k C_k J_kᵀ` over the springs of the chain, mapped to `P`; `K_i` is the upper-left 6×6 block of the inverse of
+//! `[[S_i, J_q], [J_qᵀ, 0]]`, with the transpose that the paper's print leaves out. It knows nothing of planes: the
+//! closed form is checked against it.
+
+use glam::DVec2;
+use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3, Vector6};
+
+use super::{BarCompliance, StiffnessModel};
+use crate::mechanism::{Leg, Manipulator, Posture};
+use crate::spatial::LEGS;
+
+/// `K` of the manipulator at `P`, linear first, base axes; `None` where a leg's system is singular.
+///
+/// The bordered system mixes entries from 1/(EA) to L³/3EI: for bars thinner than 5 mm it loses digits, and the closed
+/// form is the better one.
+pub fn stiffness<L: Leg>(
+    model: &StiffnessModel,
+    manipulator: &Manipulator<L>,
+    posture: &Posture,
+) -> Option<Matrix6<f64>> {
+    let mut total = Matrix6::zeros();
+    for i in 0..LEGS {
+        total += leg_stiffness(model, manipulator, posture, i)?;
+    }
+    Some(total)
+}
+
+/// `K_i` of leg `index`.
+pub fn leg_stiffness<L: Leg>(
+    model: &StiffnessModel,
+    manipulator: &Manipulator<L>,
+    posture: &Posture,
+    index: usize,
+) -> Option<Matrix6<f64>> {
+    let leg = &manipulator.legs[index];
+    let state = &posture.legs[index];
+    let p = DVec2::ZERO;
+    // Everything is laid out relative to P.
+    let c = posture.arms[index];
+    let b = c - state.u * state.length;
+
+    let mut s = Matrix6::zeros();
+    match leg.actuator_axis(state) {
+        Some(axis) => {
+            let twist = Vector6::new(axis.x, axis.y, 0.0, 0.0, 0.0, 0.0);
+            s += twist * twist.transpose() * model.actuator;
+        }
+        None => {
+            let proximal = leg.proximal_bar(state)?;
+            let twist = revolute(b - (proximal.to - proximal.from));
+            s += twist * twist.transpose() * model.actuator;
+        }
+    }
+    if let Some(bar) = leg.proximal_bar(state) {
+        s += spring(&model.leg_bar, bar.to - bar.from, state.length, b);
+    }
+    s += spring(&model.leg_bar, state.u, leg.distal_length(state), c);
+    s += spring(&model.platform_bar, -c, model.platform_radius, p);
+
+    let mut bordered = SMatrix::<f64, 8, 8>::zeros();
+    bordered.fixed_view_mut::<6, 6>(0, 0).copy_from(&s);
+    for (column, joint) in [b, c].into_iter().enumerate() {
+        let twist = revolute(joint);
+        bordered.fixed_view_mut::<6, 1>(0, 6 + column).copy_from(&twist);
+        bordered
+            .fixed_view_mut::<1, 6>(6 + column, 0)
+            .copy_from(&twist.transpose());
+    }
+    let inverse = bordered.full_piv_lu().try_inverse()?;
+    Some(inverse.fixed_view::<6, 6>(0, 0).into_owned())
+}
+
+/// Compliance at `P` of a bar along `direction` whose tip is at `tip` (relative to `P`).
+fn spring(section: &BarCompliance, direction: DVec2, length: f64, tip: DVec2) -> Matrix6<f64> {
+    let x = direction / direction.length();
+    let rotation = Matrix3::from_columns(&[Vector3::new(x.x, x.y, 0.0), Vector3::new(-x.y, x.x, 0.0), Vector3::z()]);
+    // Twist at P of a rigid body whose point `tip` moves by the spring: v_P = v + ω × (P − tip).
+    let lever = Vector3::new(-tip.x, -tip.y, 0.0);
+    let mut jacobian = Matrix6::zeros();
+    jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&rotation);
+    jacobian.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotation);
+    jacobian
+        .fixed_view_mut::<3, 3>(0, 3)
+        .copy_from(&(-lever.cross_matrix() * rotation));
+    jacobian * section.matrix(length) * jacobian.transpose()
+}
+
+/// Twist at `P` of a unit rotation about z through `joint` (relative to `P`).
+fn revolute(joint: DVec2) -> Vector6<f64> {
+    Vector6::new(joint.y, -joint.x, 0.0, 0.0, 0.0, 1.0)
+}

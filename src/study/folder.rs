@@ -1,0 +1,273 @@
+//! The folder a run leaves: `study.toml`, `designs.csv`, `front.csv` and `run.json` (the recording is another listener).
+//!
+//! `designs.csv` grows as designs are evaluated; the other files appear whole at the end.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+
+use serde::Serialize;
+
+use super::run::{Batch, Event, GenerationSummary, Outcome, RunSummary, RunTimes};
+use super::{AlgorithmName, Study};
+use crate::evaluation::{Constraint, Evaluation};
+
+/// First columns of `designs.csv` and `front.csv`; values, margins, active constraints and violation follow.
+pub const TABLE_HEADER: [&str; 13] = [
+    "id",
+    "generation",
+    "architecture",
+    "working_mode",
+    "R",
+    "r",
+    "Lb",
+    "rj",
+    "rp",
+    "mass_kg",
+    "workspace_radius_m",
+    "phi_deg",
+    "feasible",
+];
+
+/// What went wrong with a run folder.
+#[derive(Debug, thiserror::Error)]
+pub enum FolderError {
+    /// The folder holds a run already.
+    #[error("{} already holds a run ({found}); choose another folder, or move that one away", path.display())]
+    Occupied {
+        /// The folder.
+        path: PathBuf,
+        /// A file of the run in it.
+        found: &'static str,
+    },
+    /// A file cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+/// Files of a run.
+const FILES: [&str; 5] = ["study.toml", "designs.csv", "front.csv", "run.json", "recording.rrd"];
+
+/// A run folder being written.
+#[derive(Debug)]
+pub struct RunFolder {
+    path: PathBuf,
+    designs: csv::Writer<BufWriter<File>>,
+}
+
+/// `run.json`.
+#[derive(Debug, Serialize)]
+pub struct RunReport<'a> {
+    kinefront_version: &'static str,
+    study: &'a str,
+    algorithm: AlgorithmName,
+    architectures: Vec<&'static str>,
+    seed: u64,
+    threads: usize,
+    outcome: Outcome,
+    evaluations: usize,
+    feasible: usize,
+    generations: usize,
+    front_size: usize,
+    front_dropped_by_verification: usize,
+    hypervolume_reference: HypervolumeReference,
+    hypervolume_kg_m: f64,
+    verified_hypervolume_kg_m: f64,
+    times: RunTimes,
+    history: &'a [GenerationSummary],
+}
+
+#[derive(Debug, Serialize)]
+struct HypervolumeReference {
+    mass_kg: f64,
+    workspace_radius_m: f64,
+}
+
+impl<'a> RunReport<'a> {
+    /// The report of a run of `study`.
+    pub fn new(study: &'a Study, summary: &'a RunSummary) -> Self {
+        let last = summary.history.last();
+        Self {
+            kinefront_version: env!("CARGO_PKG_VERSION"),
+            study: &study.name,
+            algorithm: study.optimizer.algorithm,
+            architectures: study
+                .architectures
+                .iter()
+                .map(|architecture| architecture.name())
+                .collect(),
+            seed: study.optimizer.seed,
+            threads: summary.threads,
+            outcome: summary.outcome,
+            evaluations: last.map_or(0, |last| last.evaluations),
+            feasible: last.map_or(0, |last| last.feasible),
+            generations: summary.history.len(),
+            front_size: summary.front.len(),
+            front_dropped_by_verification: summary.dropped,
+            hypervolume_reference: HypervolumeReference {
+                mass_kg: study.hypervolume.reference_mass_kg,
+                workspace_radius_m: 0.0,
+            },
+            hypervolume_kg_m: last.map_or(0.0, |last| last.hypervolume),
+            verified_hypervolume_kg_m: summary.verified_hypervolume,
+            times: summary.times,
+            history: &summary.history,
+        }
+    }
+}
+
+impl RunFolder {
+    /// Prepares `path` for a run of `study`: makes the folder, writes `study.toml` and the head of `designs.csv`.
+    ///
+    /// # Errors
+    /// [`FolderError::Occupied`] when a run lies there, [`FolderError::Write`] when it cannot be written.
+    pub fn create(path: &Path, study: &Study) -> Result<Self, FolderError> {
+        if let Some(found) = FILES.into_iter().find(|file| path.join(file).exists()) {
+            return Err(FolderError::Occupied {
+                path: path.to_owned(),
+                found,
+            });
+        }
+        let at = |path: &Path| {
+            let path = path.to_owned();
+            move |source| FolderError::Write { path, source }
+        };
+        fs::create_dir_all(path).map_err(at(path))?;
+        let study_path = path.join("study.toml");
+        let text = toml::to_string(study).map_err(|error| at(&study_path)(io::Error::other(error)))?;
+        write_whole(&study_path, text.as_bytes())?;
+        let designs_path = path.join("designs.csv");
+        let file = File::create_new(&designs_path).map_err(at(&designs_path))?;
+        let mut designs = csv::Writer::from_writer(BufWriter::new(file));
+        designs
+            .write_record(header())
+            .and_then(|()| designs.flush().map_err(csv::Error::from))
+            .map_err(|error| at(&designs_path)(io::Error::other(error)))?;
+        Ok(Self {
+            path: path.to_owned(),
+            designs,
+        })
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes what a run tells until it ends.
+    ///
+    /// # Errors
+    /// [`FolderError::Write`] at the first file that cannot be written; what was written before stays.
+    pub fn follow(mut self, events: &Receiver<Arc<Event>>, study: &Study) -> Result<(), FolderError> {
+        for event in events {
+            match &*event {
+                Event::Evaluated(batch) => self.append(batch)?,
+                Event::Finished(summary) => self.finish(study, summary)?,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn append(&mut self, batch: &Batch) -> Result<(), FolderError> {
+        let mut write = || -> Result<(), csv::Error> {
+            for (offset, evaluation) in batch.evaluations.iter().enumerate() {
+                self.designs
+                    .write_record(row(batch.first_id + offset, batch.generation, evaluation))?;
+            }
+            Ok(self.designs.flush()?)
+        };
+        write().map_err(|error| FolderError::Write {
+            path: self.path.join("designs.csv"),
+            source: io::Error::other(error),
+        })
+    }
+
+    fn finish(&mut self, study: &Study, summary: &RunSummary) -> Result<(), FolderError> {
+        let front_path = self.path.join("front.csv");
+        let table = || -> Result<Vec<u8>, csv::Error> {
+            let mut table = csv::Writer::from_writer(Vec::new());
+            table.write_record(header().chain(["workspace_radius_reference_m".to_owned()]))?;
+            for member in &summary.front {
+                let record = row(member.id, member.generation, &member.evaluation);
+                table.write_record(record.into_iter().chain([member.reference_radius.to_string()]))?;
+            }
+            table
+                .into_inner()
+                .map_err(|error| io::Error::other(error.to_string()).into())
+        };
+        let table = table().map_err(|error| FolderError::Write {
+            path: front_path.clone(),
+            source: io::Error::other(error),
+        })?;
+        write_whole(&front_path, &table)?;
+
+        let report_path = self.path.join("run.json");
+        let mut report =
+            serde_json::to_vec_pretty(&RunReport::new(study, summary)).map_err(|error| FolderError::Write {
+                path: report_path.clone(),
+                source: error.into(),
+            })?;
+        report.push(b'\n');
+        write_whole(&report_path, &report)
+    }
+}
+
+fn header() -> impl Iterator<Item = String> {
+    let named = |prefix: &'static str| Constraint::ALL.into_iter().map(move |c| format!("{prefix}_{}", c.id()));
+    TABLE_HEADER
+        .into_iter()
+        .map(str::to_owned)
+        .chain(named("margin"))
+        .chain(named("value"))
+        .chain(["active".to_owned(), "violation".to_owned()])
+}
+
+/// A row of a table; numbers as the shortest text that reads back to the same bits.
+fn row(id: usize, generation: usize, evaluation: &Evaluation) -> Vec<String> {
+    let design = &evaluation.design;
+    let optional = |number: Option<f64>| number.map(|number| number.to_string()).unwrap_or_default();
+    let mut row = vec![
+        id.to_string(),
+        generation.to_string(),
+        design.architecture.to_string(),
+        design.working_mode.to_string(),
+    ];
+    row.extend(design.values().map(|value| value.to_string()));
+    row.push(evaluation.mass.to_string());
+    row.push(evaluation.workspace_radius.to_string());
+    row.push(optional(evaluation.home_phi_deg));
+    row.push(evaluation.is_feasible().to_string());
+    row.extend(evaluation.constraints.iter().map(|report| report.margin.to_string()));
+    row.extend(evaluation.constraints.iter().map(|report| optional(report.value)));
+    let active: Vec<&str> = evaluation.active().map(Constraint::id).collect();
+    row.push(active.join("+"));
+    row.push(evaluation.violation.to_string());
+    row
+}
+
+/// Writes a file beside its place and moves it there, so that it is either whole or not there.
+fn write_whole(path: &Path, contents: &[u8]) -> Result<(), FolderError> {
+    let partial = path.with_extension("partial");
+    let write = || -> io::Result<()> {
+        let mut file = File::create(&partial)?;
+        file.write_all(contents)?;
+        file.sync_all()?;
+        fs::rename(&partial, path)
+    };
+    write().map_err(|source| {
+        // The partial file is of no use to anyone; that it may stay behind is not worth a second error.
+        let _ = fs::remove_file(&partial);
+        FolderError::Write {
+            path: path.to_owned(),
+            source,
+        }
+    })
+}

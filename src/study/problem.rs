@@ -1,0 +1,102 @@
+//! A study as a problem for the optimizer: `x` = the architecture, then the five lengths.
+
+use super::Study;
+use crate::evaluation::{Evaluation, GridChoice, Model};
+use crate::mechanism::{Architecture, Design, DesignError, VARIABLES, WorkingMode};
+use crate::optimize::{Outcome, Problem, Variable};
+use crate::workspace::GridError;
+
+/// Designs of a study, encoded for an optimizer.
+///
+/// The first value is the index of the architecture in the study's list, then follow the lengths in the order of
+/// [`VARIABLES`]. With one architecture the first variable has a single choice.
+#[derive(Debug, Clone)]
+pub struct DesignProblem {
+    model: Model,
+    architectures: Vec<Architecture>,
+    working_mode: WorkingMode,
+    ranges: [[f64; 2]; VARIABLES.len()],
+}
+
+/// Why a candidate cannot be evaluated; a study that was read without faults has none.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CandidateError {
+    /// The values are no design.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+    /// The grid does not fit.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+}
+
+impl DesignProblem {
+    /// The problem of a study.
+    pub fn new(study: &Study) -> Self {
+        Self {
+            model: study.model(),
+            architectures: study.architectures.clone(),
+            working_mode: study.working_mode,
+            ranges: VARIABLES.map(|variable| study.bounds.range(variable)),
+        }
+    }
+
+    /// The model that designs are evaluated with.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The design that `x` encodes.
+    ///
+    /// # Errors
+    /// [`DesignError`] when the bounds allow what is no design.
+    pub fn design(&self, x: &[f64]) -> Result<Design, DesignError> {
+        let architecture = self.architectures[(x[0] as usize).min(self.architectures.len() - 1)];
+        Design::new(architecture, self.working_mode, [x[1], x[2], x[3], x[4], x[5]])
+    }
+
+    /// Evaluates the design that `x` encodes on the reference grid.
+    ///
+    /// # Errors
+    /// [`CandidateError`].
+    pub fn evaluation(&self, x: &[f64]) -> Result<Evaluation, CandidateError> {
+        Ok(self.model.evaluate(&self.design(x)?, GridChoice::Reference)?)
+    }
+
+    /// What the optimizer sees of an evaluation: mass and −`R_w`, both minimised, and the violation.
+    pub fn outcome(evaluation: &Evaluation) -> Outcome {
+        Outcome {
+            objectives: [evaluation.mass, -evaluation.workspace_radius],
+            violation: evaluation.violation,
+        }
+    }
+
+    /// The variables of the problem.
+    pub fn variables(&self) -> Vec<Variable> {
+        std::iter::once(Variable::Categorical {
+            choices: self.architectures.len(),
+        })
+        .chain(
+            self.ranges
+                .iter()
+                .map(|&[lower, upper]| Variable::Real { lower, upper }),
+        )
+        .collect()
+    }
+}
+
+impl Problem for DesignProblem {
+    fn variables(&self) -> Vec<Variable> {
+        DesignProblem::variables(self)
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Outcome {
+        match self.evaluation(x) {
+            Ok(evaluation) => Self::outcome(&evaluation),
+            // No design at all: worse than any that is one.
+            Err(_) => Outcome {
+                objectives: [f64::MAX, 0.0],
+                violation: f64::MAX,
+            },
+        }
+    }
+}
