@@ -1,0 +1,138 @@
+//! What a module may use, as ARCHITECTURE.md states it: by what its source does not mention.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn sources(module: &str) -> Vec<(PathBuf, String)> {
+    fn collect(path: &Path, found: &mut Vec<PathBuf>) {
+        if path.is_dir() {
+            for entry in fs::read_dir(path).expect("a folder") {
+                collect(&entry.expect("an entry").path(), found);
+            }
+        } else {
+            found.push(path.to_owned());
+        }
+    }
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut found = Vec::new();
+    for path in [src.join(module), src.join(format!("{module}.rs"))] {
+        if path.exists() {
+            collect(&path, &mut found);
+        }
+    }
+    assert!(!found.is_empty(), "no module {module}");
+    let read = |path: PathBuf| {
+        let text = fs::read_to_string(&path).expect("a source");
+        // Documentation may speak of anything.
+        let code: Vec<&str> = text
+            .lines()
+            .filter(|line| !line.trim_start().starts_with("//"))
+            .collect();
+        (path, code.join("\n"))
+    };
+    found.into_iter().map(read).collect()
+}
+
+fn absent(modules: &[&str], words: &[&str]) {
+    for module in modules {
+        for (path, code) in sources(module) {
+            for word in words {
+                assert!(!code.contains(word), "{} mentions `{word}`", path.display());
+            }
+        }
+    }
+}
+
+const MODEL: [&str; 6] = [
+    "spatial",
+    "mechanism",
+    "kinematics",
+    "stiffness",
+    "workspace",
+    "evaluation",
+];
+
+#[test]
+fn only_the_recording_knows_rerun() {
+    let outside = [&MODEL[..], &["optimize", "study"]].concat();
+    absent(&outside, &["rerun", "egui", "crate::recording"]);
+}
+
+#[test]
+fn the_optimizer_knows_nothing_of_robots() {
+    let ours = [
+        "mechanism",
+        "kinematics",
+        "stiffness",
+        "workspace",
+        "evaluation",
+        "study",
+        "recording",
+        "spatial",
+    ];
+    for module in ours {
+        absent(&["optimize"], &[&format!("crate::{module}")]);
+    }
+}
+
+#[test]
+fn the_model_does_no_input_or_output_and_reads_no_clock() {
+    absent(
+        &MODEL,
+        &[
+            "std::fs",
+            "std::io",
+            "std::env",
+            "std::time",
+            "std::thread",
+            "println!",
+            "rand",
+            "mul_add",
+        ],
+    );
+    // One result on every machine: no transcendental of the platform's own library.
+    let platform = [
+        ".sin()",
+        ".cos()",
+        ".tan()",
+        ".atan2(",
+        ".powf(",
+        ".powi(",
+        ".exp()",
+        ".ln()",
+        ".sin_cos()",
+    ];
+    absent(&MODEL, &platform);
+    absent(&["optimize"], &platform);
+}
+
+#[test]
+fn architectures_are_named_in_mechanism_alone() {
+    let outside = [
+        "spatial",
+        "kinematics",
+        "stiffness",
+        "workspace",
+        "evaluation",
+        "optimize",
+        "study",
+        "recording",
+    ];
+    absent(
+        &outside,
+        &[
+            "PrrLeg",
+            "RprLeg",
+            "RrrLeg",
+            "Architecture::Prr",
+            "Architecture::Rpr",
+            "Architecture::Rrr",
+        ],
+    );
+}
+
+#[test]
+fn hash_order_decides_nothing() {
+    let all = [&MODEL[..], &["optimize", "study", "recording"]].concat();
+    absent(&all, &["HashMap", "HashSet"]);
+}

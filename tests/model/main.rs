@@ -1,0 +1,10 @@
+//! The model: joints, Jacobians, stiffness, workspace and optimizers against identities and independent values.
+
+mod forms;
+mod invariants;
+mod joints;
+mod optimizers;
+mod reference;
+mod search;
+mod strategies;
+mod studies;

@@ -1,0 +1,299 @@
+//! `evaluate`, `pose`, `study` and wrong input.
+
+use predicates::prelude::*;
+use predicates::str::contains;
+use serde_json::Value;
+
+use super::support::{DESIGN, folder, kinefront, small_study};
+
+fn json(arguments: &[&str]) -> Value {
+    let output = kinefront()
+        .args(arguments)
+        .assert()
+        .success()
+        .get_output()
+        .stdout
+        .clone();
+    serde_json::from_slice(&output).expect("one JSON object")
+}
+
+fn keys(value: &Value) -> Vec<&str> {
+    value
+        .as_object()
+        .expect("an object")
+        .keys()
+        .map(String::as_str)
+        .collect()
+}
+
+#[test]
+fn evaluate_has_the_keys_others_rely_on() {
+    let found = json(&["evaluate", "--design", DESIGN, "--json"]);
+    for key in [
+        "architecture",
+        "design",
+        "working_mode",
+        "mass_kg",
+        "workspace_radius_m",
+        "home",
+        "feasible",
+        "constraints",
+    ] {
+        assert!(found.get(key).is_some(), "{key} is missing");
+    }
+    let mut design = keys(&found["design"]);
+    design.sort_unstable();
+    assert_eq!(design, ["Lb", "R", "r", "rj", "rp"]);
+    assert_eq!(found["architecture"], "3-PRR");
+    assert_eq!(found["working_mode"], serde_json::json!([1, 1, 1]));
+    assert_eq!(found["feasible"], true);
+    assert!((found["workspace_radius_m"].as_f64().expect("a number") - 1.220097).abs() < 1e-5);
+    assert_eq!(
+        found["home"],
+        serde_json::json!({"x_m": 0.0, "y_m": 0.0, "phi_deg": 30.0})
+    );
+    let constraints = found["constraints"].as_array().expect("a list");
+    let ids: Vec<&str> = constraints.iter().map(|c| c["id"].as_str().expect("an id")).collect();
+    assert_eq!(ids, ["g1", "g2", "g3", "g4", "g5", "g6", "det_sign"]);
+    for constraint in constraints {
+        for key in ["id", "name", "value", "threshold", "margin", "active", "pose"] {
+            assert!(constraint.get(key).is_some(), "{key} is missing");
+        }
+    }
+}
+
+#[test]
+fn evaluate_on_the_fine_grid_and_under_another_study() {
+    let fine = json(&["evaluate", "--design", DESIGN, "--grid", "fine", "--json"]);
+    assert!((fine["workspace_radius_m"].as_f64().expect("a number") - 1.221138).abs() < 1e-5);
+    let light = json(&[
+        "evaluate",
+        "--design",
+        DESIGN,
+        "--study",
+        "aluminium-pick-and-place",
+        "--json",
+    ]);
+    let ratio = light["mass_kg"].as_f64().expect("a number") / fine["mass_kg"].as_f64().expect("a number");
+    assert!((ratio - 2700.0 / 7850.0).abs() < 1e-12);
+}
+
+#[test]
+fn an_infeasible_design_is_data() {
+    let found = json(&["evaluate", "--design", "3-RRR R=4 r=0.1 Lb=0.5 rj=0 rp=0", "--json"]);
+    assert_eq!(found["feasible"], false);
+    assert_eq!(found["home"], Value::Null);
+    assert_eq!(found["workspace_radius_m"], 0.0);
+    assert!(found["violation"].as_f64().expect("a number") > 0.0);
+}
+
+#[test]
+fn a_stream_answers_line_by_line_and_survives_bad_lines() {
+    let input = format!("{DESIGN}\nnonsense\n\n3-RPR R=1 r=1 Lb=1 rj=nan rp=1\n\u{fffd}\n{DESIGN} mode=---\n");
+    let mut bytes = input.into_bytes();
+    bytes.extend(b"\xff\xfe\n");
+    let output = kinefront()
+        .args(["evaluate", "--stdin"])
+        .write_stdin(bytes)
+        .assert()
+        .success()
+        .get_output()
+        .stdout
+        .clone();
+    let lines: Vec<Value> = String::from_utf8(output)
+        .expect("UTF-8")
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("a JSON object a line"))
+        .collect();
+    assert_eq!(lines.len(), 7);
+    for (index, line) in lines.iter().enumerate() {
+        assert_eq!(
+            line.get("error").is_none(),
+            [0, 5].contains(&index),
+            "line {index}: {line}"
+        );
+    }
+    assert!(lines[3]["error"].as_str().expect("a message").contains("rj is NaN"));
+    assert_eq!(lines[5]["working_mode"], serde_json::json!([-1, -1, -1]));
+}
+
+#[test]
+fn pose_tells_joints_and_stiffness() {
+    let found = json(&["pose", "--design", DESIGN, "--pose", "x=0.1 y=0.2 phi_deg=30", "--json"]);
+    assert_eq!(found["reachable"], true);
+    assert_eq!(found["reason"], Value::Null);
+    assert_eq!(found["actuators"].as_array().expect("a list").len(), 3);
+    assert_eq!(found["B"].as_array().expect("a list").len(), 3);
+    assert_eq!(found["stiffness"].as_array().expect("a list").len(), 6);
+    let k = |i: usize, j: usize| found["stiffness"][i][j].as_f64().expect("a number");
+    assert_eq!(k(2, 2), found["k_z"].as_f64().expect("a number"));
+    assert_eq!(k(5, 5), found["k_phi_z"].as_f64().expect("a number"));
+    assert_eq!(k(0, 5), k(5, 0));
+    assert_eq!(k(0, 2), 0.0);
+
+    let far = json(&["pose", "--design", DESIGN, "--pose", "x=9 y=0 phi_deg=0", "--json"]);
+    assert_eq!(far["reachable"], false);
+    assert!(far["reason"].as_str().expect("a reason").contains("out of reach"));
+    for key in [
+        "actuators",
+        "B",
+        "C",
+        "inverse_condition",
+        "k_xy",
+        "k_z",
+        "k_phi_z",
+        "stiffness",
+    ] {
+        assert_eq!(far.get(key), Some(&Value::Null), "{key}");
+    }
+
+    // B of a 3-RPR is A, and its stroke limits are told.
+    let telescopic = "3-RPR R=1.5 r=0.3 Lb=2 rj=0.03 rp=0.03";
+    let near = json(&["pose", "--design", telescopic, "--pose", "x=0 y=0 phi_deg=0", "--json"]);
+    assert!((near["B"][2][1].as_f64().expect("a number") - 1.5).abs() < 1e-12);
+    let beyond = json(&[
+        "pose",
+        "--design",
+        telescopic,
+        "--pose",
+        "x=0 y=0.5 phi_deg=0",
+        "--json",
+    ]);
+    assert!(beyond["reason"].as_str().expect("a reason").contains("leg 3: actuator"));
+}
+
+#[test]
+fn people_get_tables() {
+    kinefront()
+        .args(["evaluate", "--design", DESIGN])
+        .assert()
+        .success()
+        .stdout(
+            contains("R_w = 1.22010 m")
+                .and(contains("dexterity"))
+                .and(contains("479.472 kg")),
+        );
+    kinefront()
+        .args(["pose", "--design", DESIGN, "--pose", "x=0 y=0 phi_deg=30"])
+        .assert()
+        .success()
+        .stdout(contains("inverse condition").and(contains("φz")));
+}
+
+/// Exit code 2, and words that say what is wrong and what would be right.
+#[test]
+fn wrong_input_is_refused_in_words() {
+    let cases: [(&[&str], &str); 13] = [
+        (
+            &["evaluate", "--design", "3-PPP R=1"],
+            "expected one of 3-PRR, 3-RPR, 3-RRR",
+        ),
+        (
+            &["evaluate", "--design", "3-PRR R=1 r=1 Lb=1 rj=0.1"],
+            "`rp` is missing",
+        ),
+        (
+            &["evaluate", "--design", "3-PRR R=-1 r=1 Lb=1 rj=0.1 rp=0.1"],
+            "above 0 m",
+        ),
+        (&["evaluate"], "--design"),
+        (&["evaluate", "--design", DESIGN, "--grid", "coarse"], "reference"),
+        (
+            &["evaluate", "--design", DESIGN, "--study", "nowhere.toml"],
+            "paper-bounds-as-printed",
+        ),
+        (
+            &["pose", "--design", DESIGN, "--pose", "x=0 y=0"],
+            "`phi_deg` is missing",
+        ),
+        (
+            &["pose", "--design", DESIGN, "--pose", "x=0 y=inf phi_deg=0"],
+            "must be finite",
+        ),
+        (&["optimize", "--threads", "0"], "1..=1024"),
+        (&["optimize", "--evaluations", "0"], "1..=100000000"),
+        (&["optimize", "--architectures", "3-PRR,4-RRR"], "unknown architecture"),
+        (
+            &["optimize", "--architectures", "3-PRR,3-PRR"],
+            "names an architecture twice",
+        ),
+        (&["study", "show", "none"], "paper"),
+    ];
+    for (arguments, words) in cases {
+        kinefront().args(arguments).assert().code(2).stderr(contains(words));
+    }
+}
+
+#[test]
+fn a_wrong_study_shows_file_line_and_key() {
+    let folder = folder();
+    let file = folder.path().join("wrong.toml");
+    std::fs::write(&file, "name = \"wrong\"\n\n[bounds]\nR_m = [4, 1]\n").expect("a file");
+    for command in [vec!["study", "check"], vec!["optimize"]] {
+        kinefront()
+            .current_dir(folder.path())
+            .args(command)
+            .arg("wrong.toml")
+            .assert()
+            .code(2)
+            .stderr(contains("wrong.toml:4").and(contains("bounds.R_m")));
+    }
+    assert_eq!(
+        std::fs::read_dir(folder.path()).expect("a folder").count(),
+        1,
+        "a refused study leaves nothing behind"
+    );
+}
+
+#[test]
+fn study_new_writes_a_commented_study_and_overwrites_nothing() {
+    let folder = folder();
+    let new = |expected: i32| {
+        kinefront()
+            .current_dir(folder.path())
+            .args(["study", "new", "mine.toml"])
+            .assert()
+            .code(expected);
+    };
+    new(0);
+    let text = std::fs::read_to_string(folder.path().join("mine.toml")).expect("the file");
+    assert!(text.contains("# g4: a force in the plane"));
+    kinefront()
+        .current_dir(folder.path())
+        .args(["study", "check", "mine.toml"])
+        .assert()
+        .success();
+    std::fs::write(folder.path().join("mine.toml"), "mine").expect("a file");
+    new(2);
+    assert_eq!(
+        std::fs::read_to_string(folder.path().join("mine.toml")).expect("the file"),
+        "mine"
+    );
+    kinefront()
+        .args(["study", "list"])
+        .assert()
+        .success()
+        .stdout(contains("aluminium-pick-and-place"));
+}
+
+#[test]
+fn an_occupied_run_folder_is_left_alone() {
+    let folder = folder();
+    let study = small_study(folder.path());
+    let out = folder.path().join("run");
+    std::fs::create_dir(&out).expect("a folder");
+    std::fs::write(out.join("front.csv"), "precious").expect("a file");
+    kinefront()
+        .arg("optimize")
+        .arg(&study)
+        .arg("--out")
+        .arg(&out)
+        .assert()
+        .code(2)
+        .stderr(contains("already holds a run"));
+    assert_eq!(
+        std::fs::read_to_string(out.join("front.csv")).expect("the file"),
+        "precious"
+    );
+    assert_eq!(std::fs::read_dir(&out).expect("a folder").count(), 1);
+}

@@ -1,0 +1,198 @@
+//! Whole runs: files, determinism, interruption.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use super::support::{folder, kinefront, optimize, small_study};
+
+fn rows(path: &Path) -> Vec<csv::StringRecord> {
+    let mut reader = csv::Reader::from_path(path).expect("a table");
+    reader.records().map(|record| record.expect("a row")).collect()
+}
+
+#[test]
+fn a_run_leaves_its_files() {
+    let folder = folder();
+    let out = folder.path().join("run");
+    let report = optimize(&small_study(folder.path()), &out, &[]);
+    for file in ["study.toml", "designs.csv", "front.csv", "run.json", "recording.rrd"] {
+        assert!(out.join(file).metadata().expect(file).len() > 0);
+    }
+    assert_eq!(fs::read_dir(&out).expect("a folder").count(), 5);
+    let header = fs::read_to_string(out.join("designs.csv")).expect("the table");
+    assert!(header.starts_with(
+        "id,generation,architecture,working_mode,R,r,Lb,rj,rp,mass_kg,workspace_radius_m,phi_deg,feasible,"
+    ));
+    let designs = rows(&out.join("designs.csv"));
+    assert_eq!(designs.len(), 600);
+    assert!(designs.iter().enumerate().all(|(id, row)| row[0] == id.to_string()));
+    assert_eq!(report["evaluations"], 600);
+    assert_eq!(report["outcome"], "completed");
+    assert_eq!(report["history"].as_array().expect("a list").len(), 20);
+    let feasible = designs.iter().filter(|row| &row[12] == "true").count();
+    assert_eq!(report["feasible"], feasible);
+    let saved: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(out.join("run.json")).expect("the report")).expect("JSON");
+    assert_eq!(saved, report);
+
+    // The front: feasible, sorted, non-dominated, and what `evaluate` says on the fine grid.
+    let front = rows(&out.join("front.csv"));
+    assert_eq!(report["front_size"], front.len());
+    assert!(front.len() > 3);
+    let number = |row: &csv::StringRecord, column: usize| row[column].parse::<f64>().expect("a number");
+    for pair in front.windows(2) {
+        assert!(number(&pair[0], 9) < number(&pair[1], 9) && number(&pair[0], 10) < number(&pair[1], 10));
+    }
+    let row = &front[front.len() / 2];
+    let keys = ["R", "r", "Lb", "rj", "rp"];
+    let design: Vec<String> = keys
+        .iter()
+        .enumerate()
+        .map(|(k, key)| format!("{key}={}", &row[4 + k]))
+        .collect();
+    let output = kinefront()
+        .args(["evaluate", "--grid", "fine", "--json", "--study"])
+        .arg(out.join("study.toml"))
+        .args(["--design", &format!("{} {}", &row[2], design.join(" "))])
+        .assert()
+        .success()
+        .get_output()
+        .stdout
+        .clone();
+    let found: serde_json::Value = serde_json::from_slice(&output).expect("JSON");
+    assert_eq!(found["workspace_radius_m"].as_f64(), Some(number(row, 10)));
+    assert_eq!(found["mass_kg"].as_f64(), Some(number(row, 9)));
+}
+
+/// One seed, one result to the bit: whatever the threads, and again from the study a run leaves.
+#[test]
+fn runs_repeat_to_the_bit() {
+    let folder = folder();
+    let study = small_study(folder.path());
+    for algorithm in ["moga2", "nsga2"] {
+        let run = |name: &str, study: &Path, more: &[&str]| {
+            let out = folder.path().join(format!("{algorithm}-{name}"));
+            optimize(study, &out, &[&["--algorithm", algorithm], more].concat());
+            ["designs.csv", "front.csv"].map(|file| fs::read(out.join(file)).expect("a table"))
+        };
+        let one = run("one", &study, &["--threads", "1"]);
+        assert!(
+            one == run("three", &study, &["--threads", "3"]),
+            "{algorithm} depends on the number of threads"
+        );
+        let left = folder.path().join(format!("{algorithm}-one/study.toml"));
+        assert!(
+            one == run("again", &left, &[]),
+            "{algorithm} does not repeat from the study it leaves"
+        );
+        assert!(
+            one != run("other", &study, &["--seed", "6"]),
+            "{algorithm} ignores its seed"
+        );
+    }
+}
+
+#[test]
+fn one_architecture_alone() {
+    let folder = folder();
+    let out = folder.path().join("run");
+    let more = ["--architectures", "3-RPR", "--evaluations", "100"];
+    let report = optimize(&small_study(folder.path()), &out, &more);
+    assert_eq!(report["evaluations"], 100);
+    let designs = rows(&out.join("designs.csv"));
+    assert_eq!(designs.len(), 100);
+    assert!(designs.iter().all(|row| &row[2] == "3-RPR"));
+}
+
+#[test]
+fn piped_progress_is_plain_lines_and_quiet_is_quiet() {
+    let folder = folder();
+    let study = small_study(folder.path());
+    let output = |out: &str, more: &[&str]| {
+        let mut command = kinefront();
+        command
+            .arg("optimize")
+            .arg(&study)
+            .arg("--out")
+            .arg(folder.path().join(out))
+            .args(more);
+        command.assert().success().get_output().clone()
+    };
+    let loud = String::from_utf8(output("loud", &[]).stderr).expect("UTF-8");
+    assert!(
+        loud.contains("generation 20: 600/600 evaluations") && !loud.contains('\u{1b}'),
+        "{loud}"
+    );
+    assert!(output("quiet", &["--quiet"]).stderr.is_empty());
+}
+
+/// Ctrl-C: the tables and the recording hold all that was evaluated, exit code 130.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_keeps_what_it_has() {
+    let folder = folder();
+    let study = small_study(folder.path());
+    let out = folder.path().join("run");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_kinefront"))
+        .arg("optimize")
+        .arg(&study)
+        .args(["--evaluations", "1000000", "--json", "--out"])
+        .arg(&out)
+        .env_remove("RERUN")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    // Wait until some rows are there.
+    let begun = std::time::Instant::now();
+    loop {
+        let written = fs::File::open(out.join("designs.csv")).map_or(0, |file| BufReader::new(file).lines().count());
+        if written > 200 {
+            break;
+        }
+        assert!(begun.elapsed().as_secs() < 60, "no designs after a minute");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let killed = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .expect("kill runs");
+    assert!(killed.success());
+    let mut printed = String::new();
+    child
+        .stdout
+        .take()
+        .expect("a pipe")
+        .read_to_string(&mut printed)
+        .expect("UTF-8");
+    assert_eq!(child.wait().expect("an end").code(), Some(130));
+    let report: serde_json::Value = serde_json::from_str(&printed).expect("JSON");
+    assert_eq!(report["outcome"], "stopped");
+    let designs = rows(&out.join("designs.csv"));
+    assert_eq!(report["evaluations"], designs.len());
+    assert!(designs.len() < 1_000_000 && out.join("front.csv").exists());
+    super::recordings::agrees_with_its_tables(&out);
+}
+
+/// A full disk is told, and the exit code says so.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told() {
+    let folder = folder();
+    let study = small_study(folder.path());
+    let out = folder.path().join("run");
+    fs::create_dir(&out).expect("a folder");
+    std::os::unix::fs::symlink("/dev/full", out.join("run.partial")).expect("a link");
+    kinefront()
+        .arg("optimize")
+        .arg(&study)
+        .args(["--quiet", "--out"])
+        .arg(&out)
+        .assert()
+        .code(1)
+        .stderr(predicates::str::contains("run.json"));
+    assert!(!out.join("run.json").exists());
+    assert_eq!(rows(&out.join("designs.csv")).len(), 600);
+}

@@ -1,0 +1,84 @@
+//! The binary, folders to work in, and a Python to read our files with.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use assert_cmd::cargo::cargo_bin_cmd;
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// The paper's design II.
+pub const DESIGN: &str = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056";
+
+/// The program, with no setting of the caller's environment that Rerun would listen to.
+pub fn kinefront() -> assert_cmd::Command {
+    let mut command = cargo_bin_cmd!("kinefront");
+    command.env_remove("RERUN").env("NO_COLOR", "1");
+    command
+}
+
+pub fn folder() -> TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+/// A small study: quick, and with all three architectures.
+pub fn small_study(folder: &Path) -> PathBuf {
+    let path = folder.join("small.toml");
+    let text = "name = \"small\"\n[grid.reference]\nphi_step_deg = 5\ndirections = 12\nray_steps = 20\nhalvings = 6\n\
+                [grid.fine]\nphi_step_deg = 2.5\ndirections = 24\nray_steps = 40\nhalvings = 8\n\
+                [optimizer]\nevaluations = 600\nseed = 5\n";
+    std::fs::write(&path, text).expect("a study file");
+    path
+}
+
+/// Runs a study into `out` and returns `run.json`.
+pub fn optimize(study: &Path, out: &Path, more: &[&str]) -> Value {
+    let output = kinefront()
+        .arg("optimize")
+        .arg(study)
+        .arg("--out")
+        .arg(out)
+        .args(["--json", "--quiet"])
+        .args(more)
+        .assert()
+        .success()
+        .get_output()
+        .stdout
+        .clone();
+    serde_json::from_slice(&output).expect("JSON")
+}
+
+/// A Python that has `modules`, or `None` with a word on what is missing.
+///
+/// `KINEFRONT_PYTHON` names the interpreter; with `KINEFRONT_REQUIRE_PYTHON` set, a missing one is a failure.
+pub fn python(modules: &[&str]) -> Option<Command> {
+    let interpreter = std::env::var("KINEFRONT_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let imports: Vec<String> = modules.iter().map(|module| format!("import {module}")).collect();
+    let found = Command::new(&interpreter)
+        .args(["-c", &imports.join("\n")])
+        .output()
+        .is_ok_and(|output| output.status.success());
+    if found {
+        return Some(Command::new(interpreter));
+    }
+    let message = format!(
+        "skipped: {interpreter} with {} was not found (see README, Tests)",
+        modules.join(", ")
+    );
+    assert!(std::env::var_os("KINEFRONT_REQUIRE_PYTHON").is_none(), "{message}");
+    eprintln!("{message}");
+    None
+}
+
+/// Runs a script of `tests/python` and returns what it prints.
+pub fn script(mut python: Command, name: &str, arguments: &[&Path]) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python").join(name);
+    let output = python.arg(path).args(arguments).output().expect("Python runs");
+    assert!(
+        output.status.success(),
+        "{name} failed:\n{}\n{}",
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout).expect("UTF-8")
+}

@@ -1,0 +1,98 @@
+"""Check RUN/recording.rrd against RUN/designs.csv, with the Rerun package's own verifier and reader."""
+
+import csv
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import rerun
+from rerun.experimental import RrdReader
+
+run = Path(sys.argv[1])
+path = run / "recording.rrd"
+
+command = Path(rerun.__file__).parent.parent / "rerun_cli" / "rerun"
+verified = subprocess.run([str(command), "rrd", "verify", str(path)], capture_output=True, text=True)
+assert verified.returncode == 0, verified.stderr
+assert "1 file verified without error" in verified.stderr, verified.stderr
+
+reader = RrdReader(str(path))
+
+
+def table(entity):
+    batches = []
+    for chunk in reader.stream().filter(content=entity):
+        batch = chunk.to_record_batch()
+        batches.append(pa.Table.from_batches([batch.replace_schema_metadata(None)]))
+    assert batches, f"no rows at {entity}"
+    return pa.concat_tables(batches, promote_options="default")
+
+
+def column(rows, name):
+    """One value a row, None where the row has none."""
+    return [None if not cell else cell[0] for cell in rows[name].to_pylist()]
+
+
+with open(run / "designs.csv", newline="") as file:
+    designs = list(csv.DictReader(file))
+
+rows = table("/designs")
+assert rows.num_rows == len(designs), f"{rows.num_rows} rows for {len(designs)} designs"
+order = np.argsort(rows["evaluation"].to_numpy(), kind="stable")
+rows = rows.take(pa.array(order))
+assert rows["evaluation"].to_pylist() == [int(d["id"]) for d in designs]
+assert rows["generation"].to_pylist() == [int(d["generation"]) for d in designs]
+checked = 0
+for name in designs[0]:
+    if name in ("id", "generation"):
+        continue
+    recorded = column(rows, name)
+    for value, design in zip(recorded, designs):
+        text = design[name]
+        if isinstance(value, bool):
+            assert str(value).lower() == text
+        elif isinstance(value, float):
+            assert float(text) == value, f"{name}: {value} for {text}"
+        else:
+            assert (value or "") == text, f"{name}: {value!r} for {text!r}"
+        checked += 1
+
+report = json.loads((run / "run.json").read_text())
+history = report["history"]
+for entity, key in [("/run/hypervolume", "hypervolume"), ("/run/front_size", "front_size")]:
+    curve = table(entity).sort_by("generation")
+    assert curve["generation"].to_pylist() == [g["generation"] for g in history]
+    assert column(curve, "Scalars:scalars") == [float(g[key]) for g in history]
+
+# Every feasible design is a point of the scatter, at (log10 mass, R_w).
+wanted = sorted(
+    (float(np.float32(np.log10(float(d["mass_kg"])))), float(np.float32(d["workspace_radius_m"])))
+    for d in designs
+    if d["feasible"] == "true"
+)
+points = []
+for architecture in report["architectures"]:
+    try:
+        cloud = table(f"/scatter/plot/designs/{architecture}")
+    except AssertionError:
+        continue
+    points += [tuple(point) for cell in cloud["Points2D:positions"].to_pylist() for point in cell]
+assert len(points) == len(wanted), f"{len(points)} points for {len(wanted)} feasible designs"
+assert np.allclose(sorted(points), wanted, atol=1e-6)
+
+study = table("/study")["TextDocument:text"].to_pylist()[0][0]
+assert (run / "study.toml").read_text() in study
+assert reader.recordings()[0].application_id == "kinefront"
+
+views = {}
+for chunk in reader.stream(store=reader.blueprints()[0]):
+    batch = chunk.to_record_batch().to_pydict()
+    for name, values in batch.items():
+        if name == "ViewBlueprint:class_identifier":
+            views.setdefault(values[0][0], []).append(str(chunk.entity_path))
+assert {"2D", "TimeSeries", "TextDocument"} <= set(views), views
+print(f"{rows.num_rows} rows and {checked} values agree; {sum(map(len, views.values()))} views")
