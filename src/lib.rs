@@ -27,9 +27,6 @@
 //! | [`study`] | study file, run, run folder |
 //! | [`recording`] | events → Rerun |
 
-#![forbid(unsafe_code)]
-#![warn(missing_docs)]
-
 pub mod evaluation;
 pub mod kinematics;
 pub mod mechanism;

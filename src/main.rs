@@ -1,7 +1,5 @@
 //! The `kinefront` program.
 
-#![forbid(unsafe_code)]
-
 mod cli;
 
 use std::process::ExitCode;

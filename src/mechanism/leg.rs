@@ -60,6 +60,67 @@ pub struct Segment {
     pub to: DVec2,
 }
 
+/// A leg as it is drawn: its members and joints in the base frame \[m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LegPart {
+    /// Path of a slider over its whole travel.
+    Rail {
+        /// Lower limit.
+        from: DVec2,
+        /// Upper limit.
+        to: DVec2,
+    },
+    /// Where the end of a telescopic leg can be along its present direction.
+    Stroke {
+        /// Shortest leg.
+        from: DVec2,
+        /// Longest leg.
+        to: DVec2,
+    },
+    /// Actuated slider.
+    Slider {
+        /// Its centre.
+        at: DVec2,
+        /// Its axis, a unit vector.
+        axis: DVec2,
+    },
+    /// Fixed half of a telescopic leg.
+    Tube {
+        /// At the base.
+        from: DVec2,
+        /// Where the rod comes out.
+        to: DVec2,
+    },
+    /// Moving half of a telescopic leg, as far as it is out.
+    Rod {
+        /// Where it comes out.
+        from: DVec2,
+        /// At the platform.
+        to: DVec2,
+    },
+    /// Bar clamped to a revolute actuator.
+    Crank {
+        /// At the base.
+        from: DVec2,
+        /// At the link.
+        to: DVec2,
+    },
+    /// Bar up to the platform.
+    Link {
+        /// Proximal end.
+        from: DVec2,
+        /// At the platform.
+        to: DVec2,
+    },
+    /// Joint.
+    Joint {
+        /// Where.
+        at: DVec2,
+        /// Whether it is driven.
+        actuated: bool,
+    },
+}
+
 /// One leg at a pose it reaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LegPosture {
@@ -128,6 +189,12 @@ pub trait Leg: Copy + Send + Sync {
 
     /// Length of the last bar, along `u_i` up to `C_i`, for the beam model \[m\].
     fn distal_length(&self, posture: &LegPosture) -> f64;
+
+    /// The leg as it is drawn.
+    fn parts(&self, posture: &LegPosture) -> Vec<LegPart>;
+
+    /// Corners of an axis-parallel box that holds every point the leg's end can reach \[m\].
+    fn reach_box(&self) -> [DVec2; 2];
 
     /// The bar before the last, clamped to the actuator, for legs that have one.
     fn proximal_bar(&self, posture: &LegPosture) -> Option<Segment>;

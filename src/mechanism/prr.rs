@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Actuator, Design, Leg, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
+use super::{Actuator, Design, Leg, LegPart, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
 use crate::spatial::{ANCHOR_DIRECTIONS, HALF_SQRT_3, LEGS, cross};
 
 /// A leg of the 3-PRR.
@@ -82,6 +82,32 @@ impl Leg for PrrLeg {
 
     fn anchor(&self) -> DVec2 {
         self.anchor
+    }
+
+    fn parts(&self, posture: &LegPosture) -> Vec<LegPart> {
+        let c = posture.b + posture.u * posture.length;
+        vec![
+            LegPart::Rail {
+                from: self.anchor,
+                to: self.anchor + self.axis * self.travel,
+            },
+            LegPart::Slider {
+                at: posture.b,
+                axis: self.axis,
+            },
+            LegPart::Link { from: posture.b, to: c },
+            LegPart::Joint {
+                at: posture.b,
+                actuated: false,
+            },
+            LegPart::Joint { at: c, actuated: false },
+        ]
+    }
+
+    fn reach_box(&self) -> [DVec2; 2] {
+        let end = self.anchor + self.axis * self.travel;
+        let reach = DVec2::splat(self.link);
+        [self.anchor.min(end) - reach, self.anchor.max(end) + reach]
     }
 
     #[inline]

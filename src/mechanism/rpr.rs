@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Actuator, BarLength, Design, Leg, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
+use super::{Actuator, BarLength, Design, Leg, LegPart, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
 use crate::spatial::ANCHOR_DIRECTIONS;
 
 /// A leg of the 3-RPR.
@@ -70,6 +70,38 @@ impl Leg for RprLeg {
 
     fn anchor(&self) -> DVec2 {
         self.anchor
+    }
+
+    fn parts(&self, posture: &LegPosture) -> Vec<LegPart> {
+        let along = |length: f64| self.anchor + posture.u * length;
+        // The two halves of a leg that doubles its length are as long as it is at its shortest.
+        let mouth = along((0.5 * self.longest).min(posture.length));
+        let c = along(posture.length);
+        vec![
+            LegPart::Stroke {
+                from: along(self.shortest),
+                to: along(self.longest),
+            },
+            LegPart::Tube {
+                from: self.anchor,
+                to: mouth,
+            },
+            LegPart::Rod { from: mouth, to: c },
+            LegPart::Joint {
+                at: self.anchor,
+                actuated: false,
+            },
+            LegPart::Joint {
+                at: mouth,
+                actuated: true,
+            },
+            LegPart::Joint { at: c, actuated: false },
+        ]
+    }
+
+    fn reach_box(&self) -> [DVec2; 2] {
+        let reach = DVec2::splat(self.longest);
+        [self.anchor - reach, self.anchor + reach]
     }
 
     #[inline]

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Actuator, Design, Leg, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
+use super::{Actuator, Design, Leg, LegPart, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
 use crate::spatial::{ANCHOR_DIRECTIONS, cross};
 
 /// A leg of the 3-RRR.
@@ -70,6 +70,31 @@ impl Leg for RrrLeg {
 
     fn anchor(&self) -> DVec2 {
         self.anchor
+    }
+
+    fn parts(&self, posture: &LegPosture) -> Vec<LegPart> {
+        let c = posture.b + posture.u * posture.length;
+        vec![
+            LegPart::Crank {
+                from: self.anchor,
+                to: posture.b,
+            },
+            LegPart::Link { from: posture.b, to: c },
+            LegPart::Joint {
+                at: self.anchor,
+                actuated: true,
+            },
+            LegPart::Joint {
+                at: posture.b,
+                actuated: false,
+            },
+            LegPart::Joint { at: c, actuated: false },
+        ]
+    }
+
+    fn reach_box(&self) -> [DVec2; 2] {
+        let reach = DVec2::splat(2.0 * self.link);
+        [self.anchor - reach, self.anchor + reach]
     }
 
     #[inline]

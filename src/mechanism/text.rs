@@ -170,14 +170,14 @@ mod tests {
     #[test]
     fn a_design_reads_what_it_writes() {
         let text = "3-RRR R=3.3658 r=0.2537 Lb=1.9157 rj=0 rp=0.0891 mode=+-+";
-        let design: Design = text.parse().unwrap();
+        let design: Design = text.parse().expect("a design");
         assert_eq!(design.to_string(), text);
         assert_eq!(design.working_mode.signs(), [1, -1, 1]);
     }
 
     #[test]
     fn errors_say_what_is_wrong_and_what_is_right() {
-        let error = |text: &str| text.parse::<Design>().unwrap_err().to_string();
+        let error = |text: &str| text.parse::<Design>().expect_err("a fault").to_string();
         assert!(error("").contains("empty"));
         assert!(error("4-PRR R=1").contains("3-PRR, 3-RPR, 3-RRR"));
         assert!(error("3-PRR R=1 r=1 Lb=1 rj=1").contains("`rp` is missing"));

@@ -6,7 +6,7 @@
 //! | `/designs` | a row per evaluated design: the columns of `designs.csv` | `evaluation`, `generation` |
 //! | `/scatter/plot/designs/…` | points (log₁₀ mass, R_w), one row per generation and kind of design | both |
 //! | `/scatter/plot/front/…` | the front as it stood: its designs, labelled, and its staircase | both |
-//! | `/scatter/plot/axes/…` | axes, ticks and titles of the scatter | both |
+//! | `/scatter/plot/axes/…` | axes, ticks, titles and legend of the scatter | both |
 //! | `/run/hypervolume`, `/run/feasible_share`, `/run/front_size` | curves, a value per generation | both |
 //! | `/summary` | the verified front as a table, markdown | static |
 //!
@@ -39,6 +39,7 @@ mod paths {
     pub const FRONT_LINE: &str = "/scatter/plot/front/staircase";
     pub const AXES: &str = "/scatter/plot/axes/lines";
     pub const TICKS: &str = "/scatter/plot/axes/ticks";
+    pub const LEGEND: &str = "/scatter/plot/axes/legend";
 }
 
 /// Timelines of a run.

@@ -61,6 +61,7 @@ pub struct Recorder {
     path: PathBuf,
     file: RrdFile,
     recording: RecordingStream,
+    architectures: Vec<Architecture>,
     frame: Frame,
     /// Rows not yet written: id, generation, evaluation.
     pending: Vec<(usize, usize, Evaluation)>,
@@ -105,6 +106,7 @@ impl Recorder {
             path: path.to_owned(),
             file,
             recording,
+            architectures: study.architectures.clone(),
             frame,
             pending: Vec::new(),
             front: Vec::new(),
@@ -196,6 +198,7 @@ impl Recorder {
             self.row(paths::PLOT, moment, &Transform3D::from_scale(self.frame.scale()))?;
             self.row(paths::AXES, moment, &self.frame.lines())?;
             self.row(paths::TICKS, moment, &self.frame.labels())?;
+            self.row(paths::LEGEND, moment, &self.frame.legend(&self.architectures))?;
             self.frame_changed = false;
         }
         if self.front_changed {

@@ -146,6 +146,25 @@ impl Frame {
             .with_draw_order(5.0)
     }
 
+    /// What the colours mean, in the corner where no design can be.
+    pub(super) fn legend(&self, architectures: &[Architecture]) -> Points2D {
+        let (left, right) = (self.decades.0 as f32, self.decades.1 as f32);
+        let top = (self.tick * f64::from(self.ticks)) as f32;
+        let [r, g, b] = INFEASIBLE_COLOR;
+        let entries: Vec<(String, Color)> = architectures
+            .iter()
+            .map(|&architecture| (architecture.to_string(), color(architecture)))
+            .chain([("infeasible".to_owned(), Color::from_rgb(r, g, b))])
+            .collect();
+        let x = left + 0.08 * (right - left);
+        Points2D::new((0..entries.len()).map(|k| [x, (0.96 - 0.085 * k as f32) * top]))
+            .with_radii(std::iter::repeat_n(Radius::new_ui_points(5.0), entries.len()))
+            .with_colors(entries.iter().map(|(_, color)| *color))
+            .with_labels(entries.into_iter().map(|(name, _)| name))
+            .with_show_labels(true)
+            .with_draw_order(7.0)
+    }
+
     /// Numbers at the ticks and titles of the axes.
     pub(super) fn labels(&self) -> Points2D {
         let (left, right) = (self.decades.0 as f32, self.decades.1 as f32);

@@ -1,6 +1,7 @@
 //! Reading a study file: errors that show file, line and key.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceSpan};
 use toml::de::{DeTable, DeValue};
@@ -28,7 +29,7 @@ pub enum StudyError {
         key: Option<String>,
         /// The text.
         #[source_code]
-        source_code: NamedSource<String>,
+        source_code: Arc<NamedSource<String>>,
         /// Where.
         #[label("here")]
         span: Option<SourceSpan>,
@@ -40,7 +41,7 @@ pub enum StudyError {
         faults: Vec<Fault>,
         /// The text.
         #[source_code]
-        source_code: NamedSource<String>,
+        source_code: Arc<NamedSource<String>>,
         /// Where.
         #[label(collection)]
         labels: Vec<LabeledSpan>,
@@ -82,7 +83,7 @@ impl Study {
     /// # Errors
     /// As [`Study::read`].
     pub fn parse(text: &str, name: &str) -> Result<Self, StudyError> {
-        let source_code = || NamedSource::new(name, text.to_owned()).with_language("TOML");
+        let source_code = || Arc::new(NamedSource::new(name, text.to_owned()).with_language("TOML"));
         let study: Study = toml::from_str(text).map_err(|error| StudyError::Shape {
             message: error.message().to_owned(),
             key: error.span().and_then(|span| key_at(text, span.start)),

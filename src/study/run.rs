@@ -58,7 +58,7 @@ pub enum Event {
 #[derive(Debug, Clone)]
 pub struct Started {
     /// The study as run.
-    pub study: Study,
+    pub study: Arc<Study>,
     /// Worker threads used.
     pub threads: usize,
 }
@@ -258,7 +258,10 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
     let reference = [study.hypervolume.reference_mass_kg, 0.0];
     let budget = study.optimizer.evaluations;
     let mut algorithm = algorithm(&study, &problem);
-    publisher.send(Event::Started(Started { study, threads }));
+    publisher.send(Event::Started(Started {
+        study: Arc::new(study),
+        threads,
+    }));
 
     let mut times = RunTimes::default();
     let mut archive = Archive::default();

@@ -70,7 +70,7 @@ impl Grid {
 /// `ratio` as a whole number, if it is one to within rounding.
 fn whole(ratio: f64) -> Option<usize> {
     let nearest = ratio.round();
-    (nearest >= 0.0 && nearest <= 1e6 && (ratio - nearest).abs() <= 1e-9 * nearest.max(1.0)).then_some(nearest as usize)
+    ((0.0..=1e6).contains(&nearest) && (ratio - nearest).abs() <= 1e-9 * nearest.max(1.0)).then_some(nearest as usize)
 }
 
 #[cfg(test)]

@@ -131,7 +131,7 @@ fn pose_tells_joints_and_stiffness() {
     assert_eq!(k(0, 5), k(5, 0));
     assert_eq!(k(0, 2), 0.0);
 
-    let far = json(&["pose", "--design", DESIGN, "--pose", "x=9 y=0 phi_deg=0", "--json"]);
+    let far = json(&["pose", "--design", DESIGN, "--pose", "x=0 y=9 phi_deg=0", "--json"]);
     assert_eq!(far["reachable"], false);
     assert!(far["reason"].as_str().expect("a reason").contains("out of reach"));
     for key in [

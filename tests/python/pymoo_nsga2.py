@@ -53,22 +53,24 @@ def main():
     population = int(sys.argv[2]) if len(sys.argv) > 2 else 40
     generations = int(sys.argv[3]) if len(sys.argv) > 3 else 20
     problem = Kinefront(program)
-    result = minimize(problem, NSGA2(pop_size=population), ("n_gen", generations), seed=1, save_history=True)
+    volume = HV(ref_point=np.array([2000.0, 0.0]))
+    hypervolumes = []
+
+    def record(algorithm):
+        feasible = algorithm.pop[np.ravel(algorithm.pop.get("feas"))]
+        hypervolumes.append(float(volume(feasible.get("F"))) if len(feasible) else 0.0)
+
+    result = minimize(problem, NSGA2(pop_size=population), ("n_gen", generations), seed=1, callback=record)
     problem.process.stdin.close()
     problem.process.wait()
-    volume = HV(ref_point=np.array([2000.0, 0.0]))
-
-    def hypervolume(algorithm):
-        feasible = algorithm.pop[algorithm.pop.get("feas")]
-        return float(volume(feasible.get("F"))) if len(feasible) else 0.0
 
     front = sorted([float(mass), float(-radius)] for mass, radius in result.F)
     print(
         json.dumps(
             {
                 "front": front,
-                "first_hypervolume": hypervolume(result.history[0]),
-                "last_hypervolume": hypervolume(result.history[-1]),
+                "first_hypervolume": hypervolumes[0],
+                "last_hypervolume": hypervolumes[-1],
             }
         )
     )
