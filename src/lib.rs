@@ -24,6 +24,7 @@
 //! | [`workspace`] | the regular workspace of a design |
 //! | [`evaluation`] | design → objectives, constraints, margins |
 //! | [`optimize`] | problems, algorithms, archive; knows nothing of robots |
+//! | [`scene`] | a design at a pose → named shapes and fields, free of any renderer |
 //! | [`study`] | study file, run, run folder |
 //! | [`recording`] | events → Rerun |
 
@@ -32,6 +33,7 @@ pub mod kinematics;
 pub mod mechanism;
 pub mod optimize;
 pub mod recording;
+pub mod scene;
 pub mod spatial;
 pub mod stiffness;
 pub mod study;

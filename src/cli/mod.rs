@@ -5,6 +5,7 @@ mod json;
 mod optimize;
 mod pose;
 mod progress;
+mod show;
 mod study;
 mod tables;
 
@@ -30,6 +31,8 @@ enum Command {
     Evaluate(evaluate::Arguments),
     /// Joints, dexterity and stiffness of a design at one pose.
     Pose(pose::Arguments),
+    /// Record one design with its overlays and a tour of its workspace.
+    Show(show::Arguments),
     /// Search for light designs with a large regular workspace, without a window.
     Optimize(optimize::Arguments),
     /// List, show, check and write study files.
@@ -76,6 +79,7 @@ pub fn run() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Evaluate(arguments) => evaluate::run(&arguments),
         Command::Pose(arguments) => pose::run(&arguments),
+        Command::Show(arguments) => show::run(&arguments),
         Command::Optimize(arguments) => optimize::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),
     };

@@ -28,6 +28,8 @@ pub struct Model {
     pub characteristic_length: CharacteristicLength,
     /// Thresholds of g3 … g6.
     pub thresholds: Thresholds,
+    /// Force in the plane that the study asks for \[N\], for displacements; the thresholds already hold it.
+    pub in_plane_force: f64,
     /// Centre, home and rotation range of the regular workspace.
     pub workspace: WorkspaceSpec,
     /// Grid on which designs are searched.
@@ -63,6 +65,7 @@ impl Default for Model {
                 k_z: 1e5,
                 k_phi_z: 10.0 / 1f64.to_radians(),
             },
+            in_plane_force: 100.0,
             workspace: WorkspaceSpec {
                 rotation_range_deg: 20.0,
                 centre: DVec2::ZERO,

@@ -3,7 +3,7 @@
 //! The SDK's own blueprint types leave out most view properties (ranges in time, axes, legends), so the layout is
 //! written with the archetypes they are made of.
 
-use rerun::blueprint::components::{ContainerKind, Corner2D, PanelState, PlayState};
+use rerun::blueprint::components::{BackgroundKind, ContainerKind, Corner2D, Eye3DKind, PanelState, PlayState};
 use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
 use rerun::external::re_log_types::{BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource};
 use rerun::external::re_sdk_types::blueprint::archetypes as parts;
@@ -12,9 +12,17 @@ use rerun::log::{Chunk, ChunkError, LogMsg, RowId};
 use rerun::{AsComponents, EntityPath, RecordingStream, StoreId, StoreKind, TimePoint, Timeline};
 
 use super::{APPLICATION_ID, paths, timelines};
+use crate::mechanism::Design;
+use crate::scene::Field;
 
 /// Sends the layout of a run's recording; `clouds` are the entities whose rows add up to the cloud of designs.
-pub(super) fn send_run_layout(recording: &RecordingStream, clouds: &[String]) -> Result<(), ChunkError> {
+///
+/// `base_radius` is the largest `R` of the study \[m\], which the 3-D view is set up for.
+pub(super) fn send_run_layout(
+    recording: &RecordingStream,
+    clouds: &[String],
+    base_radius: f64,
+) -> Result<(), ChunkError> {
     let mut layout = Layout::new();
     let scatter = layout.view("2D", "Pareto front", paths::SCATTER, &["+ $origin/**"])?;
     // The front and the axes are states, of which the latest is drawn; the designs are a history.
@@ -22,9 +30,12 @@ pub(super) fn send_run_layout(recording: &RecordingStream, clouds: &[String]) ->
         let place = parts::ViewContents::blueprint_base_visualizer_path_for_entity(scatter.id, &cloud.as_str().into());
         layout.log(place, &up_to_now())?;
     }
-    let hypervolume = layout.curve("Hypervolume [kg·m]", paths::HYPERVOLUME)?;
-    let feasible = layout.curve("Feasible share", paths::FEASIBLE_SHARE)?;
-    let size = layout.curve("Designs on the front", paths::FRONT_SIZE)?;
+    let hypervolume = layout.curve("Hypervolume [kg·m]", paths::HYPERVOLUME, "+ $origin")?;
+    let feasible = layout.curve("Feasible share", paths::FEASIBLE_SHARE, "+ $origin")?;
+    let size = layout.curve("Designs on the front", paths::FRONT_SIZE, "+ $origin")?;
+    let along = layout.curve("Along the front", paths::ALONG_FRONT, "+ $origin/**")?;
+    layout.legend(&along)?;
+    let card = layout.text("Design", paths::CARD)?;
     let summary = layout.text("Result", paths::SUMMARY)?;
     let study = layout.text("Study", paths::STUDY)?;
     let table = layout.view("Dataframe", "Designs", paths::DESIGNS, &["+ $origin"])?;
@@ -32,12 +43,51 @@ pub(super) fn send_run_layout(recording: &RecordingStream, clouds: &[String]) ->
         .with_timeline(timelines::EVALUATION)
         .with_apply_latest_at(false);
     layout.property(&table, "DataframeQuery", &query)?;
+    let manipulator = layout.space("Manipulator", paths::DESIGN, &["+ $origin/**"], base_radius)?;
+    let configuration = layout.configuration(base_radius)?;
 
-    let curves = layout.container(ContainerKind::Horizontal, &[hypervolume, feasible, size], &[1.0; 3])?;
-    let left = layout.container(ContainerKind::Vertical, &[scatter, curves], &[3.0, 1.0])?;
-    let right = layout.container(ContainerKind::Tabs, &[summary, study, table], &[])?;
-    let root = layout.container(ContainerKind::Horizontal, &[left, right], &[2.0, 1.0])?;
-    layout.finish(&root)?;
+    let curves = layout.container(ContainerKind::Tabs, &[hypervolume, feasible, size, along], &[])?;
+    let left = layout.container(ContainerKind::Vertical, &[scatter, curves], &[2.2, 1.0])?;
+    let middle = layout.container(ContainerKind::Vertical, &[manipulator, configuration], &[1.7, 1.0])?;
+    let right = layout.container(ContainerKind::Tabs, &[card, summary, study, table], &[])?;
+    let root = layout.container(ContainerKind::Horizontal, &[left, middle, right], &[1.15, 1.25, 0.8])?;
+    layout.finish(&root, timelines::GENERATION, PlayState::Following)?;
+    layout.send(recording);
+    Ok(())
+}
+
+/// Sends the layout of a recording of one design.
+/// `first` is the field whose map is in front.
+pub(super) fn send_design_layout(recording: &RecordingStream, design: &Design, first: Field) -> Result<(), ChunkError> {
+    let mut layout = Layout::new();
+    let base_radius = design.base_radius;
+    let mut maps = Vec::new();
+    let others = Field::ALL.into_iter().filter(|&field| field != first);
+    for field in std::iter::once(first).chain(others) {
+        let key = field.key();
+        let mut contents = vec![
+            format!("+ {}/**", paths::MANIPULATOR),
+            format!("+ {}/**", paths::WORKSPACE),
+            format!("+ {}/{key}/**", paths::HEATMAP),
+            format!("+ {}/{key}/**", paths::HEATMAP_LEGEND),
+            format!("+ {}/**", paths::LIMITS),
+        ];
+        // Where the stiffness is looked at, its ellipsoids belong to it.
+        match field {
+            Field::StiffnessXy => contents.push(format!("+ {}/stiffness/**", paths::ELLIPSOIDS)),
+            Field::Displacement => contents.push(format!("+ {}/displacement/**", paths::ELLIPSOIDS)),
+            _ => {}
+        }
+        let contents: Vec<&str> = contents.iter().map(String::as_str).collect();
+        let title = field.title().split(" [").next().unwrap_or(key);
+        maps.push(layout.space(title, paths::DESIGN, &contents, base_radius)?);
+    }
+    let maps = layout.container(ContainerKind::Tabs, &maps, &[])?;
+    let configuration = layout.configuration(base_radius)?;
+    let card = layout.text("Design", paths::CARD)?;
+    let right = layout.container(ContainerKind::Vertical, &[configuration, card], &[0.8, 1.0])?;
+    let root = layout.container(ContainerKind::Horizontal, &[maps, right], &[1.7, 1.0])?;
+    layout.finish(&root, timelines::TOUR, PlayState::Paused)?;
     layout.send(recording);
     Ok(())
 }
@@ -120,13 +170,51 @@ impl Layout {
         Ok(node)
     }
 
-    fn curve(&mut self, name: &str, entity: &str) -> Result<Node, ChunkError> {
-        let node = self.view("TimeSeries", name, entity, &["+ $origin"])?;
-        let legend = parts::PlotLegend::new()
-            .with_visible(false)
-            .with_corner(Corner2D::RightBottom);
-        self.property(&node, "PlotLegend", &legend)?;
+    fn curve(&mut self, name: &str, origin: &str, contents: &str) -> Result<Node, ChunkError> {
+        let node = self.view("TimeSeries", name, origin, &[contents])?;
+        self.property(&node, "PlotLegend", &parts::PlotLegend::new().with_visible(false))?;
         Ok(node)
+    }
+
+    /// Shows the legend of a view of curves.
+    fn legend(&mut self, view: &Node) -> Result<(), ChunkError> {
+        let legend = parts::PlotLegend::new()
+            .with_visible(true)
+            .with_corner(Corner2D::LeftTop);
+        self.property(view, "PlotLegend", &legend)
+    }
+
+    /// A view of the manipulator, seen from before and above.
+    fn space(&mut self, name: &str, origin: &str, contents: &[&str], base_radius: f64) -> Result<Node, ChunkError> {
+        let node = self.view("3D", name, origin, contents)?;
+        self.eye(&node, [0.32, -0.95, 2.25], [0.32, -0.06, 0.0], base_radius)?;
+        Ok(node)
+    }
+
+    /// A view of the configuration space, seen from the side.
+    fn configuration(&mut self, base_radius: f64) -> Result<Node, ChunkError> {
+        let node = self.view(
+            "3D",
+            "Configuration space (x, y, φ)",
+            paths::CONFIGURATION,
+            &["+ $origin/**"],
+        )?;
+        self.eye(&node, [-1.3, -2.6, 1.3], [0.0, 0.0, -0.1], base_radius)?;
+        Ok(node)
+    }
+
+    /// Sets up a 3-D view: eye and target in multiples of `R`, no grid.
+    fn eye(&mut self, view: &Node, eye: [f64; 3], target: [f64; 3], base_radius: f64) -> Result<(), ChunkError> {
+        let place = |p: [f64; 3]| p.map(|coordinate| (coordinate * base_radius) as f32);
+        let controls = parts::EyeControls3D::new()
+            .with_kind(Eye3DKind::Orbital)
+            .with_position(place(eye))
+            .with_look_target(place(target))
+            .with_eye_up([0.0_f32, 0.0, 1.0]);
+        self.property(view, "EyeControls3D", &controls)?;
+        let background = parts::Background::new(BackgroundKind::SolidColor).with_color([17_u8, 19, 24]);
+        self.property(view, "Background", &background)?;
+        self.property(view, "LineGrid3D", &parts::LineGrid3D::new().with_visible(false))
     }
 
     fn text(&mut self, name: &str, entity: &str) -> Result<Node, ChunkError> {
@@ -154,7 +242,7 @@ impl Layout {
         Ok(node)
     }
 
-    fn finish(&mut self, root: &Node) -> Result<(), ChunkError> {
+    fn finish(&mut self, root: &Node, timeline: &'static str, play: PlayState) -> Result<(), ChunkError> {
         let viewport = parts::ViewportBlueprint::new()
             .with_root_container(root.id)
             .with_auto_layout(false)
@@ -162,8 +250,8 @@ impl Layout {
         self.log("viewport", &viewport)?;
         let time = parts::TimePanelBlueprint::new()
             .with_state(PanelState::Collapsed)
-            .with_timeline(timelines::GENERATION)
-            .with_play_state(PlayState::Following)
+            .with_timeline(timeline)
+            .with_play_state(play)
             .with_fps(20.0);
         self.log("time_panel", &time)?;
         for panel in ["selection_panel", "blueprint_panel"] {

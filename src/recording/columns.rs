@@ -6,7 +6,7 @@ use rerun::external::arrow::array::{ArrayRef, BooleanArray, Float64Array, ListAr
 use rerun::external::arrow::datatypes::Float64Type;
 use rerun::{ComponentDescriptor, ComponentIdentifier, SerializedComponentBatch, SerializedComponentColumn};
 
-use super::recorder::RecordingError;
+use super::writer::RecordingError;
 use crate::evaluation::{Constraint, Evaluation};
 use crate::mechanism::VARIABLES;
 

@@ -9,22 +9,49 @@
 //! | `/scatter/plot/axes/…` | axes, ticks, titles and legend of the scatter | both |
 //! | `/run/hypervolume`, `/run/feasible_share`, `/run/front_size` | curves, a value per generation | both |
 //! | `/summary` | the verified front as a table, markdown | static |
+//! | `/design/manipulator/…` | a design: base, legs, platform, joints, frames, labels | `front`, or `tour` |
+//! | `/design/workspace/…`, `/design/limits` | its regular workspace and the poses that stop it from growing | `front`, or static |
+//! | `/design/heatmap/FIELD/…`, `/design/legend/FIELD/…` | a field with threshold, singularities and edge of reach | `front`, or static |
+//! | `/design/ellipsoids/KIND/…` | stiffness or displacement ellipsoids | `front`, or static |
+//! | `/configuration/…` | the workspace in (x, y, φ): cylinder, heatmaps over φ, the pose | `front`, or static and `tour` |
+//! | `/card` | the design's numbers, markdown | `front`, or static |
+//! | `/along_front/…` | design variables along the front | `front` |
 //!
 //! `evaluation` is the id of the design; a row that belongs to a generation stands at the generation's last design.
+//! `front` counts the verified designs from the lightest, and the knee of the front stands at the end of the run's own
+//! timelines too. `tour` counts the poses of a tour. A design recorded by itself has only the last six rows.
 
 mod blueprint;
+mod card;
+mod colors;
 mod columns;
+mod design;
+mod draw;
 mod recorder;
 mod scatter;
 mod sink;
+mod writer;
 
-pub use recorder::{Recorder, RecordingError};
+pub use design::record_design;
+pub use recorder::Recorder;
+pub use writer::RecordingError;
 
 /// Application id of our recordings; the viewer keeps layouts by it.
 pub const APPLICATION_ID: &str = "kinefront";
 
 mod paths {
     //! Entity paths.
+    pub const MANIPULATOR: &str = "/design/manipulator";
+    pub const WORKSPACE: &str = "/design/workspace";
+    pub const LIMITS: &str = "/design/limits";
+    pub const HEATMAP: &str = "/design/heatmap";
+    pub const HEATMAP_LEGEND: &str = "/design/legend";
+    pub const ELLIPSOIDS: &str = "/design/ellipsoids";
+    pub const DESIGN: &str = "/design";
+    pub const CONFIGURATION: &str = "/configuration";
+    pub const CARD: &str = "/card";
+    pub const ALONG_FRONT: &str = "/along_front";
+    pub const SELECTED: &str = "/scatter/plot/front/selected";
     pub const STUDY: &str = "/study";
     pub const SUMMARY: &str = "/summary";
     pub const DESIGNS: &str = "/designs";
@@ -46,4 +73,6 @@ mod paths {
 mod timelines {
     pub const EVALUATION: &str = "evaluation";
     pub const GENERATION: &str = "generation";
+    pub const FRONT: &str = "front";
+    pub const TOUR: &str = "tour";
 }

@@ -1,66 +1,26 @@
 //! Writes the events of a run to a `.rrd` file as they come.
 
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
-use rerun::log::{ChunkBatcherConfig, ChunkError};
-use rerun::sink::LogSink;
-use rerun::{
-    AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamError, Scalars, SerializedComponentColumn,
-    TextDocument, TimeColumn, Transform3D,
-};
+use rerun::{Scalars, SeriesLines, TimeColumn};
 
-use super::scatter::{Frame, INFEASIBLE_COLOR, color, front_points, points, staircase};
-use super::sink::RrdFile;
-use super::{APPLICATION_ID, blueprint, columns, paths, timelines};
-use crate::evaluation::Evaluation;
+use super::scatter::{Frame, INFEASIBLE_COLOR, front_points, points, position, selected, staircase};
+use super::writer::{ALWAYS, Moment, RecordingError, Writer};
+use super::{blueprint, colors, columns, design, paths, timelines};
+use crate::evaluation::{Evaluation, Model};
 use crate::mechanism::Architecture;
 use crate::study::{Batch, Event, FrontMember, GenerationSummary, RunSummary, Study};
+use glam::DVec2;
 
 /// Rows of `/designs` written at a time: enough that the file's index stays small.
 const ROWS: usize = 300;
 
-/// Why a recording could not be written.
-#[derive(Debug, thiserror::Error)]
-pub enum RecordingError {
-    /// The file.
-    #[error("cannot write the recording {}: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// Data did not fit Rerun's format.
-    #[error("cannot encode the recording: {0}")]
-    Encode(String),
-}
-
-impl RecordingError {
-    pub(super) fn encode(error: impl std::fmt::Display) -> Self {
-        Self::Encode(error.to_string())
-    }
-}
-
-impl From<RecordingStreamError> for RecordingError {
-    fn from(error: RecordingStreamError) -> Self {
-        Self::encode(error)
-    }
-}
-
-impl From<ChunkError> for RecordingError {
-    fn from(error: ChunkError) -> Self {
-        Self::encode(error)
-    }
-}
-
 /// The recording of one run.
 pub struct Recorder {
-    path: PathBuf,
-    file: RrdFile,
-    recording: RecordingStream,
+    writer: Writer,
+    model: Model,
     architectures: Vec<Architecture>,
     frame: Frame,
     /// Rows not yet written: id, generation, evaluation.
@@ -70,11 +30,12 @@ pub struct Recorder {
     frame_changed: bool,
 }
 
-/// Where a row stands on the timelines.
-#[derive(Clone, Copy)]
-struct Moment {
-    evaluation: usize,
-    generation: usize,
+/// Where a row of a generation stands: at its last design.
+fn moment(evaluations: usize, generation: usize) -> [(&'static str, usize); 2] {
+    [
+        (timelines::EVALUATION, evaluations.saturating_sub(1)),
+        (timelines::GENERATION, generation),
+    ]
 }
 
 impl Recorder {
@@ -83,17 +44,7 @@ impl Recorder {
     /// # Errors
     /// [`RecordingError::Write`] when the file exists or cannot be created.
     pub fn create(path: &Path, study: &Study) -> Result<Self, RecordingError> {
-        let file = RrdFile::create(path).map_err(|source| RecordingError::Write {
-            path: path.to_owned(),
-            source,
-        })?;
-        // Rows are written in columns, a batch at a time: nothing is left for the SDK's own batching to do.
-        let recording = RecordingStreamBuilder::new(APPLICATION_ID)
-            .recording_name(format!("{} (seed {})", study.name, study.optimizer.seed))
-            .enabled(true)
-            .batcher_config(ChunkBatcherConfig::NEVER)
-            .set_sinks(vec![Box::new(file.clone()) as Box<dyn LogSink>])?;
-        recording.set_log_time_enabled(false);
+        let writer = Writer::create(path, &format!("{} (seed {})", study.name, study.optimizer.seed))?;
         let frame = Frame::new(study);
         let clouds: Vec<String> = study
             .architectures
@@ -101,20 +52,18 @@ impl Recorder {
             .map(|&architecture| cloud(architecture))
             .chain([paths::INFEASIBLE.to_owned()])
             .collect();
-        blueprint::send_run_layout(&recording, &clouds)?;
-        let recorder = Self {
-            path: path.to_owned(),
-            file,
-            recording,
+        blueprint::send_run_layout(writer.stream(), &clouds, study.bounds.R_m[1])?;
+        writer.text(paths::STUDY, ALWAYS, &study_text(study)?)?;
+        Ok(Self {
+            writer,
+            model: study.model(),
             architectures: study.architectures.clone(),
             frame,
             pending: Vec::new(),
             front: Vec::new(),
             front_changed: false,
             frame_changed: true,
-        };
-        recorder.text(paths::STUDY, &study_text(study)?)?;
-        Ok(recorder)
+        })
     }
 
     /// Writes what a run tells until it ends, then closes the file.
@@ -138,10 +87,7 @@ impl Recorder {
     }
 
     fn batch(&mut self, batch: &Batch) -> Result<(), RecordingError> {
-        let moment = Moment {
-            evaluation: (batch.first_id + batch.evaluations.len()).saturating_sub(1),
-            generation: batch.generation,
-        };
+        let moment = moment(batch.first_id + batch.evaluations.len(), batch.generation);
         for evaluation in &batch.evaluations {
             self.frame_changed |= self.frame.include(evaluation);
         }
@@ -151,7 +97,13 @@ impl Recorder {
                 .iter()
                 .filter(|e| e.is_feasible() && e.design.architecture == architecture)
                 .collect();
-            self.cloud(&cloud(architecture), moment, &kind, color(architecture), 2.0)?;
+            self.cloud(
+                &cloud(architecture),
+                &moment,
+                &kind,
+                colors::architecture(architecture),
+                2.0,
+            )?;
         }
         let infeasible: Vec<&Evaluation> = batch
             .evaluations
@@ -161,7 +113,7 @@ impl Recorder {
         let [r, g, b] = INFEASIBLE_COLOR;
         self.cloud(
             paths::INFEASIBLE,
-            moment,
+            &moment,
             &infeasible,
             rerun::Color::from_rgb(r, g, b),
             1.5,
@@ -178,7 +130,7 @@ impl Recorder {
     fn cloud(
         &self,
         entity: &str,
-        moment: Moment,
+        moment: Moment<'_>,
         designs: &[&Evaluation],
         color: rerun::Color,
         size: f32,
@@ -186,24 +138,24 @@ impl Recorder {
         if designs.is_empty() {
             return Ok(());
         }
-        self.row(entity, moment, &points(designs, color, size))
+        self.writer.row(entity, moment, &points(designs, color, size))
     }
 
     fn generation(&mut self, summary: &GenerationSummary) -> Result<(), RecordingError> {
-        let moment = Moment {
-            evaluation: summary.evaluations.saturating_sub(1),
-            generation: summary.generation,
-        };
+        let moment = moment(summary.evaluations, summary.generation);
         if self.frame_changed {
-            self.row(paths::PLOT, moment, &Transform3D::from_scale(self.frame.scale()))?;
-            self.row(paths::AXES, moment, &self.frame.lines())?;
-            self.row(paths::TICKS, moment, &self.frame.labels())?;
-            self.row(paths::LEGEND, moment, &self.frame.legend(&self.architectures))?;
+            self.writer.row(paths::PLOT, &moment, &self.frame.transform())?;
+            self.writer.row(paths::AXES, &moment, &self.frame.lines())?;
+            self.writer.row(paths::TICKS, &moment, &self.frame.labels())?;
+            self.writer
+                .row(paths::LEGEND, &moment, &self.frame.legend(&self.architectures))?;
             self.frame_changed = false;
         }
         if self.front_changed {
-            self.row(paths::FRONT_DESIGNS, moment, &front_points(&self.front))?;
-            self.row(paths::FRONT_LINE, moment, &staircase(&self.front, &self.frame))?;
+            self.writer
+                .row(paths::FRONT_DESIGNS, &moment, &front_points(&self.front))?;
+            self.writer
+                .row(paths::FRONT_LINE, &moment, &staircase(&self.front, &self.frame))?;
             self.front_changed = false;
         }
         let share = summary.feasible as f64 / summary.evaluations.max(1) as f64;
@@ -212,14 +164,69 @@ impl Recorder {
             (paths::FEASIBLE_SHARE, share),
             (paths::FRONT_SIZE, summary.front_size as f64),
         ] {
-            self.row(entity, moment, &Scalars::single(value))?;
+            self.writer.row(entity, &moment, &Scalars::single(value))?;
         }
-        self.check()
+        self.writer.check()
     }
 
     fn finished(&mut self, summary: &RunSummary) -> Result<(), RecordingError> {
         self.write_pending()?;
-        self.text(paths::SUMMARY, &summary_text(summary))
+        self.writer.text(paths::SUMMARY, ALWAYS, &summary_text(summary))?;
+        for (step, member) in summary.front.iter().enumerate() {
+            self.step(&[(timelines::FRONT, step)], step, summary)?;
+            let [base, platform, link, leg_bar, platform_bar] = member.evaluation.design.values();
+            for (name, value) in [
+                ("R [m]", base),
+                ("r [m]", platform),
+                ("L_b [m]", link),
+                ("r_j [cm]", 100.0 * leg_bar),
+                ("r_p [cm]", 100.0 * platform_bar),
+                ("R_w [m]", member.evaluation.workspace_radius),
+            ] {
+                let entity = format!("{}/{}", paths::ALONG_FRONT, name.split(' ').next().unwrap_or(name));
+                if step == 0 {
+                    self.writer
+                        .row(&entity, ALWAYS, &SeriesLines::new().with_names([name]))?;
+                }
+                self.writer
+                    .row(&entity, &[(timelines::FRONT, step)], &Scalars::single(value))?;
+            }
+            self.writer.check()?;
+        }
+        // The run's own timelines end with the knee of the front, and the front begins with the scatter.
+        let last = summary.history.last();
+        if let Some((knee, last)) = knee(&summary.front).zip(last) {
+            self.step(&moment(last.evaluations, last.generation), knee, summary)?;
+            self.scatter_on_front()?;
+        }
+        Ok(())
+    }
+
+    /// One design of the verified front at a moment, marked in the scatter.
+    fn step(&self, moment: Moment<'_>, step: usize, summary: &RunSummary) -> Result<(), RecordingError> {
+        let member = &summary.front[step];
+        let heading = format!(
+            "#{}, design {} of {} on the front",
+            member.id,
+            step + 1,
+            summary.front.len()
+        );
+        design::record_step(&self.writer, moment, &self.model, &member.evaluation, &heading)?;
+        self.writer.row(paths::SELECTED, moment, &selected(&member.evaluation))
+    }
+
+    /// Axes, legend and front at the first step of the timeline `front`, where the scatter would else be empty.
+    fn scatter_on_front(&self) -> Result<(), RecordingError> {
+        let moment: Moment<'_> = &[(timelines::FRONT, 0)];
+        self.writer.row(paths::PLOT, moment, &self.frame.transform())?;
+        self.writer.row(paths::AXES, moment, &self.frame.lines())?;
+        self.writer.row(paths::TICKS, moment, &self.frame.labels())?;
+        self.writer
+            .row(paths::LEGEND, moment, &self.frame.legend(&self.architectures))?;
+        self.writer
+            .row(paths::FRONT_DESIGNS, moment, &front_points(&self.front))?;
+        self.writer
+            .row(paths::FRONT_LINE, moment, &staircase(&self.front, &self.frame))
     }
 
     fn write_pending(&mut self) -> Result<(), RecordingError> {
@@ -234,54 +241,34 @@ impl Recorder {
             time(timelines::GENERATION, |row| row.1),
         ];
         let evaluations: Vec<&Evaluation> = self.pending.iter().map(|(_, _, evaluation)| evaluation).collect();
-        self.recording
+        self.writer
+            .stream()
             .send_columns(paths::DESIGNS, times, columns::designs(&evaluations)?)?;
         self.pending.clear();
-        self.check()
-    }
-
-    /// One row of an entity, with as many instances as the archetype holds.
-    fn row(&self, entity: &str, moment: Moment, archetype: &dyn AsComponents) -> Result<(), RecordingError> {
-        let times = [
-            TimeColumn::new_sequence(timelines::EVALUATION, [moment.evaluation as i64]),
-            TimeColumn::new_sequence(timelines::GENERATION, [moment.generation as i64]),
-        ];
-        let columns: Vec<SerializedComponentColumn> = archetype
-            .as_serialized_batches()
-            .into_iter()
-            .map(|batch| {
-                let count = batch.array.len();
-                batch.partitioned([count]).map_err(RecordingError::encode)
-            })
-            .collect::<Result<_, _>>()?;
-        Ok(self.recording.send_columns(entity, times, columns)?)
-    }
-
-    fn text(&self, entity: &str, markdown: &str) -> Result<(), RecordingError> {
-        Ok(self
-            .recording
-            .log_static(entity, &TextDocument::from_markdown(markdown))?)
-    }
-
-    fn check(&self) -> Result<(), RecordingError> {
-        self.file.check().map_err(|source| RecordingError::Write {
-            path: self.path.clone(),
-            source,
-        })
+        self.writer.check()
     }
 
     fn close(mut self) -> Result<(), RecordingError> {
         self.write_pending()?;
-        let Self {
-            path, file, recording, ..
-        } = self;
-        let flushed = recording.flush_blocking().map_err(io::Error::other);
-        // The last handle: dropping it joins the SDK's threads, after which nothing more is sent.
-        drop(recording);
-        flushed
-            .and_then(|()| file.finish())
-            .map_err(|source| RecordingError::Write { path, source })
+        self.writer.close()
     }
+}
+
+/// The knee of a front: the design farthest from the line between its ends, over the logarithm of mass.
+fn knee(front: &[FrontMember]) -> Option<usize> {
+    let place = |member: &FrontMember| {
+        let [x, y] = position(member.evaluation.mass, member.evaluation.workspace_radius);
+        DVec2::new(f64::from(x), f64::from(y))
+    };
+    let (first, last) = (place(front.first()?), place(front.last()?));
+    let span = (last - first).max(DVec2::splat(f64::MIN_POSITIVE));
+    (0..front.len()).max_by(|&a, &b| {
+        let above = |index: usize| {
+            let share = (place(&front[index]) - first) / span;
+            share.y - share.x
+        };
+        above(a).total_cmp(&above(b)).then(b.cmp(&a))
+    })
 }
 
 /// Entity of an architecture's feasible designs.

@@ -3,8 +3,9 @@
 //! Rerun's 2-D view knows no axes and points y downwards. The plot therefore stands in true coordinates, `log₁₀(mass/kg)`
 //! and `R_w` in metres, under a transform that turns y up and gives both axes a like size, and brings its own axes.
 
-use rerun::{Color, LineStrips2D, Points2D, Radius};
+use rerun::{Color, LineStrips2D, Points2D, Radius, Transform3D};
 
+use super::colors;
 use crate::evaluation::Evaluation;
 use crate::mechanism::Architecture;
 use crate::study::{FrontMember, Study};
@@ -15,17 +16,6 @@ const HEIGHT: f32 = 2.5;
 pub(super) const AXIS_COLOR: [u8; 3] = [150, 155, 165];
 pub(super) const INFEASIBLE_COLOR: [u8; 3] = [95, 98, 108];
 pub(super) const FRONT_COLOR: [u8; 3] = [250, 250, 250];
-
-/// One colour per architecture, told apart by people with any colour vision (Okabe and Ito).
-pub(super) fn color(architecture: Architecture) -> Color {
-    const PALETTE: [[u8; 3]; 4] = [[86, 180, 233], [230, 159, 0], [0, 190, 140], [204, 121, 167]];
-    let index = Architecture::ALL
-        .iter()
-        .position(|&other| other == architecture)
-        .unwrap_or(0);
-    let [r, g, b] = PALETTE[index % PALETTE.len()];
-    Color::from_rgb(r, g, b)
-}
 
 /// Position of a design in the plot.
 pub(super) fn position(mass: f64, radius: f64) -> [f32; 2] {
@@ -46,7 +36,11 @@ pub(super) fn front_points(front: &[FrontMember]) -> Points2D {
         .iter()
         .map(|m| position(m.evaluation.mass, m.evaluation.workspace_radius));
     Points2D::new(positions)
-        .with_colors(front.iter().map(|m| color(m.evaluation.design.architecture)))
+        .with_colors(
+            front
+                .iter()
+                .map(|m| colors::architecture(m.evaluation.design.architecture)),
+        )
         .with_radii(std::iter::repeat_n(Radius::new_ui_points(4.0), front.len()))
         .with_labels(front.iter().map(|m| {
             format!(
@@ -56,6 +50,14 @@ pub(super) fn front_points(front: &[FrontMember]) -> Points2D {
         }))
         .with_show_labels(false)
         .with_draw_order(40.0)
+}
+
+/// The design that the other views show.
+pub(super) fn selected(evaluation: &Evaluation) -> Points2D {
+    Points2D::new([position(evaluation.mass, evaluation.workspace_radius)])
+        .with_colors([colors::rgb(colors::LIMIT)])
+        .with_radii([Radius::new_ui_points(7.0)])
+        .with_draw_order(38.0)
 }
 
 /// The edge of what the front dominates, from its lightest design to the right end of the plot.
@@ -120,10 +122,10 @@ impl Frame {
         (self.decades.0 as f32..=self.decades.1 as f32).contains(&x)
     }
 
-    /// Scale from plot coordinates to the view's: y up, radii as high as [`HEIGHT`] decades are wide.
-    pub(super) fn scale(&self) -> [f32; 3] {
+    /// From plot coordinates to the view's: y up, radii as high as [`HEIGHT`] decades are wide.
+    pub(super) fn transform(&self) -> Transform3D {
         let height = self.tick as f32 * self.ticks as f32;
-        [1.0, -HEIGHT / height, 1.0]
+        Transform3D::from_scale([1.0, -HEIGHT / height, 1.0])
     }
 
     /// Axes, grid lines and staircase of ticks.
@@ -153,7 +155,7 @@ impl Frame {
         let [r, g, b] = INFEASIBLE_COLOR;
         let entries: Vec<(String, Color)> = architectures
             .iter()
-            .map(|&architecture| (architecture.to_string(), color(architecture)))
+            .map(|&architecture| (architecture.to_string(), colors::architecture(architecture)))
             .chain([("infeasible".to_owned(), Color::from_rgb(r, g, b))])
             .collect();
         let x = left + 0.08 * (right - left);

@@ -543,6 +543,7 @@ impl Study {
                     .k_phi_z_min_nm_per_rad
                     .unwrap_or(requirements.torque_z_nm / requirements.rotation_z_deg.to_radians()),
             },
+            in_plane_force: requirements.in_plane_force_n,
             workspace: WorkspaceSpec {
                 rotation_range_deg: self.workspace.rotation_range_deg,
                 centre: DVec2::from_array(self.workspace.centre_m),

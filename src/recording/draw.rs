@@ -1,0 +1,357 @@
+//! Scenes to Rerun entities below a root of the caller's choice.
+
+use glam::{DVec2, DVec3};
+use rerun::components::FillMode;
+use rerun::{
+    Angle, Boxes3D, Color, Cylinders3D, Ellipsoids3D, LineStrips3D, Mesh3D, Points3D, Quaternion, Radius,
+    RotationAxisAngle,
+};
+
+use super::colors::{self, ColorMap, rgb};
+use super::writer::{Moment, RecordingError, Writer};
+use crate::evaluation::{ConstraintReport, Evaluation};
+use crate::scene::{ConfigurationSpace, EllipsoidSet, Field, Heatmap, Part, RegularCylinder, Scene, Solid, SolidShape};
+use crate::spatial::unit;
+
+type Outcome = Result<(), RecordingError>;
+
+fn point(p: DVec3) -> [f32; 3] {
+    p.as_vec3().to_array()
+}
+
+/// A circle about `centre` as a closed strip.
+fn circle(centre: DVec3, radius: f64) -> Vec<[f32; 3]> {
+    const CORNERS: u32 = 96;
+    (0..=CORNERS)
+        .map(|k| {
+            let angle = 2.0 * std::f64::consts::PI * f64::from(k) / f64::from(CORNERS);
+            point(centre + (unit(angle) * radius).extend(0.0))
+        })
+        .collect()
+}
+
+/// Draws scenes at one moment.
+///
+/// A group without members is drawn all the same, empty: a viewer would show the one of the moment before.
+pub(super) struct Canvas<'a> {
+    pub(super) writer: &'a Writer,
+    pub(super) moment: Moment<'a>,
+}
+
+impl Canvas<'_> {
+    /// The manipulator, below `root`.
+    pub(super) fn manipulator(&self, root: &str, scene: &Scene) -> Outcome {
+        let groups: [(&str, &[Part]); 4] = [
+            ("legs", &[Part::Tube, Part::Rod, Part::Crank, Part::Link]),
+            ("platform", &[Part::PlatformBar]),
+            ("joints/passive", &[Part::PassiveJoint]),
+            ("joints/actuated", &[Part::ActuatedJoint]),
+        ];
+        for (name, parts) in groups {
+            let solids: Vec<&Solid> = scene
+                .solids
+                .iter()
+                .filter(|solid| parts.contains(&solid.part))
+                .collect();
+            self.bars(&format!("{root}/{name}"), &solids)?;
+        }
+        let sliders: Vec<&Solid> = scene.solids_of(Part::Slider).collect();
+        self.blocks(&format!("{root}/joints/sliders"), &sliders)?;
+        for (name, parts, width) in [
+            ("base", &[Part::Base, Part::Rail][..], 1.6),
+            ("strokes", &[Part::Stroke], 0.8),
+            ("frames", &[Part::AxisX, Part::AxisY], 2.0),
+        ] {
+            let lines: Vec<_> = scene.lines.iter().filter(|line| parts.contains(&line.part)).collect();
+            let strips = lines
+                .iter()
+                .map(|line| line.points.iter().map(|&p| point(p)).collect::<Vec<_>>());
+            let strips = LineStrips3D::new(strips)
+                .with_colors(lines.iter().map(|line| colors::part(line.part)))
+                .with_radii(std::iter::repeat_n(Radius::new_ui_points(width), lines.len()));
+            self.writer.row(&format!("{root}/{name}"), self.moment, &strips)?;
+        }
+        let labels = scene.labels.iter().map(|label| (label.at, label.text.clone()));
+        self.labels(&format!("{root}/labels"), labels.collect(), rgb(colors::TEXT))
+    }
+
+    fn bars(&self, entity: &str, solids: &[&Solid]) -> Outcome {
+        let bars: Vec<(DVec3, DVec3, f64, Part)> = solids
+            .iter()
+            .filter_map(|solid| match solid.shape {
+                SolidShape::Bar { from, to, radius } => Some((from, to, radius, solid.part)),
+                SolidShape::Block { .. } => None,
+            })
+            .collect();
+        let lengths = bars.iter().map(|(from, to, ..)| from.distance(*to) as f32);
+        let radii = bars.iter().map(|(_, _, radius, _)| *radius as f32);
+        let cylinders = Cylinders3D::from_lengths_and_radii(lengths, radii)
+            .with_centers(bars.iter().map(|(from, to, ..)| point(0.5 * (*from + *to))))
+            .with_quaternions(bars.iter().map(|(from, to, ..)| along_z(*to - *from)))
+            .with_colors(bars.iter().map(|(.., part)| colors::part(*part)))
+            .with_fill_mode(FillMode::Solid);
+        self.writer.row(entity, self.moment, &cylinders)
+    }
+
+    fn blocks(&self, entity: &str, solids: &[&Solid]) -> Outcome {
+        let blocks: Vec<(DVec3, DVec3, f64, Part)> = solids
+            .iter()
+            .filter_map(|solid| match solid.shape {
+                SolidShape::Block {
+                    centre,
+                    half_size,
+                    angle,
+                } => Some((centre, half_size, angle, solid.part)),
+                SolidShape::Bar { .. } => None,
+            })
+            .collect();
+        let boxes = Boxes3D::from_centers_and_half_sizes(
+            blocks.iter().map(|(centre, ..)| point(*centre)),
+            blocks.iter().map(|(_, half, ..)| point(*half)),
+        )
+        .with_rotation_axis_angles(blocks.iter().map(|(_, _, angle, _)| about_z(*angle)))
+        .with_colors(blocks.iter().map(|(.., part)| colors::part(*part)))
+        .with_fill_mode(FillMode::Solid);
+        self.writer.row(entity, self.moment, &boxes)
+    }
+
+    /// Words at points, without a dot of their own.
+    fn labels(&self, entity: &str, labels: Vec<(DVec3, String)>, color: Color) -> Outcome {
+        let count = labels.len();
+        let points = Points3D::new(labels.iter().map(|(at, _)| point(*at)))
+            .with_labels(labels.into_iter().map(|(_, text)| text))
+            .with_show_labels(true)
+            .with_colors(std::iter::repeat_n(color, count))
+            .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.0), count));
+        self.writer.row(entity, self.moment, &points)
+    }
+
+    /// The regular workspace as a cylinder between two heights, below `root`.
+    pub(super) fn cylinder(&self, root: &str, cylinder: &RegularCylinder, heights: [f64; 2], label: &str) -> Outcome {
+        let [low, high] = heights.map(|z| cylinder.centre.extend(z));
+        let mut strips = vec![circle(low, cylinder.radius), circle(high, cylinder.radius)];
+        for k in 0..12 {
+            let offset = (unit(f64::from(k) * std::f64::consts::FRAC_PI_6) * cylinder.radius).extend(0.0);
+            strips.push(vec![point(low + offset), point(high + offset)]);
+        }
+        let count = strips.len();
+        let lines = LineStrips3D::new(strips)
+            .with_colors(std::iter::repeat_n(rgb(colors::WORKSPACE), count))
+            .with_radii((0..count).map(|k| Radius::new_ui_points(if k < 2 { 1.6 } else { 0.7 })));
+        self.writer.row(&format!("{root}/outline"), self.moment, &lines)?;
+        let at = high + DVec3::new(-cylinder.radius * 0.71, cylinder.radius * 0.71, 0.0);
+        self.labels(
+            &format!("{root}/label"),
+            vec![(at, label.to_owned())],
+            rgb(colors::WORKSPACE),
+        )
+    }
+
+    /// A heatmap at height `z`, with its contours and edges, below `root`.
+    pub(super) fn heatmap(
+        &self,
+        root: &str,
+        heatmap: &Heatmap,
+        map: &ColorMap,
+        place: &impl Fn(DVec2) -> DVec3,
+    ) -> Outcome {
+        if heatmap.triangles.is_empty() {
+            return Ok(());
+        }
+        let mesh = Mesh3D::new(heatmap.vertices.iter().map(|&p| point(place(p))))
+            .with_triangle_indices(heatmap.triangles.iter().copied())
+            .with_vertex_colors(heatmap.values.iter().map(|&value| map.color(value)));
+        self.writer.row(&format!("{root}/field"), self.moment, &mesh)?;
+        self.outlines(root, heatmap, place)
+    }
+
+    /// Contours and edges of a heatmap, below `root`.
+    fn outlines(&self, root: &str, heatmap: &Heatmap, place: &impl Fn(DVec2) -> DVec3) -> Outcome {
+        let edges = heatmap
+            .edges
+            .iter()
+            .map(|edge| (&edge.points, colors::edge(edge.reason), 1.0));
+        let threshold = heatmap.threshold.iter().map(|line| (line, rgb(colors::THRESHOLD), 1.6));
+        let singular = heatmap.singular.iter().map(|line| (line, rgb(colors::SINGULAR), 1.6));
+        for (name, lines) in [
+            ("edge", edges.collect::<Vec<_>>()),
+            ("threshold", threshold.collect()),
+            ("singular", singular.collect()),
+        ] {
+            let strips = lines
+                .iter()
+                .map(|(line, ..)| line.iter().map(|&p| point(place(p))).collect::<Vec<_>>());
+            let strips = LineStrips3D::new(strips)
+                .with_colors(lines.iter().map(|(_, color, _)| *color))
+                .with_radii(lines.iter().map(|(.., width)| Radius::new_ui_points(*width)));
+            self.writer.row(&format!("{root}/{name}"), self.moment, &strips)?;
+        }
+        Ok(())
+    }
+
+    /// The scale of a colour map, a strip beside the base, below `root`.
+    pub(super) fn legend(
+        &self,
+        root: &str,
+        field: Field,
+        threshold: f64,
+        map: &ColorMap,
+        corner: DVec3,
+        size: DVec2,
+    ) -> Outcome {
+        const STEPS: u32 = 64;
+        let at = |x: f64, share: f64| corner + DVec3::new(x * size.x, share * size.y, 0.0);
+        let rows = (0..=STEPS).map(|k| f64::from(k) / f64::from(STEPS));
+        let vertices = rows
+            .clone()
+            .flat_map(|share| [point(at(0.0, share)), point(at(1.0, share))]);
+        let colors = rows.flat_map(|share| [ColorMap::at(share); 2]);
+        let triangles = (0..STEPS).flat_map(|k| [[2 * k, 2 * k + 1, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 2]]);
+        let mesh = Mesh3D::new(vertices)
+            .with_triangle_indices(triangles)
+            .with_vertex_colors(colors);
+        self.writer.row(&format!("{root}/strip"), self.moment, &mesh)?;
+        let factor = field.display_factor();
+        let mut ticks = Vec::new();
+        let mut labels = vec![(at(0.5, 1.09), field.title().to_owned())];
+        for (value, share) in map.ticks() {
+            ticks.push((vec![point(at(1.0, share)), point(at(1.25, share))], rgb(colors::TEXT)));
+            labels.push((at(2.1, share), colors::text(value * factor)));
+        }
+        self.labels(&format!("{root}/ticks"), labels, rgb(colors::TEXT))?;
+        if let Some(share) = map.place(threshold) {
+            ticks.push((
+                vec![point(at(-0.6, share)), point(at(1.0, share))],
+                rgb(colors::THRESHOLD),
+            ));
+            let text = format!("threshold {}", colors::text(threshold * factor));
+            self.labels(
+                &format!("{root}/threshold"),
+                vec![(at(-2.4, share), text)],
+                rgb(colors::THRESHOLD),
+            )?;
+        }
+        let count = ticks.len();
+        let (strips, tints): (Vec<_>, Vec<_>) = ticks.into_iter().unzip();
+        let lines = LineStrips3D::new(strips)
+            .with_colors(tints)
+            .with_radii(std::iter::repeat_n(Radius::new_ui_points(1.2), count));
+        self.writer.row(&format!("{root}/lines"), self.moment, &lines)
+    }
+
+    /// Ellipsoids at height `z`, with their scale in words at `note`.
+    pub(super) fn ellipsoids(&self, root: &str, set: &EllipsoidSet, z: f64, note: DVec3) -> Outcome {
+        let each = || set.ellipsoids.iter();
+        let count = set.ellipsoids.len();
+        let ellipsoids = Ellipsoids3D::from_centers_and_half_sizes(
+            each().map(|e| point(e.pose.position.extend(z))),
+            each().map(|e| point(e.values * set.scale)),
+        )
+        .with_rotation_axis_angles(each().map(|e| about_z(e.angle)))
+        .with_colors(std::iter::repeat_n(rgb(colors::ELLIPSOID), count))
+        .with_fill_mode(FillMode::Solid);
+        self.writer.row(&format!("{root}/bodies"), self.moment, &ellipsoids)?;
+        self.labels(
+            &format!("{root}/scale"),
+            vec![(note, set.scale_text())],
+            rgb(colors::ELLIPSOID),
+        )
+    }
+
+    /// Where and by which constraints the workspace is stopped from growing, named `away` from the centre, below `root`.
+    pub(super) fn limits(&self, root: &str, evaluation: &Evaluation, z: f64, away: f64) -> Outcome {
+        let active: Vec<(&ConstraintReport, DVec2)> = evaluation
+            .constraints
+            .iter()
+            .filter(|report| report.active)
+            .filter_map(|report| Some((report, report.pose?.position)))
+            .collect();
+        let color = rgb(colors::LIMIT);
+        let tints = || std::iter::repeat_n(color, active.len());
+        let points = Points3D::new(active.iter().map(|(_, at)| point(at.extend(z))))
+            .with_radii(std::iter::repeat_n(Radius::new_ui_points(6.0), active.len()))
+            .with_colors(tints());
+        self.writer.row(&format!("{root}/poses"), self.moment, &points)?;
+        let centre = evaluation.home.map_or(DVec2::ZERO, |home| home.position);
+        let name_at = |at: DVec2| {
+            let outwards = (at - centre).try_normalize().unwrap_or(DVec2::Y);
+            (centre + outwards * away).extend(z)
+        };
+        let leaders = LineStrips3D::new(active.iter().map(|(_, at)| [point(at.extend(z)), point(name_at(*at))]))
+            .with_colors(tints())
+            .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.9), active.len()));
+        self.writer.row(&format!("{root}/leaders"), self.moment, &leaders)?;
+        let names = active.iter().map(|(report, at)| (name_at(*at), limit_text(report)));
+        self.labels(&format!("{root}/names"), names.collect(), color)
+    }
+
+    /// Axes of the configuration space over the height of `span` \[rad\] either side of its origin, below `root`.
+    pub(super) fn configuration_axes(&self, root: &str, space: &ConfigurationSpace, extent: f64, span: f64) -> Outcome {
+        // The far corner, so that the axes stand behind what they measure.
+        let foot = DVec2::new(-extent, extent);
+        let at = |turn: f64| space.place(foot, space.origin + turn);
+        let ground = |p: DVec2| space.place(p, space.origin - span);
+        let (far_x, near_y) = (DVec2::new(extent, extent), DVec2::new(-extent, -extent));
+        let mut strips = vec![
+            vec![point(at(-span)), point(at(span))],
+            vec![point(ground(foot)), point(ground(far_x))],
+            vec![point(ground(foot)), point(ground(near_y))],
+        ];
+        let mut labels = vec![
+            (ground(far_x * DVec2::new(1.1, 1.0)), "x".to_owned()),
+            (ground(near_y * DVec2::new(1.0, 1.1)), "y".to_owned()),
+        ];
+        for k in -2..=2 {
+            let turn = 0.5 * span * f64::from(k);
+            let phi = (space.origin + turn).to_degrees();
+            labels.push((
+                at(turn) - DVec3::X * 0.12 * extent,
+                format!("φ = {}°", (phi * 10.0).round() / 10.0),
+            ));
+            strips.push(vec![point(at(turn)), point(at(turn) - DVec3::X * 0.04 * extent)]);
+        }
+        let count = strips.len();
+        let lines = LineStrips3D::new(strips)
+            .with_colors(std::iter::repeat_n(rgb(colors::TEXT), count))
+            .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.8), count));
+        self.writer.row(&format!("{root}/lines"), self.moment, &lines)?;
+        self.labels(&format!("{root}/ticks"), labels, rgb(colors::TEXT))
+    }
+
+    /// A marked point with a word.
+    pub(super) fn mark(&self, entity: &str, at: DVec3, text: &str, color: [u8; 3]) -> Outcome {
+        let points = Points3D::new([point(at)])
+            .with_radii([Radius::new_ui_points(5.0)])
+            .with_colors([rgb(color)])
+            .with_labels([text])
+            .with_show_labels(true);
+        self.writer.row(entity, self.moment, &points)
+    }
+}
+
+/// A constraint at its smallest value, in words.
+fn limit_text(report: &ConstraintReport) -> String {
+    let value = report.value.map(colors::text).unwrap_or_default();
+    let phi = report.pose.map_or(0.0, |pose| pose.phi.to_degrees());
+    let unit = report.constraint.unit();
+    format!(
+        "{} {}: {value}{}{unit} at φ = {}°",
+        report.constraint.id(),
+        report.constraint.name().replace('_', " "),
+        if unit.is_empty() { "" } else { " " },
+        (phi * 10.0).round() / 10.0
+    )
+}
+
+fn about_z(angle: f64) -> RotationAxisAngle {
+    RotationAxisAngle::new([0.0, 0.0, 1.0], Angle::from_radians(angle as f32))
+}
+
+/// Rotation that turns z to `direction`.
+fn along_z(direction: DVec3) -> Quaternion {
+    let rotation = match direction.try_normalize() {
+        Some(direction) => glam::DQuat::from_rotation_arc(DVec3::Z, direction),
+        None => glam::DQuat::IDENTITY,
+    };
+    Quaternion::from_xyzw(rotation.as_quat().to_array())
+}

@@ -1,0 +1,123 @@
+//! Ellipsoids at points of the regular workspace.
+
+use glam::{DVec2, DVec3};
+
+use super::field::free_stiffness;
+use crate::evaluation::{Evaluation, Model};
+use crate::kinematics::Jacobian;
+use crate::mechanism::with_leg;
+use crate::spatial::{Pose, smaller_eigenvalue, unit};
+use crate::stiffness::PlanarStiffness;
+use crate::workspace::GridError;
+
+/// What the axes of an ellipsoid are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EllipsoidKind {
+    /// Eigenvectors and eigenvalues of the translational block of `K` \[N/m\]: force per displacement.
+    Stiffness,
+    /// Eigenvectors and eigenvalues of the translational block of `K⁻¹` \[m/N\]: displacement under a unit force.
+    Displacement,
+}
+
+/// One ellipsoid; its third axis is z.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ellipsoid {
+    /// Where the platform is.
+    pub pose: Pose,
+    /// Angle of the first axis to `Ox` \[rad\].
+    pub angle: f64,
+    /// Eigenvalues along the first and second axis in the plane (the first the larger) and along z \[N/m or m/N\].
+    pub values: DVec3,
+}
+
+/// Ellipsoids of one kind and their common scale.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EllipsoidSet {
+    /// What they show.
+    pub kind: EllipsoidKind,
+    /// Length on the drawing per unit of value \[m/(N/m) or m/(m/N)\].
+    pub scale: f64,
+    /// The ellipsoids.
+    pub ellipsoids: Vec<Ellipsoid>,
+}
+
+impl EllipsoidSet {
+    /// The scale in words.
+    pub fn scale_text(&self) -> String {
+        match self.kind {
+            EllipsoidKind::Stiffness => format!("stiffness ellipsoids: 0.1 m = {:.3e} N/m", 0.1 / self.scale),
+            EllipsoidKind::Displacement => {
+                format!(
+                    "displacement ellipsoids under 1 N: 0.1 m = {:.3} µm",
+                    0.1 / self.scale * 1e6
+                )
+            }
+        }
+    }
+}
+
+/// Largest half axis as a share of `R_w`, so that neighbours stay apart.
+const LARGEST: f64 = 0.24;
+
+/// Ellipsoids at the centre and on two rings of the regular workspace, at the home orientation; `None` for a design
+/// without one.
+///
+/// # Errors
+/// As [`Model::checker`].
+pub fn ellipsoids(
+    model: &Model,
+    evaluation: &Evaluation,
+    kind: EllipsoidKind,
+) -> Result<Option<EllipsoidSet>, GridError> {
+    let Some(home) = evaluation.home else { return Ok(None) };
+    let radius = evaluation.workspace_radius;
+    let points = std::iter::once(DVec2::ZERO)
+        .chain((0..6).map(|k| unit(f64::from(k) * std::f64::consts::FRAC_PI_3) * 0.5 * radius))
+        .chain((0..12).map(|k| unit(f64::from(k) * std::f64::consts::FRAC_PI_6) * 0.97 * radius));
+    let poses = points.map(|offset| Pose {
+        position: home.position + offset,
+        phi: home.phi,
+    });
+    let ellipsoids: Vec<Ellipsoid> = with_leg!(evaluation.design.architecture, L => {
+        let checker = model.checker::<L>(&evaluation.design)?;
+        poses
+            .filter_map(|pose| {
+                let posture = checker.manipulator.posture(&pose).ok()?;
+                let stiffness = checker.stiffness_at(&posture, &Jacobian::new(&posture));
+                ellipsoid(pose, &stiffness, kind)
+            })
+            .collect()
+    });
+    let largest = ellipsoids.iter().map(|e| e.values.max_element()).fold(0.0, f64::max);
+    Ok((largest > 0.0).then(|| EllipsoidSet {
+        kind,
+        scale: LARGEST * radius / largest,
+        ellipsoids,
+    }))
+}
+
+fn ellipsoid(pose: Pose, stiffness: &PlanarStiffness, kind: EllipsoidKind) -> Option<Ellipsoid> {
+    let [xx, xy, yy, zz] = match kind {
+        EllipsoidKind::Stiffness => {
+            let k = &stiffness.in_plane;
+            [k[0], k[1], k[3], stiffness.out_of_plane[0]]
+        }
+        EllipsoidKind::Displacement => {
+            let [xx, xy, yy] = free_stiffness(stiffness)?;
+            let determinant = xx * yy - xy * xy;
+            let vertical = stiffness
+                .rigidity(crate::stiffness::StiffnessDefinition::Compliance)
+                .k_z;
+            if determinant <= 0.0 || vertical <= 0.0 {
+                return None;
+            }
+            [yy / determinant, -xy / determinant, xx / determinant, 1.0 / vertical]
+        }
+    };
+    let small = smaller_eigenvalue(xx, xy, yy);
+    Some(Ellipsoid {
+        pose,
+        angle: 0.5 * libm::atan2(2.0 * xy, xx - yy),
+        values: DVec3::new(xx + yy - small, small, zz),
+    })
+}

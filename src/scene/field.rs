@@ -1,0 +1,147 @@
+//! Scalar fields over poses.
+
+use crate::evaluation::{Constraint, Model};
+use crate::mechanism::Design;
+use crate::spatial::smaller_eigenvalue;
+use crate::stiffness::PlanarStiffness;
+use crate::workspace::PoseValues;
+
+/// What a heatmap shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Field {
+    /// `κ_F⁻¹`.
+    InverseCondition,
+    /// `k_xy` \[N/m\].
+    StiffnessXy,
+    /// `k_z` \[N/m\].
+    StiffnessZ,
+    /// `k_φz` \[N·m/rad\].
+    StiffnessPhiZ,
+    /// Displacement under the study's in-plane force in its worst direction \[m\].
+    Displacement,
+    /// Smallest relative margin of g2 … g6.
+    WorstMargin,
+    /// `det A / ℓ`, whose zeros are the parallel singularities.
+    Determinant,
+}
+
+/// How a field's range is spread over a colour map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// By its logarithm.
+    Logarithmic,
+}
+
+impl Field {
+    /// The fields to choose from.
+    pub const ALL: [Field; 6] = [
+        Field::InverseCondition,
+        Field::StiffnessXy,
+        Field::StiffnessZ,
+        Field::StiffnessPhiZ,
+        Field::Displacement,
+        Field::WorstMargin,
+    ];
+
+    /// The field of a short name.
+    pub fn find(key: &str) -> Option<Field> {
+        Self::ALL.into_iter().find(|field| field.key() == key)
+    }
+
+    /// Short name, as in entity paths and arguments.
+    pub fn key(self) -> &'static str {
+        match self {
+            Field::InverseCondition => "inverse_condition",
+            Field::StiffnessXy => "k_xy",
+            Field::StiffnessZ => "k_z",
+            Field::StiffnessPhiZ => "k_phi_z",
+            Field::Displacement => "displacement",
+            Field::WorstMargin => "worst_margin",
+            Field::Determinant => "determinant",
+        }
+    }
+
+    /// Name for people, with its unit.
+    pub fn title(self) -> &'static str {
+        match self {
+            Field::InverseCondition => "inverse condition number",
+            Field::StiffnessXy => "stiffness k_xy [N/m]",
+            Field::StiffnessZ => "stiffness k_z [N/m]",
+            Field::StiffnessPhiZ => "stiffness k_φz [N·m/rad]",
+            Field::Displacement => "displacement under the in-plane force [mm]",
+            Field::WorstMargin => "smallest relative margin of g2 … g6",
+            Field::Determinant => "det A / ℓ",
+        }
+    }
+
+    /// Factor from SI to the unit of [`Field::title`].
+    pub fn display_factor(self) -> f64 {
+        match self {
+            Field::Displacement => 1e3,
+            _ => 1.0,
+        }
+    }
+
+    /// How its colours are spread.
+    pub fn scale(self) -> Scale {
+        match self {
+            Field::InverseCondition | Field::WorstMargin | Field::Determinant => Scale::Linear,
+            Field::StiffnessXy | Field::StiffnessZ | Field::StiffnessPhiZ | Field::Displacement => Scale::Logarithmic,
+        }
+    }
+
+    /// The value at which a pose stops being good.
+    pub fn threshold(self, model: &Model) -> f64 {
+        let thresholds = &model.thresholds;
+        match self {
+            Field::InverseCondition => thresholds.inverse_condition,
+            Field::StiffnessXy => thresholds.k_xy,
+            Field::StiffnessZ => thresholds.k_z,
+            Field::StiffnessPhiZ => thresholds.k_phi_z,
+            Field::Displacement => model.in_plane_force / thresholds.k_xy,
+            Field::WorstMargin | Field::Determinant => 0.0,
+        }
+    }
+
+    /// The value at a reachable pose. Finite: a displacement without end is shown as a kilometre.
+    pub fn value(self, model: &Model, design: &Design, values: &PoseValues, stiffness: &PlanarStiffness) -> f64 {
+        const FARTHEST: f64 = 1e3;
+        match self {
+            Field::InverseCondition => values.inverse_condition,
+            Field::StiffnessXy => values.rigidity.k_xy,
+            Field::StiffnessZ => values.rigidity.k_z,
+            Field::StiffnessPhiZ => values.rigidity.k_phi_z,
+            Field::Determinant => values.determinant,
+            Field::Displacement => {
+                let softest = free_stiffness(stiffness).map_or(0.0, |k| smaller_eigenvalue(k[0], k[1], k[2]));
+                if softest > model.in_plane_force / FARTHEST {
+                    model.in_plane_force / softest
+                } else {
+                    FARTHEST
+                }
+            }
+            Field::WorstMargin => [
+                Constraint::Reach,
+                Constraint::Dexterity,
+                Constraint::StiffnessXy,
+                Constraint::StiffnessZ,
+                Constraint::StiffnessPhiZ,
+            ]
+            .into_iter()
+            .map(|constraint| {
+                let threshold = constraint.threshold(design, &model.thresholds);
+                constraint.margin(constraint.value(design, values, 1.0), threshold, design)
+            })
+            .fold(f64::INFINITY, f64::min),
+        }
+    }
+}
+
+/// Translational stiffness in the plane with the rotation free, `[xx, xy, yy]` \[N/m\]: the inverse of the xy block of
+/// `K⁻¹`. `None` where nothing resists the rotation.
+pub(super) fn free_stiffness(stiffness: &PlanarStiffness) -> Option<[f64; 3]> {
+    let [xx, xy, xm, yy, ym, mm] = stiffness.in_plane;
+    (mm > 0.0).then(|| [xx - xm * xm / mm, xy - xm * ym / mm, yy - ym * ym / mm])
+}

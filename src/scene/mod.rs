@@ -1,0 +1,27 @@
+//! A design at a pose as named shapes and fields, free of any renderer.
+//!
+//! | item | is |
+//! |---|---|
+//! | [`manipulator`] | base, rails, legs, platform, joints, frames and labels, to scale |
+//! | [`regular_workspace`] | the cylinder, on the manipulator and in the configuration space |
+//! | [`Heatmap`] | a field over the reachable workspace at one φ: triangles, contours, edges of reach, singularities |
+//! | [`ellipsoids`] | stiffness or displacement at points of the regular workspace |
+//! | [`tour`] | poses along the regular workspace, checked by forward kinematics |
+//!
+//! Lengths are metres in the base frame, z out of the plane. Shapes carry what they are ([`Part`]), not how they look.
+
+mod ellipsoid;
+mod field;
+mod heatmap;
+mod manipulator;
+mod shape;
+mod tour;
+mod workspace;
+
+pub use ellipsoid::{Ellipsoid, EllipsoidKind, EllipsoidSet, ellipsoids};
+pub use field::{Field, Scale};
+pub use heatmap::{Edge, Heatmap, HeatmapSettings};
+pub use manipulator::manipulator;
+pub use shape::{Label, Line, Part, Scene, Solid, SolidShape};
+pub use tour::{Tour, tour};
+pub use workspace::{ConfigurationSpace, RegularCylinder, regular_workspace};

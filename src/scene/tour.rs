@@ -1,0 +1,87 @@
+//! A tour of the regular workspace: its rim at both ends of `Δφ`, then through the middle.
+
+use glam::DVec2;
+
+use super::RegularCylinder;
+use crate::evaluation::Model;
+use crate::kinematics::forward;
+use crate::mechanism::{Design, Leg, Manipulator, with_leg};
+use crate::spatial::{Pose, unit};
+
+/// Poses along the regular workspace.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tour {
+    /// The poses, each a small step from the one before.
+    pub poses: Vec<Pose>,
+    /// Radius of the rim that is toured \[m\]: `R_w`, less what a grid of directions may have overlooked.
+    pub radius: f64,
+    /// Largest distance between a pose and what forward kinematics, started at the pose before, makes of its actuator
+    /// values \[m, or m at the platform joints for an angle\].
+    pub forward_error: f64,
+}
+
+/// The tour of a design with `steps` poses around each rim; `None` where its rim cannot be followed even a tenth inside.
+pub fn tour(model: &Model, design: &Design, cylinder: &RegularCylinder, steps: usize) -> Option<Tour> {
+    with_leg!(design.architecture, L => {
+        let manipulator = Manipulator::<L>::new(design, &model.legs);
+        // A grid of directions sees a straight boundary at its corners only: between them the rim may lie outside.
+        (0..100).map(|k| cylinder.radius * (1.0 - 1e-3 * f64::from(k))).find_map(|radius| {
+            let poses = path(&RegularCylinder { radius, ..*cylinder }, steps.max(8));
+            let reached = poses.iter().all(|pose| manipulator.posture(pose).is_ok());
+            let forward_error = if reached { check(&manipulator, design, &poses)? } else { return None };
+            Some(Tour { poses, radius, forward_error })
+        })
+    })
+}
+
+/// Out to the rim while turning to the lower end of `Δφ`, around it, turning to the upper end, around again, across the
+/// middle while turning back to it, and home.
+fn path(cylinder: &RegularCylinder, steps: usize) -> Vec<Pose> {
+    let (low, high) = (-0.5 * cylinder.phi_range, 0.5 * cylinder.phi_range);
+    let turn = 2.0 * std::f64::consts::PI;
+    // (angle, share of the radius, orientation from home) at the ends of each leg of the way, and its share of steps.
+    let ways: [([f64; 3], [f64; 3], f64); 6] = [
+        ([0.0, 0.0, 0.0], [0.0, 1.0, low], 0.25),
+        ([0.0, 1.0, low], [turn, 1.0, low], 1.0),
+        ([0.0, 1.0, low], [0.0, 1.0, high], 0.25),
+        ([0.0, 1.0, high], [turn, 1.0, high], 1.0),
+        ([0.0, 1.0, high], [0.0, -1.0, low], 0.5),
+        ([0.0, -1.0, low], [0.0, 0.0, 0.0], 0.25),
+    ];
+    let mut poses = Vec::new();
+    for (from, to, share) in ways {
+        let count = ((steps as f64 * share).ceil() as usize).max(1);
+        for k in 0..count {
+            let s = k as f64 / count as f64;
+            let at = |index: usize| from[index] + s * (to[index] - from[index]);
+            poses.push(Pose {
+                position: cylinder.centre + unit(at(0)) * (at(1) * cylinder.radius),
+                phi: cylinder.phi + at(2),
+            });
+        }
+    }
+    poses.push(Pose {
+        position: cylinder.centre,
+        phi: cylinder.phi,
+    });
+    poses
+}
+
+/// Largest difference between the poses and their forward kinematics.
+fn check<L: Leg>(manipulator: &Manipulator<L>, design: &Design, poses: &[Pose]) -> Option<f64> {
+    let mut start = *poses.first()?;
+    let mut largest = 0.0f64;
+    for pose in poses {
+        let posture = manipulator.posture(pose).ok()?;
+        let actuators = [0, 1, 2].map(|i| manipulator.legs[i].actuator(&posture.legs[i]));
+        // Near the edge of reach an iterate may step outside; then the pose itself is the start.
+        let found = forward(manipulator, actuators, start, 1e-13)
+            .or_else(|_| forward(manipulator, actuators, *pose, 1e-13))
+            .ok()?;
+        let offset: DVec2 = found.position - pose.position;
+        let turned = (found.phi - pose.phi).abs() * design.platform_radius;
+        largest = largest.max(offset.length()).max(turned);
+        start = *pose;
+    }
+    Some(largest)
+}

@@ -1,0 +1,53 @@
+//! The regular workspace as a cylinder, on the manipulator and in the configuration space.
+
+use glam::{DVec2, DVec3};
+
+use crate::evaluation::Evaluation;
+
+/// The regular workspace: a disc of centres over a turn of the platform.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RegularCylinder {
+    /// Centre in the base frame \[m\].
+    pub centre: DVec2,
+    /// `R_w` \[m\].
+    pub radius: f64,
+    /// `φ_c` \[rad\].
+    pub phi: f64,
+    /// `Δφ` \[rad\].
+    pub phi_range: f64,
+}
+
+/// The regular workspace of a feasible design.
+pub fn regular_workspace(evaluation: &Evaluation, rotation_range_deg: f64) -> Option<RegularCylinder> {
+    let home = evaluation.home?;
+    Some(RegularCylinder {
+        centre: home.position,
+        radius: evaluation.workspace_radius,
+        phi: home.phi,
+        phi_range: rotation_range_deg.to_radians(),
+    })
+}
+
+/// The space of `(x, y, φ)`, drawn with φ upwards: a quarter turn is as high as `R` is long, 0 at the home orientation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConfigurationSpace {
+    /// Orientation at height 0 \[rad\].
+    pub origin: f64,
+    /// Height per radian \[m/rad\].
+    pub height: f64,
+}
+
+impl ConfigurationSpace {
+    /// The space about a home orientation \[rad\] for a design of base radius `R` \[m\].
+    pub fn new(home: f64, base_radius: f64) -> Self {
+        Self {
+            origin: home,
+            height: base_radius / std::f64::consts::FRAC_PI_2,
+        }
+    }
+
+    /// Where a pose is drawn.
+    pub fn place(&self, position: DVec2, phi: f64) -> DVec3 {
+        position.extend((phi - self.origin) * self.height)
+    }
+}
