@@ -4,7 +4,7 @@
 //! written with the archetypes they are made of.
 
 use rerun::blueprint::components::{BackgroundKind, ContainerKind, Corner2D, Eye3DKind, PanelState, PlayState};
-use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
+use rerun::datatypes::{Range2D, TimeRange, TimeRangeBoundary, VisibleTimeRange};
 use rerun::external::re_log_types::{BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource};
 use rerun::external::re_sdk_types::blueprint::archetypes as parts;
 use rerun::external::uuid::Uuid;
@@ -21,10 +21,12 @@ use crate::scene::Field;
 pub(super) fn send_run_layout(
     recording: &RecordingStream,
     clouds: &[String],
+    scatter_bounds: Range2D,
     base_radius: f64,
 ) -> Result<(), ChunkError> {
     let mut layout = Layout::new();
     let scatter = layout.view("2D", "Pareto front", paths::SCATTER, &["+ $origin/**"])?;
+    layout.property(&scatter, "VisualBounds2D", &parts::VisualBounds2D::new(scatter_bounds))?;
     // The front and the axes are states, of which the latest is drawn; the designs are a history.
     for cloud in clouds {
         let place = parts::ViewContents::blueprint_base_visualizer_path_for_entity(scatter.id, &cloud.as_str().into());
@@ -46,7 +48,9 @@ pub(super) fn send_run_layout(
     let manipulator = layout.space("Manipulator", paths::DESIGN, &["+ $origin/**"], base_radius)?;
     let configuration = layout.configuration(base_radius)?;
 
-    let curves = layout.container(ContainerKind::Tabs, &[hypervolume, feasible, size, along], &[])?;
+    let curves = layout.container(ContainerKind::Tabs, &[hypervolume, feasible, size], &[])?;
+    // Each has data on the other's timelines only: side by side, one of them always speaks.
+    let curves = layout.container(ContainerKind::Horizontal, &[curves, along], &[1.0, 1.0])?;
     let left = layout.container(ContainerKind::Vertical, &[scatter, curves], &[2.2, 1.0])?;
     let middle = layout.container(ContainerKind::Vertical, &[manipulator, configuration], &[1.7, 1.0])?;
     let right = layout.container(ContainerKind::Tabs, &[card, summary, study, table], &[])?;
@@ -199,7 +203,7 @@ impl Layout {
             paths::CONFIGURATION,
             &["+ $origin/**"],
         )?;
-        self.eye(&node, [-1.3, -2.6, 1.3], [0.0, 0.0, -0.1], base_radius)?;
+        self.eye(&node, [-1.15, -2.3, 1.1], [-0.05, 0.0, -0.08], base_radius)?;
         Ok(node)
     }
 

@@ -18,10 +18,12 @@ use crate::scene::{
 use crate::spatial::Pose;
 use crate::study::Study;
 
-/// Cells along the longer side of a heatmap: of a design by itself, of a layer over φ, of a step of a front.
+/// Cells along the longer side of a heatmap: of a design by itself, of a layer over φ, of a step of a front,
+/// of an outline over φ.
 const FINE: HeatmapSettings = HeatmapSettings { cells: 240 };
 const LAYER: HeatmapSettings = HeatmapSettings { cells: 72 };
 const STEP: HeatmapSettings = HeatmapSettings { cells: 64 };
+const OUTLINE: HeatmapSettings = HeatmapSettings { cells: 32 };
 
 /// Orientations of the layers from home \[deg\].
 const LAYERS_DEG: [f64; 5] = [-60.0, -30.0, 0.0, 30.0, 60.0];
@@ -75,7 +77,7 @@ pub fn record_design(
     }
     subject.workspace(&canvas)?;
     subject.configuration(&canvas)?;
-    subject.layers(&canvas)?;
+    subject.layers(&canvas, LAYER, true)?;
 
     let cylinder = regular_workspace(evaluation, model.workspace.rotation_range_deg);
     let tour = cylinder.and_then(|cylinder| tour(model, &evaluation.design, &cylinder, TOUR_STEPS));
@@ -132,6 +134,7 @@ pub(super) fn record_step(
     }
     subject.workspace(&canvas)?;
     subject.configuration(&canvas)?;
+    subject.layers(&canvas, OUTLINE, false)?;
     writer.text(
         paths::CARD,
         moment,
@@ -231,7 +234,7 @@ impl Subject<'_> {
         let label = format!("R_w = {:.4} m", cylinder.radius);
         // A hair above the heatmap, so that the line is seen.
         canvas.cylinder(paths::WORKSPACE, &cylinder, [0.97 * floor, DISC * floor], &label)?;
-        let away = 1.12 * self.design().base_radius.max(cylinder.radius);
+        let away = self.design().base_radius;
         canvas.limits(paths::LIMITS, self.evaluation, DISC * floor, away)
     }
 
@@ -250,17 +253,23 @@ impl Subject<'_> {
         canvas.cylinder(&root("cylinder"), &cylinder, [height(-half), height(half)], &label)
     }
 
-    /// Heatmaps of the inverse condition number, stacked over φ.
-    fn layers(&self, canvas: &Canvas<'_>) -> Result<(), RecordingError> {
+    /// The inverse condition number stacked over φ: its heatmaps, or only their outlines.
+    fn layers(&self, canvas: &Canvas<'_>, settings: HeatmapSettings, filled: bool) -> Result<(), RecordingError> {
         let space = self.space();
+        let field = Field::InverseCondition;
+        // One map for all layers: the field's own range.
+        let map = ColorMap::new(field.scale(), [0.0, 1.0], field.threshold(self.model));
         for (index, turn) in LAYERS_DEG.into_iter().enumerate() {
             let phi = space.origin + turn.to_radians();
-            let heatmap = Heatmap::new(self.model, self.design(), Field::InverseCondition, phi, LAYER)
-                .map_err(RecordingError::encode)?;
-            // One map for all layers: the field's own range.
-            let map = ColorMap::new(heatmap.field.scale(), [0.0, 1.0], heatmap.field.threshold(self.model));
+            let heatmap =
+                Heatmap::new(self.model, self.design(), field, phi, settings).map_err(RecordingError::encode)?;
             let root = format!("{}/layers/{index}", paths::CONFIGURATION);
-            canvas.heatmap(&root, &heatmap, &map, &|p: DVec2| space.place(p, phi))?;
+            let place = |p: DVec2| space.place(p, phi);
+            if filled {
+                canvas.heatmap(&root, &heatmap, &map, &place)?;
+            } else {
+                canvas.outlines(&root, &heatmap, &place)?;
+            }
         }
         Ok(())
     }

@@ -139,7 +139,7 @@ impl Canvas<'_> {
             .with_colors(std::iter::repeat_n(rgb(colors::WORKSPACE), count))
             .with_radii((0..count).map(|k| Radius::new_ui_points(if k < 2 { 1.6 } else { 0.7 })));
         self.writer.row(&format!("{root}/outline"), self.moment, &lines)?;
-        let at = high + DVec3::new(-cylinder.radius * 0.71, cylinder.radius * 0.71, 0.0);
+        let at = high + DVec3::new(-cylinder.radius, cylinder.radius, 0.0) * 0.84;
         self.labels(
             &format!("{root}/label"),
             vec![(at, label.to_owned())],
@@ -166,7 +166,7 @@ impl Canvas<'_> {
     }
 
     /// Contours and edges of a heatmap, below `root`.
-    fn outlines(&self, root: &str, heatmap: &Heatmap, place: &impl Fn(DVec2) -> DVec3) -> Outcome {
+    pub(super) fn outlines(&self, root: &str, heatmap: &Heatmap, place: &impl Fn(DVec2) -> DVec3) -> Outcome {
         let edges = heatmap
             .edges
             .iter()
@@ -258,7 +258,7 @@ impl Canvas<'_> {
         )
     }
 
-    /// Where and by which constraints the workspace is stopped from growing, named `away` from the centre, below `root`.
+    /// Where and by which constraints the workspace is stopped from growing, named in the corners of a square `away` from the centre, below `root`.
     pub(super) fn limits(&self, root: &str, evaluation: &Evaluation, z: f64, away: f64) -> Outcome {
         let active: Vec<(&ConstraintReport, DVec2)> = evaluation
             .constraints
@@ -272,17 +272,26 @@ impl Canvas<'_> {
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(6.0), active.len()))
             .with_colors(tints());
         self.writer.row(&format!("{root}/poses"), self.moment, &points)?;
-        let centre = evaluation.home.map_or(DVec2::ZERO, |home| home.position);
-        let name_at = |at: DVec2| {
-            let outwards = (at - centre).try_normalize().unwrap_or(DVec2::Y);
-            (centre + outwards * away).extend(z)
-        };
-        let leaders = LineStrips3D::new(active.iter().map(|(_, at)| [point(at.extend(z)), point(name_at(*at))]))
-            .with_colors(tints())
-            .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.9), active.len()));
+        // In the corners beside A3, where nothing else stands; several below one another.
+        let names: Vec<(DVec3, String)> = active
+            .iter()
+            .enumerate()
+            .map(|(k, (report, at))| {
+                let side = if at.x < 0.0 { -0.85 } else { 0.85 };
+                let corner = DVec3::new(side, 1.0 - 0.13 * k as f64, 0.0) * away;
+                (corner + DVec3::Z * z, limit_text(report))
+            })
+            .collect();
+        let leaders = LineStrips3D::new(
+            active
+                .iter()
+                .zip(&names)
+                .map(|((_, at), (name, _))| [point(at.extend(z)), point(*name)]),
+        )
+        .with_colors(tints())
+        .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.9), active.len()));
         self.writer.row(&format!("{root}/leaders"), self.moment, &leaders)?;
-        let names = active.iter().map(|(report, at)| (name_at(*at), limit_text(report)));
-        self.labels(&format!("{root}/names"), names.collect(), color)
+        self.labels(&format!("{root}/names"), names, color)
     }
 
     /// Axes of the configuration space over the height of `span` \[rad\] either side of its origin, below `root`.
@@ -303,7 +312,12 @@ impl Canvas<'_> {
         ];
         for k in -2..=2 {
             let turn = 0.5 * span * f64::from(k);
-            let phi = (space.origin + turn).to_degrees();
+            // As people write angles: in (−180°, 180°].
+            let phi = 180.0
+                - libm::fmod(
+                    libm::fmod(180.0 - (space.origin + turn).to_degrees(), 360.0) + 360.0,
+                    360.0,
+                );
             labels.push((
                 at(turn) - DVec3::X * 0.12 * extent,
                 format!("φ = {}°", (phi * 10.0).round() / 10.0),

@@ -6,7 +6,7 @@ use std::sync::mpsc::Receiver;
 
 use rerun::{Scalars, SeriesLines, TimeColumn};
 
-use super::scatter::{Frame, INFEASIBLE_COLOR, front_points, points, position, selected, staircase};
+use super::scatter::{Frame, INFEASIBLE_COLOR, front_points, points, selected, staircase};
 use super::writer::{ALWAYS, Moment, RecordingError, Writer};
 use super::{blueprint, colors, columns, design, paths, timelines};
 use crate::evaluation::{Evaluation, Model};
@@ -52,7 +52,7 @@ impl Recorder {
             .map(|&architecture| cloud(architecture))
             .chain([paths::INFEASIBLE.to_owned()])
             .collect();
-        blueprint::send_run_layout(writer.stream(), &clouds, study.bounds.R_m[1])?;
+        blueprint::send_run_layout(writer.stream(), &clouds, frame.bounds(), study.bounds.R_m[1])?;
         writer.text(paths::STUDY, ALWAYS, &study_text(study)?)?;
         Ok(Self {
             writer,
@@ -158,15 +158,20 @@ impl Recorder {
                 .row(paths::FRONT_LINE, &moment, &staircase(&self.front, &self.frame))?;
             self.front_changed = false;
         }
+        self.curves(&moment, summary)?;
+        self.writer.check()
+    }
+
+    fn curves(&self, moment: Moment<'_>, summary: &GenerationSummary) -> Result<(), RecordingError> {
         let share = summary.feasible as f64 / summary.evaluations.max(1) as f64;
         for (entity, value) in [
             (paths::HYPERVOLUME, summary.hypervolume),
             (paths::FEASIBLE_SHARE, share),
             (paths::FRONT_SIZE, summary.front_size as f64),
         ] {
-            self.writer.row(entity, &moment, &Scalars::single(value))?;
+            self.writer.row(entity, moment, &Scalars::single(value))?;
         }
-        self.writer.check()
+        Ok(())
     }
 
     fn finished(&mut self, summary: &RunSummary) -> Result<(), RecordingError> {
@@ -198,6 +203,10 @@ impl Recorder {
         if let Some((knee, last)) = knee(&summary.front).zip(last) {
             self.step(&moment(last.evaluations, last.generation), knee, summary)?;
             self.scatter_on_front()?;
+            // The curves of the run end where the front begins: a line at their last value.
+            for step in [0, summary.front.len() - 1] {
+                self.curves(&[(timelines::FRONT, step)], last)?;
+            }
         }
         Ok(())
     }
@@ -254,12 +263,9 @@ impl Recorder {
     }
 }
 
-/// The knee of a front: the design farthest from the line between its ends, over the logarithm of mass.
+/// The knee of a front: the design farthest above the line between its ends.
 fn knee(front: &[FrontMember]) -> Option<usize> {
-    let place = |member: &FrontMember| {
-        let [x, y] = position(member.evaluation.mass, member.evaluation.workspace_radius);
-        DVec2::new(f64::from(x), f64::from(y))
-    };
+    let place = |member: &FrontMember| DVec2::new(member.evaluation.mass, member.evaluation.workspace_radius);
     let (first, last) = (place(front.first()?), place(front.last()?));
     let span = (last - first).max(DVec2::splat(f64::MIN_POSITIVE));
     (0..front.len()).max_by(|&a, &b| {

@@ -3,6 +3,7 @@
 //! Rerun's 2-D view knows no axes and points y downwards. The plot therefore stands in true coordinates, `log₁₀(mass/kg)`
 //! and `R_w` in metres, under a transform that turns y up and gives both axes a like size, and brings its own axes.
 
+use rerun::datatypes::{Range1D, Range2D};
 use rerun::{Color, LineStrips2D, Points2D, Radius, Transform3D};
 
 use super::colors;
@@ -87,18 +88,18 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// A range for a study: three decades up to the reference mass, radii up to 40 % of the largest base radius.
+    /// A range for a study: four decades up to the reference mass, radii up to 65 % of the largest base radius.
     pub(super) fn new(study: &Study) -> Self {
         let top = libm::log10(study.hypervolume.reference_mass_kg).ceil() as i32;
-        let largest = 0.4 * study.bounds.R_m[1];
+        let largest = 0.65 * study.bounds.R_m[1];
         let decade = libm::pow(10.0, libm::floor(libm::log10(largest)));
         let tick = [0.1, 0.2, 0.5]
             .into_iter()
             .map(|share| share * decade)
-            .find(|tick| largest / tick <= 8.0)
+            .find(|tick| largest / tick <= 14.0)
             .unwrap_or(decade);
         Self {
-            decades: (top - 3, top),
+            decades: (top - 4, top),
             ticks: (largest / tick).ceil() as u32,
             tick,
         }
@@ -126,6 +127,16 @@ impl Frame {
     pub(super) fn transform(&self) -> Transform3D {
         let height = self.tick as f32 * self.ticks as f32;
         Transform3D::from_scale([1.0, -HEIGHT / height, 1.0])
+    }
+
+    /// What the view shows: the plot and room for its numbers, in the view's own coordinates.
+    pub(super) fn bounds(&self) -> Range2D {
+        let (left, right) = (f64::from(self.decades.0), f64::from(self.decades.1));
+        let (width, height) = (right - left, f64::from(HEIGHT));
+        Range2D {
+            x_range: Range1D([left - 0.13 * width, right + 0.07 * width]),
+            y_range: Range1D([-1.16 * height, 0.2 * height]),
+        }
     }
 
     /// Axes, grid lines and staircase of ticks.
@@ -186,7 +197,7 @@ impl Frame {
         }
         positions.push([0.5 * (left + right), -0.1 * top]);
         labels.push("mass in motion [kg], lighter is better".to_owned());
-        positions.push([left, 1.06 * top]);
+        positions.push([left + 0.2 * (right - left), 1.05 * top]);
         labels.push("regular workspace radius R_w [m], larger is better".to_owned());
         let count = positions.len();
         Points2D::new(positions)

@@ -291,13 +291,12 @@ impl<L: Leg> Mesh<'_, L> {
 
     /// Polylines on which a value given at the vertices, and by `pick` in between, equals `level`.
     fn contour(&self, values: &[f64], level: f64, pick: impl Fn(Sample) -> f64) -> Vec<Vec<DVec2>> {
-        let mut points: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+        let mut points: BTreeMap<(u32, u32), Option<u32>> = BTreeMap::new();
         let mut positions: Vec<DVec2> = Vec::new();
         let mut segments: Vec<[u32; 2]> = Vec::new();
         for triangle in &self.triangles {
             let above = triangle.map(|vertex| values[vertex as usize] >= level);
-            let mut ends = [0; 2];
-            let mut found = 0;
+            let mut ends: Vec<u32> = Vec::with_capacity(2);
             for k in 0..3 {
                 let (a, b) = (k, (k + 1) % 3);
                 if above[a] == above[b] {
@@ -306,14 +305,13 @@ impl<L: Leg> Mesh<'_, L> {
                 // One direction for a side that two triangles share: one point.
                 let side = (triangle[a].min(triangle[b]), triangle[a].max(triangle[b]));
                 let point = *points.entry(side).or_insert_with(|| {
-                    positions.push(self.crossing(side, values, level, &pick));
-                    (positions.len() - 1) as u32
+                    positions.push(self.crossing(side, values, level, &pick)?);
+                    Some((positions.len() - 1) as u32)
                 });
-                ends[found] = point;
-                found += 1;
+                ends.extend(point);
             }
-            if found == 2 {
-                segments.push(ends);
+            if let [first, second] = ends[..] {
+                segments.push([first, second]);
             }
         }
         chains(&segments)
@@ -322,8 +320,9 @@ impl<L: Leg> Mesh<'_, L> {
             .collect()
     }
 
-    /// Point on a side at which the value equals `level`: false position (Illinois) on the function itself.
-    fn crossing(&self, side: (u32, u32), values: &[f64], level: f64, pick: &impl Fn(Sample) -> f64) -> DVec2 {
+    /// Point on a side at which the value equals `level`: false position (Illinois) on the function itself. `None` on a
+    /// chord of a hollow edge of reach, which leaves what is reachable: the contour ends a cell before it.
+    fn crossing(&self, side: (u32, u32), values: &[f64], level: f64, pick: &impl Fn(Sample) -> f64) -> Option<DVec2> {
         let (start, end) = (self.vertices[side.0 as usize], self.vertices[side.1 as usize]);
         let (mut low, mut high) = (0.0, 1.0);
         let (mut at_low, mut at_high) = (values[side.0 as usize] - level, values[side.1 as usize] - level);
@@ -335,13 +334,10 @@ impl<L: Leg> Mesh<'_, L> {
                 ((low * at_high - high * at_low) / (at_high - at_low)).clamp(low, high)
             };
             let point = start.lerp(end, share);
-            // Between two reachable points of a curved edge a point may be out of reach: the nearer end stands for it.
-            let Ok(sample) = self.sampler.at(point) else {
-                return if share < 0.5 { start } else { end };
-            };
+            let sample = self.sampler.at(point).ok()?;
             let value = pick(sample) - level;
             if value == 0.0 || high - low < 1e-13 {
-                return point;
+                return Some(point);
             }
             if (value > 0.0) == (at_low > 0.0) {
                 if last_low == Some(true) {
@@ -355,7 +351,7 @@ impl<L: Leg> Mesh<'_, L> {
                 (high, at_high, last_low) = (share, value, Some(false));
             }
         }
-        start.lerp(end, 0.5 * (low + high))
+        Some(start.lerp(end, 0.5 * (low + high)))
     }
 
     /// Edge of reach as polylines of one reason each.

@@ -54,7 +54,7 @@ const MODEL: [&str; 6] = [
 
 #[test]
 fn only_the_recording_knows_rerun() {
-    let outside = [&MODEL[..], &["optimize", "study"]].concat();
+    let outside = [&MODEL[..], &["optimize", "study", "scene"]].concat();
     absent(&outside, &["rerun", "egui", "crate::recording"]);
 }
 
@@ -133,6 +133,6 @@ fn architectures_are_named_in_mechanism_alone() {
 
 #[test]
 fn hash_order_decides_nothing() {
-    let all = [&MODEL[..], &["optimize", "study", "recording"]].concat();
+    let all = [&MODEL[..], &["optimize", "study", "recording", "scene"]].concat();
     absent(&all, &["HashMap", "HashSet"]);
 }

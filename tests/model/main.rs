@@ -5,6 +5,7 @@ mod invariants;
 mod joints;
 mod optimizers;
 mod reference;
+mod scenes;
 mod search;
 mod strategies;
 mod studies;

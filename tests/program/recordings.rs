@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use super::support::{folder, optimize, python, script, small_study};
+use predicates::str::contains;
+
+use super::support::{DESIGN, folder, kinefront, optimize, python, script, small_study};
 
 /// The recording of a run folder passes `rerun rrd verify` and holds the rows of its tables.
 pub fn agrees_with_its_tables(run: &Path) {
@@ -17,4 +19,94 @@ fn a_recording_holds_what_the_tables_hold() {
     let out = folder.path().join("run");
     optimize(&small_study(folder.path()), &out, &[]);
     agrees_with_its_tables(&out);
+}
+
+fn check_design(path: &Path) -> Option<serde_json::Value> {
+    let python = python(&["rerun", "pyarrow", "numpy"])?;
+    Some(serde_json::from_str(&script(python, "check_design.py", &[path])).expect("JSON"))
+}
+
+#[test]
+fn a_design_is_recorded_with_its_overlays_and_its_tour() {
+    let folder = folder();
+    // architecture, bars of its legs
+    let designs = [
+        (DESIGN, 3),
+        ("3-RPR R=2.2462 r=1.2453 Lb=3.5382 rj=0.0224 rp=0.083", 6),
+        ("3-RRR R=3.3658 r=0.2537 Lb=1.9157 rj=0.0787 rp=0.0891", 6),
+    ];
+    for (index, (design, bars)) in designs.into_iter().enumerate() {
+        let path = folder.path().join(format!("{index}.rrd"));
+        kinefront()
+            .args(["show", "--design", design, "--record"])
+            .arg(&path)
+            .assert()
+            .success();
+        if let Some(found) = check_design(&path) {
+            assert_eq!(found["poses"], 235);
+            assert_eq!(found["leg_bars"], bars);
+            assert_eq!(found["views"], serde_json::json!({"3D": 7, "TextDocument": 1}));
+            assert!(found["vertices"].as_u64().expect("a count") > 5000);
+            let card = found["card"].as_str().expect("a card");
+            assert!(
+                card.contains("**active**") && card.contains("forward kinematics"),
+                "{card}"
+            );
+        }
+    }
+}
+
+/// A row of a run's table, under the run's own study.
+#[test]
+fn a_design_of_a_front_is_shown_by_its_id() {
+    let folder = folder();
+    let out = folder.path().join("run");
+    optimize(&small_study(folder.path()), &out, &[]);
+    let table = out.join("front.csv");
+    let mut reader = csv::Reader::from_path(&table).expect("a table");
+    let row = reader.records().last().expect("a row").expect("a row");
+    let path = folder.path().join("one.rrd");
+    let show = |id: &str, path: &Path| {
+        let mut command = kinefront();
+        command
+            .arg("show")
+            .arg(format!("{}#{id}", table.display()))
+            .arg("--record")
+            .arg(path);
+        command.assert()
+    };
+    show(&row[0], &path).success();
+    if let Some(found) = check_design(&path) {
+        let card = found["card"].as_str().expect("a card");
+        let radius: f64 = row[10].parse().expect("a number");
+        assert!(card.contains(&format!("R_w = {radius:.4} m")), "{card}");
+    }
+    // Nothing is overwritten, and an id that is not there is named with those that are.
+    show(&row[0], &path)
+        .code(2)
+        .stderr(contains("cannot write the recording"));
+    show("999999", &folder.path().join("two.rrd"))
+        .code(2)
+        .stderr(contains("has no design #999999"));
+    assert!(!folder.path().join("two.rrd").exists());
+}
+
+#[test]
+fn an_infeasible_design_can_be_looked_at() {
+    let folder = folder();
+    let path = folder.path().join("one.rrd");
+    let design = "3-PRR R=3.3778 r=1.6043 Lb=1.6523 rj=0.094 rp=0.0329";
+    kinefront()
+        .args(["show", "--design", design, "--field", "k_z", "--record"])
+        .arg(&path)
+        .assert()
+        .success();
+    assert!(path.metadata().expect("the file").len() > 10_000);
+    let wrong = folder.path().join("two.rrd");
+    kinefront()
+        .args(["show", "--design", design, "--field", "heat", "--record"])
+        .arg(&wrong)
+        .assert()
+        .code(2)
+        .stderr(contains("worst_margin"));
 }

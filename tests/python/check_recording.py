@@ -64,7 +64,8 @@ for name in designs[0]:
 report = json.loads((run / "run.json").read_text())
 history = report["history"]
 for entity, key in [("/run/hypervolume", "hypervolume"), ("/run/front_size", "front_size")]:
-    curve = table(entity).sort_by("generation")
+    curve = table(entity)
+    curve = curve.filter(pc.is_valid(curve["generation"])).sort_by("generation")
     assert curve["generation"].to_pylist() == [g["generation"] for g in history]
     assert column(curve, "Scalars:scalars") == [float(g[key]) for g in history]
 
@@ -84,6 +85,24 @@ for architecture in report["architectures"]:
 assert len(points) == len(wanted), f"{len(points)} points for {len(wanted)} feasible designs"
 assert np.allclose(sorted(points), wanted, atol=1e-6)
 
+# A step of the timeline `front` for every verified design, in order; the knee once more at the end of the run.
+with open(run / "front.csv", newline="") as file:
+    front = list(csv.DictReader(file))
+for entity in ("/card", "/design/manipulator/legs", "/design/manipulator/joints/sliders", "/design/limits/poses",
+               "/design/heatmap/inverse_condition/field", "/design/workspace/outline", "/design/ellipsoids/stiffness/bodies",
+               "/configuration/cylinder/outline", "/scatter/plot/front/selected"):
+    rows_there = table(entity)
+    steps = [step for step in rows_there["front"].to_pylist() if step is not None]
+    assert sorted(steps) == list(range(len(front))), f"{entity}: {len(steps)} steps for {len(front)} designs"
+    ends = [end for end in rows_there["generation"].to_pylist() if end is not None]
+    assert ends == [history[-1]["generation"]], f"{entity}: {ends}"
+cards = table("/card").filter(pc.is_valid(table("/card")["front"])).sort_by("front")
+for card, design in zip(cards["TextDocument:text"].to_pylist(), front):
+    assert card[0].startswith(f"# #{design['id']}, "), card[0][:40]
+    assert f"R_w = {float(design['workspace_radius_m']):.4f} m" in card[0]
+along = table("/along_front/R_w").filter(pc.is_valid(table("/along_front/R_w")["front"])).sort_by("front")
+assert column(along, "Scalars:scalars") == [float(design["workspace_radius_m"]) for design in front]
+
 study = table("/study")["TextDocument:text"].to_pylist()[0][0]
 assert (run / "study.toml").read_text() in study
 assert reader.recordings()[0].application_id == "kinefront"
@@ -94,5 +113,5 @@ for chunk in reader.stream(store=reader.blueprints()[0]):
     for name, values in batch.items():
         if name == "ViewBlueprint:class_identifier":
             views.setdefault(values[0][0], []).append(str(chunk.entity_path))
-assert {"2D", "TimeSeries", "TextDocument"} <= set(views), views
+assert {"2D", "3D", "TimeSeries", "TextDocument", "Dataframe"} <= set(views), views
 print(f"{rows.num_rows} rows and {checked} values agree; {sum(map(len, views.values()))} views")

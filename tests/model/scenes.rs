@@ -1,0 +1,314 @@
+//! Scenes: what is drawn is what is computed.
+
+use glam::{DVec2, DVec3};
+use kinefront::evaluation::{Evaluation, GridChoice, Model, PoseReport};
+use kinefront::mechanism::Design;
+use kinefront::scene::{
+    EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Solid, SolidShape, ellipsoids, manipulator,
+    regular_workspace, tour,
+};
+use kinefront::spatial::Pose;
+use kinefront::stiffness::StiffnessDefinition;
+use nalgebra::{Matrix3, Vector3};
+
+/// The paper's designs, and a feasible one of each other architecture and mode.
+const DESIGNS: [&str; 6] = [
+    "3-PRR R=1.412 r=0.319 Lb=0.620 rj=0.026 rp=0.023",
+    "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
+    "3-PRR R=3.872 r=1.947 Lb=1.977 rj=0.039 rp=0.096",
+    "3-RPR R=2.2462 r=1.2453 Lb=3.5382 rj=0.0224 rp=0.083",
+    "3-RRR R=3.3658 r=0.2537 Lb=1.9157 rj=0.0787 rp=0.0891",
+    "3-RRR R=1.2777 r=1.5205 Lb=3.8009 rj=0.0528 rp=0.0821 mode=---",
+];
+
+fn each(check: impl Fn(&Model, &Evaluation)) {
+    let model = Model::default();
+    for text in DESIGNS {
+        let design: Design = text.parse().expect("a design");
+        let evaluation = model.evaluate(&design, GridChoice::Fine).expect("a whole grid");
+        assert!(evaluation.is_feasible(), "{text}");
+        check(&model, &evaluation);
+    }
+}
+
+fn ends(solid: &Solid) -> (DVec3, DVec3) {
+    match solid.shape {
+        SolidShape::Bar { from, to, .. } => (from, to),
+        SolidShape::Block { .. } => panic!("{solid:?} is no bar"),
+    }
+}
+
+fn report(model: &Model, design: &Design, position: DVec2, phi: f64) -> PoseReport {
+    let pose = Pose { position, phi };
+    model.pose(design, &pose).expect("a whole grid").expect("reachable")
+}
+
+#[test]
+fn joints_close_along_every_tour() {
+    each(|model, evaluation| {
+        let design = &evaluation.design;
+        let cylinder = regular_workspace(evaluation, model.workspace.rotation_range_deg).expect("a workspace");
+        let tour = tour(model, design, &cylinder, 72).expect("a tour");
+        assert!(
+            tour.radius <= cylinder.radius && tour.radius > 0.98 * cylinder.radius,
+            "{design}: {}",
+            tour.radius
+        );
+        assert!(
+            tour.forward_error < 1e-9,
+            "{design}: forward kinematics is off by {:e}",
+            tour.forward_error
+        );
+        assert_eq!(tour.poses.first(), tour.poses.last());
+        // Both ends of Δφ and the rim are visited.
+        let turned = |sign: f64| {
+            tour.poses
+                .iter()
+                .any(|pose| (pose.phi - cylinder.phi - sign * 0.5 * cylinder.phi_range).abs() < 1e-12)
+        };
+        assert!(turned(1.0) && turned(-1.0));
+        for pose in &tour.poses {
+            assert!((pose.position - cylinder.centre).length() <= cylinder.radius * (1.0 + 1e-12));
+            let scene = manipulator(model, design, pose).expect("reachable");
+            let actuators = report(model, design, pose.position, pose.phi).actuators;
+            for leg in 0..3 {
+                let part = |part: Part| scene.solids_of(part).find(|solid| solid.leg == Some(leg)).map(ends);
+                let length = |bar: Option<(DVec3, DVec3)>| bar.map(|(from, to)| from.distance(to));
+                let near = |value: f64, wanted: f64, what: &str| {
+                    assert!(
+                        (value - wanted).abs() < 1e-12 * design.link_length.max(design.base_radius) * 4.0,
+                        "{design}: {what} is {value}, not {wanted}"
+                    );
+                };
+                let platform = part(Part::PlatformBar).expect("a platform bar");
+                near(platform.0.distance(platform.1), design.platform_radius, "platform bar");
+                near(platform.1.distance(pose.position.extend(0.0)), 0.0, "gap at P");
+                let last = match (part(Part::Link), part(Part::Tube), part(Part::Rod)) {
+                    (Some(link), None, None) => {
+                        near(length(Some(link)).expect("a link"), design.link_length, "link");
+                        if let Some(crank) = part(Part::Crank) {
+                            near(length(Some(crank)).expect("a crank"), design.link_length, "crank");
+                            near(crank.1.distance(link.0), 0.0, "gap at B");
+                        }
+                        link
+                    }
+                    (None, Some(tube), Some(rod)) => {
+                        near(tube.0.distance(rod.1), actuators[leg], "telescopic leg");
+                        near(tube.1.distance(rod.0), 0.0, "gap in the telescope");
+                        rod
+                    }
+                    other => panic!("{design}: a leg of {other:?}"),
+                };
+                near(last.1.distance(platform.0), 0.0, "gap at C");
+            }
+        }
+    });
+}
+
+/// True radii, every joint of the field's list, and the paper's labels.
+#[test]
+fn the_manipulator_is_complete_and_to_scale() {
+    let model = Model::default();
+    // links and tubes, platform bars, actuated, passive, labels (A, B, C, O, P; B of a 3-RPR is A)
+    let wanted = [
+        ("3-PRR", [3, 3, 3, 6, 11]),
+        ("3-RPR", [6, 3, 3, 6, 8]),
+        ("3-RRR", [6, 3, 3, 6, 11]),
+    ];
+    for text in DESIGNS {
+        let design: Design = text.parse().expect("a design");
+        let evaluation = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+        let scene = manipulator(&model, &design, &evaluation.home.expect("a home")).expect("reachable");
+        let count = |parts: &[Part]| scene.solids.iter().filter(|solid| parts.contains(&solid.part)).count();
+        let found = [
+            count(&[Part::Link, Part::Crank, Part::Tube, Part::Rod]),
+            count(&[Part::PlatformBar]),
+            count(&[Part::ActuatedJoint, Part::Slider]),
+            count(&[Part::PassiveJoint]),
+            scene.labels.len(),
+        ];
+        let (_, wanted) = wanted
+            .iter()
+            .find(|(name, _)| *name == design.architecture.name())
+            .expect("known");
+        assert_eq!(found, *wanted, "{text}");
+        for solid in &scene.solids {
+            if let SolidShape::Bar { radius, .. } = solid.shape {
+                match solid.part {
+                    Part::Link | Part::Crank | Part::Rod => assert_eq!(radius, design.leg_bar_radius),
+                    Part::PlatformBar => assert_eq!(radius, design.platform_bar_radius),
+                    _ => assert!(radius > 0.0),
+                }
+            }
+        }
+    }
+}
+
+/// The field from a pose's own report.
+fn field_value(model: &Model, design: &Design, field: Field, report: &PoseReport) -> f64 {
+    match field {
+        Field::InverseCondition => report.inverse_condition,
+        Field::StiffnessXy => report.rigidity.k_xy,
+        Field::StiffnessZ => report.rigidity.k_z,
+        Field::StiffnessPhiZ => report.rigidity.k_phi_z,
+        Field::Determinant => report.determinant,
+        Field::Displacement => {
+            let inverse = report.stiffness.try_inverse().expect("a stiffness");
+            let block = nalgebra::Matrix2::new(inverse[(0, 0)], inverse[(0, 1)], inverse[(1, 0)], inverse[(1, 1)]);
+            model.in_plane_force * block.symmetric_eigenvalues().max()
+        }
+        Field::WorstMargin => {
+            let t = &model.thresholds;
+            [
+                report.slack / design.base_radius,
+                report.inverse_condition / t.inverse_condition - 1.0,
+                report.rigidity.k_xy / t.k_xy - 1.0,
+                report.rigidity.k_z / t.k_z - 1.0,
+                report.rigidity.k_phi_z / t.k_phi_z - 1.0,
+            ]
+            .into_iter()
+            .fold(f64::INFINITY, f64::min)
+        }
+    }
+}
+
+#[test]
+fn heatmaps_hold_the_values_of_their_poses_and_contours_lie_on_the_threshold() {
+    each(|model, evaluation| {
+        let design = &evaluation.design;
+        let phi = evaluation.home.expect("a home").phi;
+        for field in Field::ALL {
+            let heatmap = Heatmap::new(model, design, field, phi, HeatmapSettings { cells: 60 }).expect("a whole grid");
+            assert!(heatmap.triangles.len() > 200, "{design} {field:?}");
+            let value_at = |position: DVec2| field_value(model, design, field, &report(model, design, position, phi));
+            for (&position, &value) in heatmap.vertices.iter().zip(&heatmap.values).step_by(7) {
+                let stiff = report(model, design, position, phi).inverse_condition > 1e-3;
+                // Beside a singularity the inverse that the displacement is compared with has no digits.
+                if field != Field::Displacement || stiff {
+                    let wanted = value_at(position);
+                    let off = (value - wanted).abs();
+                    assert!(
+                        off <= 1e-6 * wanted.abs() + 1e-12,
+                        "{design} {field:?}: {value} instead of {wanted}"
+                    );
+                }
+            }
+            let threshold = field.threshold(model);
+            let scale = threshold.abs().max(1e-3);
+            for &position in heatmap.threshold.iter().flatten() {
+                let off = (value_at(position) - threshold).abs();
+                assert!(
+                    off < 1e-6 * scale,
+                    "{design} {field:?}: a contour is off its threshold by {off:e}"
+                );
+            }
+            for &position in heatmap.singular.iter().flatten() {
+                let off = report(model, design, position, phi).determinant.abs();
+                assert!(off < 1e-9, "{design}: a singularity curve has det A/ℓ = {off:e}");
+            }
+            for edge in &heatmap.edges {
+                for &position in &edge.points {
+                    let slack = report(model, design, position, phi).slack;
+                    assert!(
+                        (0.0..1e-9).contains(&slack),
+                        "{design}: an edge has {slack:e} m of reach left"
+                    );
+                }
+            }
+            for triangle in &heatmap.triangles {
+                let [a, b, c] = triangle.map(|vertex| heatmap.vertices[vertex as usize]);
+                assert!((b - a).perp_dot(c - a) > -1e-12, "{design}: a triangle is turned over");
+            }
+        }
+    });
+}
+
+/// The triangles cover what is reachable, no more and no less.
+#[test]
+fn heatmaps_cover_the_reachable_workspace() {
+    each(|model, evaluation| {
+        let design = &evaluation.design;
+        let phi = evaluation.home.expect("a home").phi;
+        let settings = HeatmapSettings { cells: 80 };
+        let heatmap = Heatmap::new(model, design, Field::InverseCondition, phi, settings).expect("a whole grid");
+        let area: f64 = heatmap
+            .triangles
+            .iter()
+            .map(|triangle| {
+                let [a, b, c] = triangle.map(|vertex| heatmap.vertices[vertex as usize]);
+                0.5 * (b - a).perp_dot(c - a)
+            })
+            .sum();
+        let reach = 2.0 * design.link_length + design.base_radius + design.platform_radius;
+        let steps = 1200;
+        let step = 2.0 * reach / f64::from(steps);
+        let mut reached = 0.0;
+        for i in 0..steps {
+            for j in 0..steps {
+                let position = DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) * step - reach;
+                let pose = Pose { position, phi };
+                reached += f64::from(u8::from(model.pose(design, &pose).expect("a whole grid").is_ok()));
+            }
+        }
+        let wanted = reached * step * step;
+        assert!(
+            (area / wanted - 1.0).abs() < 0.01,
+            "{design}: {area} m² drawn, {wanted} m² reachable"
+        );
+    });
+}
+
+#[test]
+fn ellipsoid_axes_are_the_eigenvectors_of_their_block() {
+    each(|model, evaluation| {
+        for kind in [EllipsoidKind::Stiffness, EllipsoidKind::Displacement] {
+            let set = ellipsoids(model, evaluation, kind)
+                .expect("a whole grid")
+                .expect("a set");
+            assert_eq!(set.ellipsoids.len(), 19);
+            let mut largest = 0.0f64;
+            for ellipsoid in &set.ellipsoids {
+                let k = report(model, &evaluation.design, ellipsoid.pose.position, ellipsoid.pose.phi).stiffness;
+                let block: Matrix3<f64> = match kind {
+                    EllipsoidKind::Stiffness => k.fixed_view::<3, 3>(0, 0).into_owned(),
+                    EllipsoidKind::Displacement => k
+                        .try_inverse()
+                        .expect("a stiffness")
+                        .fixed_view::<3, 3>(0, 0)
+                        .into_owned(),
+                };
+                let (sin, cos) = ellipsoid.angle.sin_cos();
+                let axes = [Vector3::new(cos, sin, 0.0), Vector3::new(-sin, cos, 0.0), Vector3::z()];
+                for (axis, value) in axes.into_iter().zip(ellipsoid.values.to_array()) {
+                    let off = (block * axis - axis * value).norm();
+                    assert!(
+                        off < 1e-6 * block.norm(),
+                        "{}: {kind:?} axis is off by {off:e}",
+                        evaluation.design
+                    );
+                }
+                largest = largest.max(ellipsoid.values.max_element());
+            }
+            // One scale for all, such that neighbours stay apart.
+            assert!(largest * set.scale <= 0.25 * evaluation.workspace_radius);
+            assert!(set.scale_text().contains("0.1 m ="));
+        }
+    });
+}
+
+#[test]
+fn a_displacement_matches_the_definition_by_compliance() {
+    let design: Design = DESIGNS[1].parse().expect("a design");
+    let model = Model {
+        stiffness_definition: StiffnessDefinition::Compliance,
+        ..Model::default()
+    };
+    let heatmap =
+        Heatmap::new(&model, &design, Field::Displacement, 0.5, HeatmapSettings { cells: 40 }).expect("a whole grid");
+    for (&position, &value) in heatmap.vertices.iter().zip(&heatmap.values).step_by(11) {
+        let k_xy = report(&model, &design, position, 0.5).rigidity.k_xy;
+        if k_xy > 1.0 {
+            assert!((value * k_xy / model.in_plane_force - 1.0).abs() < 1e-6);
+        }
+    }
+}

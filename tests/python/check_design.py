@@ -1,0 +1,78 @@
+"""Check a recording of one design (`kinefront show`), with the Rerun package's own verifier and reader.
+
+    check_design.py FILE.rrd
+
+Prints one JSON object: poses of the tour, vertices of the heatmap in front, views of the layout.
+"""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import rerun
+from rerun.experimental import RrdReader
+
+path = Path(sys.argv[1])
+command = Path(rerun.__file__).parent.parent / "rerun_cli" / "rerun"
+verified = subprocess.run([str(command), "rrd", "verify", str(path)], capture_output=True, text=True)
+assert verified.returncode == 0 and "1 file verified without error" in verified.stderr, verified.stderr
+
+reader = RrdReader(str(path))
+entities = {}
+for chunk in reader.stream():
+    batch = chunk.to_record_batch()
+    entities.setdefault(str(chunk.entity_path), []).append(pa.Table.from_batches([batch.replace_schema_metadata(None)]))
+tables = {entity: pa.concat_tables(parts, promote_options="default") for entity, parts in entities.items()}
+
+fields = ["inverse_condition", "k_xy", "k_z", "k_phi_z", "displacement", "worst_margin"]
+wanted = ["/card", "/configuration/axes/lines", "/configuration/cylinder/outline", "/design/workspace/outline"]
+wanted += ["/design/limits/poses", "/design/ellipsoids/stiffness/bodies", "/design/ellipsoids/displacement/bodies"]
+wanted += [f"/design/heatmap/{field}/field" for field in fields] + [f"/design/legend/{field}/strip" for field in fields]
+# The layer at home; others may have nothing reachable.
+wanted += ["/configuration/layers/2/edge"]
+missing = [entity for entity in wanted if entity not in tables]
+assert not missing, missing
+# What does not move is static: it has no timeline.
+for entity in wanted:
+    assert "tour" not in tables[entity].schema.names, entity
+
+moving = ["legs", "platform", "joints/passive", "joints/actuated", "base", "frames", "labels"]
+steps = None
+for name in moving:
+    table = tables[f"/design/manipulator/{name}"].sort_by("tour")
+    times = table["tour"].to_pylist()
+    assert times == list(range(len(times))), f"{name}: {times[:5]}"
+    assert steps in (None, len(times)), f"{name} has {len(times)} poses, not {steps}"
+    steps = len(times)
+
+# Bars keep their lengths while the platform goes round.
+legs = tables["/design/manipulator/legs"].sort_by("tour")["Cylinders3D:lengths"].to_pylist()
+platform = np.array(tables["/design/manipulator/platform"]["Cylinders3D:lengths"].to_pylist())
+assert np.allclose(platform, platform[0, 0], rtol=1e-6)
+
+mesh = tables["/design/heatmap/inverse_condition/field"]
+vertices = np.array(mesh["Mesh3D:vertex_positions"].to_pylist()[0])
+triangles = np.array(mesh["Mesh3D:triangle_indices"].to_pylist()[0])
+colors = mesh["Mesh3D:vertex_colors"].to_pylist()[0]
+assert len(colors) == len(vertices) and triangles.max() < len(vertices) and np.isfinite(vertices).all()
+
+views = {}
+for chunk in reader.stream(store=reader.blueprints()[0]):
+    for name, values in chunk.to_record_batch().to_pydict().items():
+        if name == "ViewBlueprint:class_identifier":
+            views[values[0][0]] = views.get(values[0][0], 0) + 1
+
+print(
+    json.dumps(
+        {
+            "poses": steps,
+            "vertices": len(vertices),
+            "leg_bars": len(legs[0]),
+            "views": views,
+            "card": tables["/card"]["TextDocument:text"].to_pylist()[0][0],
+        }
+    )
+)
