@@ -103,7 +103,7 @@ fn ellipsoid(pose: Pose, stiffness: &PlanarStiffness, kind: EllipsoidKind) -> Op
             [k[0], k[1], k[3], stiffness.out_of_plane[0]]
         }
         EllipsoidKind::Displacement => {
-            let [xx, xy, yy] = free_stiffness(stiffness)?;
+            let [xx, xy, yy] = free_stiffness(&stiffness.in_plane)?;
             let determinant = xx * yy - xy * xy;
             let vertical = stiffness
                 .rigidity(crate::stiffness::StiffnessDefinition::Compliance)

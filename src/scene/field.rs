@@ -1,10 +1,10 @@
 //! Scalar fields over poses.
 
 use crate::evaluation::{Constraint, Model};
-use crate::mechanism::Design;
+use crate::kinematics::Jacobian;
+use crate::mechanism::{Design, Leg, Posture};
 use crate::spatial::smaller_eigenvalue;
-use crate::stiffness::PlanarStiffness;
-use crate::workspace::PoseValues;
+use crate::workspace::PoseChecker;
 
 /// What a heatmap shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -105,43 +105,55 @@ impl Field {
         }
     }
 
-    /// The value at a reachable pose. Finite: a displacement without end is shown as a kilometre.
-    pub fn value(self, model: &Model, design: &Design, values: &PoseValues, stiffness: &PlanarStiffness) -> f64 {
+    /// The value at a pose that the leg type of `checker` reaches. Finite: a displacement without end is shown as a
+    /// kilometre. Only as much is computed as the field needs.
+    pub(super) fn value<L: Leg>(
+        self,
+        model: &Model,
+        design: &Design,
+        checker: &PoseChecker<L>,
+        posture: &Posture,
+        jacobian: &Jacobian,
+    ) -> f64 {
         const FARTHEST: f64 = 1e3;
+        let in_plane = || checker.in_plane(posture, jacobian);
         match self {
-            Field::InverseCondition => values.inverse_condition,
-            Field::StiffnessXy => values.rigidity.k_xy,
-            Field::StiffnessZ => values.rigidity.k_z,
-            Field::StiffnessPhiZ => values.rigidity.k_phi_z,
-            Field::Determinant => values.determinant,
+            Field::InverseCondition => jacobian.inverse_condition(checker.length),
+            Field::Determinant => jacobian.determinant() / checker.length,
+            Field::StiffnessXy => checker.in_plane_rigidity(&in_plane()).0,
+            Field::StiffnessPhiZ => checker.in_plane_rigidity(&in_plane()).1,
+            Field::StiffnessZ => checker.vertical_rigidity(posture, jacobian),
             Field::Displacement => {
-                let softest = free_stiffness(stiffness).map_or(0.0, |k| smaller_eigenvalue(k[0], k[1], k[2]));
+                let softest = free_stiffness(&in_plane()).map_or(0.0, |k| smaller_eigenvalue(k[0], k[1], k[2]));
                 if softest > model.in_plane_force / FARTHEST {
                     model.in_plane_force / softest
                 } else {
                     FARTHEST
                 }
             }
-            Field::WorstMargin => [
-                Constraint::Reach,
-                Constraint::Dexterity,
-                Constraint::StiffnessXy,
-                Constraint::StiffnessZ,
-                Constraint::StiffnessPhiZ,
-            ]
-            .into_iter()
-            .map(|constraint| {
-                let threshold = constraint.threshold(design, &model.thresholds);
-                constraint.margin(constraint.value(design, values, 1.0), threshold, design)
-            })
-            .fold(f64::INFINITY, f64::min),
+            Field::WorstMargin => {
+                let values = checker.values_at(posture, jacobian);
+                let margin = |constraint: Constraint| {
+                    let threshold = constraint.threshold(design, &model.thresholds);
+                    constraint.margin(constraint.value(design, &values, 1.0), threshold, design)
+                };
+                [
+                    Constraint::Reach,
+                    Constraint::Dexterity,
+                    Constraint::StiffnessXy,
+                    Constraint::StiffnessZ,
+                    Constraint::StiffnessPhiZ,
+                ]
+                .into_iter()
+                .map(margin)
+                .fold(f64::INFINITY, f64::min)
+            }
         }
     }
 }
 
 /// Translational stiffness in the plane with the rotation free, `[xx, xy, yy]` \[N/m\]: the inverse of the xy block of
 /// `K⁻¹`. `None` where nothing resists the rotation.
-pub(super) fn free_stiffness(stiffness: &PlanarStiffness) -> Option<[f64; 3]> {
-    let [xx, xy, xm, yy, ym, mm] = stiffness.in_plane;
+pub(super) fn free_stiffness(&[xx, xy, xm, yy, ym, mm]: &[f64; 6]) -> Option<[f64; 3]> {
     (mm > 0.0).then(|| [xx - xm * xm / mm, xy - xm * ym / mm, yy - ym * ym / mm])
 }

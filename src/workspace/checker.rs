@@ -58,21 +58,11 @@ impl<L: Leg> PoseChecker<L> {
         if determinant == 0.0 || jacobian.inverse_condition(self.length) < self.thresholds.inverse_condition {
             return None;
         }
-        let model = self.stiffness.as_ref()?;
-        let in_plane = model.in_plane(&self.manipulator, &posture, &jacobian);
-        let (k_xy, k_phi_z) = StiffnessModel::in_plane_rigidity(&in_plane, self.definition);
+        let (k_xy, k_phi_z) = self.in_plane_rigidity(&self.in_plane(&posture, &jacobian));
         if !(k_xy >= self.thresholds.k_xy && k_phi_z >= self.thresholds.k_phi_z) {
             return None;
         }
-        let k_z = match self.definition {
-            StiffnessDefinition::Stiffness => model.vertical(&self.manipulator, &posture),
-            StiffnessDefinition::Compliance => {
-                model
-                    .stiffness(&self.manipulator, &posture, &jacobian)
-                    .rigidity(self.definition)
-                    .k_z
-            }
-        };
+        let k_z = self.vertical_rigidity(&posture, &jacobian);
         (k_z >= self.thresholds.k_z).then(|| determinant.signum())
     }
 
@@ -88,13 +78,50 @@ impl<L: Leg> PoseChecker<L> {
     /// The leg that cannot reach it, and by how much.
     pub fn values(&self, position: DVec2, arms: &[DVec2; LEGS]) -> Result<PoseValues, (usize, Shortfall)> {
         let posture = self.manipulator.posture_at(position, arms)?;
-        let jacobian = Jacobian::new(&posture);
-        Ok(PoseValues {
+        Ok(self.values_at(&posture, &Jacobian::new(&posture)))
+    }
+
+    /// All values at a posture.
+    pub fn values_at(&self, posture: &Posture, jacobian: &Jacobian) -> PoseValues {
+        let (k_xy, k_phi_z) = self.in_plane_rigidity(&self.in_plane(posture, jacobian));
+        PoseValues {
             slack: posture.slack,
             determinant: jacobian.determinant() / self.length,
             inverse_condition: jacobian.inverse_condition(self.length),
-            rigidity: self.stiffness_at(&posture, &jacobian).rigidity(self.definition),
-        })
+            rigidity: Rigidity {
+                k_xy,
+                k_z: self.vertical_rigidity(posture, jacobian),
+                k_phi_z,
+            },
+        }
+    }
+
+    /// In-plane block of `K`, as [`PlanarStiffness::in_plane`]; zero for an infinitely compliant design.
+    #[inline]
+    pub fn in_plane(&self, posture: &Posture, jacobian: &Jacobian) -> [f64; 6] {
+        match &self.stiffness {
+            Some(model) => model.in_plane(&self.manipulator, posture, jacobian),
+            None => [0.0; 6],
+        }
+    }
+
+    /// `k_xy` and `k_φz` of an in-plane block.
+    #[inline]
+    pub fn in_plane_rigidity(&self, in_plane: &[f64; 6]) -> (f64, f64) {
+        StiffnessModel::in_plane_rigidity(in_plane, self.definition)
+    }
+
+    /// `k_z`, with no more of the out-of-plane block than its definition needs.
+    #[inline]
+    pub fn vertical_rigidity(&self, posture: &Posture, jacobian: &Jacobian) -> f64 {
+        match (&self.stiffness, self.definition) {
+            (None, _) => 0.0,
+            (Some(model), StiffnessDefinition::Stiffness) => model.vertical(&self.manipulator, posture),
+            (Some(model), definition) => {
+                let stiffness = model.stiffness(&self.manipulator, posture, jacobian);
+                stiffness.rigidity(definition).k_z
+            }
+        }
     }
 
     /// Both stiffness blocks at a posture, zero for an infinitely compliant design.

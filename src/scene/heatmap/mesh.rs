@@ -1,0 +1,191 @@
+//! Triangles over what is reachable, clipped where reach ends.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::Sample;
+use crate::mechanism::ReachReason;
+
+/// Halvings along a side that the edge of reach cuts: to 2⁻³² of a cell.
+const HALVINGS: u32 = 32;
+
+/// Nodes of a grid, row by row from the lower left corner.
+pub(super) struct Layout {
+    pub(super) low: DVec2,
+    pub(super) step: f64,
+    pub(super) columns: usize,
+    pub(super) rows: usize,
+}
+
+impl Layout {
+    fn position(&self, node: usize) -> DVec2 {
+        let (column, row) = (node % self.columns, node / self.columns);
+        self.low + DVec2::new(column as f64, row as f64) * self.step
+    }
+
+    /// The nodes that sides go to from `node`: to the right, up, and across the cell.
+    fn neighbours(&self, node: usize) -> [Option<usize>; 3] {
+        let right = node % self.columns + 1 < self.columns;
+        let up = node / self.columns + 1 < self.rows;
+        [
+            right.then_some(node + 1),
+            up.then_some(node + self.columns),
+            (right && up).then_some(node + self.columns + 1),
+        ]
+    }
+
+    /// Number of the side between two nodes of one triangle.
+    fn side(&self, a: usize, b: usize) -> usize {
+        let (first, last) = (a.min(b), a.max(b));
+        let kind = match last - first {
+            1 => 0,
+            difference if difference == self.columns => 1,
+            _ => 2,
+        };
+        3 * first + kind
+    }
+}
+
+/// A point of the mesh.
+#[derive(Clone, Copy)]
+pub(super) struct Vertex {
+    pub(super) position: DVec2,
+    pub(super) sample: Sample,
+}
+
+/// Where the edge of reach cuts a side.
+struct Cut {
+    side: usize,
+    vertex: Vertex,
+    reason: ReachReason,
+}
+
+/// Triangles of reachable vertices.
+pub(super) struct Mesh {
+    pub(super) vertices: Vec<Vertex>,
+    /// Counterclockwise.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// Sides of clipped triangles that lie on the edge of reach, and what ends it there.
+    pub(super) outline: Vec<([u32; 2], ReachReason)>,
+}
+
+impl Mesh {
+    /// The mesh of what `at` reaches. All calls of `at` run in parallel; the result does not depend on how.
+    pub(super) fn new(layout: &Layout, at: &(impl Fn(DVec2) -> Result<Sample, ReachReason> + Sync)) -> Self {
+        let count = layout.columns * layout.rows;
+        let nodes: Vec<Result<Sample, ReachReason>> = (0..count)
+            .into_par_iter()
+            .map(|node| at(layout.position(node)))
+            .collect();
+        let cuts: Vec<Cut> = (0..count)
+            .into_par_iter()
+            .flat_map_iter(|node| {
+                let nodes = &nodes;
+                layout
+                    .neighbours(node)
+                    .into_iter()
+                    .flatten()
+                    .filter_map(move |other| match (nodes[node], nodes[other]) {
+                        (Ok(sample), Err(reason)) => Some((node, other, sample, reason)),
+                        (Err(reason), Ok(sample)) => Some((other, node, sample, reason)),
+                        _ => None,
+                    })
+                    .map(move |(inner, outer, sample, reason)| cut(layout, at, inner, outer, sample, reason))
+            })
+            .collect();
+
+        let mut mesh = Mesh {
+            vertices: Vec::with_capacity(count),
+            triangles: Vec::with_capacity(2 * count),
+            outline: Vec::new(),
+        };
+        let mut node_vertex = vec![u32::MAX; count];
+        for (node, sample) in nodes.iter().enumerate() {
+            if let Ok(sample) = sample {
+                node_vertex[node] = mesh.vertices.len() as u32;
+                mesh.vertices.push(Vertex {
+                    position: layout.position(node),
+                    sample: *sample,
+                });
+            }
+        }
+        let first_cut = mesh.vertices.len();
+        let mut cut_of_side = vec![u32::MAX; 3 * count];
+        for (index, cut) in cuts.iter().enumerate() {
+            cut_of_side[cut.side] = index as u32;
+            mesh.vertices.push(cut.vertex);
+        }
+        for row in 0..layout.rows - 1 {
+            for column in 0..layout.columns - 1 {
+                let corner = row * layout.columns + column;
+                let across = corner + layout.columns + 1;
+                for triangle in [[corner, corner + 1, across], [corner, across, across - 1]] {
+                    let vertices = triangle.map(|node| node_vertex[node]);
+                    match vertices.iter().filter(|&&vertex| vertex != u32::MAX).count() {
+                        0 => {}
+                        3 => mesh.triangles.push(vertices),
+                        _ => {
+                            let cut = |a: usize, b: usize| {
+                                let index = cut_of_side[layout.side(triangle[a], triangle[b])] as usize;
+                                ((first_cut + index) as u32, cuts[index].reason)
+                            };
+                            mesh.clip(vertices, cut);
+                        }
+                    }
+                }
+            }
+        }
+        mesh
+    }
+
+    /// Adds the reachable part of a triangle with one or two reachable corners; `cut` gives the vertex between two.
+    fn clip(&mut self, corners: [u32; 3], cut: impl Fn(usize, usize) -> (u32, ReachReason)) {
+        let mut polygon: Vec<u32> = Vec::with_capacity(4);
+        let mut ends: Vec<(u32, ReachReason)> = Vec::with_capacity(2);
+        for k in 0..3 {
+            let next = (k + 1) % 3;
+            if corners[k] != u32::MAX {
+                polygon.push(corners[k]);
+            }
+            if (corners[k] == u32::MAX) != (corners[next] == u32::MAX) {
+                let (vertex, reason) = cut(k, next);
+                polygon.push(vertex);
+                ends.push((vertex, reason));
+            }
+        }
+        for k in 1..polygon.len() - 1 {
+            self.triangles.push([polygon[0], polygon[k], polygon[k + 1]]);
+        }
+        if let [(first, reason), (second, _)] = ends[..] {
+            self.outline.push(([first, second], reason));
+        }
+    }
+}
+
+/// Last reachable point on the side from a reachable node to one that is not.
+fn cut(
+    layout: &Layout,
+    at: &impl Fn(DVec2) -> Result<Sample, ReachReason>,
+    inner: usize,
+    outer: usize,
+    sample: Sample,
+    reason: ReachReason,
+) -> Cut {
+    let mut vertex = Vertex {
+        position: layout.position(inner),
+        sample,
+    };
+    let (mut outside, mut reason) = (layout.position(outer), reason);
+    for _ in 0..HALVINGS {
+        let position = 0.5 * (vertex.position + outside);
+        match at(position) {
+            Ok(sample) => vertex = Vertex { position, sample },
+            Err(why) => (outside, reason) = (position, why),
+        }
+    }
+    Cut {
+        side: layout.side(inner, outer),
+        vertex,
+        reason,
+    }
+}

@@ -1,0 +1,196 @@
+//! A field over the reachable workspace at one orientation, as triangles with exact edges.
+//!
+//! The plane is laid out in cells of two triangles each. Triangles that the edge of reach cuts are clipped where the
+//! inverse kinematics really ends, found by halving along the triangle's sides, so the edge is a polygon on the true
+//! boundary and not a staircase. Contours are cut through the same triangles, each of their points moved along its side
+//! until the field itself has the value. Both need the field's function between the nodes, which is why no library of
+//! marching squares, which knows the nodes only, does it.
+
+mod contour;
+mod mesh;
+
+use glam::DVec2;
+
+use self::contour::{chains, contour};
+use self::mesh::{Layout, Mesh};
+use super::Field;
+use crate::evaluation::Model;
+use crate::kinematics::Jacobian;
+use crate::mechanism::{Design, Leg, ReachReason, with_leg};
+use crate::spatial::{LEGS, Rotation};
+use crate::workspace::{GridError, PoseChecker};
+
+/// How finely a heatmap is laid out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct HeatmapSettings {
+    /// Cells along the longer side of the reachable box.
+    pub cells: usize,
+}
+
+/// A stretch of the edge of the reachable workspace.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Edge {
+    /// What ends the reach: where a leg is stretched out ([`ReachReason::OutOfReach`]) is a serial singularity.
+    pub reason: ReachReason,
+    /// Its points \[m\].
+    pub points: Vec<DVec2>,
+}
+
+/// A field over the reachable workspace at one orientation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Heatmap {
+    /// What it shows.
+    pub field: Field,
+    /// Orientation \[rad\].
+    pub phi: f64,
+    /// Positions of `P` \[m\].
+    pub vertices: Vec<DVec2>,
+    /// The field's value at each vertex.
+    pub values: Vec<f64>,
+    /// Triangles by their vertices, counterclockwise.
+    pub triangles: Vec<[u32; 3]>,
+    /// Where the field has its threshold.
+    pub threshold: Vec<Vec<DVec2>>,
+    /// Where `det A` vanishes: parallel singularities.
+    pub singular: Vec<Vec<DVec2>>,
+    /// Edge of the reachable workspace.
+    pub edges: Vec<Edge>,
+    /// Cells of the grid.
+    pub cells: usize,
+}
+
+impl Heatmap {
+    /// The heatmap of `field` for `design` at orientation `phi` \[rad\].
+    ///
+    /// # Errors
+    /// [`GridError`] when the isotropic characteristic length is asked for and the reference grid is not whole.
+    pub fn new(
+        model: &Model,
+        design: &Design,
+        field: Field,
+        phi: f64,
+        settings: HeatmapSettings,
+    ) -> Result<Self, GridError> {
+        with_leg!(design.architecture, L => {
+            let checker = model.checker::<L>(design)?;
+            let sampler = Sampler { model, design, checker: &checker, arms: checker.manipulator.arms(&Rotation::new(phi)), field };
+            Ok(sampler.heatmap(phi, settings))
+        })
+    }
+
+    /// Smallest and largest value; `None` where nothing is reachable.
+    pub fn range(&self) -> Option<[f64; 2]> {
+        let first = *self.values.first()?;
+        Some(
+            self.values
+                .iter()
+                .fold([first; 2], |[low, high], &value| [low.min(value), high.max(value)]),
+        )
+    }
+}
+
+/// Value of the field and `det A` at a reachable position.
+#[derive(Clone, Copy)]
+struct Sample {
+    value: f64,
+    determinant: f64,
+}
+
+struct Sampler<'a, L> {
+    model: &'a Model,
+    design: &'a Design,
+    checker: &'a PoseChecker<L>,
+    arms: [DVec2; LEGS],
+    field: Field,
+}
+
+impl<L: Leg> Sampler<'_, L> {
+    fn at(&self, position: DVec2) -> Result<Sample, ReachReason> {
+        let posture = self
+            .checker
+            .manipulator
+            .posture_at(position, &self.arms)
+            .map_err(|(_, shortfall)| shortfall.reason)?;
+        let jacobian = Jacobian::new(&posture);
+        Ok(Sample {
+            value: self
+                .field
+                .value(self.model, self.design, self.checker, &posture, &jacobian),
+            determinant: jacobian.determinant(),
+        })
+    }
+
+    /// Box that holds every reachable position.
+    fn reach(&self) -> Option<[DVec2; 2]> {
+        let boxes = self.checker.manipulator.legs.iter().zip(&self.arms).map(|(leg, arm)| {
+            let [low, high] = leg.reach_box();
+            [low - *arm, high - *arm]
+        });
+        let [low, high] = boxes.reduce(|[a, b], [c, d]| [a.max(c), b.min(d)])?;
+        (low.x < high.x && low.y < high.y).then_some([low, high])
+    }
+
+    fn heatmap(&self, phi: f64, settings: HeatmapSettings) -> Heatmap {
+        let mut heatmap = Heatmap {
+            field: self.field,
+            phi,
+            vertices: Vec::new(),
+            values: Vec::new(),
+            triangles: Vec::new(),
+            threshold: Vec::new(),
+            singular: Vec::new(),
+            edges: Vec::new(),
+            cells: 0,
+        };
+        let Some([low, high]) = self.reach() else {
+            return heatmap;
+        };
+        let size = high - low;
+        let step = size.max_element() / settings.cells.max(2) as f64;
+        let layout = Layout {
+            low,
+            step,
+            columns: (size.x / step).ceil() as usize + 1,
+            rows: (size.y / step).ceil() as usize + 1,
+        };
+        let mesh = Mesh::new(&layout, &|position| self.at(position));
+        let threshold = self.field.threshold(self.model);
+        let at = |position| self.at(position).ok();
+        heatmap.cells = (layout.columns - 1) * (layout.rows - 1);
+        heatmap.threshold = contour(&mesh, threshold, &at, |sample| sample.value);
+        heatmap.singular = contour(&mesh, 0.0, &at, |sample| sample.determinant);
+        heatmap.edges = edges(&mesh);
+        heatmap.vertices = mesh.vertices.iter().map(|vertex| vertex.position).collect();
+        heatmap.values = mesh.vertices.iter().map(|vertex| vertex.sample.value).collect();
+        heatmap.triangles = mesh.triangles;
+        heatmap
+    }
+}
+
+/// Edge of reach as polylines of one reason each.
+fn edges(mesh: &Mesh) -> Vec<Edge> {
+    let mut edges = Vec::new();
+    for reason in [
+        ReachReason::OutOfReach,
+        ReachReason::BelowLimit,
+        ReachReason::AboveLimit,
+        ReachReason::Degenerate,
+    ] {
+        let segments: Vec<[u32; 2]> = mesh
+            .outline
+            .iter()
+            .filter(|(_, why)| *why == reason)
+            .map(|(segment, _)| *segment)
+            .collect();
+        edges.extend(chains(&segments).into_iter().map(|chain| {
+            Edge {
+                reason,
+                points: chain
+                    .into_iter()
+                    .map(|vertex| mesh.vertices[vertex as usize].position)
+                    .collect(),
+            }
+        }));
+    }
+    edges
+}
