@@ -85,7 +85,9 @@ fn subject(arguments: &Arguments) -> Result<(Study, Design, String)> {
 
 fn study_name(table: &Path) -> String {
     let folder = table.parent().filter(|folder| !folder.as_os_str().is_empty());
-    folder.unwrap_or(table).display().to_string()
+    // Its name alone: where it lies is nothing to record.
+    let name = folder.and_then(Path::file_name).unwrap_or(table.as_os_str());
+    name.to_string_lossy().into_owned()
 }
 
 /// The design of the row with the given id, as text.

@@ -12,7 +12,6 @@ use rerun::log::{Chunk, ChunkError, LogMsg, RowId};
 use rerun::{AsComponents, EntityPath, RecordingStream, StoreId, StoreKind, TimePoint, Timeline};
 
 use super::{APPLICATION_ID, paths, timelines};
-use crate::mechanism::Design;
 use crate::scene::Field;
 
 /// Sends the layout of a run's recording; `clouds` are the entities whose rows add up to the cloud of designs.
@@ -60,11 +59,10 @@ pub(super) fn send_run_layout(
     Ok(())
 }
 
-/// Sends the layout of a recording of one design.
+/// Sends the layout of a recording of one design that reaches `extent` \[m\] from O.
 /// `first` is the field whose map is in front.
-pub(super) fn send_design_layout(recording: &RecordingStream, design: &Design, first: Field) -> Result<(), ChunkError> {
+pub(super) fn send_design_layout(recording: &RecordingStream, extent: f64, first: Field) -> Result<(), ChunkError> {
     let mut layout = Layout::new();
-    let base_radius = design.base_radius;
     let mut maps = Vec::new();
     let others = Field::ALL.into_iter().filter(|&field| field != first);
     for field in std::iter::once(first).chain(others) {
@@ -84,10 +82,10 @@ pub(super) fn send_design_layout(recording: &RecordingStream, design: &Design, f
         }
         let contents: Vec<&str> = contents.iter().map(String::as_str).collect();
         let title = field.title().split(" [").next().unwrap_or(key);
-        maps.push(layout.space(title, paths::DESIGN, &contents, base_radius)?);
+        maps.push(layout.space(title, paths::DESIGN, &contents, extent)?);
     }
     let maps = layout.container(ContainerKind::Tabs, &maps, &[])?;
-    let configuration = layout.configuration(base_radius)?;
+    let configuration = layout.configuration(extent)?;
     let card = layout.text("Design", paths::CARD)?;
     let right = layout.container(ContainerKind::Vertical, &[configuration, card], &[0.8, 1.0])?;
     let root = layout.container(ContainerKind::Horizontal, &[maps, right], &[1.7, 1.0])?;

@@ -51,8 +51,12 @@ pub fn record_design(
 ) -> Result<(), RecordingError> {
     let model = &study.model();
     let writer = Writer::create(path, heading)?;
-    blueprint::send_design_layout(writer.stream(), &evaluation.design, field)?;
     let subject = Subject { model, evaluation };
+    let cylinder = regular_workspace(evaluation, model.workspace.rotation_range_deg);
+    let tour = cylinder.and_then(|cylinder| tour(model, &evaluation.design, &cylinder, TOUR_STEPS));
+    let still = [subject.home()];
+    let poses: &[Pose] = tour.as_ref().map_or(&still, |tour| &tour.poses);
+    blueprint::send_design_layout(writer.stream(), subject.extent(poses), field)?;
     let canvas = Canvas {
         writer: &writer,
         moment: ALWAYS,
@@ -79,10 +83,6 @@ pub fn record_design(
     subject.configuration(&canvas)?;
     subject.layers(&canvas, LAYER, true)?;
 
-    let cylinder = regular_workspace(evaluation, model.workspace.rotation_range_deg);
-    let tour = cylinder.and_then(|cylinder| tour(model, &evaluation.design, &cylinder, TOUR_STEPS));
-    let still = [home];
-    let poses: &[Pose] = tour.as_ref().map_or(&still, |tour| &tour.poses);
     let space = subject.space();
     for (index, pose) in poses.iter().enumerate() {
         let moment = [(timelines::TOUR, index)];
@@ -179,6 +179,21 @@ impl Subject<'_> {
                 .fold(0.0, f64::min)
         });
         1.15 * lowest - 0.01 * self.design().base_radius
+    }
+
+    /// What the view must hold: the base, and most of what the legs sweep \[m\].
+    fn extent(&self, poses: &[Pose]) -> f64 {
+        const MOST: f64 = 0.8;
+        let swept = poses
+            .iter()
+            .filter_map(|pose| manipulator(self.model, self.design(), pose).ok())
+            .flat_map(|scene| scene.solids)
+            .map(|solid| match solid.shape {
+                SolidShape::Bar { from, to, .. } => from.truncate().length().max(to.truncate().length()),
+                SolidShape::Block { centre, .. } => centre.truncate().length(),
+            })
+            .fold(0.0, f64::max);
+        self.design().base_radius.max(MOST * swept)
     }
 
     /// Where notes stand: before the base.

@@ -300,7 +300,7 @@ impl Canvas<'_> {
         let foot = DVec2::new(-extent, extent);
         let at = |turn: f64| space.place(foot, space.origin + turn);
         let ground = |p: DVec2| space.place(p, space.origin - span);
-        let (far_x, near_y) = (DVec2::new(extent, extent), DVec2::new(-extent, -extent));
+        let (far_x, near_y) = (DVec2::new(extent, extent), DVec2::new(-extent, -0.3 * extent));
         let mut strips = vec![
             vec![point(at(-span)), point(at(span))],
             vec![point(ground(foot)), point(ground(far_x))],
@@ -308,7 +308,7 @@ impl Canvas<'_> {
         ];
         let mut labels = vec![
             (ground(far_x * DVec2::new(1.1, 1.0)), "x".to_owned()),
-            (ground(near_y * DVec2::new(1.0, 1.1)), "y".to_owned()),
+            (ground(near_y - DVec2::Y * (0.1 * extent)), "y".to_owned()),
         ];
         for k in -2..=2 {
             let turn = 0.5 * span * f64::from(k);

@@ -17,6 +17,21 @@ use glam::DVec2;
 /// Rows of `/designs` written at a time: enough that the file's index stays small.
 const ROWS: usize = 300;
 
+/// What is drawn along the front: a name with its unit, and the value.
+const ALONG_FRONT: [(&str, fn(&Evaluation) -> f64); 6] = [
+    ("R [m]", |e| e.design.base_radius),
+    ("r [m]", |e| e.design.platform_radius),
+    ("L_b [m]", |e| e.design.link_length),
+    ("r_j [cm]", |e| 100.0 * e.design.leg_bar_radius),
+    ("r_p [cm]", |e| 100.0 * e.design.platform_bar_radius),
+    ("R_w [m]", |e| e.workspace_radius),
+];
+
+/// Entity of a value along the front.
+fn along_front(name: &str) -> String {
+    format!("{}/{}", paths::ALONG_FRONT, name.split(' ').next().unwrap_or(name))
+}
+
 /// The recording of one run.
 pub struct Recorder {
     writer: Writer,
@@ -177,25 +192,12 @@ impl Recorder {
     fn finished(&mut self, summary: &RunSummary) -> Result<(), RecordingError> {
         self.write_pending()?;
         self.writer.text(paths::SUMMARY, ALWAYS, &summary_text(summary))?;
-        for (step, member) in summary.front.iter().enumerate() {
+        for (name, _) in ALONG_FRONT {
+            let lines = SeriesLines::new().with_names([name]);
+            self.writer.row(&along_front(name), ALWAYS, &lines)?;
+        }
+        for step in 0..summary.front.len() {
             self.step(&[(timelines::FRONT, step)], step, summary)?;
-            let [base, platform, link, leg_bar, platform_bar] = member.evaluation.design.values();
-            for (name, value) in [
-                ("R [m]", base),
-                ("r [m]", platform),
-                ("L_b [m]", link),
-                ("r_j [cm]", 100.0 * leg_bar),
-                ("r_p [cm]", 100.0 * platform_bar),
-                ("R_w [m]", member.evaluation.workspace_radius),
-            ] {
-                let entity = format!("{}/{}", paths::ALONG_FRONT, name.split(' ').next().unwrap_or(name));
-                if step == 0 {
-                    self.writer
-                        .row(&entity, ALWAYS, &SeriesLines::new().with_names([name]))?;
-                }
-                self.writer
-                    .row(&entity, &[(timelines::FRONT, step)], &Scalars::single(value))?;
-            }
             self.writer.check()?;
         }
         // The run's own timelines end with the knee of the front, and the front begins with the scatter.
@@ -221,6 +223,10 @@ impl Recorder {
             summary.front.len()
         );
         design::record_step(&self.writer, moment, &self.model, &member.evaluation, &heading)?;
+        for (name, value) in ALONG_FRONT {
+            let value = Scalars::single(value(&member.evaluation));
+            self.writer.row(&along_front(name), moment, &value)?;
+        }
         self.writer.row(paths::SELECTED, moment, &selected(&member.evaluation))
     }
 

@@ -1,11 +1,9 @@
 //! A tour of the regular workspace: its rim at both ends of `Δφ`, then through the middle.
 
-use glam::DVec2;
-
 use super::RegularCylinder;
 use crate::evaluation::Model;
 use crate::kinematics::forward;
-use crate::mechanism::{Design, Leg, Manipulator, with_leg};
+use crate::mechanism::{Actuator, Design, Leg, Manipulator, with_leg};
 use crate::spatial::{Pose, unit};
 
 /// Poses along the regular workspace.
@@ -15,7 +13,7 @@ pub struct Tour {
     pub poses: Vec<Pose>,
     /// Radius of the rim that is toured \[m\]: `R_w`, less what a grid of directions may have overlooked.
     pub radius: f64,
-    /// Largest distance between a pose and what forward kinematics, started at the pose before, makes of its actuator
+    /// Largest distance between a pose and what forward kinematics, followed from the pose before, makes of its actuator
     /// values \[m, or m at the platform joints for an angle\].
     pub forward_error: f64,
 }
@@ -67,21 +65,39 @@ fn path(cylinder: &RegularCylinder, steps: usize) -> Vec<Pose> {
     poses
 }
 
-/// Largest difference between the poses and their forward kinematics.
+/// Steps in which the actuators go from one pose of a tour to the next: near a singularity another assembly mode is not
+/// far, and a longer step might end in it.
+const SUBSTEPS: u32 = 16;
+
+/// Largest difference between the poses and their forward kinematics, followed from each pose to the next.
 fn check<L: Leg>(manipulator: &Manipulator<L>, design: &Design, poses: &[Pose]) -> Option<f64> {
-    let mut start = *poses.first()?;
+    let actuators = |pose: &Pose| {
+        let posture = manipulator.posture(pose).ok()?;
+        Some([0, 1, 2].map(|i| manipulator.legs[i].actuator(&posture.legs[i])))
+    };
+    let mut found = *poses.first()?;
+    let mut before = actuators(&found)?;
     let mut largest = 0.0f64;
     for pose in poses {
-        let posture = manipulator.posture(pose).ok()?;
-        let actuators = [0, 1, 2].map(|i| manipulator.legs[i].actuator(&posture.legs[i]));
-        // Near the edge of reach an iterate may step outside; then the pose itself is the start.
-        let found = forward(manipulator, actuators, start, 1e-13)
-            .or_else(|_| forward(manipulator, actuators, *pose, 1e-13))
-            .ok()?;
-        let offset: DVec2 = found.position - pose.position;
+        let target = actuators(pose)?;
+        for step in 1..=SUBSTEPS {
+            let share = f64::from(step) / f64::from(SUBSTEPS);
+            let part = [0, 1, 2].map(|i| {
+                let way = match L::ACTUATOR {
+                    Actuator::Prismatic => target[i] - before[i],
+                    // The short way round.
+                    Actuator::Revolute => libm::remainder(target[i] - before[i], 2.0 * std::f64::consts::PI),
+                };
+                before[i] + share * way
+            });
+            // At the edge of reach an iterate may step outside; then the pose itself is the start.
+            found = forward(manipulator, part, found, 1e-13)
+                .or_else(|_| forward(manipulator, target, *pose, 1e-13))
+                .ok()?;
+        }
         let turned = (found.phi - pose.phi).abs() * design.platform_radius;
-        largest = largest.max(offset.length()).max(turned);
-        start = *pose;
+        largest = largest.max(found.position.distance(pose.position)).max(turned);
+        before = target;
     }
     Some(largest)
 }

@@ -12,13 +12,16 @@ use kinefront::stiffness::StiffnessDefinition;
 use nalgebra::{Matrix3, Vector3};
 
 /// The paper's designs, and a feasible one of each other architecture and mode.
-const DESIGNS: [&str; 6] = [
+const DESIGNS: [&str; 8] = [
     "3-PRR R=1.412 r=0.319 Lb=0.620 rj=0.026 rp=0.023",
     "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
     "3-PRR R=3.872 r=1.947 Lb=1.977 rj=0.039 rp=0.096",
     "3-RPR R=2.2462 r=1.2453 Lb=3.5382 rj=0.0224 rp=0.083",
     "3-RRR R=3.3658 r=0.2537 Lb=1.9157 rj=0.0787 rp=0.0891",
     "3-RRR R=1.2777 r=1.5205 Lb=3.8009 rj=0.0528 rp=0.0821 mode=---",
+    // Of Pareto fronts: so small a platform that another assembly mode is near.
+    "3-RPR R=1.3439 r=0.1172 Lb=1.9493 rj=0.01577 rp=0.01891",
+    "3-RRR R=0.6373 r=0.1184 Lb=0.6471 rj=0.03206 rp=0.02846",
 ];
 
 fn each(check: impl Fn(&Model, &Evaluation)) {
