@@ -196,9 +196,10 @@ impl Subject<'_> {
         self.design().base_radius.max(MOST * swept)
     }
 
-    /// Where notes stand: before the base.
+    /// Where notes stand: before the base and the workspace.
     fn note(&self) -> DVec3 {
-        DVec3::new(0.0, -0.95 * self.design().base_radius, 0.0)
+        let front = (0.95 * self.design().base_radius).max(1.3 * self.evaluation.workspace_radius);
+        DVec3::new(0.0, -front, 0.0)
     }
 
     fn space(&self) -> ConfigurationSpace {
@@ -249,7 +250,7 @@ impl Subject<'_> {
         let label = format!("R_w = {:.4} m", cylinder.radius);
         // A hair above the heatmap, so that the line is seen.
         canvas.cylinder(paths::WORKSPACE, &cylinder, [0.97 * floor, DISC * floor], &label)?;
-        let away = self.design().base_radius;
+        let away = self.design().base_radius.max(1.3 * cylinder.radius);
         canvas.limits(paths::LIMITS, self.evaluation, DISC * floor, away)
     }
 
