@@ -17,8 +17,11 @@ use glam::DVec2;
 /// Rows of `/designs` written at a time: enough that the file's index stays small.
 const ROWS: usize = 300;
 
+/// A number of a design.
+type Value = fn(&Evaluation) -> f64;
+
 /// What is drawn along the front: a name with its unit, and the value.
-const ALONG_FRONT: [(&str, fn(&Evaluation) -> f64); 6] = [
+const ALONG_FRONT: [(&str, Value); 6] = [
     ("R [m]", |e| e.design.base_radius),
     ("r [m]", |e| e.design.platform_radius),
     ("L_b [m]", |e| e.design.link_length),
