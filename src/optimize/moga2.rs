@@ -36,7 +36,8 @@ const REAL_BITS: u32 = 16;
 pub const WALK: usize = 3;
 
 /// Parameters of [`Moga2`]; the default is the paper's.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Moga2Settings {
     /// Population size, the points of the first sample; at least 2.
     pub population: usize,

@@ -10,7 +10,8 @@ use super::random::Random;
 use super::{Algorithm, Evaluated, Outcome, Variable, doe};
 
 /// Parameters of [`Nsga2`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Nsga2Settings {
     /// Population size, at least 2.
     pub population: usize,
@@ -19,6 +20,7 @@ pub struct Nsga2Settings {
     /// Distribution index of the crossover: the larger, the nearer to the parents.
     pub crossover_index: f64,
     /// Mutation probability of a variable; `None` for one over the number of variables.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub mutation: Option<f64>,
     /// Distribution index of the mutation.
     pub mutation_index: f64,

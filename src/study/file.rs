@@ -377,9 +377,9 @@ pub struct OptimizerSection {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub threads: Option<usize>,
     /// `[optimizer.moga2]`.
-    pub moga2: Moga2Section,
+    pub moga2: Moga2Settings,
     /// `[optimizer.nsga2]`.
-    pub nsga2: Nsga2Section,
+    pub nsga2: Nsga2Settings,
 }
 
 impl Default for OptimizerSection {
@@ -389,95 +389,8 @@ impl Default for OptimizerSection {
             evaluations: 6000,
             seed: 1,
             threads: None,
-            moga2: Moga2Section::default(),
-            nsga2: Nsga2Section::default(),
-        }
-    }
-}
-
-/// Parameters of the algorithm after MOGA-II.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Moga2Section {
-    /// Population and first sample.
-    pub population: usize,
-    /// Probability of directional crossover.
-    pub directional_crossover: f64,
-    /// Probability of selection.
-    pub selection: f64,
-    /// Probability of mutation.
-    pub mutation: f64,
-    /// Share of the bits that a mutation flips.
-    pub mutation_ratio: f64,
-    /// Added to both objectives per unit of violation.
-    pub penalty: f64,
-}
-
-impl Default for Moga2Section {
-    fn default() -> Self {
-        let settings = Moga2Settings::default();
-        Self {
-            population: settings.population,
-            directional_crossover: settings.directional_crossover,
-            selection: settings.selection,
-            mutation: settings.mutation,
-            mutation_ratio: settings.mutation_ratio,
-            penalty: settings.penalty,
-        }
-    }
-}
-
-impl From<&Moga2Section> for Moga2Settings {
-    fn from(section: &Moga2Section) -> Self {
-        Self {
-            population: section.population,
-            directional_crossover: section.directional_crossover,
-            selection: section.selection,
-            mutation: section.mutation,
-            mutation_ratio: section.mutation_ratio,
-            penalty: section.penalty,
-        }
-    }
-}
-
-/// Parameters of NSGA-II.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Nsga2Section {
-    /// Population size.
-    pub population: usize,
-    /// Crossover probability.
-    pub crossover: f64,
-    /// Distribution index of the crossover.
-    pub crossover_index: f64,
-    /// Mutation probability per variable; one over their number where it is left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mutation: Option<f64>,
-    /// Distribution index of the mutation.
-    pub mutation_index: f64,
-}
-
-impl Default for Nsga2Section {
-    fn default() -> Self {
-        let settings = Nsga2Settings::default();
-        Self {
-            population: settings.population,
-            crossover: settings.crossover,
-            crossover_index: settings.crossover_index,
-            mutation: settings.mutation,
-            mutation_index: settings.mutation_index,
-        }
-    }
-}
-
-impl From<&Nsga2Section> for Nsga2Settings {
-    fn from(section: &Nsga2Section) -> Self {
-        Self {
-            population: section.population,
-            crossover: section.crossover,
-            crossover_index: section.crossover_index,
-            mutation: section.mutation,
-            mutation_index: section.mutation_index,
+            moga2: Moga2Settings::default(),
+            nsga2: Nsga2Settings::default(),
         }
     }
 }

@@ -11,8 +11,7 @@ pub use builtin::{BUILTIN, Builtin};
 pub use error::{Fault, StudyError};
 pub use file::{
     ActuatorSection, AlgorithmName, Bounds, GridSection, Grids, HypervolumeSection, LengthChoice, MaterialSection,
-    ModelSection, Moga2Section, Nsga2Section, OptimizerSection, RequirementSection, StiffnessChoice, Study,
-    TelescopicBar, WorkspaceSection,
+    ModelSection, OptimizerSection, RequirementSection, StiffnessChoice, Study, TelescopicBar, WorkspaceSection,
 };
 pub use folder::{FolderError, RunFolder, RunReport, TABLE_HEADER};
 pub use problem::{CandidateError, DesignProblem};

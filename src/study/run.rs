@@ -368,8 +368,8 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
 fn algorithm(study: &Study, problem: &DesignProblem) -> Box<dyn Algorithm> {
     let (variables, seed) = (problem.variables(), study.optimizer.seed);
     match study.optimizer.algorithm {
-        AlgorithmName::Moga2 => Box::new(Moga2::new(variables, (&study.optimizer.moga2).into(), seed)),
-        AlgorithmName::Nsga2 => Box::new(Nsga2::new(variables, (&study.optimizer.nsga2).into(), seed)),
+        AlgorithmName::Moga2 => Box::new(Moga2::new(variables, study.optimizer.moga2, seed)),
+        AlgorithmName::Nsga2 => Box::new(Nsga2::new(variables, study.optimizer.nsga2, seed)),
     }
 }
 
