@@ -160,9 +160,7 @@ pub fn front(summary: &RunSummary) -> String {
     );
     let count = summary.front.len();
     let rows = count.min(MOST_ROWS);
-    for k in 0..rows {
-        let FrontMember { id, evaluation, .. } =
-            &summary.front[if rows > 1 { k * (count - 1) / (rows - 1) } else { 0 }];
+    for FrontMember { id, evaluation, .. } in summary.spread(MOST_ROWS) {
         let mut row = vec![
             id.to_string(),
             evaluation.design.architecture.to_string(),

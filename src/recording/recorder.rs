@@ -162,11 +162,7 @@ impl Recorder {
     fn generation(&mut self, summary: &GenerationSummary) -> Result<(), RecordingError> {
         let moment = moment(summary.evaluations, summary.generation);
         if self.frame_changed {
-            self.writer.row(paths::PLOT, &moment, &self.frame.transform())?;
-            self.writer.row(paths::AXES, &moment, &self.frame.lines())?;
-            self.writer.row(paths::TICKS, &moment, &self.frame.labels())?;
-            self.writer
-                .row(paths::LEGEND, &moment, &self.frame.legend(&self.architectures))?;
+            self.axes(&moment)?;
             self.frame_changed = false;
         }
         if self.front_changed {
@@ -233,14 +229,19 @@ impl Recorder {
         self.writer.row(paths::SELECTED, moment, &selected(&member.evaluation))
     }
 
-    /// Axes, legend and front at the first step of the timeline `front`, where the scatter would else be empty.
-    fn scatter_on_front(&self) -> Result<(), RecordingError> {
-        let moment: Moment<'_> = &[(timelines::FRONT, 0)];
+    /// Axes, ticks and legend of the scatter.
+    fn axes(&self, moment: Moment<'_>) -> Result<(), RecordingError> {
         self.writer.row(paths::PLOT, moment, &self.frame.transform())?;
         self.writer.row(paths::AXES, moment, &self.frame.lines())?;
         self.writer.row(paths::TICKS, moment, &self.frame.labels())?;
         self.writer
-            .row(paths::LEGEND, moment, &self.frame.legend(&self.architectures))?;
+            .row(paths::LEGEND, moment, &self.frame.legend(&self.architectures))
+    }
+
+    /// Axes, legend and front at the first step of the timeline `front`, where the scatter would else be empty.
+    fn scatter_on_front(&self) -> Result<(), RecordingError> {
+        let moment: Moment<'_> = &[(timelines::FRONT, 0)];
+        self.axes(moment)?;
         self.writer
             .row(paths::FRONT_DESIGNS, moment, &front_points(&self.front))?;
         self.writer
@@ -313,10 +314,7 @@ fn summary_text(summary: &RunSummary) -> String {
         summary.dropped,
         summary.verified_hypervolume,
     );
-    let count = summary.front.len();
-    let rows = count.min(MOST_ROWS);
-    for k in 0..rows {
-        let member = &summary.front[if rows > 1 { k * (count - 1) / (rows - 1) } else { 0 }];
+    for member in summary.spread(MOST_ROWS) {
         let e = &member.evaluation;
         let [base, platform, link, leg_bar, platform_bar] = e.design.values();
         let active: Vec<&str> = e.active().map(|constraint| constraint.id()).collect();

@@ -146,6 +146,15 @@ pub struct RunSummary {
     pub times: RunTimes,
 }
 
+impl RunSummary {
+    /// At most `most` designs of the front, evenly spread over it with both its ends: what fits a table.
+    pub fn spread(&self, most: usize) -> impl Iterator<Item = &FrontMember> {
+        let count = self.front.len();
+        let rows = count.min(most);
+        (0..rows).map(move |k| &self.front[if rows > 1 { k * (count - 1) / (rows - 1) } else { 0 }])
+    }
+}
+
 /// Pauses, steps and stops a run from any thread.
 #[derive(Debug, Default)]
 pub struct RunControl {
