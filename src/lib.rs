@@ -27,8 +27,11 @@
 //! | [`scene`] | a design at a pose → named shapes and fields, free of any renderer |
 //! | [`study`] | study file, run, run folder |
 //! | [`recording`] | events → Rerun |
+//! | `explorer` | the window (feature `explorer`) |
 
 pub mod evaluation;
+#[cfg(feature = "explorer")]
+pub mod explorer;
 pub mod kinematics;
 pub mod mechanism;
 pub mod optimize;

@@ -112,3 +112,35 @@ mod tests {
         assert_eq!(smaller_eigenvalue(0.0, 0.0, 0.0), 0.0);
     }
 }
+
+impl std::str::FromStr for Pose {
+    type Err = String;
+
+    /// Reads `x=0.1 y=0.2 phi_deg=30`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        const KEYS: [&str; 3] = ["x", "y", "phi_deg"];
+        let mut values = [None; KEYS.len()];
+        for word in text.split_whitespace() {
+            let (key, value) = word
+                .split_once('=')
+                .ok_or_else(|| format!("`{word}` is not of the form key=value"))?;
+            let index = KEYS
+                .iter()
+                .position(|&known| known == key)
+                .ok_or_else(|| format!("unknown key `{key}`; a pose has x, y (m) and phi_deg"))?;
+            let number: f64 = value
+                .parse()
+                .map_err(|_| format!("`{value}` is not a number (key {key})"))?;
+            if !number.is_finite() {
+                return Err(format!("{key} is {number}; it must be finite"));
+            }
+            if values[index].replace(number).is_some() {
+                return Err(format!("`{key}` is given twice"));
+            }
+        }
+        let value = |index: usize| {
+            values[index].ok_or_else(|| format!("`{}` is missing; a pose has x, y (m) and phi_deg", KEYS[index]))
+        };
+        Ok(Pose::new(value(0)?, value(1)?, value(2)?.to_radians()))
+    }
+}

@@ -1,6 +1,8 @@
 //! Arguments to one of the commands, and errors to exit codes.
 
 mod evaluate;
+#[cfg(feature = "explorer")]
+mod explore;
 mod json;
 mod optimize;
 mod pose;
@@ -19,14 +21,18 @@ use miette::{IntoDiagnostic, Report, Result, miette};
 
 /// Design explorer for planar parallel manipulators.
 #[derive(Debug, Parser)]
-#[command(name = "kinefront", version, arg_required_else_help = true)]
+#[command(name = "kinefront", version, arg_required_else_help = cfg!(not(feature = "explorer")))]
 struct Arguments {
+    /// Without one, the window opens and runs the paper's study.
     #[command(subcommand)]
-    command: Command,
+    command: Option<Command>,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Open the window on a study, a run folder or a recording.
+    #[cfg(feature = "explorer")]
+    Explore(explore::Arguments),
     /// Mass, regular workspace and constraint margins of a design, or of a stream of designs.
     Evaluate(evaluate::Arguments),
     /// Joints, dexterity and stiffness of a design at one pose.
@@ -77,11 +83,18 @@ impl From<std::io::Error> for Failure {
 /// Reads the arguments and does what they say.
 pub fn run() -> ExitCode {
     let outcome = match Arguments::parse().command {
-        Command::Evaluate(arguments) => evaluate::run(&arguments),
-        Command::Pose(arguments) => pose::run(&arguments),
-        Command::Show(arguments) => show::run(&arguments),
-        Command::Optimize(arguments) => optimize::run(&arguments),
-        Command::Study(arguments) => study::run(&arguments),
+        #[cfg(feature = "explorer")]
+        None => explore::run(&explore::Arguments::default()),
+        #[cfg(feature = "explorer")]
+        Some(Command::Explore(arguments)) => explore::run(&arguments),
+        // Asked for in the arguments' attributes: it ends with the help.
+        #[cfg(not(feature = "explorer"))]
+        None => Ok(Ending::Done),
+        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
+        Some(Command::Pose(arguments)) => pose::run(&arguments),
+        Some(Command::Show(arguments)) => show::run(&arguments),
+        Some(Command::Optimize(arguments)) => optimize::run(&arguments),
+        Some(Command::Study(arguments)) => study::run(&arguments),
     };
     match outcome {
         Ok(Ending::Done) | Err(Failure::BrokenPipe) => ExitCode::SUCCESS,

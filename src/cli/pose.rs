@@ -29,7 +29,10 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
     let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
     let design = Design::parse(&arguments.design, study.working_mode)
         .map_err(|error| Failure::Input(Report::from_err(error)))?;
-    let pose = parse_pose(&arguments.pose).map_err(|message| Failure::Input(miette!("{message}")))?;
+    let pose: Pose = arguments
+        .pose
+        .parse()
+        .map_err(|message: String| Failure::Input(miette!("{message}")))?;
     let outcome = study.model().pose(&design, &pose).map_err(Failure::runtime)?;
     let mut out = std::io::stdout().lock();
     if arguments.json {
@@ -42,32 +45,4 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
         writeln!(out, "{}", tables::pose(&design, &pose, &outcome))?;
     }
     Ok(Ending::Done)
-}
-
-/// Reads `x=0.1 y=0.2 phi_deg=30`.
-fn parse_pose(text: &str) -> Result<Pose, String> {
-    const KEYS: [&str; 3] = ["x", "y", "phi_deg"];
-    let mut values = [None; KEYS.len()];
-    for word in text.split_whitespace() {
-        let (key, value) = word
-            .split_once('=')
-            .ok_or_else(|| format!("`{word}` is not of the form key=value"))?;
-        let index = KEYS
-            .iter()
-            .position(|&known| known == key)
-            .ok_or_else(|| format!("unknown key `{key}`; a pose has x, y (m) and phi_deg"))?;
-        let number: f64 = value
-            .parse()
-            .map_err(|_| format!("`{value}` is not a number (key {key})"))?;
-        if !number.is_finite() {
-            return Err(format!("{key} is {number}; it must be finite"));
-        }
-        if values[index].replace(number).is_some() {
-            return Err(format!("`{key}` is given twice"));
-        }
-    }
-    let value = |index: usize| {
-        values[index].ok_or_else(|| format!("`{}` is missing; a pose has x, y (m) and phi_deg", KEYS[index]))
-    };
-    Ok(Pose::new(value(0)?, value(1)?, value(2)?.to_radians()))
 }

@@ -23,6 +23,7 @@
 //! ```
 
 mod archive;
+mod choice;
 mod doe;
 mod dominance;
 mod hypervolume;
@@ -32,6 +33,7 @@ mod problem;
 mod random;
 
 pub use archive::{Archive, Member};
+pub use choice::{groups, knee, ranking};
 pub use doe::sobol;
 pub use dominance::{Relation, compare, crowding_distances, non_dominated_ranks};
 pub use hypervolume::hypervolume;

@@ -5,14 +5,19 @@ use rerun::Color;
 use crate::mechanism::{Architecture, ReachReason};
 use crate::scene::{Part, Scale};
 
-/// One colour per architecture, told apart by people with any colour vision (Okabe and Ito).
-pub(super) fn architecture(architecture: Architecture) -> Color {
+/// One colour per architecture, told apart by people with any colour vision (Okabe and Ito), as red, green and blue.
+pub fn architecture_rgb(architecture: Architecture) -> [u8; 3] {
     const PALETTE: [[u8; 3]; 4] = [[86, 180, 233], [230, 159, 0], [0, 190, 140], [204, 121, 167]];
     let index = Architecture::ALL
         .iter()
         .position(|&other| other == architecture)
         .unwrap_or(0);
-    rgb(PALETTE[index % PALETTE.len()])
+    PALETTE[index % PALETTE.len()]
+}
+
+/// The architecture's colour.
+pub(super) fn architecture(architecture: Architecture) -> Color {
+    rgb(architecture_rgb(architecture))
 }
 
 /// Steel for what moves, orange for what is driven, dark for what stands still.

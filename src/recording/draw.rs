@@ -1,13 +1,16 @@
 //! Scenes to Rerun entities below a root of the caller's choice.
 
+use std::cell::RefCell;
+
 use glam::{DVec2, DVec3};
 use rerun::components::FillMode;
 use rerun::{
-    Angle, Boxes3D, Color, Cylinders3D, Ellipsoids3D, LineStrips3D, Mesh3D, Points3D, Quaternion, Radius,
+    Angle, AsComponents, Boxes3D, Color, Cylinders3D, Ellipsoids3D, LineStrips3D, Mesh3D, Points3D, Quaternion, Radius,
     RotationAxisAngle,
 };
 
 use super::colors::{self, ColorMap, rgb};
+use super::stage::Rows;
 use super::writer::{Moment, RecordingError, Writer};
 use crate::evaluation::{ConstraintReport, Evaluation};
 use crate::scene::{ConfigurationSpace, EllipsoidSet, Field, Heatmap, Part, RegularCylinder, Scene, Solid, SolidShape};
@@ -30,15 +33,39 @@ fn circle(centre: DVec3, radius: f64) -> Vec<[f32; 3]> {
         .collect()
 }
 
-/// Draws scenes at one moment.
+/// Draws scenes.
 ///
 /// A group without members is drawn all the same, empty: a viewer would show the one of the moment before.
-pub(super) struct Canvas<'a> {
-    pub(super) writer: &'a Writer,
-    pub(super) moment: Moment<'a>,
+pub(super) struct Canvas<'a>(Target<'a>);
+
+enum Target<'a> {
+    /// Rows are written at once, at one moment.
+    Written(&'a Writer, Moment<'a>),
+    /// Rows are put together, to be shown at once.
+    Collected(&'a RefCell<Rows>),
 }
 
-impl Canvas<'_> {
+impl<'a> Canvas<'a> {
+    /// Draws at one moment.
+    pub(super) fn at(writer: &'a Writer, moment: Moment<'a>) -> Self {
+        Self(Target::Written(writer, moment))
+    }
+
+    /// Puts what is drawn into `rows`.
+    pub(super) fn collecting(rows: &'a RefCell<Rows>) -> Self {
+        Self(Target::Collected(rows))
+    }
+
+    fn row(&self, entity: &str, archetype: &dyn AsComponents) -> Outcome {
+        match &self.0 {
+            Target::Written(writer, moment) => writer.row(entity, moment, archetype),
+            Target::Collected(rows) => {
+                rows.borrow_mut().push(entity, archetype);
+                Ok(())
+            }
+        }
+    }
+
     /// The manipulator, below `root`.
     pub(super) fn manipulator(&self, root: &str, scene: &Scene) -> Outcome {
         let groups: [(&str, &[Part]); 4] = [
@@ -69,7 +96,7 @@ impl Canvas<'_> {
             let strips = LineStrips3D::new(strips)
                 .with_colors(lines.iter().map(|line| colors::part(line.part)))
                 .with_radii(std::iter::repeat_n(Radius::new_ui_points(width), lines.len()));
-            self.writer.row(&format!("{root}/{name}"), self.moment, &strips)?;
+            self.row(&format!("{root}/{name}"), &strips)?;
         }
         let labels = scene.labels.iter().map(|label| (label.at, label.text.clone()));
         self.labels(&format!("{root}/labels"), labels.collect(), rgb(colors::TEXT))
@@ -90,7 +117,7 @@ impl Canvas<'_> {
             .with_quaternions(bars.iter().map(|(from, to, ..)| along_z(*to - *from)))
             .with_colors(bars.iter().map(|(.., part)| colors::part(*part)))
             .with_fill_mode(FillMode::Solid);
-        self.writer.row(entity, self.moment, &cylinders)
+        self.row(entity, &cylinders)
     }
 
     fn blocks(&self, entity: &str, solids: &[&Solid]) -> Outcome {
@@ -112,7 +139,12 @@ impl Canvas<'_> {
         .with_rotation_axis_angles(blocks.iter().map(|(_, _, angle, _)| about_z(*angle)))
         .with_colors(blocks.iter().map(|(.., part)| colors::part(*part)))
         .with_fill_mode(FillMode::Solid);
-        self.writer.row(entity, self.moment, &boxes)
+        self.row(entity, &boxes)
+    }
+
+    /// A word at a point.
+    pub(super) fn word(&self, entity: &str, at: DVec3, text: &str, color: [u8; 3]) -> Outcome {
+        self.labels(entity, vec![(at, text.to_owned())], rgb(color))
     }
 
     /// Words at points, without a dot of their own.
@@ -123,7 +155,7 @@ impl Canvas<'_> {
             .with_show_labels(true)
             .with_colors(std::iter::repeat_n(color, count))
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.0), count));
-        self.writer.row(entity, self.moment, &points)
+        self.row(entity, &points)
     }
 
     /// The regular workspace as a cylinder between two heights, below `root`.
@@ -138,13 +170,9 @@ impl Canvas<'_> {
         let lines = LineStrips3D::new(strips)
             .with_colors(std::iter::repeat_n(rgb(colors::WORKSPACE), count))
             .with_radii((0..count).map(|k| Radius::new_ui_points(if k < 2 { 1.6 } else { 0.7 })));
-        self.writer.row(&format!("{root}/outline"), self.moment, &lines)?;
+        self.row(&format!("{root}/outline"), &lines)?;
         let at = high + DVec3::new(-cylinder.radius, cylinder.radius, 0.0) * 0.84;
-        self.labels(
-            &format!("{root}/label"),
-            vec![(at, label.to_owned())],
-            rgb(colors::WORKSPACE),
-        )
+        self.word(&format!("{root}/label"), at, label, colors::WORKSPACE)
     }
 
     /// A heatmap at height `z`, with its contours and edges, below `root`.
@@ -161,7 +189,7 @@ impl Canvas<'_> {
         let mesh = Mesh3D::new(heatmap.vertices.iter().map(|&p| point(place(p))))
             .with_triangle_indices(heatmap.triangles.iter().copied())
             .with_vertex_colors(heatmap.values.iter().map(|&value| map.color(value)));
-        self.writer.row(&format!("{root}/field"), self.moment, &mesh)?;
+        self.row(&format!("{root}/field"), &mesh)?;
         self.outlines(root, heatmap, place)
     }
 
@@ -184,7 +212,7 @@ impl Canvas<'_> {
             let strips = LineStrips3D::new(strips)
                 .with_colors(lines.iter().map(|(_, color, _)| *color))
                 .with_radii(lines.iter().map(|(.., width)| Radius::new_ui_points(*width)));
-            self.writer.row(&format!("{root}/{name}"), self.moment, &strips)?;
+            self.row(&format!("{root}/{name}"), &strips)?;
         }
         Ok(())
     }
@@ -210,7 +238,7 @@ impl Canvas<'_> {
         let mesh = Mesh3D::new(vertices)
             .with_triangle_indices(triangles)
             .with_vertex_colors(colors);
-        self.writer.row(&format!("{root}/strip"), self.moment, &mesh)?;
+        self.row(&format!("{root}/strip"), &mesh)?;
         let factor = field.display_factor();
         let mut ticks = Vec::new();
         let mut labels = vec![(at(0.5, 1.09), field.title().to_owned())];
@@ -236,7 +264,7 @@ impl Canvas<'_> {
         let lines = LineStrips3D::new(strips)
             .with_colors(tints)
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(1.2), count));
-        self.writer.row(&format!("{root}/lines"), self.moment, &lines)
+        self.row(&format!("{root}/lines"), &lines)
     }
 
     /// Ellipsoids at height `z`, with their scale in words at `note`.
@@ -250,12 +278,8 @@ impl Canvas<'_> {
         .with_rotation_axis_angles(each().map(|e| about_z(e.angle)))
         .with_colors(std::iter::repeat_n(rgb(colors::ELLIPSOID), count))
         .with_fill_mode(FillMode::Solid);
-        self.writer.row(&format!("{root}/bodies"), self.moment, &ellipsoids)?;
-        self.labels(
-            &format!("{root}/scale"),
-            vec![(note, set.scale_text())],
-            rgb(colors::ELLIPSOID),
-        )
+        self.row(&format!("{root}/bodies"), &ellipsoids)?;
+        self.word(&format!("{root}/scale"), note, &set.scale_text(), colors::ELLIPSOID)
     }
 
     /// Where and by which constraints the workspace is stopped from growing, named in the corners of a square `away` from the centre, below `root`.
@@ -271,7 +295,7 @@ impl Canvas<'_> {
         let points = Points3D::new(active.iter().map(|(_, at)| point(at.extend(z))))
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(6.0), active.len()))
             .with_colors(tints());
-        self.writer.row(&format!("{root}/poses"), self.moment, &points)?;
+        self.row(&format!("{root}/poses"), &points)?;
         // In the corners beside A3, where nothing else stands; several below one another.
         let names: Vec<(DVec3, String)> = active
             .iter()
@@ -290,7 +314,7 @@ impl Canvas<'_> {
         )
         .with_colors(tints())
         .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.9), active.len()));
-        self.writer.row(&format!("{root}/leaders"), self.moment, &leaders)?;
+        self.row(&format!("{root}/leaders"), &leaders)?;
         self.labels(&format!("{root}/names"), names, color)
     }
 
@@ -328,7 +352,7 @@ impl Canvas<'_> {
         let lines = LineStrips3D::new(strips)
             .with_colors(std::iter::repeat_n(rgb(colors::TEXT), count))
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.8), count));
-        self.writer.row(&format!("{root}/lines"), self.moment, &lines)?;
+        self.row(&format!("{root}/lines"), &lines)?;
         self.labels(&format!("{root}/ticks"), labels, rgb(colors::TEXT))
     }
 
@@ -339,7 +363,7 @@ impl Canvas<'_> {
             .with_colors([rgb(color)])
             .with_labels([text])
             .with_show_labels(true);
-        self.writer.row(entity, self.moment, &points)
+        self.row(entity, &points)
     }
 }
 

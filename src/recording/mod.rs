@@ -16,6 +16,7 @@
 //! | `/configuration/…` | the workspace in (x, y, φ): cylinder, heatmaps over φ, the pose | `front`, or static and `tour` |
 //! | `/card` | the design's numbers, markdown | `front`, or static |
 //! | `/along_front/…` | design variables along the front | `front` |
+//! | `/pins/N/…` | designs side by side; in a window only | static |
 //!
 //! `evaluation` is the id of the design; a row that belongs to a generation stands at the generation's last design.
 //! `front` counts the verified designs from the lightest, and the knee of the front stands at the end of the run's own
@@ -27,13 +28,23 @@ mod colors;
 mod columns;
 mod design;
 mod draw;
+mod live;
+#[cfg(feature = "explorer")]
+mod read;
 mod recorder;
 mod scatter;
 mod sink;
+mod stage;
+mod subject;
 mod writer;
 
+pub use colors::architecture_rgb;
 pub use design::record_design;
+pub use live::{Layers, LiveScene, Picked, Pinned, Shown};
+#[cfg(feature = "explorer")]
+pub use read::{ReadError, RecordedDesign, RecordedRun, read_run, save_copy};
 pub use recorder::Recorder;
+pub use scatter::FrontPoint;
 pub use writer::RecordingError;
 
 /// Application id of our recordings; the viewer keeps layouts by it.
@@ -49,6 +60,7 @@ mod paths {
     pub const ELLIPSOIDS: &str = "/design/ellipsoids";
     pub const DESIGN: &str = "/design";
     pub const CONFIGURATION: &str = "/configuration";
+    pub const PINS: &str = "/pins";
     pub const CARD: &str = "/card";
     pub const ALONG_FRONT: &str = "/along_front";
     pub const SELECTED: &str = "/scatter/plot/front/selected";

@@ -6,13 +6,13 @@ use std::sync::mpsc::Receiver;
 
 use rerun::{Scalars, SeriesLines, TimeColumn};
 
-use super::scatter::{Frame, INFEASIBLE_COLOR, front_points, points, selected, staircase};
+use super::scatter::{Frame, FrontPoint, INFEASIBLE_COLOR, front_points, points, selected, staircase};
 use super::writer::{ALWAYS, Moment, RecordingError, Writer};
 use super::{blueprint, colors, columns, design, paths, timelines};
 use crate::evaluation::{Evaluation, Model};
 use crate::mechanism::Architecture;
-use crate::study::{Batch, Event, FrontMember, GenerationSummary, RunSummary, Study};
-use glam::DVec2;
+use crate::optimize;
+use crate::study::{Batch, DesignProblem, Event, FrontMember, GenerationSummary, RunSummary, Study};
 
 /// Rows of `/designs` written at a time: enough that the file's index stays small.
 const ROWS: usize = 300;
@@ -43,7 +43,7 @@ pub struct Recorder {
     frame: Frame,
     /// Rows not yet written: id, generation, evaluation.
     pending: Vec<(usize, usize, Evaluation)>,
-    front: Vec<FrontMember>,
+    front: Vec<FrontPoint>,
     front_changed: bool,
     frame_changed: bool,
 }
@@ -93,7 +93,7 @@ impl Recorder {
             match &*event {
                 Event::Evaluated(batch) => self.batch(batch)?,
                 Event::Front(front) => {
-                    self.front.clone_from(front);
+                    self.front = front.iter().map(FrontPoint::from).collect();
                     self.front_changed = true;
                 }
                 Event::Generation(summary) => self.generation(summary)?,
@@ -107,7 +107,7 @@ impl Recorder {
     fn batch(&mut self, batch: &Batch) -> Result<(), RecordingError> {
         let moment = moment(batch.first_id + batch.evaluations.len(), batch.generation);
         for evaluation in &batch.evaluations {
-            self.frame_changed |= self.frame.include(evaluation);
+            self.frame_changed |= self.frame.include(evaluation.mass, evaluation.workspace_radius);
         }
         for &architecture in Architecture::ALL {
             let kind: Vec<&Evaluation> = batch
@@ -273,18 +273,13 @@ impl Recorder {
     }
 }
 
-/// The knee of a front: the design farthest above the line between its ends.
+/// The knee of a front.
 fn knee(front: &[FrontMember]) -> Option<usize> {
-    let place = |member: &FrontMember| DVec2::new(member.evaluation.mass, member.evaluation.workspace_radius);
-    let (first, last) = (place(front.first()?), place(front.last()?));
-    let span = (last - first).max(DVec2::splat(f64::MIN_POSITIVE));
-    (0..front.len()).max_by(|&a, &b| {
-        let above = |index: usize| {
-            let share = (place(&front[index]) - first) / span;
-            share.y - share.x
-        };
-        above(a).total_cmp(&above(b)).then(b.cmp(&a))
-    })
+    let objectives: Vec<[f64; 2]> = front
+        .iter()
+        .map(|member| DesignProblem::outcome(&member.evaluation).objectives)
+        .collect();
+    optimize::knee(&objectives)
 }
 
 /// Entity of an architecture's feasible designs.

@@ -31,24 +31,40 @@ pub(super) fn points(evaluations: &[&Evaluation], color: Color, size: f32) -> Po
         .with_radii(std::iter::repeat_n(Radius::new_ui_points(size), evaluations.len()))
 }
 
+/// A design of the front as the scatter draws it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrontPoint {
+    /// Id of its evaluation.
+    pub id: usize,
+    /// Its architecture.
+    pub architecture: Architecture,
+    /// Mass in motion \[kg\].
+    pub mass: f64,
+    /// `R_w` \[m\].
+    pub radius: f64,
+}
+
+impl From<&FrontMember> for FrontPoint {
+    fn from(member: &FrontMember) -> Self {
+        Self {
+            id: member.id,
+            architecture: member.evaluation.design.architecture,
+            mass: member.evaluation.mass,
+            radius: member.evaluation.workspace_radius,
+        }
+    }
+}
+
 /// The front's designs with a line each to read when one is pointed at.
-pub(super) fn front_points(front: &[FrontMember]) -> Points2D {
-    let positions = front
-        .iter()
-        .map(|m| position(m.evaluation.mass, m.evaluation.workspace_radius));
-    Points2D::new(positions)
-        .with_colors(
+pub(super) fn front_points(front: &[FrontPoint]) -> Points2D {
+    Points2D::new(front.iter().map(|m| position(m.mass, m.radius)))
+        .with_colors(front.iter().map(|m| colors::architecture(m.architecture)))
+        .with_radii(std::iter::repeat_n(Radius::new_ui_points(4.0), front.len()))
+        .with_labels(
             front
                 .iter()
-                .map(|m| colors::architecture(m.evaluation.design.architecture)),
+                .map(|m| format!("#{} {}: {:.2} kg, R_w {:.4} m", m.id, m.architecture, m.mass, m.radius)),
         )
-        .with_radii(std::iter::repeat_n(Radius::new_ui_points(4.0), front.len()))
-        .with_labels(front.iter().map(|m| {
-            format!(
-                "#{} {}: {:.2} kg, R_w {:.4} m",
-                m.id, m.evaluation.design.architecture, m.evaluation.mass, m.evaluation.workspace_radius
-            )
-        }))
         .with_show_labels(false)
         .with_draw_order(40.0)
 }
@@ -62,10 +78,10 @@ pub(super) fn selected(evaluation: &Evaluation) -> Points2D {
 }
 
 /// The edge of what the front dominates, from its lightest design to the right end of the plot.
-pub(super) fn staircase(front: &[FrontMember], frame: &Frame) -> LineStrips2D {
+pub(super) fn staircase(front: &[FrontPoint], frame: &Frame) -> LineStrips2D {
     let mut strip: Vec<[f32; 2]> = Vec::new();
     for member in front {
-        let [x, y] = position(member.evaluation.mass, member.evaluation.workspace_radius);
+        let [x, y] = position(member.mass, member.radius);
         strip.push([x, strip.last().map_or(0.0, |last| last[1])]);
         strip.push([x, y]);
     }
@@ -106,10 +122,10 @@ impl Frame {
     }
 
     /// Widens the range to hold a design; tells whether it had to.
-    pub(super) fn include(&mut self, evaluation: &Evaluation) -> bool {
+    pub(super) fn include(&mut self, mass: f64, radius: f64) -> bool {
         let before = *self;
-        let [x, y] = position(evaluation.mass, evaluation.workspace_radius);
-        if evaluation.is_feasible() {
+        let [x, y] = position(mass, radius);
+        if radius > 0.0 {
             self.decades.0 = self.decades.0.min(x.floor() as i32);
             self.decades.1 = self.decades.1.max(x.ceil() as i32);
         }

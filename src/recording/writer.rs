@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use rerun::log::{ChunkBatcherConfig, ChunkError};
 use rerun::sink::LogSink;
 use rerun::{
-    AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamError, SerializedComponentColumn,
-    TextDocument, TimeColumn,
+    AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamError, SerializedComponentBatch,
+    SerializedComponentColumn, TextDocument, TimeColumn,
 };
 
 use super::APPLICATION_ID;
@@ -53,10 +53,9 @@ pub(super) type Moment<'a> = &'a [(&'static str, usize)];
 /// What holds always.
 pub(super) const ALWAYS: Moment<'static> = &[];
 
-/// A recording file being written.
+/// A recording being written: to a file, or to whoever listens.
 pub(super) struct Writer {
-    path: PathBuf,
-    file: RrdFile,
+    file: Option<(PathBuf, RrdFile)>,
     recording: RecordingStream,
 }
 
@@ -67,18 +66,31 @@ impl Writer {
             path: path.to_owned(),
             source,
         })?;
-        // Rows are written as columns, many at a time: nothing is left for the SDK's own batching to do.
-        let recording = RecordingStreamBuilder::new(APPLICATION_ID)
-            .recording_name(name)
-            .enabled(true)
-            .batcher_config(ChunkBatcherConfig::NEVER)
-            .set_sinks(vec![Box::new(file.clone()) as Box<dyn LogSink>])?;
+        Self::over(&file, path, Self::builder().recording_name(name))
+    }
+
+    /// Writes to a file that was begun what `recording` builds.
+    pub(super) fn over(file: &RrdFile, path: &Path, recording: RecordingStreamBuilder) -> Result<Self, RecordingError> {
+        let recording = recording.set_sinks(vec![Box::new(file.clone()) as Box<dyn LogSink>])?;
         recording.set_log_time_enabled(false);
         Ok(Self {
-            path: path.to_owned(),
-            file,
+            file: Some((path.to_owned(), file.clone())),
             recording,
         })
+    }
+
+    /// Sends to `sink`.
+    pub(super) fn sending(sink: Box<dyn LogSink>, name: &str) -> Result<Self, RecordingError> {
+        let recording = Self::builder().recording_name(name).set_sinks(vec![sink])?;
+        recording.set_log_time_enabled(false);
+        Ok(Self { file: None, recording })
+    }
+
+    /// A stream of ours. Rows are written as columns, many at a time: nothing is left for the SDK's own batching to do.
+    pub(super) fn builder() -> RecordingStreamBuilder {
+        RecordingStreamBuilder::new(APPLICATION_ID)
+            .enabled(true)
+            .batcher_config(ChunkBatcherConfig::NEVER)
     }
 
     pub(super) fn stream(&self) -> &RecordingStream {
@@ -92,11 +104,20 @@ impl Writer {
         moment: Moment<'_>,
         archetype: &dyn AsComponents,
     ) -> Result<(), RecordingError> {
+        self.batches(entity, moment, archetype.as_serialized_batches())
+    }
+
+    /// One row of an entity.
+    pub(super) fn batches(
+        &self,
+        entity: &str,
+        moment: Moment<'_>,
+        batches: Vec<SerializedComponentBatch>,
+    ) -> Result<(), RecordingError> {
         let times = moment
             .iter()
             .map(|&(timeline, time)| TimeColumn::new_sequence(timeline, [time as i64]));
-        let columns: Vec<SerializedComponentColumn> = archetype
-            .as_serialized_batches()
+        let columns: Vec<SerializedComponentColumn> = batches
             .into_iter()
             .map(|batch| {
                 let count = batch.array.len();
@@ -113,18 +134,24 @@ impl Writer {
 
     /// Whether all went well so far.
     pub(super) fn check(&self) -> Result<(), RecordingError> {
-        self.file.check().map_err(|source| RecordingError::Write {
-            path: self.path.clone(),
+        let Some((path, file)) = &self.file else {
+            return Ok(());
+        };
+        file.check().map_err(|source| RecordingError::Write {
+            path: path.clone(),
             source,
         })
     }
 
     /// Writes the footer and closes the file.
     pub(super) fn close(self) -> Result<(), RecordingError> {
-        let Self { path, file, recording } = self;
+        let Self { file, recording } = self;
         let flushed = recording.flush_blocking().map_err(io::Error::other);
         // The last handle: dropping it joins the SDK's threads, after which nothing more is sent.
         drop(recording);
+        let Some((path, file)) = file else {
+            return Ok(());
+        };
         flushed
             .and_then(|()| file.finish())
             .map_err(|source| RecordingError::Write { path, source })

@@ -19,6 +19,19 @@ pub enum EllipsoidKind {
     Displacement,
 }
 
+impl EllipsoidKind {
+    /// Both kinds.
+    pub const ALL: [EllipsoidKind; 2] = [EllipsoidKind::Stiffness, EllipsoidKind::Displacement];
+
+    /// Short name, as in entity paths.
+    pub fn key(self) -> &'static str {
+        match self {
+            EllipsoidKind::Stiffness => "stiffness",
+            EllipsoidKind::Displacement => "displacement",
+        }
+    }
+}
+
 /// One ellipsoid; its third axis is z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ellipsoid {

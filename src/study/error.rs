@@ -310,6 +310,14 @@ impl Study {
         check.at_least_zero("optimizer.nsga2.crossover_index", o.nsga2.crossover_index);
         check.at_least_zero("optimizer.nsga2.mutation_index", o.nsga2.mutation_index);
         check.positive("hypervolume.reference_mass_kg", self.hypervolume.reference_mass_kg);
+        for reference in &self.references {
+            if let Err(error) = reference.parse(self.working_mode) {
+                check.that("references", false, format!("`{}`: {error}", reference.name));
+            }
+            for value in [reference.mass_kg, reference.workspace_radius_m].into_iter().flatten() {
+                check.at_least_zero("references", value);
+            }
+        }
         check.0
     }
 }

@@ -1,20 +1,25 @@
 //! Studies: the file, the run of one on its own thread, and the folder it leaves.
 
 mod builtin;
+mod control;
 mod error;
 mod file;
 mod folder;
 mod problem;
 mod run;
+mod sections;
 
 pub use builtin::{BUILTIN, Builtin};
+pub use control::RunControl;
 pub use error::{Fault, StudyError};
-pub use file::{
-    ActuatorSection, AlgorithmName, Bounds, GridSection, Grids, HypervolumeSection, LengthChoice, MaterialSection,
-    ModelSection, OptimizerSection, RequirementSection, StiffnessChoice, Study, TelescopicBar, WorkspaceSection,
-};
+pub use file::Study;
 pub use folder::{FolderError, RunFolder, RunReport, TABLE_HEADER};
 pub use problem::{CandidateError, DesignProblem};
 pub use run::{
-    Batch, Event, FrontMember, GenerationSummary, Outcome, RunControl, RunSummary, RunTimes, Started, Subscriber, spawn,
+    Batch, Event, FrontMember, GenerationSummary, Outcome, RunSummary, RunTimes, Started, Subscriber, spawn,
+};
+pub use sections::{
+    ActuatorSection, AlgorithmName, Bounds, GridSection, Grids, HypervolumeSection, LengthChoice, MaterialSection,
+    ModelSection, OptimizerSection, ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar,
+    WorkspaceSection,
 };

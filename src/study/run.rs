@@ -16,14 +16,14 @@
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use super::{AlgorithmName, DesignProblem, Study};
+use super::{AlgorithmName, DesignProblem, RunControl, Study};
 use crate::evaluation::{Evaluation, GridChoice};
 use crate::optimize::{Algorithm, Archive, Evaluated, Moga2, Nsga2, hypervolume};
 
@@ -75,7 +75,7 @@ pub struct Batch {
 }
 
 /// State after a generation.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct GenerationSummary {
     /// Generation, from 1.
     pub generation: usize,
@@ -152,64 +152,6 @@ impl RunSummary {
         let count = self.front.len();
         let rows = count.min(most);
         (0..rows).map(move |k| &self.front[if rows > 1 { k * (count - 1) / (rows - 1) } else { 0 }])
-    }
-}
-
-/// Pauses, steps and stops a run from any thread.
-#[derive(Debug, Default)]
-pub struct RunControl {
-    state: Mutex<ControlState>,
-    changed: Condvar,
-}
-
-#[derive(Debug, Default)]
-struct ControlState {
-    paused: bool,
-    /// Generations still to do while paused.
-    steps: usize,
-    stop: bool,
-}
-
-impl RunControl {
-    fn change(&self, change: impl FnOnce(&mut ControlState)) {
-        change(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner));
-        self.changed.notify_all();
-    }
-
-    /// Holds the run after the generation under way.
-    pub fn pause(&self) {
-        self.change(|state| state.paused = true);
-    }
-
-    /// Goes on.
-    pub fn resume(&self) {
-        self.change(|state| {
-            state.paused = false;
-            state.steps = 0;
-        });
-    }
-
-    /// Does one generation and pauses again.
-    pub fn step(&self) {
-        self.change(|state| {
-            state.paused = true;
-            state.steps += 1;
-        });
-    }
-
-    /// Ends the run after the generation under way; what was found is verified and kept.
-    pub fn stop(&self) {
-        self.change(|state| state.stop = true);
-    }
-
-    /// Waits while paused; tells whether to go on.
-    fn go_on(&self) -> bool {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        while state.paused && state.steps == 0 && !state.stop {
-            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
-        }
-        state.steps = state.steps.saturating_sub(1);
-        !state.stop
     }
 }
 
@@ -356,7 +298,9 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
 
     let found = members.len();
     let verifying = Instant::now();
-    let front = verify(members.into_values().collect(), &problem, &pool, publisher)?;
+    let Some(front) = verify(members.into_values().collect(), &problem, &pool, control, publisher)? else {
+        return Ok(());
+    };
     times.verification_s = verifying.elapsed().as_secs_f64();
     times.publish_s = publisher.spent.as_secs_f64();
     let objectives = front
@@ -382,18 +326,23 @@ fn algorithm(study: &Study, problem: &DesignProblem) -> Box<dyn Algorithm> {
     }
 }
 
-/// Evaluates the front again on the fine grid and keeps what is feasible and non-dominated there.
+/// Evaluates the front again on the fine grid and keeps what is feasible and non-dominated there; `None` for a run that
+/// was abandoned.
 fn verify(
     front: Vec<FrontMember>,
     problem: &DesignProblem,
     pool: &rayon::ThreadPool,
+    control: &RunControl,
     publisher: &mut Publisher,
-) -> Result<Vec<FrontMember>, String> {
+) -> Result<Option<Vec<FrontMember>>, String> {
     let total = front.len();
     let mut archive = Archive::default();
     let mut verified: BTreeMap<usize, FrontMember> = BTreeMap::new();
     let mut done = 0;
     for part in front.chunks(4 * pool.current_num_threads()) {
+        if control.is_abandoned() {
+            return Ok(None);
+        }
         publisher.send(Event::Verifying { done, total });
         let evaluations: Vec<Evaluation> = pool
             .install(|| {
@@ -419,8 +368,6 @@ fn verify(
         done += part.len();
     }
     // On a front, sorted by mass is sorted by R_w.
-    Ok(archive
-        .iter()
-        .filter_map(|member| verified.remove(&member.id))
-        .collect())
+    let front = archive.iter().filter_map(|member| verified.remove(&member.id));
+    Ok(Some(front.collect()))
 }

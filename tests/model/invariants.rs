@@ -56,6 +56,27 @@ const MODEL: [&str; 6] = [
 fn only_the_recording_knows_rerun() {
     let outside = [&MODEL[..], &["optimize", "study", "scene"]].concat();
     absent(&outside, &["rerun", "egui", "crate::recording"]);
+    absent(&["recording"], &["egui", "eframe", "re_viewer", "crate::explorer"]);
+}
+
+#[test]
+fn a_panel_shows_what_others_computed() {
+    let physics = ["crate::kinematics", "crate::stiffness", "crate::workspace", ".checker"];
+    absent(&["explorer"], &physics);
+    // The one place that knows the embedded viewer, and none but the recording names entities.
+    for (path, code) in sources("explorer") {
+        let knows = path.ends_with("viewer.rs") || path.ends_with("app.rs");
+        assert!(
+            knows || !code.contains("re_viewer"),
+            "{} knows the viewer",
+            path.display()
+        );
+        assert!(
+            !code.contains("rerun::Points") && !code.contains("\"/design"),
+            "{}",
+            path.display()
+        );
+    }
 }
 
 #[test]
@@ -117,6 +138,7 @@ fn architectures_are_named_in_mechanism_alone() {
         "optimize",
         "study",
         "recording",
+        "explorer",
     ];
     absent(
         &outside,
@@ -133,6 +155,6 @@ fn architectures_are_named_in_mechanism_alone() {
 
 #[test]
 fn hash_order_decides_nothing() {
-    let all = [&MODEL[..], &["optimize", "study", "recording", "scene"]].concat();
+    let all = [&MODEL[..], &["optimize", "study", "recording", "scene", "explorer"]].concat();
     absent(&all, &["HashMap", "HashSet"]);
 }

@@ -37,6 +37,7 @@ fn the_paper_is_the_default() {
     assert_eq!(
         Study {
             description: paper.description.clone(),
+            references: paper.references.clone(),
             ..bare
         },
         paper

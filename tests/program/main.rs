@@ -5,3 +5,5 @@ mod outside;
 mod recordings;
 mod runs;
 mod support;
+#[cfg(feature = "explorer")]
+mod window;

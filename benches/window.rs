@@ -1,0 +1,287 @@
+//! The window with a million designs: frame times of our panels, from a click to the scene, memory, and how many designs a
+//! second stream in before the optimizer has to wait.
+//!
+//! `cargo bench --bench window` prints a table. Not criterion's: what matters is the slowest frame in a hundred, and what
+//! happens while designs stream in.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use egui_kittest::Harness;
+use kinefront::evaluation::{Evaluation, GridChoice};
+use kinefront::explorer::{Explorer, Session, StudyEditor, Subject};
+use kinefront::optimize::{Archive, Evaluated, sobol};
+use kinefront::recording::LiveScene;
+use kinefront::study::{
+    BUILTIN, Batch, DesignProblem, Event, FrontMember, GenerationSummary, Outcome, RunSummary, RunTimes, Started,
+    Study, Subscriber,
+};
+
+const DESIGNS: usize = 1_000_000;
+const GENERATION: usize = 500;
+
+/// Designs that were really evaluated, over and over with other numbers, as fast as they are taken.
+struct Stream {
+    pool: Vec<Evaluation>,
+    count: usize,
+}
+
+impl Stream {
+    fn new(study: &Study, count: usize) -> Self {
+        let problem = DesignProblem::new(study);
+        let pool = sobol(&problem.variables(), 1500, 1)
+            .iter()
+            .filter_map(|x| problem.evaluation(x).ok())
+            .collect();
+        Self { pool, count }
+    }
+
+    /// Design `id`: one of the pool, a little lighter or heavier.
+    fn evaluation(&self, id: usize) -> Evaluation {
+        let mut evaluation = self.pool[id % self.pool.len()].clone();
+        let chance = (id as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40;
+        let share = chance as f64 / f64::from(1 << 24);
+        evaluation.mass *= 0.7 + 0.6 * share;
+        evaluation.workspace_radius *= 0.8 + 0.2 * share;
+        evaluation
+    }
+
+    /// Sends all designs to the subscribers; tells the time spent on handing them over.
+    fn send(&self, study: Study, subscribers: &[Subscriber]) -> Duration {
+        let tell = |event: Event| {
+            let event = Arc::new(event);
+            let since = Instant::now();
+            for subscriber in subscribers {
+                let _ = subscriber.send(Arc::clone(&event));
+            }
+            since.elapsed()
+        };
+        let mut waited = tell(Event::Started(Started {
+            study: Arc::new(study),
+            threads: 1,
+        }));
+        let mut archive = Archive::default();
+        let mut members: Vec<FrontMember> = Vec::new();
+        let mut history = Vec::new();
+        for generation in 1..=self.count / GENERATION {
+            let first_id = (generation - 1) * GENERATION;
+            let evaluations: Vec<Evaluation> = (first_id..first_id + GENERATION)
+                .map(|id| self.evaluation(id))
+                .collect();
+            let mut changed = false;
+            for (offset, evaluation) in evaluations.iter().enumerate() {
+                let id = first_id + offset;
+                let candidate = Evaluated {
+                    x: Vec::new(),
+                    outcome: DesignProblem::outcome(evaluation),
+                };
+                if archive.insert(id, &candidate) {
+                    changed = true;
+                    members.push(FrontMember {
+                        id,
+                        generation,
+                        evaluation: evaluation.clone(),
+                        reference_radius: evaluation.workspace_radius,
+                    });
+                }
+            }
+            waited += tell(Event::Evaluated(Batch {
+                generation,
+                first_id,
+                evaluations,
+            }));
+            if changed {
+                members.retain(|member| archive.iter().any(|kept| kept.id == member.id));
+                members.sort_by(|a, b| a.evaluation.mass.total_cmp(&b.evaluation.mass));
+                waited += tell(Event::Front(members.clone()));
+            }
+            let summary = GenerationSummary {
+                generation,
+                evaluations: first_id + GENERATION,
+                feasible: first_id / 2,
+                front_size: archive.len(),
+                hypervolume: generation as f64,
+            };
+            history.push(summary);
+            waited += tell(Event::Generation(summary));
+        }
+        waited += tell(Event::Finished(RunSummary {
+            outcome: Outcome::Completed,
+            threads: 1,
+            history,
+            front: members,
+            dropped: 0,
+            verified_hypervolume: 0.0,
+            times: RunTimes::default(),
+        }));
+        waited
+    }
+}
+
+fn study() -> Study {
+    BUILTIN[0].study().expect("sound")
+}
+
+fn window() -> Harness<'static, Explorer> {
+    Harness::builder()
+        .with_size(egui::vec2(1600.0, 1000.0))
+        .with_step_dt(1.0 / 60.0)
+        .build_eframe(|cc| {
+            let subject = Subject::Study {
+                study: Box::new(study()),
+                path: None,
+                start: false,
+            };
+            Explorer::new(cc, subject, None, false).expect("a window")
+        })
+}
+
+/// Median and 99th percentile in milliseconds.
+fn percentiles(times: &mut [f64]) -> String {
+    times.sort_by(f64::total_cmp);
+    let at = |share: f64| 1e3 * times[((times.len() - 1) as f64 * share) as usize];
+    format!(
+        "median {:.2} ms, 99th percentile {:.2} ms ({} frames)",
+        at(0.5),
+        at(0.99),
+        times.len()
+    )
+}
+
+/// Memory of this process \[MB\], where the system tells.
+fn memory() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find(|line| line.starts_with("VmRSS:"));
+    let kilobytes = line.and_then(|line| line.split_whitespace().nth(1)?.parse::<f64>().ok());
+    kilobytes.unwrap_or(f64::NAN) / 1024.0
+}
+
+fn frame(window: &mut Harness<'static, Explorer>) -> f64 {
+    let since = Instant::now();
+    window.step();
+    since.elapsed().as_secs_f64()
+}
+
+/// Streams `count` designs through the listeners that `keep` picks; tells how long, and the frame times meanwhile.
+fn stream(
+    window: &mut Harness<'static, Explorer>,
+    count: usize,
+    keep: fn(Vec<Subscriber>) -> Vec<Subscriber>,
+) -> (f64, f64, Vec<f64>) {
+    let source = Stream::new(&study(), count);
+    let told = Arc::new(Mutex::new(None));
+    let tells = Arc::clone(&told);
+    window
+        .state_mut()
+        .session_mut()
+        .start_from(move |study, _, subscribers| {
+            std::thread::Builder::new().spawn(move || {
+                let since = Instant::now();
+                let waited = source.send(study, &keep(subscribers));
+                *tells.lock().expect("a lock") = Some((since.elapsed(), waited));
+            })
+        });
+    let mut times = Vec::new();
+    while told.lock().expect("a lock").is_none() || window.state().session().is_running() {
+        times.push(frame(window));
+        // A screen shows sixty a second.
+        let left = (1.0 / 60.0 - times[times.len() - 1]).max(0.0);
+        std::thread::sleep(Duration::from_secs_f64(left));
+    }
+    let (took, waited) = told.lock().expect("a lock").take().expect("an end");
+    (took.as_secs_f64(), waited.as_secs_f64(), times)
+}
+
+fn main() {
+    // `cargo test --benches` and the like only want to know that it builds.
+    if !std::env::args().any(|argument| argument == "--bench") {
+        return;
+    }
+    let mut window = window();
+    window.run_steps(5);
+    println!("memory before: {:.0} MB", memory());
+
+    let (took, waited, mut times) = stream(&mut window, DESIGNS, |subscribers| {
+        subscribers.into_iter().skip(2).collect()
+    });
+    println!(
+        "{DESIGNS} designs to the window alone: {took:.1} s, of which {waited:.2} s handing over: {:.2} M designs/s",
+        DESIGNS as f64 / waited.max(1e-9) / 1e6
+    );
+    println!("frames while they stream in: {}", percentiles(&mut times));
+    assert_eq!(window.state().session().store().len(), DESIGNS);
+    for _ in 0..120 {
+        frame(&mut window);
+    }
+    let mut times: Vec<f64> = (0..400).map(|_| frame(&mut window)).collect();
+    println!("frames with {DESIGNS} designs, at rest: {}", percentiles(&mut times));
+    let at = egui::pos2(240.0, 300.0);
+    window.hover_at(at);
+    let mut times: Vec<f64> = (0..400)
+        .map(|k| {
+            let zoom = if k % 2 == 0 { 1.02 } else { 1.0 / 1.02 };
+            window.input_mut().events.push(egui::Event::Zoom(zoom));
+            window
+                .input_mut()
+                .events
+                .push(egui::Event::PointerMoved(at + egui::vec2((k % 50) as f32, 0.0)));
+            frame(&mut window)
+        })
+        .collect();
+    println!("frames with {DESIGNS} designs, zooming: {}", percentiles(&mut times));
+    println!(
+        "memory with {DESIGNS} designs: {:.0} MB, {:.0} MB of it the designs",
+        memory(),
+        window.state().session().store().bytes() as f64 / 1048576.0
+    );
+    drop(window);
+
+    let mut all = self::window();
+    let (took, waited, mut times) = stream(&mut all, 100_000, |subscribers| subscribers);
+    println!(
+        "100000 designs to window, tables and recording: {took:.1} s, of which {waited:.1} s handing over: {:.0} designs/s",
+        1e5 / waited.max(1e-9)
+    );
+    println!("frames meanwhile: {}", percentiles(&mut times));
+    drop(all);
+    clicks();
+}
+
+/// From a click to the last row of the scene handed to the viewer.
+fn clicks() {
+    let sent = Arc::new(AtomicU64::new(0));
+    let counting = Arc::clone(&sent);
+    let sink = rerun::sink::CallbackSink::new(move |messages| {
+        counting.fetch_add(messages.len() as u64, Ordering::Relaxed);
+    });
+    let study = study();
+    let scene = LiveScene::new(Box::new(sink), &study).expect("a scene");
+    let mut session =
+        Session::new(StudyEditor::new(study.clone(), None), Some(scene), Arc::new(|| {})).expect("a session");
+    let problem = DesignProblem::new(&study);
+    let model = study.model();
+    let mut times = Vec::new();
+    for x in sobol(&problem.variables(), 400, 1) {
+        let Ok(design) = problem.design(&x) else { continue };
+        let feasible = model
+            .evaluate(&design, GridChoice::Reference)
+            .is_ok_and(|evaluation| evaluation.is_feasible());
+        if !feasible {
+            continue;
+        }
+        let since = Instant::now();
+        session.paste(&design.to_string());
+        session.update();
+        while !(session.is_drawn() && session.known().is_some()) {
+            std::thread::sleep(Duration::from_micros(100));
+            session.update();
+        }
+        times.push(since.elapsed().as_secs_f64());
+    }
+    println!(
+        "from a click to the scene (evaluation, heatmap, workspace, layers; {} messages a design): {}",
+        sent.load(Ordering::Relaxed) / times.len().max(1) as u64,
+        percentiles(&mut times)
+    );
+}

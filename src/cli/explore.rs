@@ -1,0 +1,63 @@
+//! `kinefront explore`, and `kinefront` by itself: the window.
+
+use std::path::PathBuf;
+
+use kinefront::explorer::{Script, Subject, run as open_window};
+use kinefront::study::BUILTIN;
+use miette::miette;
+
+use super::{Ending, Failure, load_study};
+
+#[derive(Debug, Default, clap::Args)]
+pub struct Arguments {
+    /// Study file or name, run folder, or recording (.rrd) of ours [default: paper].
+    subject: Option<String>,
+    /// Do not start the study's run at once.
+    #[arg(long)]
+    no_run: bool,
+    /// Seed, instead of the study's.
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    seed: Option<u64>,
+    /// Number of evaluations, instead of the study's.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    evaluations: Option<u64>,
+    /// Script that works the window, for pictures and measurements.
+    #[arg(long, value_name = "FILE")]
+    script: Option<PathBuf>,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
+    let script = match &arguments.script {
+        Some(path) => Some(Script::read(path).map_err(|words| Failure::Input(miette!("{words}")))?),
+        None => None,
+    };
+    open_window(subject(arguments)?, script).map_err(|words| Failure::Runtime(miette!("{words}")))?;
+    Ok(Ending::Done)
+}
+
+fn subject(arguments: &Arguments) -> Result<Subject, Failure> {
+    let path = arguments.subject.as_ref().map(PathBuf::from);
+    if let Some(path) = path.as_ref().filter(|path| path.exists()) {
+        let is_study = path.is_file() && path.extension().is_some_and(|extension| extension == "toml");
+        if !is_study {
+            // What is wrong with it is told before a window opens.
+            kinefront::explorer::open(path).map_err(|error| Failure::Input(miette!("{error}")))?;
+            return Ok(Subject::Run(path.clone()));
+        }
+    }
+    let mut study = load_study(arguments.subject.as_deref()).map_err(Failure::Input)?;
+    if let Some(seed) = arguments.seed {
+        study.optimizer.seed = seed;
+    }
+    if let Some(evaluations) = arguments.evaluations {
+        study.optimizer.evaluations = evaluations as usize;
+    }
+    let builtin = BUILTIN
+        .iter()
+        .any(|builtin| Some(builtin.name) == arguments.subject.as_deref());
+    Ok(Subject::Study {
+        study: Box::new(study),
+        path: path.filter(|path| path.exists() && !builtin),
+        start: !arguments.no_run,
+    })
+}

@@ -1,0 +1,74 @@
+//! Where the panels stand, and drawing them there.
+
+use egui::Ui;
+use egui_tiles::{Linear, LinearDir, SimplificationOptions, TileId, Tiles, Tree, UiResponse};
+
+use super::super::files::Purpose;
+use super::super::viewer::Viewer;
+use super::super::{Panel, Panels, Session};
+
+/// The layout to begin with.
+pub(super) fn layout() -> Tree<Panel> {
+    let mut tiles = Tiles::default();
+    let mut tabs = |panels: &[Panel]| {
+        let panes = panels.iter().map(|&panel| tiles.insert_pane(panel)).collect();
+        tiles.insert_tab_tile(panes)
+    };
+    let run = tabs(&[Panel::Run, Panel::Study]);
+    let scatter = tabs(&[Panel::Scatter]);
+    let scene = tabs(&[Panel::Scene]);
+    let below = tabs(&[Panel::Table, Panel::Parallel, Panel::Compare]);
+    let design = tabs(&[Panel::Design, Panel::Choose]);
+    let pose = tabs(&[Panel::Pose, Panel::Layers]);
+    let mut split = |direction: LinearDir, parts: &[(TileId, f32)]| {
+        let mut linear = Linear::new(direction, parts.iter().map(|(tile, _)| *tile).collect());
+        for &(tile, share) in parts {
+            linear.shares.set_share(tile, share);
+        }
+        tiles.insert_container(linear)
+    };
+    let left = split(LinearDir::Vertical, &[(scatter, 1.5), (run, 1.0)]);
+    let middle = split(LinearDir::Vertical, &[(scene, 2.0), (below, 1.0)]);
+    let right = split(LinearDir::Vertical, &[(design, 1.1), (pose, 1.0)]);
+    let root = split(LinearDir::Horizontal, &[(left, 1.15), (middle, 1.75), (right, 0.9)]);
+    Tree::new("kinefront", root, tiles)
+}
+
+/// Draws the panels into the tiles.
+pub(super) struct Drawing<'a> {
+    pub(super) session: &'a mut Session,
+    pub(super) panels: &'a mut Panels,
+    pub(super) viewer: Option<&'a mut Viewer>,
+    pub(super) frame: &'a mut eframe::Frame,
+    pub(super) asked: Option<Purpose>,
+}
+
+impl egui_tiles::Behavior<Panel> for Drawing<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _: TileId, panel: &mut Panel) -> UiResponse {
+        if *panel == Panel::Scene {
+            match &mut self.viewer {
+                Some(viewer) => viewer.ui(ui, self.frame),
+                None => drop(ui.weak("without a viewer")),
+            }
+            return UiResponse::None;
+        }
+        egui::Frame::central_panel(ui.style()).inner_margin(6).show(ui, |ui| {
+            ui.push_id(*panel, |ui| {
+                let asked = self.panels.ui(*panel, ui, self.session);
+                self.asked = self.asked.or(asked);
+            });
+        });
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, panel: &Panel) -> egui::WidgetText {
+        panel.title().into()
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        SimplificationOptions {
+            all_panes_must_have_tabs: true,
+            ..SimplificationOptions::default()
+        }
+    }
+}

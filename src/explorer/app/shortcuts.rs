@@ -1,0 +1,113 @@
+//! Keys.
+
+use egui::{Context, Event, Key, KeyboardShortcut, Modifiers, ViewportCommand};
+
+use super::super::Phase;
+use super::super::files::Purpose;
+use super::Explorer;
+
+const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
+const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+const REDO_TOO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Y);
+const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
+const SAVE: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::S);
+const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
+
+/// Shortcuts as they are listed.
+pub(super) const SHORTCUTS: [(&str, &str); 14] = [
+    ("←  →", "walk along the front"),
+    ("K", "the knee of the front"),
+    ("P", "pin or unpin the design"),
+    ("S", "star the design"),
+    ("Space", "pause and resume the run"),
+    ("G", "one generation"),
+    ("Ctrl+C, Ctrl+V", "copy the design as text, paste one"),
+    ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo"),
+    ("Ctrl+O", "open a study, a run or a recording"),
+    ("Ctrl+S", "save the session's recording"),
+    ("Ctrl+Q", "quit"),
+    ("F", "only feasible designs in the light"),
+    ("Esc", "put messages and windows away"),
+    ("?", "this list"),
+];
+
+impl Explorer {
+    pub(super) fn shortcuts(&mut self, ctx: &Context) {
+        let pressed = |shortcut: &KeyboardShortcut| ctx.input_mut(|input| input.consume_shortcut(shortcut));
+        if ctx.text_edit_focused() {
+            return;
+        }
+        // The most special first: a shortcut matches with more modifiers held, too.
+        if pressed(&REDO) || pressed(&REDO_TOO) {
+            self.session.history.redo();
+        } else if pressed(&UNDO) {
+            self.session.history.undo();
+        }
+        if pressed(&OPEN) {
+            self.ask(ctx, Purpose::Open);
+        }
+        if pressed(&SAVE) {
+            self.ask(ctx, Purpose::SaveRecording);
+        }
+        if pressed(&QUIT) {
+            ctx.send_viewport_cmd(ViewportCommand::Close);
+        }
+        let key = |key: Key| ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+        if key(Key::ArrowRight) {
+            self.session.walk(1);
+        }
+        if key(Key::ArrowLeft) {
+            self.session.walk(-1);
+        }
+        if key(Key::K) {
+            self.session.choose_knee();
+        }
+        if key(Key::P) {
+            self.session.toggle_pin();
+        }
+        if key(Key::S) {
+            self.session.toggle_star();
+        }
+        if key(Key::G) {
+            self.session.step();
+        }
+        if key(Key::F) {
+            self.session
+                .history
+                .edit(|document| document.filter.feasible_only = !document.filter.feasible_only);
+        }
+        if key(Key::Space) {
+            match self.session.phase() {
+                Phase::Searching => self.session.pause(),
+                Phase::Paused => self.session.resume(),
+                _ => {}
+            }
+        }
+        if key(Key::Escape) {
+            self.help = false;
+            self.session.notices.clear();
+        }
+        if ctx.input(|input| {
+            input
+                .events
+                .iter()
+                .any(|event| matches!(event, Event::Text(text) if text == "?"))
+        }) {
+            self.help = !self.help;
+        }
+        let (copied, pasted) = ctx.input(|input| {
+            let copied = input.events.iter().any(|event| matches!(event, Event::Copy));
+            let pasted = input.events.iter().find_map(|event| match event {
+                Event::Paste(text) => Some(text.clone()),
+                _ => None,
+            });
+            (copied, pasted)
+        });
+        if copied && let Some(chosen) = &self.session.document().chosen {
+            ctx.copy_text(chosen.design.to_string());
+        }
+        if let Some(text) = pasted {
+            self.session.paste(&text);
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! Files: asking for one without holding up the window, and writing one whole or not at all.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, channel};
+
+use super::Session;
+use crate::recording::{record_design, save_copy};
+
+/// Writes a file beside its place and moves it there, so that what stood there is replaced whole or not at all.
+///
+/// # Errors
+/// What went wrong, in words.
+pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), String> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let write = || -> std::io::Result<()> {
+        let mut file = tempfile::NamedTempFile::new_in(folder)?;
+        file.write_all(contents)?;
+        file.as_file().sync_all()?;
+        file.persist(path)?;
+        Ok(())
+    };
+    write().map_err(|error| format!("cannot write {}: {error}", path.display()))
+}
+
+/// What a chosen file is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// A study, a run folder's table or a recording to open.
+    Open,
+    /// A run folder to open.
+    OpenFolder,
+    /// Where the study goes.
+    SaveStudy,
+    /// Where the session's recording goes.
+    SaveRecording,
+    /// Where the run's folder goes.
+    SaveRun,
+    /// Where the front's table goes.
+    ExportFront,
+    /// Where the recording of the design in the light goes.
+    ExportDesign,
+    /// Where a picture of the window goes.
+    SavePicture,
+    /// Where the filter goes.
+    SaveFilter,
+    /// A filter to read.
+    OpenFilter,
+}
+
+impl Purpose {
+    /// Title of the dialog, a name to begin with, and the kinds of files.
+    fn dialog(
+        self,
+    ) -> (
+        &'static str,
+        &'static str,
+        &'static [(&'static str, &'static [&'static str])],
+    ) {
+        match self {
+            Purpose::Open => (
+                "Open a study, a run or a recording",
+                "",
+                &[("studies, recordings, tables", &["toml", "rrd", "csv"])],
+            ),
+            Purpose::OpenFolder => ("Open a run folder", "", &[]),
+            Purpose::SaveStudy => ("Save the study", "study.toml", &[("study", &["toml"])]),
+            Purpose::SaveRecording => ("Save the recording", "session.rrd", &[("recording", &["rrd"])]),
+            Purpose::SaveRun => ("Save the run's folder", "run", &[]),
+            Purpose::ExportFront => ("Export the front", "front.csv", &[("table", &["csv"])]),
+            Purpose::ExportDesign => ("Export the design", "design.rrd", &[("recording", &["rrd"])]),
+            Purpose::SavePicture => ("Save a picture", "kinefront.png", &[("picture", &["png"])]),
+            Purpose::SaveFilter => ("Save the filter", "filter.toml", &[("filter", &["toml"])]),
+            Purpose::OpenFilter => ("Open a filter", "", &[("filter", &["toml"])]),
+        }
+    }
+
+    /// Title of the dialog.
+    pub fn title(self) -> &'static str {
+        self.dialog().0
+    }
+
+    /// A name to begin with.
+    pub fn name(self) -> &'static str {
+        self.dialog().1
+    }
+
+    fn is_saving(self) -> bool {
+        !matches!(self, Purpose::Open | Purpose::OpenFolder | Purpose::OpenFilter)
+    }
+}
+
+/// A dialog of the system, open on a thread of its own.
+pub struct Dialog {
+    purpose: Purpose,
+    answer: Receiver<Option<PathBuf>>,
+}
+
+impl Dialog {
+    /// Opens the system's dialog.
+    pub fn open(purpose: Purpose, wake: impl Fn() + Send + 'static) -> Self {
+        let (sender, answer) = channel();
+        let (title, name, kinds) = purpose.dialog();
+        let mut dialog = rfd::FileDialog::new().set_title(title);
+        for (kind, extensions) in kinds {
+            dialog = dialog.add_filter(*kind, extensions);
+        }
+        std::thread::spawn(move || {
+            let path = match purpose {
+                Purpose::OpenFolder => dialog.pick_folder(),
+                _ if purpose.is_saving() => dialog.set_file_name(name).save_file(),
+                _ => dialog.pick_file(),
+            };
+            // The window may be gone.
+            let _ = sender.send(path);
+            wake();
+        });
+        Self { purpose, answer }
+    }
+
+    /// The choice, once made; `None` within where there was none.
+    pub fn choice(&self) -> Option<(Purpose, Option<PathBuf>)> {
+        self.answer.try_recv().ok().map(|path| (self.purpose, path))
+    }
+}
+
+/// Work on files that a window does not wait for; it ends with words to tell.
+pub type Job = Box<dyn FnOnce() -> Result<String, String> + Send>;
+
+/// What is to be done with the file that was chosen; `None` where it was done at once.
+pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job> {
+    match purpose {
+        Purpose::Open | Purpose::OpenFolder => session.open(&path),
+        Purpose::SaveStudy => {
+            let saved = session.editor.save(&path);
+            tell(session, saved.map(|()| format!("saved {}", path.display())));
+        }
+        Purpose::SaveFilter => {
+            let text = session.document().filter.to_text();
+            tell(
+                session,
+                write_whole(&path, text.as_bytes()).map(|()| format!("saved {}", path.display())),
+            );
+        }
+        Purpose::OpenFilter => {
+            let read =
+                std::fs::read_to_string(&path).map_err(|error| format!("cannot read {}: {error}", path.display()));
+            match read.and_then(|text| super::Filter::parse(&text)) {
+                Ok(filter) => session.history.edit(|document| document.filter = filter),
+                Err(words) => session.tell_error(words),
+            }
+        }
+        Purpose::ExportFront => {
+            let written = front_table(session).and_then(|table| write_whole(&path, &table));
+            tell(session, written.map(|()| format!("exported {}", path.display())));
+        }
+        Purpose::SaveRecording => return save_recording(session, path),
+        Purpose::ExportDesign => return export_design(session, path),
+        Purpose::SaveRun => return save_run(session, path),
+        // The window takes the picture itself.
+        Purpose::SavePicture => {}
+    }
+    None
+}
+
+fn tell(session: &mut Session, outcome: Result<String, String>) {
+    match outcome {
+        Ok(words) => session.tell(words),
+        Err(words) => session.tell_error(words),
+    }
+}
+
+fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
+    let Some(folder) = session.run_folder() else {
+        session.tell_error("there is no run to save: an opened one lies where it was opened from".to_owned());
+        return None;
+    };
+    let model = *session.model();
+    let shown = session
+        .known()
+        .map(|known| known.evaluation.clone())
+        .zip(session.chosen_name());
+    Some(Box::new(move || {
+        let shown = shown
+            .as_ref()
+            .map(|(evaluation, name)| (&model, evaluation, name.as_str()));
+        replacing(&path, |part| save_copy(&folder.join("recording.rrd"), part, shown))?;
+        Ok(format!("saved {}", path.display()))
+    }))
+}
+
+fn export_design(session: &mut Session, path: PathBuf) -> Option<Job> {
+    let Some((known, name)) = session.known().cloned().zip(session.chosen_name()) else {
+        session.tell_error("no design is chosen".to_owned());
+        return None;
+    };
+    let study = session.study().clone();
+    let field = session
+        .staging
+        .layers
+        .heatmap
+        .unwrap_or(crate::scene::Field::InverseCondition);
+    Some(Box::new(move || {
+        replacing(&path, |part| {
+            record_design(part, &study, &known.evaluation, &name, field).map_err(|error| error.to_string())
+        })?;
+        Ok(format!("exported {}", path.display()))
+    }))
+}
+
+/// The run's folder with a whole recording; `path` must not hold a run.
+fn save_run(session: &mut Session, path: PathBuf) -> Option<Job> {
+    let Some(folder) = session.run_folder() else {
+        session.tell_error("there is no run to save: an opened one lies where it was opened from".to_owned());
+        return None;
+    };
+    Some(Box::new(move || {
+        let failed = |what: &Path, error: std::io::Error| format!("cannot write {}: {error}", what.display());
+        std::fs::create_dir_all(&path).map_err(|error| failed(&path, error))?;
+        let entries = std::fs::read_dir(&folder).map_err(|error| failed(&folder, error))?;
+        let names: Vec<std::ffi::OsString> = entries.flatten().map(|entry| entry.file_name()).collect();
+        if let Some(taken) = names.iter().find(|name| path.join(name).exists()) {
+            let taken = path.join(taken);
+            return Err(format!("{} is there already; choose another folder", taken.display()));
+        }
+        for name in names {
+            let target = path.join(&name);
+            if name == "recording.rrd" {
+                save_copy(&folder.join(&name), &target, None)?;
+            } else if !name.to_string_lossy().ends_with(".partial") {
+                std::fs::copy(folder.join(&name), &target).map_err(|error| failed(&target, error))?;
+            }
+        }
+        Ok(format!("saved the run to {}", path.display()))
+    }))
+}
+
+/// Writes a recording beside its place and moves it there.
+fn replacing(path: &Path, write: impl FnOnce(&Path) -> Result<(), String>) -> Result<(), String> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let place = tempfile::Builder::new()
+        .prefix(".kinefront-")
+        .tempdir_in(folder)
+        .map_err(|error| format!("cannot write {}: {error}", path.display()))?;
+    let part = place.path().join("part.rrd");
+    write(&part)?;
+    std::fs::rename(&part, path).map_err(|error| format!("cannot write {}: {error}", path.display()))
+}
+
+/// The front as a table: the columns that every table of ours begins with.
+fn front_table(session: &Session) -> Result<Vec<u8>, String> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    let header = crate::study::TABLE_HEADER
+        .into_iter()
+        .map(str::to_owned)
+        .chain(["workspace_radius_reference_m", "verified", "starred", "note"].map(str::to_owned));
+    let write = |table: &mut csv::Writer<Vec<u8>>| -> Result<(), csv::Error> {
+        table.write_record(header)?;
+        for entry in session.front() {
+            let design = &entry.row.design;
+            let mut record = vec![
+                entry.id.to_string(),
+                entry.row.generation.to_string(),
+                design.architecture.to_string(),
+                design.working_mode.to_string(),
+            ];
+            record.extend(design.values().map(|value| value.to_string()));
+            record.push(entry.row.mass.to_string());
+            record.push(entry.row.radius.to_string());
+            record.push(entry.row.phi.map(|phi| phi.to_string()).unwrap_or_default());
+            record.push((entry.row.radius > 0.0).to_string());
+            record.push(entry.reference_radius.to_string());
+            record.push(entry.verified.to_string());
+            record.push(session.document().stars.contains(&entry.id).to_string());
+            record.push(session.document().notes.get(&entry.id).cloned().unwrap_or_default());
+            table.write_record(record)?;
+        }
+        Ok(())
+    };
+    write(&mut table).map_err(|error| error.to_string())?;
+    table.into_inner().map_err(|error| error.to_string())
+}

@@ -1,0 +1,129 @@
+//! The one filter that holds in every panel, and its text.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+use super::{Quantity, Store};
+use crate::mechanism::Architecture;
+
+/// Which designs are in the light; the others are dimmed.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Filter {
+    /// Only feasible designs.
+    pub feasible_only: bool,
+    /// Architectures left out.
+    pub hidden: Vec<Architecture>,
+    /// Ranges by the quantity's key, both ends included.
+    pub ranges: BTreeMap<String, [f64; 2]>,
+}
+
+/// A filter made ready to be asked many times.
+pub struct Sieve<'a> {
+    store: &'a Store,
+    feasible_only: bool,
+    hidden: Vec<Architecture>,
+    ranges: Vec<(&'a [f64], [f64; 2])>,
+}
+
+impl Filter {
+    /// Whether it lets everything through.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Range of a quantity.
+    pub fn range(&self, quantity: Quantity) -> Option<[f64; 2]> {
+        self.ranges.get(&quantity.key()).copied()
+    }
+
+    /// Sets or lifts the range of a quantity.
+    pub fn set_range(&mut self, quantity: Quantity, range: Option<[f64; 2]>) {
+        match range {
+            Some([low, high]) => self.ranges.insert(quantity.key(), [low.min(high), low.max(high)]),
+            None => self.ranges.remove(&quantity.key()),
+        };
+    }
+
+    /// The filter over the designs of a store.
+    pub fn sieve<'a>(&self, store: &'a Store) -> Sieve<'a> {
+        Sieve {
+            store,
+            feasible_only: self.feasible_only,
+            hidden: self.hidden.clone(),
+            ranges: self
+                .ranges
+                .iter()
+                .filter_map(|(key, range)| Some((store.column(Quantity::find(key)?), *range)))
+                .collect(),
+        }
+    }
+
+    /// The filter as text.
+    pub fn to_text(&self) -> String {
+        // A filter holds nothing that TOML cannot say.
+        toml::to_string(self).unwrap_or_default()
+    }
+
+    /// Reads a filter.
+    ///
+    /// # Errors
+    /// What is wrong with the text, and what would be right.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let filter: Filter = toml::from_str(text).map_err(|error| format!("this is no filter: {}", error.message()))?;
+        for (key, [low, high]) in &filter.ranges {
+            if Quantity::find(key).is_none() {
+                let known: Vec<String> = Quantity::all().into_iter().map(Quantity::key).collect();
+                return Err(format!(
+                    "a filter has no range of `{key}`; there are {}",
+                    known.join(", ")
+                ));
+            }
+            if low.is_nan() || high.is_nan() || low > high {
+                return Err(format!(
+                    "the range of `{key}` is [{low}, {high}]; the lower end comes first"
+                ));
+            }
+        }
+        Ok(filter)
+    }
+}
+
+impl Sieve<'_> {
+    /// Whether design `id`, which must be there, is in the light.
+    pub fn passes(&self, id: usize) -> bool {
+        (!self.feasible_only || self.store.is_feasible(id))
+            && (self.hidden.is_empty() || !self.hidden.contains(&self.store.architecture(id)))
+            && self
+                .ranges
+                .iter()
+                .all(|(column, [low, high])| (*low..=*high).contains(&column[id]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::Variable;
+
+    #[test]
+    fn a_filter_reads_what_it_writes() {
+        let mut filter = Filter {
+            feasible_only: true,
+            hidden: vec![Architecture::ALL[1]],
+            ranges: BTreeMap::new(),
+        };
+        filter.set_range(Quantity::Mass, Some([10.0, 2.5]));
+        filter.set_range(Quantity::Variable(Variable::LinkLength), Some([0.5, 1.0 / 3.0]));
+        assert_eq!(filter.range(Quantity::Mass), Some([2.5, 10.0]));
+        assert_eq!(Filter::parse(&filter.to_text()), Ok(filter));
+    }
+
+    #[test]
+    fn a_wrong_filter_is_told() {
+        let unknown = Filter::parse("[ranges]\nweight = [0.0, 1.0]").expect_err("unknown");
+        assert!(unknown.contains("`weight`") && unknown.contains("mass_kg"), "{unknown}");
+        assert!(Filter::parse("[ranges]\nmass_kg = [2.0, 1.0]").is_err());
+        assert!(Filter::parse("3-PRR R=1").is_err());
+    }
+}

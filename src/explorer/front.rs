@@ -1,0 +1,61 @@
+//! The front as the window shows it.
+
+use super::Row;
+use crate::optimize::{Archive, Evaluated, Outcome};
+use crate::study::FrontMember;
+
+/// A non-dominated design.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrontEntry {
+    /// Id of its evaluation.
+    pub id: usize,
+    /// Its numbers; from the fine grid where `verified`.
+    pub row: Row,
+    /// `R_w` on the reference grid \[m\].
+    pub reference_radius: f64,
+    /// Whether it was evaluated on the fine grid.
+    pub verified: bool,
+}
+
+impl FrontEntry {
+    /// A member of a run's front.
+    pub fn new(member: &FrontMember, verified: bool) -> Self {
+        Self {
+            id: member.id,
+            row: Row::new(member.generation, &member.evaluation),
+            reference_radius: member.reference_radius,
+            verified,
+        }
+    }
+
+    /// Both objectives, minimised.
+    pub fn objectives(&self) -> [f64; 2] {
+        [self.row.mass, -self.row.radius]
+    }
+}
+
+/// The non-dominated designs of a store, by mass, as its grid found them.
+pub fn front_of(store: &super::Store) -> Vec<FrontEntry> {
+    let mut archive = Archive::default();
+    for id in (0..store.len()).filter(|&id| store.is_feasible(id)) {
+        let objectives = [
+            store.column(super::Quantity::Mass)[id],
+            -store.column(super::Quantity::Radius)[id],
+        ];
+        let outcome = Outcome {
+            objectives,
+            violation: 0.0,
+        };
+        archive.insert(id, &Evaluated { x: Vec::new(), outcome });
+    }
+    let members = archive.iter().filter_map(|member| {
+        let row = store.row(member.id)?;
+        Some(FrontEntry {
+            id: member.id,
+            reference_radius: row.radius,
+            row,
+            verified: false,
+        })
+    });
+    members.collect()
+}

@@ -1,0 +1,48 @@
+//! The window: a run as it goes, its designs, and any one of them in 3-D.
+//!
+//! ```text
+//!  run thread ──events──► collector ──News──┐
+//!      │                                    ▼            Request
+//!      ├─► tables   (designs.csv, …)     Session ─────────────────► scene thread ──► viewer (in-process)
+//!      └─► recorder (recording.rrd)         ▲ ▲                         │
+//!                                           │ └─────── Answer ──────────┤
+//!                                        panels                         └──► verify thread (fine grid)
+//! ```
+//!
+//! No frame waits for a thread and no thread for a frame: news are put together until a frame fetches them, and of the
+//! requests only the latest counts. [`Session`] is everything the window knows, without a window; a panel reads it, and
+//! calls it to change something. No panel computes what a design is worth.
+
+mod app;
+mod document;
+mod files;
+mod filter;
+mod front;
+mod intake;
+mod open;
+mod panels;
+mod quantity;
+mod running;
+mod script;
+mod session;
+mod stage_hand;
+mod store;
+mod study_editor;
+mod theme;
+mod viewer;
+
+pub use app::{Explorer, Subject, run};
+pub use document::{Chosen, Document, History, Named, Origin};
+pub use files::Purpose;
+pub use filter::Filter;
+pub use front::FrontEntry;
+pub use intake::{Intake, News};
+pub use open::{OpenError, Opened, open};
+pub use panels::scatter::{Axis, axes};
+pub use panels::{Panel, Panels};
+pub use quantity::{Better, Quantity};
+pub use script::Script;
+pub use session::{MOST_PINS, Notice, Phase, Reference, Session, Staging, Wake};
+pub use stage_hand::Known;
+pub use store::{Row, Store};
+pub use study_editor::StudyEditor;

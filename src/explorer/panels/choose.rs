@@ -1,0 +1,211 @@
+//! Help in choosing among many: what matters how much, representatives, the filter, and what was kept.
+
+use egui::{DragValue, ScrollArea, Slider, Ui};
+
+use crate::explorer::{Filter, Quantity, Session, theme};
+use crate::optimize::{groups, ranking};
+
+/// The panel of choosing.
+pub struct ChoosePanel {
+    /// How much the mass counts, in [0, 1].
+    weight: f64,
+    groups: usize,
+    /// The middles of the groups, of which front and how many.
+    middles: Option<(u64, usize, Vec<usize>)>,
+}
+
+impl Default for ChoosePanel {
+    fn default() -> Self {
+        Self {
+            weight: 0.5,
+            groups: 5,
+            middles: None,
+        }
+    }
+}
+
+/// What the panel asks of the window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FilterFile {
+    /// Save the filter.
+    Save,
+    /// Read a filter.
+    Open,
+}
+
+impl ChoosePanel {
+    /// The panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
+        let mut asked = None;
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            ui.strong("Marked designs");
+            ui.horizontal_wrapped(|ui| {
+                let front = session.front();
+                let ends = front
+                    .first()
+                    .map(|entry| entry.id)
+                    .zip(front.last().map(|entry| entry.id));
+                if ui
+                    .button("Knee")
+                    .on_hover_text("where more R_w begins to cost much mass (K)")
+                    .clicked()
+                {
+                    session.choose_knee();
+                }
+                if let Some((lightest, largest)) = ends {
+                    if ui.button("Lightest").clicked() {
+                        session.choose(lightest);
+                    }
+                    if ui.button("Largest R_w").clicked() {
+                        session.choose(largest);
+                    }
+                }
+            });
+            ui.separator();
+            self.weighted(ui, session);
+            ui.separator();
+            self.clusters(ui, session);
+            ui.separator();
+            asked = filter(ui, session);
+            ui.separator();
+            kept(ui, session);
+        });
+        asked
+    }
+
+    fn weighted(&mut self, ui: &mut Ui, session: &mut Session) {
+        ui.strong("Weighted ranking");
+        let slider = ui.add(
+            Slider::new(&mut self.weight, 0.0..=1.0)
+                .custom_formatter(|weight, _| format!("{:.0} % mass", 100.0 * weight)),
+        );
+        ui.ctx()
+            .accesskit_node_builder(slider.id, |node| node.set_label("Weight of the mass"));
+        let objectives: Vec<[f64; 2]> = session.front().iter().map(|entry| entry.objectives()).collect();
+        let best: Vec<usize> = ranking(&objectives, self.weight)
+            .into_iter()
+            .take(5)
+            .map(|place| session.front()[place].id)
+            .collect();
+        designs(ui, session, &best);
+    }
+
+    fn clusters(&mut self, ui: &mut Ui, session: &mut Session) {
+        ui.horizontal(|ui| {
+            ui.strong("Groups of like designs");
+            ui.add(DragValue::new(&mut self.groups).range(2..=12).speed(0.05));
+        });
+        let front = session.front_number();
+        let middles = match self.middles.take() {
+            Some((of, groups, middles)) if of == front && groups == self.groups => middles,
+            _ => representatives(session, self.groups),
+        };
+        designs(ui, session, &middles);
+        self.middles = Some((front, self.groups, middles));
+    }
+}
+
+fn designs(ui: &mut Ui, session: &mut Session, ids: &[usize]) {
+    for &id in ids {
+        let Some(row) = session.row(id) else {
+            continue;
+        };
+        let color = theme::architecture(row.design.architecture, ui.visuals().dark_mode);
+        let text = format!(
+            "#{id} {}  {} kg  R_w {} m",
+            row.design.architecture,
+            theme::number(row.mass),
+            theme::number(row.radius)
+        );
+        if ui.link(egui::RichText::new(text).color(color)).clicked() {
+            session.choose(id);
+        }
+    }
+}
+
+fn filter(ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
+    let mut asked = None;
+    ui.strong("Filter");
+    let mut edited: Filter = session.document().filter.clone();
+    ui.checkbox(&mut edited.feasible_only, "feasible only");
+    let keys: Vec<String> = edited.ranges.keys().cloned().collect();
+    for key in keys {
+        let Some(quantity) = Quantity::find(&key) else {
+            continue;
+        };
+        ui.horizontal(|ui| {
+            let label = ui.label(quantity.title());
+            let mut lift = false;
+            if let Some([low, high]) = edited.ranges.get_mut(&key) {
+                let speed = ((*high - *low).abs() * 0.01).max(1e-4);
+                ui.add(DragValue::new(low).speed(speed).max_decimals(4))
+                    .labelled_by(label.id);
+                ui.label("to");
+                ui.add(DragValue::new(high).speed(speed).max_decimals(4))
+                    .labelled_by(label.id);
+                lift = ui.small_button("✕").clicked();
+            }
+            if lift {
+                edited.ranges.remove(&key);
+            }
+        });
+    }
+    egui::ComboBox::from_id_salt("add range")
+        .selected_text("add a range")
+        .show_ui(ui, |ui| {
+            for quantity in Quantity::all() {
+                if !edited.ranges.contains_key(&quantity.key())
+                    && ui.selectable_label(false, quantity.title()).clicked()
+                {
+                    let column = session.store().column(quantity);
+                    let range = column
+                        .iter()
+                        .filter(|value| value.is_finite())
+                        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
+                            [low.min(value), high.max(value)]
+                        });
+                    edited.set_range(quantity, Some(if range[0] <= range[1] { range } else { [0.0, 1.0] }));
+                }
+            }
+        });
+    if edited != session.document().filter {
+        session.history.drag("filter", |document| document.filter = edited);
+    }
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("Clear").clicked() {
+            session.history.edit(|document| document.filter = Filter::default());
+        }
+        if ui.button("Copy filter").clicked() {
+            ui.ctx().copy_text(session.document().filter.to_text());
+        }
+        if ui.button("Save filter…").clicked() {
+            asked = Some(FilterFile::Save);
+        }
+        if ui.button("Open filter…").clicked() {
+            asked = Some(FilterFile::Open);
+        }
+    });
+    asked
+}
+
+fn kept(ui: &mut Ui, session: &mut Session) {
+    ui.strong("Kept designs");
+    let kept = session.document().kept.clone();
+    if kept.is_empty() {
+        ui.weak("what-if designs that are kept stand here");
+    }
+    for named in &kept {
+        if ui.link(format!("{}: {}", named.name, named.design)).clicked() {
+            session.choose_named(named);
+        }
+    }
+}
+
+/// Members of the front in groups of like designs, the middle of each.
+fn representatives(session: &Session, count: usize) -> Vec<usize> {
+    let objectives: Vec<[f64; 2]> = session.front().iter().map(|entry| entry.objectives()).collect();
+    groups(&objectives, count)
+        .into_iter()
+        .map(|group| session.front()[usize::midpoint(group.start, group.end - 1)].id)
+        .collect()
+}

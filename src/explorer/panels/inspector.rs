@@ -1,0 +1,249 @@
+//! The inspector: everything about the design in the light, and what would be if one of its dimensions were another.
+
+use egui::{Color32, Grid, ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo, WidgetType};
+
+use crate::evaluation::ConstraintReport;
+use crate::explorer::quantity::symbol;
+use crate::explorer::{Known, Session, theme};
+use crate::mechanism::VARIABLES;
+
+/// The panel of the design in the light.
+#[derive(Default)]
+pub struct Inspector;
+
+impl Inspector {
+    /// The panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        let Some(chosen) = session.document().chosen.clone() else {
+            ui.weak("Click a design in the scatter, or walk along the front with the arrow keys.");
+            return;
+        };
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            heading(ui, session);
+            sliders(ui, session, &chosen.design.values());
+            ui.separator();
+            match session.known().cloned() {
+                Some(known) => {
+                    objectives(ui, session, &known);
+                    ui.separator();
+                    constraints(ui, session, &known);
+                }
+                None => {
+                    ui.weak("evaluating…");
+                }
+            }
+        });
+    }
+}
+
+fn heading(ui: &mut Ui, session: &mut Session) {
+    let name = session.chosen_name().unwrap_or_default();
+    let Some(chosen) = session.document().chosen.clone() else {
+        return;
+    };
+    ui.horizontal_wrapped(|ui| {
+        ui.heading(format!("{} {name}", chosen.design.architecture));
+        if session.is_what_if() {
+            ui.colored_label(theme::WHAT_IF, "what if: not of the run");
+            if ui
+                .button("Keep")
+                .on_hover_text("keeps it in the list of designs")
+                .clicked()
+            {
+                session.keep();
+            }
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        let pinned = session.document().pins.iter().any(|pin| pin.design == chosen.design);
+        if ui
+            .selectable_label(pinned, "📌 Pin")
+            .on_hover_text("compare up to four designs (P)")
+            .clicked()
+        {
+            session.toggle_pin();
+        }
+        if ui.button("Copy").on_hover_text("the design as text (Ctrl+C)").clicked() {
+            ui.ctx().copy_text(chosen.design.to_string());
+        }
+        if let crate::explorer::Origin::Evaluated(id) = chosen.origin {
+            let starred = session.document().stars.contains(&id);
+            if ui
+                .selectable_label(starred, if starred { "★" } else { "☆" })
+                .on_hover_text("star (S)")
+                .clicked()
+            {
+                session.toggle_star();
+            }
+            let mut note = session.document().notes.get(&id).cloned().unwrap_or_default();
+            let field = ui.add(
+                egui::TextEdit::singleline(&mut note)
+                    .hint_text("note")
+                    .desired_width(140.0),
+            );
+            ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("Note"));
+            if field.changed() {
+                session.history.drag("note", |document| {
+                    if note.is_empty() {
+                        document.notes.remove(&id);
+                    } else {
+                        document.notes.insert(id, note);
+                    }
+                });
+            }
+        }
+    });
+}
+
+fn sliders(ui: &mut Ui, session: &mut Session, values: &[f64; 5]) {
+    let bounds = session.study().bounds.clone();
+    for (index, variable) in VARIABLES.into_iter().enumerate() {
+        let [low, high] = bounds.range(variable);
+        let mut value = values[index];
+        // A design from elsewhere may lie outside the study's bounds.
+        let range = low.min(value)..=high.max(value);
+        let thin = variable.may_be_zero();
+        ui.horizontal(|ui| {
+            ui.add_sized([34.0, 18.0], egui::Label::new(symbol(variable)));
+            ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(60.0);
+            let slider = Slider::new(&mut value, range)
+                .custom_formatter(move |value, _| {
+                    if thin {
+                        format!("{:.2} mm", 1e3 * value)
+                    } else {
+                        format!("{value:.4} m")
+                    }
+                })
+                .custom_parser(move |text| {
+                    let text = text.trim();
+                    let (number, unit) = match text.strip_suffix("mm") {
+                        Some(number) => (number, 1e-3),
+                        None => (text.strip_suffix('m').unwrap_or(text), if thin { 1e-3 } else { 1.0 }),
+                    };
+                    Some(number.trim().parse::<f64>().ok()? * unit)
+                });
+            let slider = ui.add(slider);
+            ui.ctx()
+                .accesskit_node_builder(slider.id, |node| node.set_label(symbol(variable)));
+            if slider.changed() {
+                session.what_if(index, value);
+            }
+        });
+    }
+}
+
+fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
+    let evaluation = &known.evaluation;
+    let model = session.model();
+    let (legs, platform) = (
+        model.legs_mass(&evaluation.design),
+        model.platform_mass(&evaluation.design),
+    );
+    Grid::new("objectives").num_columns(2).show(ui, |ui| {
+        ui.label("mass in motion");
+        ui.strong(format!("{} kg", theme::number(evaluation.mass)));
+        ui.end_row();
+        ui.label("R_w");
+        ui.horizontal(|ui| {
+            if evaluation.is_feasible() {
+                ui.strong(format!("{} m", theme::number(evaluation.workspace_radius)));
+            } else {
+                ui.colored_label(theme::BROKEN, "no regular workspace: infeasible");
+            }
+            ui.weak(if known.verified {
+                "fine grid"
+            } else {
+                "search grid, verifying…"
+            });
+        });
+        ui.end_row();
+        if let Some(phi) = evaluation.home_phi_deg {
+            ui.label("home φ_c");
+            ui.label(format!("{phi}° ± {}°", 0.5 * model.workspace.rotation_range_deg));
+            ui.end_row();
+        }
+    });
+    // Mass by part, as a bar in two colours.
+    let total = (legs + platform).max(f64::MIN_POSITIVE);
+    let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 14.0), Sense::hover());
+    let split = rect.left() + rect.width() * (legs / total) as f32;
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect.with_max_x(split), 2.0, Color32::from_rgb(130, 145, 170));
+    painter.rect_filled(rect.with_min_x(split), 2.0, Color32::from_rgb(90, 150, 235));
+    ui.horizontal(|ui| {
+        ui.colored_label(
+            Color32::from_rgb(130, 145, 170),
+            format!("legs {} kg", theme::number(legs)),
+        );
+        ui.colored_label(
+            Color32::from_rgb(90, 150, 235),
+            format!("platform {} kg", theme::number(platform)),
+        );
+    });
+}
+
+fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
+    ui.label("constraints: least value over the workspace against its threshold");
+    let mut worst = None;
+    Grid::new("constraints")
+        .num_columns(4)
+        .spacing([8.0, 4.0])
+        .show(ui, |ui| {
+            for report in &known.evaluation.constraints {
+                ui.label(report.constraint.id());
+                ui.label(report.constraint.name().replace('_', " "));
+                margin_bar(ui, report);
+                ui.horizontal(|ui| {
+                    if report.active {
+                        ui.colored_label(theme::ACTIVE, "active");
+                    }
+                    if report.pose.is_some() && ui.small_button("worst pose").clicked() {
+                        worst = Some(report.constraint);
+                    }
+                });
+                ui.end_row();
+            }
+        });
+    if let Some(constraint) = worst {
+        session.show_worst(constraint);
+    }
+}
+
+/// A margin as a bar from its threshold: to the right where the constraint holds.
+fn margin_bar(ui: &mut Ui, report: &ConstraintReport) {
+    const WIDTH: f32 = 110.0;
+    let (rect, response) = ui.allocate_exact_size(Vec2::new(WIDTH, 14.0), Sense::hover());
+    let painter = ui.painter_at(rect);
+    let middle = rect.left() + 0.3 * WIDTH;
+    painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
+    // A margin of 1 is half the room that is left: large ones differ little.
+    let share = |margin: f64| (margin.abs() / (1.0 + margin.abs())) as f32;
+    let color = if report.margin < 0.0 {
+        theme::BROKEN
+    } else if report.active {
+        theme::ACTIVE
+    } else {
+        theme::SOUND
+    };
+    let bar = if report.margin < 0.0 {
+        rect.with_max_x(middle)
+            .with_min_x(middle - share(report.margin) * 2.0 * 0.3 * WIDTH)
+    } else {
+        rect.with_min_x(middle)
+            .with_max_x(middle + share(report.margin).max(0.01) * 0.7 * WIDTH)
+    };
+    painter.rect_filled(bar, 2.0, color);
+    painter.vline(middle, rect.y_range(), (1.0, theme::ink(ui)));
+    let unit = report.constraint.unit();
+    let text = format!(
+        "{}: least value {} {unit}, threshold {} {unit}, margin {:+.1} %",
+        report.constraint.id(),
+        report.value.map_or_else(|| "none".to_owned(), theme::number),
+        theme::number(report.threshold),
+        100.0 * report.margin
+    );
+    let label = text.clone();
+    response
+        .on_hover_text(text)
+        .widget_info(|| WidgetInfo::labeled(WidgetType::ProgressIndicator, true, label.clone()));
+}

@@ -1,0 +1,55 @@
+//! What of the design is drawn in 3-D.
+
+use egui::{Slider, Ui};
+
+use crate::explorer::Session;
+use crate::scene::{EllipsoidKind, Field};
+
+/// The panel of the layers.
+#[derive(Default)]
+pub struct LayersPanel;
+
+impl LayersPanel {
+    /// The panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        let layers = &mut session.staging.layers;
+        for (flag, name) in [
+            (&mut layers.legs, "Legs"),
+            (&mut layers.platform, "Platform"),
+            (&mut layers.labels, "Labels"),
+            (&mut layers.workspace, "Regular workspace"),
+            (&mut layers.singularities, "Singularities"),
+            (&mut layers.configuration, "Configuration space"),
+        ] {
+            ui.checkbox(flag, name);
+        }
+        ui.separator();
+        ui.label("ellipsoids");
+        ui.radio_value(&mut layers.ellipsoids, None, "no ellipsoids");
+        for kind in EllipsoidKind::ALL {
+            ui.radio_value(&mut layers.ellipsoids, Some(kind), format!("{} ellipsoids", kind.key()));
+        }
+        ui.separator();
+        ui.label("heatmap");
+        ui.radio_value(&mut layers.heatmap, None, "no heatmap");
+        for field in Field::ALL {
+            ui.radio_value(&mut layers.heatmap, Some(field), field.title());
+        }
+        let Some(home) = session.home() else {
+            return;
+        };
+        let mut degrees = (session.staging.heatmap_phi.unwrap_or(home.phi) - home.phi).to_degrees();
+        ui.horizontal(|ui| {
+            let label = ui.label("at φ_c +");
+            let slider = ui
+                .add(Slider::new(&mut degrees, -90.0..=90.0).suffix("°"))
+                .labelled_by(label.id);
+            if slider.changed() {
+                session.staging.heatmap_phi = Some(home.phi + degrees.to_radians());
+            }
+            if ui.button("follow pose").clicked() {
+                session.staging.heatmap_phi = session.pose().map(|pose| pose.phi);
+            }
+        });
+    }
+}

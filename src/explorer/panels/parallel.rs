@@ -1,0 +1,289 @@
+//! Parallel coordinates of variables, objectives and margins, with a brush on every axis.
+
+use std::sync::Arc;
+
+use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
+
+use crate::evaluation::Constraint;
+use crate::explorer::{Better, Quantity, Session, theme};
+use crate::mechanism::VARIABLES;
+
+/// Designs beside the front that are drawn, evenly over all of them: more lines would be a grey sheet.
+const SAMPLE: usize = 800;
+
+/// The panel of parallel coordinates.
+#[derive(Default)]
+pub struct ParallelPanel {
+    /// Where a brush began: its axis and value.
+    brushing: Option<(usize, f64)>,
+    /// Lines as drawn last, and what they show.
+    drawn: Option<(Drawn, Arc<Mesh>)>,
+    ranges: Vec<[f64; 2]>,
+}
+
+/// What the lines depend on.
+#[derive(PartialEq)]
+struct Drawn {
+    rect: Rect,
+    era: u64,
+    /// Designs, in steps: lines are built anew now and then while a run goes on.
+    count: usize,
+    front: Vec<usize>,
+    filter: String,
+    dark: bool,
+}
+
+fn axes() -> Vec<Quantity> {
+    let mut axes: Vec<Quantity> = VARIABLES.map(Quantity::Variable).to_vec();
+    axes.extend([Quantity::Mass, Quantity::Radius]);
+    axes.extend(
+        Constraint::ALL
+            .into_iter()
+            .filter(|&constraint| constraint != Constraint::DeterminantSign)
+            .map(Quantity::Margin),
+    );
+    axes
+}
+
+impl ParallelPanel {
+    /// The panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        ui.horizontal_wrapped(|ui| {
+            ui.weak("drag along an axis to brush it, click it to lift the brush");
+            if ui.button("Lift all").clicked() {
+                session.history.edit(|document| document.filter.ranges.clear());
+            }
+            if ui.button("Copy ranges").clicked() {
+                ui.ctx().copy_text(session.document().filter.to_text());
+            }
+        });
+        let axes = axes();
+        let (rect, response) = ui.allocate_exact_size(
+            ui.available_size().max(Vec2::new(300.0, 120.0)),
+            Sense::click_and_drag(),
+        );
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "Parallel coordinates"));
+        let plot = Rect::from_min_max(rect.min + Vec2::new(34.0, 40.0), rect.max - Vec2::new(34.0, 18.0));
+        self.lines(ui, session, &axes, plot);
+        let painter = ui.painter_at(rect);
+        painter.rect_filled(rect, 4.0, theme::ground(ui.visuals().dark_mode));
+        if let Some((_, mesh)) = &self.drawn {
+            painter.add(Shape::Mesh(Arc::clone(mesh)));
+        }
+        let place = |index: usize| plot.left() + plot.width() * index as f32 / (axes.len() - 1) as f32;
+        if let Some(known) = session.known() {
+            let row = crate::explorer::Row::new(0, &known.evaluation);
+            let points: Vec<Pos2> = axes
+                .iter()
+                .enumerate()
+                .map(|(index, axis)| Pos2::new(place(index), self.height(index, *axis, axis.of(&row), plot)))
+                .collect();
+            painter.line(
+                points,
+                Stroke::new(
+                    2.2,
+                    if session.is_what_if() {
+                        theme::WHAT_IF
+                    } else {
+                        theme::CHOSEN
+                    },
+                ),
+            );
+        }
+        let ink = theme::ink(ui);
+        for (index, axis) in axes.iter().enumerate() {
+            let x = place(index);
+            painter.vline(x, plot.y_range(), Stroke::new(1.0, ink.gamma_multiply(0.7)));
+            let better = match axis.better() {
+                Some(Better::Higher) => " ▲",
+                Some(Better::Lower) => " ▼",
+                None => "",
+            };
+            let font = FontId::proportional(12.0);
+            painter.text(
+                Pos2::new(x, rect.top() + 4.0),
+                Align2::CENTER_TOP,
+                format!("{}{better}", axis.short()),
+                font,
+                ink,
+            );
+            let font = FontId::proportional(9.5);
+            let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
+            let weak = ui.visuals().weak_text_color();
+            painter.text(
+                Pos2::new(x, plot.top() - 3.0),
+                Align2::CENTER_BOTTOM,
+                theme::number(high),
+                font.clone(),
+                weak,
+            );
+            painter.text(
+                Pos2::new(x, plot.bottom() + 3.0),
+                Align2::CENTER_TOP,
+                theme::number(low),
+                font,
+                weak,
+            );
+            if let Some([from, to]) = session.document().filter.range(*axis) {
+                let (top, bottom) = (
+                    self.height(index, *axis, to, plot),
+                    self.height(index, *axis, from, plot),
+                );
+                let brush = Rect::from_min_max(Pos2::new(x - 6.0, top), Pos2::new(x + 6.0, bottom));
+                painter.rect_filled(brush, 2.0, theme::ACTIVE.gamma_multiply(0.45));
+                painter.rect_stroke(brush, 2.0, Stroke::new(1.0, theme::ACTIVE), egui::StrokeKind::Middle);
+            }
+        }
+        self.brush(&response, session, &axes, plot);
+    }
+
+    /// Height of a value on an axis.
+    fn height(&self, index: usize, axis: Quantity, value: f64, plot: Rect) -> f32 {
+        let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
+        let scale = |value: f64| {
+            if axis.is_logarithmic() {
+                value.max(1e-9).log10()
+            } else {
+                value
+            }
+        };
+        let share = (scale(value) - scale(low)) / (scale(high) - scale(low)).max(1e-12);
+        plot.bottom() - plot.height() * share.clamp(-0.02, 1.02) as f32
+    }
+
+    /// Value at a height of an axis.
+    fn value(&self, index: usize, axis: Quantity, y: f32, plot: Rect) -> f64 {
+        let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
+        let share = f64::from(((plot.bottom() - y) / plot.height()).clamp(0.0, 1.0));
+        if axis.is_logarithmic() {
+            let (low, high) = (low.max(1e-9).log10(), high.max(1e-9).log10());
+            10f64.powf(low + share * (high - low))
+        } else {
+            low + share * (high - low)
+        }
+    }
+
+    fn brush(&mut self, response: &egui::Response, session: &mut Session, axes: &[Quantity], plot: Rect) {
+        let Some(pointer) = response.interact_pointer_pos() else {
+            self.brushing = None;
+            return;
+        };
+        let spacing = plot.width() / (axes.len() - 1) as f32;
+        let nearest = ((pointer.x - plot.left()) / spacing)
+            .round()
+            .clamp(0.0, (axes.len() - 1) as f32) as usize;
+        if response.clicked() {
+            session
+                .history
+                .edit(|document| document.filter.set_range(axes[nearest], None));
+        }
+        if response.drag_started() {
+            let origin = response
+                .ctx
+                .input(|input| input.pointer.press_origin())
+                .unwrap_or(pointer);
+            self.brushing = Some((nearest, self.value(nearest, axes[nearest], origin.y, plot)));
+        }
+        if let (true, Some((index, from))) = (response.dragged(), self.brushing) {
+            let to = self.value(index, axes[index], pointer.y, plot);
+            session.history.drag("brush", |document| {
+                document.filter.set_range(axes[index], Some([from, to]))
+            });
+        }
+    }
+
+    fn lines(&mut self, ui: &Ui, session: &Session, axes: &[Quantity], plot: Rect) {
+        let store = session.store();
+        let dark = ui.visuals().dark_mode;
+        // Up to a power of two designs look the same: the sample changes when their number doubles.
+        let drawn = Drawn {
+            rect: plot,
+            era: session.era(),
+            count: store.len().checked_ilog2().map_or(0, |bits| 1 << bits),
+            front: session.front().iter().map(|entry| entry.id).collect(),
+            filter: session.document().filter.to_text(),
+            dark,
+        };
+        if self.drawn.as_ref().is_some_and(|(before, _)| *before == drawn) {
+            return;
+        }
+        let every = drawn.count.div_ceil(SAMPLE).max(1);
+        let sample: Vec<usize> = (0..drawn.count)
+            .step_by(every)
+            .filter(|&id| store.is_feasible(id))
+            .collect();
+        self.ranges = axes
+            .iter()
+            .map(|axis| {
+                let column = store.column(*axis);
+                let values = sample.iter().map(|&id| column[id]);
+                let front = session.front().iter().map(|entry| axis.of(&entry.row));
+                let range = values
+                    .chain(front)
+                    .filter(|value| value.is_finite())
+                    .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+                        [low.min(value), high.max(value)]
+                    });
+                let range = match axis {
+                    Quantity::Variable(variable) => session.study().bounds.range(*variable),
+                    // Margins run away upwards: what matters is near 0.
+                    Quantity::Margin(_) => [range[0].min(0.0), range[1].clamp(0.1, 10.0)],
+                    _ => range,
+                };
+                if range[0] < range[1] {
+                    range
+                } else {
+                    [range[0].min(0.0), range[0].max(0.0) + 1.0]
+                }
+            })
+            .collect();
+        let sieve = session.document().filter.sieve(store);
+        let ground = theme::ground(dark);
+        let mut mesh = Mesh::default();
+        let spacing = plot.width() / (axes.len() - 1) as f32;
+        let mut line = |values: &dyn Fn(Quantity) -> f64, color: Color32, width: f32| {
+            let mut before: Option<Pos2> = None;
+            for (index, axis) in axes.iter().enumerate() {
+                let value = values(*axis);
+                let at = Pos2::new(
+                    plot.left() + spacing * index as f32,
+                    self.height(index, *axis, value, plot),
+                );
+                if let Some(from) = before {
+                    segment(&mut mesh, from, at, width, color);
+                }
+                before = Some(at);
+            }
+        };
+        // The dimmed first, the front last.
+        for lit in [false, true] {
+            for &id in sample.iter().filter(|&&id| sieve.passes(id) == lit) {
+                let color = theme::architecture(store.architecture(id), dark);
+                let share = if lit { 0.3 } else { 0.07 };
+                line(&|axis| store.column(axis)[id], theme::mix(color, ground, share), 0.7);
+            }
+        }
+        for lit in [false, true] {
+            for entry in session.front() {
+                if (entry.id < store.len() && sieve.passes(entry.id)) == lit {
+                    let color = theme::architecture(entry.row.design.architecture, dark);
+                    let share = if lit { 0.95 } else { 0.15 };
+                    line(&|axis| axis.of(&entry.row), theme::mix(color, ground, share), 1.3);
+                }
+            }
+        }
+        self.drawn = Some((drawn, Arc::new(mesh)));
+    }
+}
+
+/// A line of a mesh: one mesh holds thousands, which are built once and not in every frame.
+fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, width: f32, color: Color32) {
+    let along = (to - from).normalized();
+    let across = Vec2::new(-along.y, along.x) * (0.5 * width);
+    let first = mesh.vertices.len() as u32;
+    for corner in [from - across, from + across, to + across, to - across] {
+        mesh.colored_vertex(corner, color);
+    }
+    mesh.add_triangle(first, first + 1, first + 2);
+    mesh.add_triangle(first, first + 2, first + 3);
+}

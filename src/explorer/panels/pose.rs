@@ -1,0 +1,321 @@
+//! The pose: the manipulator from above, its platform dragged and turned by the mouse, and what holds there.
+
+use egui::{Align2, Color32, FontId, Grid, Pos2, Rect, Sense, Slider, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
+use glam::{DVec2, DVec3};
+
+use crate::explorer::{Session, theme};
+use crate::mechanism::Design;
+use crate::scene::{Part, Scene, SolidShape, Tour, manipulator, regular_workspace, tour};
+use crate::spatial::Pose;
+
+/// Poses around each rim of the tour, and how many are passed in a second.
+const TOUR_STEPS: usize = 90;
+const TOUR_RATE: f64 = 30.0;
+
+/// What the mouse has hold of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Grip {
+    /// The platform, this far from `P` \[m\].
+    Move(DVec2),
+    /// Its rim, turned this far from the platform's own angle \[rad\].
+    Turn(f64),
+}
+
+/// A tour being played.
+struct Playing {
+    design: Design,
+    tour: Tour,
+    at: f64,
+}
+
+/// The panel of the pose.
+#[derive(Default)]
+pub struct PosePanel {
+    grip: Option<Grip>,
+    stopped: Option<String>,
+    playing: Option<Playing>,
+}
+
+impl PosePanel {
+    /// The panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        let (Some(known), Some(pose), Some(home)) = (session.known().cloned(), session.pose(), session.home()) else {
+            ui.weak("no design in the light");
+            return;
+        };
+        let evaluation = &known.evaluation;
+        self.tour(ui, session, &known);
+        self.sliders(ui, session, pose, home, evaluation.design.base_radius);
+        match &self.stopped {
+            Some(reason) => ui.colored_label(theme::BROKEN, format!("stopped: {reason}")),
+            None => ui.weak("drag the platform to move it, its rim to turn it"),
+        };
+        let pose = session.pose().unwrap_or(pose);
+        numbers(ui, session, &evaluation.design, &pose);
+        self.top_view(ui, session, &evaluation.design, pose);
+    }
+
+    fn tour(&mut self, ui: &mut Ui, session: &mut Session, known: &crate::explorer::Known) {
+        let design = known.evaluation.design;
+        if self.playing.as_ref().is_some_and(|playing| playing.design != design) {
+            self.playing = None;
+        }
+        ui.horizontal(|ui| {
+            if ui.button("Home").clicked() {
+                session.staging.pose = None;
+                self.stopped = None;
+                self.playing = None;
+            }
+            let cylinder = regular_workspace(&known.evaluation, session.model().workspace.rotation_range_deg);
+            let playing = self.playing.is_some();
+            let button = egui::Button::selectable(playing, if playing { "⏹ Tour" } else { "▶ Tour" });
+            if ui
+                .add_enabled(cylinder.is_some(), button)
+                .on_hover_text("around the regular workspace")
+                .clicked()
+            {
+                self.playing = match (playing, cylinder) {
+                    (false, Some(cylinder)) => tour(session.model(), &design, &cylinder, TOUR_STEPS)
+                        .map(|tour| Playing { design, tour, at: 0.0 }),
+                    _ => None,
+                };
+            }
+            if let Some(playing) = &mut self.playing {
+                let poses = &playing.tour.poses;
+                playing.at =
+                    (playing.at + f64::from(ui.input(|input| input.stable_dt)) * TOUR_RATE) % poses.len() as f64;
+                session.staging.pose = poses.get(playing.at as usize).copied();
+                self.stopped = None;
+                ui.weak(format!("pose {} of {}", playing.at as usize + 1, poses.len()));
+                ui.ctx().request_repaint();
+            }
+        });
+    }
+
+    fn sliders(&mut self, ui: &mut Ui, session: &mut Session, pose: Pose, home: Pose, reach: f64) {
+        let mut target = pose;
+        let turn = std::f64::consts::PI;
+        let axes: [(&str, &mut f64, std::ops::RangeInclusive<f64>, bool); 3] = [
+            ("x", &mut target.position.x, -reach..=reach, false),
+            ("y", &mut target.position.y, -reach..=reach, false),
+            ("φ", &mut target.phi, home.phi - turn..=home.phi + turn, true),
+        ];
+        let mut changed = false;
+        for (name, value, range, angle) in axes {
+            ui.horizontal(|ui| {
+                ui.add_sized([14.0, 18.0], egui::Label::new(name));
+                ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(60.0);
+                let slider = Slider::new(value, range)
+                    .custom_formatter(move |value, _| {
+                        if angle {
+                            format!("{:.2}°", value.to_degrees())
+                        } else {
+                            format!("{value:.4} m")
+                        }
+                    })
+                    .custom_parser(move |text| {
+                        let number = text.trim().trim_end_matches(['°', 'm']).trim().parse::<f64>().ok()?;
+                        Some(if angle { number.to_radians() } else { number })
+                    });
+                let slider = ui.add(slider);
+                ui.ctx()
+                    .accesskit_node_builder(slider.id, |node| node.set_label(format!("pose {name}")));
+                changed |= slider.changed();
+            });
+        }
+        if changed {
+            self.playing = None;
+            self.stopped = session.move_platform(target);
+        }
+    }
+
+    fn top_view(&mut self, ui: &mut Ui, session: &mut Session, design: &Design, pose: Pose) {
+        let side = ui.available_width().min(ui.available_height().max(220.0));
+        let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), side), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "Top view"));
+        let plan = Plan::new(rect, design);
+        let Ok(scene) = manipulator(session.model(), design, &pose) else {
+            ui.painter_at(rect).text(
+                rect.center(),
+                Align2::CENTER_CENTER,
+                "this pose is not reached",
+                FontId::proportional(14.0),
+                theme::BROKEN,
+            );
+            return;
+        };
+        self.drag(&response, session, &plan, design, pose);
+        let workspace = session
+            .known()
+            .and_then(|known| regular_workspace(&known.evaluation, session.model().workspace.rotation_range_deg));
+        let painter = ui.painter_at(rect);
+        painter.rect_filled(rect, 4.0, theme::ground(ui.visuals().dark_mode));
+        if let Some(cylinder) = workspace {
+            let centre = plan.screen(cylinder.centre);
+            let radius = (cylinder.radius * plan.scale) as f32;
+            painter.circle(
+                centre,
+                radius,
+                theme::SOUND.gamma_multiply(0.12),
+                Stroke::new(1.2, theme::SOUND),
+            );
+        }
+        paint(ui, &painter, &plan, &scene);
+        let rim = (design.platform_radius * plan.scale) as f32;
+        painter.circle_stroke(
+            plan.screen(pose.position),
+            rim,
+            Stroke::new(1.0, Color32::from_rgb(90, 150, 235).gamma_multiply(0.6)),
+        );
+    }
+
+    fn drag(&mut self, response: &egui::Response, session: &mut Session, plan: &Plan, design: &Design, pose: Pose) {
+        let Some(pointer) = response.interact_pointer_pos() else {
+            self.grip = None;
+            return;
+        };
+        let at = plan.world(pointer);
+        let arm = at - pose.position;
+        if response.drag_started() {
+            let near_rim = arm.length() > 0.7 * design.platform_radius;
+            self.grip = Some(if near_rim {
+                Grip::Turn(arm.to_angle() - pose.phi)
+            } else {
+                Grip::Move(arm)
+            });
+            self.playing = None;
+        }
+        if !response.dragged() {
+            return;
+        }
+        let target = match self.grip {
+            Some(Grip::Move(offset)) => Pose {
+                position: at - offset,
+                ..pose
+            },
+            Some(Grip::Turn(offset)) => {
+                let turn = std::f64::consts::TAU;
+                let by = (arm.to_angle() - offset - pose.phi).rem_euclid(turn);
+                Pose {
+                    phi: pose.phi + if by > 0.5 * turn { by - turn } else { by },
+                    ..pose
+                }
+            }
+            None => return,
+        };
+        self.stopped = session.move_platform(target);
+    }
+}
+
+/// From metres to the screen.
+struct Plan {
+    centre: Pos2,
+    scale: f64,
+}
+
+impl Plan {
+    fn new(rect: Rect, design: &Design) -> Self {
+        let reach = 1.25
+            * design
+                .base_radius
+                .max(0.5 * (design.platform_radius + design.link_length));
+        Self {
+            centre: rect.center(),
+            scale: 0.5 * f64::from(rect.width().min(rect.height())) / reach,
+        }
+    }
+
+    fn screen(&self, at: DVec2) -> Pos2 {
+        self.centre + Vec2::new((at.x * self.scale) as f32, -(at.y * self.scale) as f32)
+    }
+
+    fn world(&self, at: Pos2) -> DVec2 {
+        let offset = at - self.centre;
+        DVec2::new(f64::from(offset.x), -f64::from(offset.y)) / self.scale
+    }
+}
+
+fn paint(ui: &Ui, painter: &egui::Painter, plan: &Plan, scene: &Scene) {
+    let place = |at: DVec3| plan.screen(at.truncate());
+    for line in &scene.lines {
+        let color = match line.part {
+            Part::AxisX => Color32::from_rgb(230, 70, 70),
+            Part::AxisY => Color32::from_rgb(80, 200, 90),
+            Part::Stroke => theme::ACTIVE,
+            _ => Color32::from_gray(130),
+        };
+        let points: Vec<Pos2> = line.points.iter().map(|&at| place(at)).collect();
+        painter.line(points, Stroke::new(1.2, color));
+    }
+    for solid in &scene.solids {
+        let color = match solid.part {
+            Part::PlatformBar => Color32::from_rgb(90, 150, 235),
+            Part::Tube | Part::Crank => Color32::from_rgb(120, 134, 158),
+            Part::Slider | Part::ActuatedJoint => Color32::from_rgb(255, 128, 20),
+            Part::PassiveJoint => Color32::from_gray(170),
+            _ => Color32::from_rgb(165, 178, 198),
+        };
+        match solid.shape {
+            // A pin stands upright: a disc from above.
+            SolidShape::Bar { from, radius, .. } if matches!(solid.part, Part::ActuatedJoint | Part::PassiveJoint) => {
+                painter.circle_filled(place(from), ((radius * plan.scale) as f32).max(2.5), color);
+            }
+            SolidShape::Bar { from, to, radius } => {
+                let width = ((2.0 * radius * plan.scale) as f32).max(2.0);
+                painter.line_segment([place(from), place(to)], Stroke::new(width, color));
+            }
+            SolidShape::Block {
+                centre,
+                half_size,
+                angle,
+            } => {
+                let axis = DVec2::from_angle(angle);
+                let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(a, b): (f64, f64)| {
+                    plan.screen(centre.truncate() + axis * (a * half_size.x) + axis.perp() * (b * half_size.y))
+                });
+                painter.add(egui::Shape::convex_polygon(corners.to_vec(), color, Stroke::NONE));
+            }
+        }
+    }
+    for label in &scene.labels {
+        painter.text(
+            place(label.at) + Vec2::new(6.0, -6.0),
+            Align2::LEFT_BOTTOM,
+            &label.text,
+            FontId::proportional(11.0),
+            theme::ink(ui),
+        );
+    }
+}
+
+fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
+    let Ok(Ok(report)) = session.model().pose(design, pose) else {
+        return;
+    };
+    let thresholds = &session.model().thresholds;
+    let values = [
+        ("κ_F⁻¹", report.inverse_condition, thresholds.inverse_condition, ""),
+        ("k_xy", report.rigidity.k_xy, thresholds.k_xy, "N/m"),
+        ("k_z", report.rigidity.k_z, thresholds.k_z, "N/m"),
+        ("k_φz", report.rigidity.k_phi_z, thresholds.k_phi_z, "N·m/rad"),
+    ];
+    Grid::new("pose numbers")
+        .num_columns(4)
+        .spacing([10.0, 2.0])
+        .show(ui, |ui| {
+            for (index, (name, value, least, unit)) in values.into_iter().enumerate() {
+                ui.label(name);
+                let color = if value < least { theme::BROKEN } else { theme::SOUND };
+                ui.colored_label(color, format!("{} {unit}", theme::number(value)));
+                if index % 2 == 1 {
+                    ui.end_row();
+                }
+            }
+        });
+    let unit = design.architecture.actuator().unit();
+    let actuators = report.actuators.map(theme::number).join(", ");
+    ui.weak(format!(
+        "actuators {actuators} {unit}; nearest limit {} m",
+        theme::number(report.slack)
+    ));
+}

@@ -1,0 +1,243 @@
+//! The run: what is searched and how, start to end, and how it goes.
+
+use egui::{ComboBox, DragValue, Grid, ProgressBar, Ui};
+use egui_plot::{Line, Plot, PlotPoints};
+
+use crate::explorer::{Phase, Session, StudyEditor, theme};
+use crate::study::{AlgorithmName, BUILTIN, Outcome};
+
+/// The panel of the run.
+#[derive(Default)]
+pub struct RunPanel;
+
+impl RunPanel {
+    /// The panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        study(ui, session);
+        settings(ui, session);
+        ui.add_space(4.0);
+        buttons(ui, session);
+        ui.add_space(4.0);
+        progress(ui, session);
+        curve(ui, session);
+    }
+}
+
+fn study(ui: &mut Ui, session: &mut Session) {
+    ui.horizontal(|ui| {
+        ui.label("study");
+        let mut picked = None;
+        ComboBox::from_id_salt("study")
+            .selected_text(session.editor.study().name.clone())
+            .show_ui(ui, |ui| {
+                for builtin in BUILTIN {
+                    let here = session.editor.study().name == builtin.name;
+                    if ui.selectable_label(here, builtin.name).clicked() {
+                        picked = Some(builtin);
+                    }
+                }
+            });
+        if let Some(builtin) = picked {
+            match StudyEditor::builtin(&builtin) {
+                Ok(editor) => session.editor = editor,
+                Err(error) => session.tell_error(error.to_string()),
+            }
+        }
+        if session.editor.is_changed() {
+            ui.weak("changed");
+        }
+    });
+    let description = session.editor.study().description.clone();
+    ui.add(egui::Label::new(egui::RichText::new(description).weak()).truncate());
+}
+
+fn settings(ui: &mut Ui, session: &mut Session) {
+    let mut study = session.editor.study().clone();
+    Grid::new("run settings").num_columns(4).show(ui, |ui| {
+        let label = ui.label("algorithm");
+        ComboBox::from_id_salt("algorithm")
+            .selected_text(study.optimizer.algorithm.to_string())
+            .width(80.0)
+            .show_ui(ui, |ui| {
+                for name in AlgorithmName::ALL {
+                    ui.selectable_value(&mut study.optimizer.algorithm, name, name.to_string());
+                }
+            })
+            .response
+            .labelled_by(label.id);
+        let label = ui.label("evaluations");
+        ui.add(
+            DragValue::new(&mut study.optimizer.evaluations)
+                .range(1..=100_000_000)
+                .speed(50),
+        )
+        .labelled_by(label.id);
+        ui.end_row();
+        let label = ui.label("seed");
+        ui.horizontal(|ui| {
+            ui.add(
+                DragValue::new(&mut study.optimizer.seed)
+                    .range(0..=i64::MAX as u64)
+                    .speed(0.1),
+            )
+            .labelled_by(label.id);
+            if ui.button("random").on_hover_text("a seed by chance").clicked() {
+                study.optimizer.seed = random_seed();
+            }
+        });
+        let label = ui.label("threads");
+        ui.horizontal(|ui| {
+            let cores = std::thread::available_parallelism().map_or(1, usize::from);
+            let mut threads = study.optimizer.threads.unwrap_or(cores);
+            let field = ui
+                .add(DragValue::new(&mut threads).range(1..=1024).speed(0.05))
+                .labelled_by(label.id);
+            if field.changed() {
+                study.optimizer.threads = Some(threads);
+            }
+            let of = if study.optimizer.threads.is_none() {
+                "all cores"
+            } else {
+                "fixed"
+            };
+            ui.weak(of);
+        });
+        ui.end_row();
+    });
+    session.editor.change(|edited| *edited = study);
+    for fault in session.editor.faults() {
+        ui.colored_label(theme::BROKEN, format!("`{}` {}", fault.key, fault.message));
+    }
+}
+
+/// A seed of up to four digits, which can be told to others.
+fn random_seed() -> u64 {
+    let mut bytes = [0; 2];
+    // Without a source of chance the seed stays a number like any other.
+    let _ = getrandom::fill(&mut bytes);
+    u64::from(u16::from_le_bytes(bytes)) % 10_000
+}
+
+fn buttons(ui: &mut Ui, session: &mut Session) {
+    ui.horizontal_wrapped(|ui| {
+        let sound = session.editor.faults().is_empty();
+        match session.phase() {
+            Phase::Searching => {
+                if ui.button("⏸ Pause").clicked() {
+                    session.pause();
+                }
+            }
+            Phase::Paused => {
+                if ui.button("▶ Resume").clicked() {
+                    session.resume();
+                }
+            }
+            Phase::Verifying { .. } => {
+                ui.add_enabled(false, egui::Button::new("⏸ Pause"));
+            }
+            _ => {
+                if ui.add_enabled(sound, egui::Button::new("▶ Start")).clicked() {
+                    session.start();
+                }
+            }
+        }
+        let can_step = matches!(session.phase(), Phase::Searching | Phase::Paused);
+        if ui
+            .add_enabled(can_step, egui::Button::new("⏭ Step"))
+            .on_hover_text("one generation, then hold")
+            .clicked()
+        {
+            session.step();
+        }
+        if ui
+            .add_enabled(can_step, egui::Button::new("⏹ Stop"))
+            .on_hover_text("what was found is verified and kept")
+            .clicked()
+        {
+            session.stop();
+        }
+        if ui
+            .add_enabled(sound && session.is_running(), egui::Button::new("⟲ Restart"))
+            .on_hover_text("from the beginning, with the study as it stands here")
+            .clicked()
+        {
+            session.start();
+        }
+    });
+}
+
+fn progress(ui: &mut Ui, session: &Session) {
+    let budget = session.study().optimizer.evaluations;
+    let done = session.store().len();
+    let seconds = session.elapsed().as_secs_f64();
+    let (share, text) = match session.phase() {
+        Phase::Verifying { done, total } => {
+            let share = *done as f32 / (*total).max(1) as f32;
+            (share, format!("verifying on the fine grid: {done} of {total}"))
+        }
+        _ => (
+            done as f32 / budget.max(1) as f32,
+            format!("{done} of {budget} evaluations"),
+        ),
+    };
+    let bar = ui.add(ProgressBar::new(share).text(text.clone()));
+    bar.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::ProgressIndicator, true, "Progress"));
+    let words = match session.phase() {
+        Phase::Ready => "ready".to_owned(),
+        Phase::Searching => {
+            let rate = done as f64 / seconds.max(1e-3);
+            let left = (budget.saturating_sub(done)) as f64 / rate.max(1e-3);
+            format!("{rate:.0} designs/s, {left:.0} s left")
+        }
+        Phase::Paused => "paused".to_owned(),
+        Phase::Verifying { .. } => "search done".to_owned(),
+        Phase::Finished(Outcome::Completed) => format!("finished in {seconds:.1} s"),
+        Phase::Finished(Outcome::Stopped) => format!("stopped after {seconds:.1} s"),
+        Phase::Failed => "broke off".to_owned(),
+        Phase::Opened(path) => format!("opened {}", path.display()),
+    };
+    ui.label(words);
+    if let Some(last) = session.generations().last() {
+        ui.weak(format!(
+            "generation {}, {} feasible, {} on the front{}",
+            last.generation,
+            last.feasible,
+            session.front().len(),
+            session
+                .threads()
+                .map_or(String::new(), |threads| format!(", {threads} threads")),
+        ));
+    }
+}
+
+fn curve(ui: &mut Ui, session: &Session) {
+    let generations = session.generations();
+    // As many points as a screen can show.
+    let every = generations.len().div_ceil(600).max(1);
+    let points: Vec<[f64; 2]> = generations
+        .iter()
+        .step_by(every)
+        .chain(generations.last())
+        .map(|generation| [generation.evaluations as f64, generation.hypervolume])
+        .collect();
+    let color = theme::SOUND;
+    let shown = Plot::new("hypervolume")
+        .height(ui.available_height().clamp(70.0, 160.0))
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .include_y(0.0)
+        .x_axis_label("evaluations")
+        .y_axis_label("hypervolume [kg·m]")
+        .show(ui, |plot| {
+            plot.line(
+                Line::new("hypervolume", PlotPoints::from(points))
+                    .color(color)
+                    .width(1.6),
+            );
+        });
+    shown
+        .response
+        .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, "Hypervolume over evaluations"));
+}

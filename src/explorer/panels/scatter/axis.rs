@@ -1,0 +1,137 @@
+//! An axis of the scatter: its quantity, range, ticks.
+
+use egui_plot::{GridInput, GridMark, PlotBounds};
+
+use crate::explorer::{Better, Quantity, Store};
+
+/// A quantity on an axis.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(from = "(String, bool)", into = "(String, bool)")]
+pub struct Axis {
+    pub(super) quantity: Quantity,
+    pub(super) log: bool,
+}
+
+/// Two axes, the first logarithmic or not.
+pub fn axes(x: Quantity, y: Quantity, log: bool) -> [Axis; 2] {
+    [
+        Axis { quantity: x, log },
+        Axis {
+            quantity: y,
+            log: false,
+        },
+    ]
+}
+
+impl From<Axis> for (String, bool) {
+    fn from(axis: Axis) -> Self {
+        (axis.quantity.key(), axis.log)
+    }
+}
+
+impl From<(String, bool)> for Axis {
+    fn from((key, log): (String, bool)) -> Self {
+        Self {
+            quantity: Quantity::find(&key).unwrap_or(Quantity::Mass),
+            log,
+        }
+    }
+}
+
+impl Axis {
+    pub(super) fn place(self, value: f64) -> f64 {
+        if self.log { value.max(1e-12).log10() } else { value }
+    }
+
+    pub(super) fn title(self) -> String {
+        let better = match self.quantity.better() {
+            Some(Better::Lower) => "  ◀ better",
+            Some(Better::Higher) => "  better ▶",
+            None => "",
+        };
+        format!("{}{better}", self.quantity.title())
+    }
+}
+
+/// Range of the feasible designs, as far as it was looked at.
+#[derive(Default)]
+pub(super) struct Extent {
+    axes: Option<[Axis; 2]>,
+    era: u64,
+    seen: usize,
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Extent {
+    pub(super) fn update(&mut self, axes: [Axis; 2], era: u64, store: &Store) {
+        if self.axes != Some(axes) || self.era != era || self.seen > store.len() {
+            *self = Self {
+                axes: Some(axes),
+                era,
+                seen: 0,
+                low: [f64::INFINITY; 2],
+                high: [f64::NEG_INFINITY; 2],
+            };
+        }
+        let columns = axes.map(|axis| store.column(axis.quantity));
+        for id in self.seen..store.len() {
+            if store.is_feasible(id) {
+                self.include([0, 1].map(|k| axes[k].place(columns[k][id])));
+            }
+        }
+        self.seen = store.len();
+    }
+
+    fn include(&mut self, place: [f64; 2]) {
+        if place.iter().all(|value| value.is_finite()) {
+            for k in 0..2 {
+                self.low[k] = self.low[k].min(place[k]);
+                self.high[k] = self.high[k].max(place[k]);
+            }
+        }
+    }
+
+    pub(super) fn bounds(&self) -> PlotBounds {
+        let range = |k: usize| {
+            let (low, high) = (self.low[k], self.high[k]);
+            if low > high {
+                return [0.0, 1.0];
+            }
+            let margin = 0.05 * (high - low).max(1e-3 * high.abs()).max(1e-9);
+            [low - margin, high + margin]
+        };
+        let ([x0, x1], [y0, y1]) = (range(0), range(1));
+        PlotBounds::from_min_max([x0, y0], [x1, y1])
+    }
+}
+
+pub(super) fn tick(axis: Axis, mark: GridMark) -> String {
+    if axis.log {
+        let value = 10f64.powf(mark.value);
+        if value >= 1e5 || value < 1e-3 {
+            format!("{value:.0e}")
+        } else {
+            // Without the rounding error of the power.
+            format!("{}", (value * 1e6).round() / 1e6)
+        }
+    } else {
+        let digits = (-mark.step_size.abs().log10().floor()).clamp(0.0, 8.0) as usize;
+        format!("{:.digits$}", mark.value)
+    }
+}
+
+/// Decades, and twos and fives between them where there is room.
+pub(super) fn decades(input: GridInput) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    let mut marks = Vec::new();
+    for decade in low.floor() as i32..=high.ceil() as i32 {
+        for (factor, step) in [(1.0f64, 1.0), (2.0, 0.3), (5.0, 0.3)] {
+            let value = f64::from(decade) + factor.log10();
+            if (low..=high).contains(&value) {
+                marks.push(GridMark { value, step_size: step });
+            }
+        }
+    }
+    marks
+}

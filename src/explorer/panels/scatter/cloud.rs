@@ -1,0 +1,219 @@
+//! A million designs as a picture: drawn into pixels once, then only what is new.
+//!
+//! Shapes would be built and sent to the graphics card anew in every frame. The picture is stretched while the view moves,
+//! and drawn again behind it, a few milliseconds a frame.
+
+use std::time::{Duration, Instant};
+
+use egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
+
+use crate::explorer::filter::Sieve;
+use crate::explorer::{Store, theme};
+
+/// What a picture shows; another view is another picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct View {
+    /// Pixels across and down.
+    pub size: [usize; 2],
+    /// Smallest coordinates shown.
+    pub low: [f64; 2],
+    /// Largest coordinates shown.
+    pub high: [f64; 2],
+    /// Everything else that decides which pixels are painted how.
+    pub style: Style,
+}
+
+/// What decides on the painting of a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Style {
+    /// Axes, with whether they are logarithmic.
+    pub axes: [(super::Quantity, bool); 2],
+    /// The store that ids belong to.
+    pub era: u64,
+    /// Text of the filter.
+    pub filter: String,
+    /// Dark ground.
+    pub dark: bool,
+}
+
+/// No design.
+const NOBODY: u32 = u32::MAX;
+
+/// Designs drawn between two looks at the clock.
+const BATCH: usize = 4096;
+
+/// Marks 5 pixels wide, a row of bits each: disc, square, triangle, diamond.
+const MARKS: [[u8; 5]; 4] = [
+    [0b01110, 0b11111, 0b11111, 0b11111, 0b01110],
+    [0b11111, 0b11111, 0b11111, 0b11111, 0b11111],
+    [0b00100, 0b00100, 0b01110, 0b01110, 0b11111],
+    [0b00100, 0b01110, 0b11111, 0b01110, 0b00100],
+];
+/// Marks of infeasible and dimmed designs, and of crowds.
+const SMALL: [u8; 5] = [0, 0b01110, 0b01110, 0b01110, 0];
+/// Designs beyond which marks are small.
+const CROWD: usize = 100_000;
+
+struct Picture {
+    view: View,
+    pixels: Vec<Color32>,
+    /// What stands at a pixel, the higher the more it matters.
+    rank: Vec<u8>,
+    /// Whose pixel it is.
+    ids: Vec<u32>,
+    /// Designs drawn so far.
+    drawn: usize,
+}
+
+impl Picture {
+    fn new(view: View) -> Self {
+        let count = view.size[0] * view.size[1];
+        Self {
+            pixels: vec![Color32::TRANSPARENT; count],
+            rank: vec![0; count],
+            ids: vec![NOBODY; count],
+            drawn: 0,
+            view,
+        }
+    }
+
+    /// Draws designs until `deadline`; tells whether any was drawn.
+    fn draw(&mut self, store: &Store, sieve: &Sieve<'_>, deadline: Instant) -> bool {
+        let before = self.drawn;
+        let [(x, x_log), (y, y_log)] = self.view.style.axes;
+        let (xs, ys) = (store.column(x), store.column(y));
+        let View { size, low, high, .. } = self.view;
+        let scale = [0, 1].map(|k| size[k] as f64 / (high[k] - low[k]));
+        let dark = self.view.style.dark;
+        let ground = theme::ground(dark);
+        let colors: Vec<Color32> = crate::mechanism::Architecture::ALL
+            .iter()
+            .map(|&architecture| theme::architecture(architecture, dark))
+            .collect();
+        let crowded = store.len() > CROWD;
+        let place = |value: f64, log: bool| if log { value.max(1e-12).log10() } else { value };
+        while self.drawn < store.len() && Instant::now() < deadline {
+            let end = (self.drawn + BATCH).min(store.len());
+            for id in self.drawn..end {
+                let column = (place(xs[id], x_log) - low[0]) * scale[0];
+                let row = (high[1] - place(ys[id], y_log)) * scale[1];
+                // Not a number is not inside either.
+                if !(column >= 0.0 && row >= 0.0 && column < size[0] as f64 && row < size[1] as f64) {
+                    continue;
+                }
+                let feasible = store.is_feasible(id);
+                let lit = sieve.passes(id);
+                let index = theme::index(store.architecture(id)) % MARKS.len();
+                let (rank, color) = match (lit, feasible) {
+                    (true, true) => (4, theme::mix(colors[index], ground, 0.85)),
+                    (true, false) => (3, theme::infeasible(dark)),
+                    (false, true) => (2, theme::mix(colors[index], ground, 0.16)),
+                    (false, false) => (1, theme::mix(theme::infeasible(dark), ground, 0.22)),
+                };
+                let mark = if crowded || rank < 4 { &SMALL } else { &MARKS[index] };
+                self.stamp(mark, column as usize, row as usize, rank, color, id as u32);
+            }
+            self.drawn = end;
+        }
+        self.drawn > before
+    }
+
+    fn stamp(&mut self, mark: &[u8; 5], column: usize, row: usize, rank: u8, color: Color32, id: u32) {
+        let [width, height] = self.view.size;
+        for (dy, bits) in mark.iter().enumerate() {
+            let Some(y) = (row + dy).checked_sub(2).filter(|&y| y < height) else {
+                continue;
+            };
+            for dx in 0..5 {
+                if bits >> (4 - dx) & 1 == 0 {
+                    continue;
+                }
+                if let Some(x) = (column + dx).checked_sub(2).filter(|&x| x < width) {
+                    let at = y * width + x;
+                    if rank >= self.rank[at] {
+                        self.rank[at] = rank;
+                        self.pixels[at] = color;
+                        self.ids[at] = id;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The picture on screen, and the one that will take its place.
+#[derive(Default)]
+pub struct Cloud {
+    shown: Option<Picture>,
+    coming: Option<Picture>,
+    texture: Option<TextureHandle>,
+}
+
+impl Cloud {
+    /// Draws what `view` shows of the store, for at most `budget`; tells whether all is drawn.
+    pub fn advance(&mut self, ctx: &Context, store: &Store, sieve: &Sieve<'_>, view: &View, budget: Duration) -> bool {
+        let deadline = Instant::now() + budget;
+        if let Some(shown) = self.shown.as_mut().filter(|shown| shown.view == *view) {
+            self.coming = None;
+            let changed = shown.draw(store, sieve, deadline);
+            let done = shown.drawn == store.len();
+            if changed {
+                self.upload(ctx);
+            }
+            return done;
+        }
+        let coming = match &mut self.coming {
+            Some(coming) if coming.view == *view => coming,
+            other => other.insert(Picture::new(view.clone())),
+        };
+        coming.draw(store, sieve, deadline);
+        let done = coming.drawn == store.len();
+        // Another store, filter or axes: half a picture of what is asked is better than a whole one of what is not.
+        let stale = self.shown.as_ref().is_none_or(|shown| shown.view.style != view.style);
+        if done || stale {
+            self.shown = self.coming.take();
+            self.upload(ctx);
+        }
+        done
+    }
+
+    fn upload(&mut self, ctx: &Context) {
+        let Some(shown) = &self.shown else {
+            return;
+        };
+        let image = ColorImage::new(shown.view.size, shown.pixels.clone());
+        match &mut self.texture {
+            Some(texture) => texture.set(image, TextureOptions::NEAREST),
+            None => self.texture = Some(ctx.load_texture("designs", image, TextureOptions::NEAREST)),
+        }
+    }
+
+    /// The picture with the coordinates of its corners.
+    pub fn picture(&self) -> Option<(&TextureHandle, [f64; 2], [f64; 2])> {
+        let shown = self.shown.as_ref()?;
+        Some((self.texture.as_ref()?, shown.view.low, shown.view.high))
+    }
+
+    /// The design nearest to a place, at most `reach` pixels away.
+    pub fn at(&self, place: [f64; 2], reach: isize) -> Option<usize> {
+        let Picture { view, ids, .. } = self.shown.as_ref()?;
+        let View { size, low, high, .. } = view;
+        let column = ((place[0] - low[0]) / (high[0] - low[0]) * size[0] as f64) as isize;
+        let row = ((high[1] - place[1]) / (high[1] - low[1]) * size[1] as f64) as isize;
+        let mut nearest: Option<(isize, u32)> = None;
+        for dy in -reach..=reach {
+            for dx in -reach..=reach {
+                let (x, y) = (column + dx, row + dy);
+                if x < 0 || y < 0 || x >= size[0] as isize || y >= size[1] as isize {
+                    continue;
+                }
+                let id = ids[y as usize * size[0] + x as usize];
+                let distance = dx * dx + dy * dy;
+                if id != NOBODY && nearest.is_none_or(|(least, _)| distance < least) {
+                    nearest = Some((distance, id));
+                }
+            }
+        }
+        nearest.map(|(_, id)| id as usize)
+    }
+}

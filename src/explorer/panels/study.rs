@@ -1,0 +1,146 @@
+//! The study's settings: a field for each, or the file's text; both are checked as typed.
+
+use egui::{CollapsingHeader, DragValue, ScrollArea, TextEdit, Ui};
+use toml::{Table, Value};
+
+use crate::explorer::{Session, theme};
+use crate::study::{Fault, Study};
+
+/// The panel of the study.
+#[derive(Default)]
+pub struct StudyPanel {
+    as_text: bool,
+    /// The text as typed, while it is not sound.
+    typed: Option<String>,
+}
+
+impl StudyPanel {
+    /// The panel. Tells whether the study is to be saved.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) -> bool {
+        let mut save = false;
+        ui.horizontal(|ui| {
+            ui.selectable_value(&mut self.as_text, false, "Fields");
+            ui.selectable_value(&mut self.as_text, true, "Text");
+            ui.separator();
+            save = ui.button("Save study…").clicked();
+            if let Some(path) = session.editor.path() {
+                ui.weak(path.display().to_string());
+            }
+        });
+        let faults = session.editor.faults().to_vec();
+        for fault in &faults {
+            ui.colored_label(theme::BROKEN, format!("`{}` {}", fault.key, fault.message));
+        }
+        if faults.is_empty() {
+            ui.colored_label(theme::SOUND, "sound");
+            self.typed = None;
+        }
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            if self.as_text {
+                let mut text = self.typed.clone().unwrap_or_else(|| session.editor.text().to_owned());
+                let field = ui.add(
+                    TextEdit::multiline(&mut text)
+                        .code_editor()
+                        .desired_width(f32::INFINITY),
+                );
+                ui.ctx()
+                    .accesskit_node_builder(field.id, |node| node.set_label("Study text"));
+                if field.changed() {
+                    session.editor.set_text(text.clone());
+                    self.typed = Some(text);
+                }
+            } else {
+                fields(ui, session, &faults);
+            }
+        });
+        save
+    }
+}
+
+/// A field for every value of the study, made from the study itself: a setting that is added to it is here.
+fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault]) {
+    let Ok(before) = Table::try_from(session.editor.study()) else {
+        return;
+    };
+    let mut table = before.clone();
+    section(ui, "", &mut table, faults);
+    if table != before {
+        match table.try_into::<Study>() {
+            Ok(study) => session.editor.change(|edited| *edited = study),
+            // Only a text that names nothing, as an architecture, gets here: the field keeps its sound value.
+            Err(error) => session.tell_error(format!("the study cannot be: {}", error.message())),
+        }
+    }
+}
+
+fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
+    for (key, value) in table.iter_mut() {
+        let path = if path.is_empty() {
+            key.clone()
+        } else {
+            format!("{path}.{key}")
+        };
+        match value {
+            Value::Table(inner) => {
+                CollapsingHeader::new(key.as_str())
+                    .id_salt(&path)
+                    .default_open(matches!(key.as_str(), "bounds" | "requirements"))
+                    .show(ui, |ui| section(ui, &path, inner, faults));
+            }
+            // The architectures have their own place; the references are edited as text.
+            Value::Array(items) if items.iter().all(|item| item.is_float() || item.is_integer()) => {
+                ui.horizontal(|ui| {
+                    let label = ui.label(key.as_str());
+                    for item in items {
+                        number(ui, item).labelled_by(label.id);
+                    }
+                });
+            }
+            Value::Array(_) => {}
+            Value::Float(_) | Value::Integer(_) => {
+                ui.horizontal(|ui| {
+                    let label = ui.label(key.as_str());
+                    number(ui, value).labelled_by(label.id);
+                });
+            }
+            Value::String(text) => {
+                ui.horizontal(|ui| {
+                    let label = ui.label(key.as_str());
+                    let choices: &[&str] = match key.as_str() {
+                        "stiffness_definition" => &["stiffness", "compliance"],
+                        "characteristic_length" => &["platform_radius", "isotropic"],
+                        "telescopic_bar" => &["current", "longest"],
+                        "algorithm" => &["moga2", "nsga2"],
+                        _ => &[],
+                    };
+                    if choices.is_empty() {
+                        ui.add(TextEdit::singleline(text).desired_width(220.0))
+                            .labelled_by(label.id);
+                    } else {
+                        for choice in choices {
+                            ui.selectable_value(text, (*choice).to_owned(), *choice);
+                        }
+                    }
+                });
+            }
+            Value::Boolean(flag) => {
+                ui.checkbox(flag, key.as_str());
+            }
+            Value::Datetime(_) => {}
+        }
+        for fault in faults.iter().filter(|fault| fault.key == path) {
+            ui.colored_label(theme::BROKEN, &fault.message);
+        }
+    }
+}
+
+fn number(ui: &mut Ui, value: &mut Value) -> egui::Response {
+    match value {
+        Value::Integer(number) => ui.add(DragValue::new(number).speed(0.2)),
+        Value::Float(number) => {
+            let speed = (number.abs() * 0.01).max(1e-4);
+            ui.add(DragValue::new(number).speed(speed).max_decimals(9))
+        }
+        _ => ui.label(""),
+    }
+}

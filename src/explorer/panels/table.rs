@@ -1,0 +1,227 @@
+//! The front as a table: sorted, filtered, starred, with notes.
+
+use egui::{Align, Label, RichText, Sense, Ui};
+use egui_extras::{Column, TableBuilder};
+
+use crate::evaluation::Constraint;
+use crate::explorer::{FrontEntry, Origin, Quantity, Session, theme};
+use crate::mechanism::VARIABLES;
+
+/// What the table is sorted by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Key {
+    Star,
+    Id,
+    Architecture,
+    Number(Quantity),
+}
+
+/// The panel of the front's table.
+pub struct TablePanel {
+    key: Key,
+    descending: bool,
+    search: String,
+    starred_only: bool,
+    last_chosen: Option<usize>,
+}
+
+impl Default for TablePanel {
+    fn default() -> Self {
+        Self {
+            key: Key::Number(Quantity::Mass),
+            descending: false,
+            search: String::new(),
+            starred_only: false,
+            last_chosen: None,
+        }
+    }
+}
+
+impl TablePanel {
+    /// The panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        ui.horizontal_wrapped(|ui| {
+            let field = ui.add(
+                egui::TextEdit::singleline(&mut self.search)
+                    .hint_text("search: 3-PRR, g3, a note")
+                    .desired_width(180.0),
+            );
+            ui.ctx()
+                .accesskit_node_builder(field.id, |node| node.set_label("Search the table"));
+            ui.checkbox(&mut self.starred_only, "starred only");
+            let verified = session.front().iter().filter(|entry| entry.verified).count();
+            ui.weak(format!(
+                "{} on the front, {verified} verified on the fine grid",
+                session.front().len()
+            ));
+        });
+        let order = self.order(session);
+        let chosen = match &session.document().chosen {
+            Some(chosen) => match chosen.origin {
+                Origin::Evaluated(id) => Some(id),
+                _ => None,
+            },
+            None => None,
+        };
+        let columns: Vec<(Key, String)> = [
+            (Key::Star, "★".to_owned()),
+            (Key::Id, "#".to_owned()),
+            (Key::Architecture, "architecture".to_owned()),
+        ]
+        .into_iter()
+        .chain(
+            [Quantity::Mass, Quantity::Radius, Quantity::Phi].map(|quantity| (Key::Number(quantity), quantity.title())),
+        )
+        .chain(VARIABLES.map(|variable| {
+            (
+                Key::Number(Quantity::Variable(variable)),
+                Quantity::Variable(variable).title(),
+            )
+        }))
+        .collect();
+        let mut table = TableBuilder::new(ui)
+            .id_salt("front")
+            .striped(true)
+            .sense(Sense::click())
+            .column(Column::exact(22.0))
+            .column(Column::initial(52.0))
+            .columns(Column::initial(84.0).at_least(40.0).clip(true), columns.len() - 2)
+            .column(Column::initial(70.0))
+            .column(Column::remainder().clip(true))
+            .min_scrolled_height(0.0);
+        if chosen != self.last_chosen
+            && let Some(row) = order
+                .iter()
+                .position(|&place| Some(session.front()[place].id) == chosen)
+        {
+            table = table.scroll_to_row(row, Some(Align::Center));
+        }
+        self.last_chosen = chosen;
+        let (mut clicked, mut starred) = (None, None);
+        let filter = session.document().filter.clone();
+        let sieve = filter.sieve(session.store());
+        table
+            .header(20.0, |mut header| {
+                for (key, title) in &columns {
+                    header.col(|ui| {
+                        let arrow = match (*key == self.key, self.descending) {
+                            (false, _) => "",
+                            (true, false) => " ⏶",
+                            (true, true) => " ⏷",
+                        };
+                        if ui
+                            .add(egui::Button::new(format!("{title}{arrow}")).frame(false))
+                            .clicked()
+                        {
+                            self.descending = *key == self.key && !self.descending;
+                            self.key = *key;
+                        }
+                    });
+                }
+                header.col(|ui| drop(ui.label("active")));
+                header.col(|ui| drop(ui.label("note")));
+            })
+            .body(|body| {
+                body.rows(18.0, order.len(), |mut row| {
+                    let entry = &session.front()[order[row.index()]];
+                    let lit = entry.id < session.store().len() && sieve.passes(entry.id);
+                    row.set_selected(Some(entry.id) == chosen);
+                    row.col(|ui| {
+                        let star = session.document().stars.contains(&entry.id);
+                        if ui
+                            .add(egui::Button::new(if star { "★" } else { "☆" }).frame(false))
+                            .clicked()
+                        {
+                            starred = Some(entry.id);
+                        }
+                    });
+                    for (key, _) in &columns[1..] {
+                        row.col(|ui| {
+                            let text = RichText::new(cell(entry, *key));
+                            let text = if lit { text } else { text.weak() };
+                            let text = match key {
+                                Key::Architecture if lit => text.color(theme::architecture(
+                                    entry.row.design.architecture,
+                                    ui.visuals().dark_mode,
+                                )),
+                                _ => text,
+                            };
+                            ui.add(Label::new(text).selectable(false));
+                        });
+                    }
+                    row.col(|ui| drop(ui.add(Label::new(active(entry)).selectable(false))));
+                    row.col(|ui| {
+                        let note = session.document().notes.get(&entry.id).cloned().unwrap_or_default();
+                        ui.add(Label::new(note).selectable(false));
+                    });
+                    if row.response().clicked() {
+                        clicked = Some(entry.id);
+                    }
+                });
+            });
+        if let Some(id) = clicked {
+            session.choose(id);
+        }
+        if let Some(id) = starred {
+            session.history.edit(|document| {
+                if !document.stars.remove(&id) {
+                    document.stars.insert(id);
+                }
+            });
+        }
+    }
+
+    /// Places on the front that are listed, in order.
+    fn order(&self, session: &Session) -> Vec<usize> {
+        let document = session.document();
+        let search = self.search.trim().to_lowercase();
+        let found = |entry: &FrontEntry| {
+            search.is_empty()
+                || entry.row.design.to_string().to_lowercase().contains(&search)
+                || format!("#{}", entry.id).contains(&search)
+                || active(entry).contains(&search)
+                || document
+                    .notes
+                    .get(&entry.id)
+                    .is_some_and(|note| note.to_lowercase().contains(&search))
+        };
+        let mut order: Vec<usize> = (0..session.front().len())
+            .filter(|&place| {
+                let entry = &session.front()[place];
+                found(entry) && (!self.starred_only || document.stars.contains(&entry.id))
+            })
+            .collect();
+        let number = |place: usize| {
+            let entry = &session.front()[place];
+            match self.key {
+                Key::Star => f64::from(u8::from(!document.stars.contains(&entry.id))),
+                Key::Id => entry.id as f64,
+                Key::Architecture => theme::index(entry.row.design.architecture) as f64,
+                Key::Number(quantity) => quantity.of(&entry.row),
+            }
+        };
+        order.sort_by(|&a, &b| number(a).total_cmp(&number(b)));
+        if self.descending {
+            order.reverse();
+        }
+        order
+    }
+}
+
+fn cell(entry: &FrontEntry, key: Key) -> String {
+    match key {
+        Key::Star => String::new(),
+        Key::Id => format!("#{}", entry.id),
+        Key::Architecture => entry.row.design.architecture.to_string(),
+        Key::Number(quantity) => theme::number(quantity.of(&entry.row)),
+    }
+}
+
+fn active(entry: &FrontEntry) -> String {
+    let ids: Vec<&str> = Constraint::ALL
+        .into_iter()
+        .filter(|&constraint| entry.row.active >> constraint as u8 & 1 == 1)
+        .map(Constraint::id)
+        .collect();
+    ids.join(" ")
+}

@@ -1,0 +1,251 @@
+//! A script that works the window as a person would: for pictures, measurements and demonstrations.
+//!
+//! A step a line; empty lines and what follows `#` are left out:
+//!
+//! | step | does |
+//! |---|---|
+//! | `wait finished` | waits for the end of the run |
+//! | `wait evaluations N` | waits until N designs are evaluated |
+//! | `wait drawn` | waits until the design is verified and everything asked of the scene is drawn |
+//! | `wait frames N` | waits N frames |
+//! | `choose knee`, `choose #ID`, `choose DESIGN` | puts a design in the light |
+//! | `walk N` | walks along the front |
+//! | `pin`, `keep`, `star` | as the buttons |
+//! | `what-if KEY=VALUE` | changes a dimension \[m\] |
+//! | `heatmap FIELD`, `ellipsoids KIND` | layers; `none` takes one away |
+//! | `pose x=… y=… phi_deg=…`, `worst ID` | moves the platform; to the worst pose of a constraint |
+//! | `show PANEL` | brings a panel to the front, by its title |
+//! | `compare on`, `compare off` | pinned designs in 3-D |
+//! | `theme dark`, `theme light` | colours |
+//! | `pause`, `resume`, `stop` | the run |
+//! | `filter KEY LOW HIGH` | a range of the filter |
+//! | `picture FILE.png`, `save FILE.rrd` | writes a file, and waits for it |
+//! | `frames FILE.csv` | writes the time of every frame from here on |
+//! | `quit` | closes the window |
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use egui::{Context, ViewportCommand};
+
+use super::files::Purpose;
+use super::panels::Panel;
+use super::{Explorer, Phase, Quantity};
+use crate::evaluation::Constraint;
+use crate::mechanism::VARIABLES;
+use crate::scene::{EllipsoidKind, Field};
+use crate::spatial::Pose;
+
+/// A script under way.
+#[derive(Debug)]
+pub struct Script {
+    /// Steps with their lines, the next first.
+    steps: std::vec::IntoIter<(usize, Step)>,
+    current: Option<Step>,
+    frames: usize,
+    times: Option<(PathBuf, Vec<f64>, Instant)>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Step {
+    WaitFinished,
+    WaitEvaluations(usize),
+    WaitDrawn,
+    WaitFrames(usize),
+    WaitBusy,
+    ChooseKnee,
+    Choose(usize),
+    ChooseDesign(String),
+    Walk(isize),
+    Pin,
+    Keep,
+    Star,
+    WhatIf(usize, f64),
+    Heatmap(Option<Field>),
+    Ellipsoids(Option<EllipsoidKind>),
+    Pose(Pose),
+    Worst(Constraint),
+    Show(Panel),
+    Compare(bool),
+    Dark(bool),
+    Pause,
+    Resume,
+    Stop,
+    Filter(Quantity, [f64; 2]),
+    File(Purpose, PathBuf),
+    Frames(PathBuf),
+    Quit,
+}
+
+impl Script {
+    /// Reads a script.
+    ///
+    /// # Errors
+    /// The line that is no step, in words.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let mut steps = Vec::new();
+        for (index, line) in text.lines().enumerate() {
+            // A `#` that begins an id stands behind a space and before a digit.
+            let line = match line.find("# ").or_else(|| line.starts_with('#').then_some(0)) {
+                Some(end) => &line[..end],
+                None => line,
+            };
+            let line = line.trim();
+            if !line.is_empty() {
+                let step = step(line).ok_or_else(|| format!("line {}: `{line}` is no step of a script", index + 1))?;
+                let file = matches!(step, Step::File(..));
+                steps.push((index + 1, step));
+                if file {
+                    steps.push((index + 1, Step::WaitBusy));
+                }
+            }
+        }
+        Ok(Self {
+            steps: steps.into_iter(),
+            current: None,
+            frames: 0,
+            times: None,
+        })
+    }
+
+    /// Reads a script file.
+    ///
+    /// # Errors
+    /// As [`Script::parse`], with the file.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+        Self::parse(&text).map_err(|words| format!("{}, {words}", path.display()))
+    }
+
+    /// Does what is due; called once a frame.
+    pub(super) fn advance(&mut self, explorer: &mut Explorer, ctx: &Context) {
+        self.frames += 1;
+        if let Some((_, times, last)) = &mut self.times {
+            times.push(last.elapsed().as_secs_f64());
+            *last = Instant::now();
+        }
+        // One step a frame: what it changes is seen before the next.
+        if self.current.is_none() {
+            self.current = self.steps.next().map(|(_, step)| step);
+            self.frames = 0;
+        }
+        if let Some(step) = self.current.clone()
+            && self.take(explorer, ctx, &step)
+        {
+            self.current = None;
+        }
+        ctx.request_repaint();
+    }
+
+    /// Does a step; tells whether it is done.
+    fn take(&mut self, explorer: &mut Explorer, ctx: &Context, step: &Step) -> bool {
+        let busy = explorer.is_busy();
+        let session = explorer.session_mut();
+        match step {
+            Step::WaitFinished => {
+                return matches!(session.phase(), Phase::Finished(_) | Phase::Failed | Phase::Opened(_));
+            }
+            Step::WaitEvaluations(count) => return session.store().len() >= *count || !session.is_running(),
+            Step::WaitDrawn => {
+                let verified =
+                    session.document().chosen.is_none() || session.known().is_some_and(|known| known.verified);
+                // The viewer has it a few frames later.
+                return verified && session.is_drawn() && self.frames > 12;
+            }
+            Step::WaitFrames(count) => return self.frames >= *count,
+            // A picture comes back some frames after it was asked for.
+            Step::WaitBusy => return !busy && self.frames > 6,
+            Step::ChooseKnee => session.choose_knee(),
+            Step::Choose(id) => session.choose(*id),
+            Step::ChooseDesign(text) => session.paste(text),
+            Step::Walk(steps) => session.walk(*steps),
+            Step::Pin => session.toggle_pin(),
+            Step::Keep => session.keep(),
+            Step::Star => session.toggle_star(),
+            Step::WhatIf(variable, value) => session.what_if(*variable, *value),
+            Step::Heatmap(field) => session.staging.layers.heatmap = *field,
+            Step::Ellipsoids(kind) => session.staging.layers.ellipsoids = *kind,
+            Step::Pose(pose) => drop(session.move_platform(*pose)),
+            Step::Worst(constraint) => session.show_worst(*constraint),
+            Step::Show(panel) => explorer.show(*panel),
+            Step::Compare(on) => session.staging.comparing = *on,
+            Step::Dark(dark) => ctx.set_theme(if *dark { egui::Theme::Dark } else { egui::Theme::Light }),
+            Step::Pause => session.pause(),
+            Step::Resume => session.resume(),
+            Step::Stop => session.stop(),
+            Step::Filter(quantity, range) => session
+                .history
+                .edit(|document| document.filter.set_range(*quantity, Some(*range))),
+            Step::File(purpose, path) => explorer.act(ctx, *purpose, path.clone()),
+            Step::Frames(path) => self.times = Some((path.clone(), Vec::new(), Instant::now())),
+            Step::Quit => {
+                self.write_times(explorer);
+                ctx.send_viewport_cmd(ViewportCommand::Close);
+            }
+        }
+        true
+    }
+
+    fn write_times(&mut self, explorer: &mut Explorer) {
+        if let Some((path, times, _)) = self.times.take() {
+            let lines: Vec<String> = times.iter().map(|seconds| format!("{:.3}", 1e3 * seconds)).collect();
+            let text = format!("frame_ms\n{}\n", lines.join("\n"));
+            if let Err(words) = super::files::write_whole(&path, text.as_bytes()) {
+                explorer.session_mut().tell_error(words);
+            }
+        }
+    }
+}
+
+fn step(line: &str) -> Option<Step> {
+    let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
+    let rest = rest.trim();
+    let path = || (!rest.is_empty()).then(|| PathBuf::from(rest));
+    Some(match word {
+        "wait" => match rest.split_once(' ').unwrap_or((rest, "")) {
+            ("finished", "") => Step::WaitFinished,
+            ("drawn", "") => Step::WaitDrawn,
+            ("evaluations", count) => Step::WaitEvaluations(count.parse().ok()?),
+            ("frames", count) => Step::WaitFrames(count.parse().ok()?),
+            _ => return None,
+        },
+        "choose" => match rest.strip_prefix('#') {
+            Some(id) => Step::Choose(id.parse().ok()?),
+            None if rest == "knee" => Step::ChooseKnee,
+            None if rest.is_empty() => return None,
+            None => Step::ChooseDesign(rest.to_owned()),
+        },
+        "walk" => Step::Walk(rest.parse().ok()?),
+        "pin" => Step::Pin,
+        "keep" => Step::Keep,
+        "star" => Step::Star,
+        "what-if" => {
+            let (key, value) = rest.split_once('=')?;
+            let variable = VARIABLES.iter().position(|variable| variable.key() == key)?;
+            Step::WhatIf(variable, value.parse().ok()?)
+        }
+        "heatmap" if rest == "none" => Step::Heatmap(None),
+        "heatmap" => Step::Heatmap(Some(Field::find(rest)?)),
+        "ellipsoids" if rest == "none" => Step::Ellipsoids(None),
+        "ellipsoids" => Step::Ellipsoids(Some(EllipsoidKind::ALL.into_iter().find(|kind| kind.key() == rest)?)),
+        "pose" => Step::Pose(rest.parse().ok()?),
+        "worst" => Step::Worst(Constraint::ALL.into_iter().find(|constraint| constraint.id() == rest)?),
+        "show" => Step::Show(Panel::ALL.into_iter().find(|panel| panel.title() == rest)?),
+        "compare" => Step::Compare(rest == "on"),
+        "theme" => Step::Dark(rest != "light"),
+        "pause" => Step::Pause,
+        "resume" => Step::Resume,
+        "stop" => Step::Stop,
+        "filter" => {
+            let mut words = rest.split_whitespace();
+            let quantity = Quantity::find(words.next()?)?;
+            let mut number = || words.next()?.parse::<f64>().ok();
+            Step::Filter(quantity, [number()?, number()?])
+        }
+        "picture" => Step::File(Purpose::SavePicture, path()?),
+        "save" => Step::File(Purpose::SaveRecording, path()?),
+        "frames" => Step::Frames(path()?),
+        "quit" => Step::Quit,
+        _ => return None,
+    })
+}

@@ -1,0 +1,326 @@
+//! The thread that evaluates and draws the design in the light, so that no frame waits for it.
+//!
+//! ```text
+//! window ──Request──► [latest] ─► scene thread ─► LiveScene ─► viewer
+//!    ▲                               │ design to verify
+//!    │                               ▼
+//!    └──────── Answer ◄──── [latest] verify thread (fine grid)
+//! ```
+//!
+//! Only the latest request counts: while a slider is dragged, those in between are left out.
+
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::Builder;
+
+use crate::evaluation::{Evaluation, GridChoice};
+use crate::mechanism::Design;
+use crate::recording::{FrontPoint, Layers, LiveScene, Pinned, Shown};
+use crate::spatial::Pose;
+use crate::study::Study;
+
+/// What is to be shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Request {
+    /// The study whose physics hold.
+    pub study: Arc<Study>,
+    /// The design in the light.
+    pub design: Option<Design>,
+    /// Pose of the manipulator; home where it is left out.
+    pub pose: Option<Pose>,
+    /// Orientation of the heatmap \[rad\]; home where it is left out.
+    pub heatmap_phi: Option<f64>,
+    /// What is drawn.
+    pub layers: Layers,
+    /// Designs to compare, by name.
+    pub pins: Vec<(String, Design)>,
+    /// Whether the pinned designs are in front.
+    pub comparing: bool,
+    /// Whether the design is known from the fine grid: then it is drawn again with those numbers.
+    pub verified: bool,
+    /// The front as it stands.
+    pub front: Arc<Vec<FrontPoint>>,
+}
+
+/// What is known of the design in the light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Known {
+    /// Its evaluation.
+    pub evaluation: Evaluation,
+    /// Whether that is from the fine grid.
+    pub verified: bool,
+}
+
+/// What came of the latest requests.
+#[derive(Debug, Clone, Default)]
+pub struct Answer {
+    /// The design in the light.
+    pub known: Option<Known>,
+    /// The pinned designs.
+    pub pins: Vec<Evaluation>,
+    /// Number of the last request that is drawn.
+    pub drawn: u64,
+    /// What went wrong.
+    pub trouble: Option<String>,
+}
+
+/// A place for one thing; a later one takes its place.
+struct Mailbox<T> {
+    state: Mutex<(Option<T>, bool)>,
+    changed: Condvar,
+}
+
+impl<T> Mailbox<T> {
+    fn new() -> Self {
+        Self {
+            state: Mutex::new((None, false)),
+            changed: Condvar::new(),
+        }
+    }
+
+    fn put(&self, thing: T) {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner).0 = Some(thing);
+        self.changed.notify_all();
+    }
+
+    fn close(&self) {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner).1 = true;
+        self.changed.notify_all();
+    }
+
+    /// Waits for a thing; `None` once closed.
+    fn take(&self) -> Option<T> {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        loop {
+            if state.1 {
+                return None;
+            }
+            if let Some(thing) = state.0.take() {
+                return Some(thing);
+            }
+            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+type Wake = Arc<dyn Fn() + Send + Sync>;
+
+struct Shared {
+    requests: Mailbox<(u64, Request)>,
+    to_verify: Mailbox<(Arc<Study>, Design)>,
+    /// The last design that was verified, which the scene then shows with its fine numbers.
+    verified: Mutex<Option<(Arc<Study>, Evaluation)>>,
+    answer: Mutex<Answer>,
+    wake: Wake,
+}
+
+impl Shared {
+    fn answer(&self, change: impl FnOnce(&mut Answer)) {
+        change(&mut self.answer.lock().unwrap_or_else(PoisonError::into_inner));
+        (self.wake)();
+    }
+}
+
+/// Evaluates and draws designs on threads of its own.
+pub struct StageHand {
+    shared: Arc<Shared>,
+    sent: u64,
+    last: Option<Request>,
+}
+
+impl StageHand {
+    /// Starts the threads; without a viewer there is no `scene`.
+    ///
+    /// # Errors
+    /// A thread could not be started.
+    pub fn start(scene: Option<LiveScene>, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
+        let shared = Arc::new(Shared {
+            requests: Mailbox::new(),
+            to_verify: Mailbox::new(),
+            verified: Mutex::new(None),
+            answer: Mutex::default(),
+            wake: Arc::new(wake),
+        });
+        let hand = Arc::clone(&shared);
+        Builder::new()
+            .name("kinefront-scene".to_owned())
+            .spawn(move || draw_requests(&hand, scene))?;
+        let hand = Arc::clone(&shared);
+        Builder::new()
+            .name("kinefront-verify".to_owned())
+            .spawn(move || verify_requests(&hand))?;
+        Ok(Self {
+            shared,
+            sent: 0,
+            last: None,
+        })
+    }
+
+    /// Asks for what is to be shown; the same request twice is one. Returns its number.
+    pub fn ask(&mut self, request: Request) -> u64 {
+        if self.last.as_ref() != Some(&request) {
+            self.last = Some(request.clone());
+            self.sent += 1;
+            self.shared.requests.put((self.sent, request));
+        }
+        self.sent
+    }
+
+    /// What is known so far.
+    pub fn answer(&self) -> Answer {
+        self.shared
+            .answer
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+}
+
+impl Drop for StageHand {
+    fn drop(&mut self) {
+        self.shared.requests.close();
+        self.shared.to_verify.close();
+    }
+}
+
+fn verify_requests(shared: &Shared) {
+    while let Some((study, design)) = shared.to_verify.take() {
+        if let Ok(evaluation) = study.model().evaluate(&design, GridChoice::Fine) {
+            *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) = Some((study, evaluation.clone()));
+            shared.answer(|answer| {
+                if let Some(known) = &mut answer.known
+                    && known.evaluation.design == design
+                {
+                    *known = Known {
+                        evaluation,
+                        verified: true,
+                    };
+                }
+            });
+        }
+    }
+}
+
+/// What stands on the stage.
+#[derive(Default)]
+struct Standing {
+    scene: Option<LiveScene>,
+    request: Option<Request>,
+    known: Option<Known>,
+    pins: Vec<Evaluation>,
+}
+
+fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
+    let mut standing = Standing {
+        scene,
+        ..Standing::default()
+    };
+    while let Some((number, request)) = shared.requests.take() {
+        let trouble = step(&mut standing, shared, &request).err();
+        let (known, pins) = (standing.known.clone(), standing.pins.clone());
+        shared.answer(|answer| {
+            // The verify thread may have been faster.
+            let same = |a: &Known, b: &Known| a.evaluation.design == b.evaluation.design;
+            let finer = answer.known.as_ref().is_some_and(|before| before.verified);
+            let keep = finer && matches!((&answer.known, &known), (Some(before), Some(now)) if same(before, now));
+            if !keep || known.as_ref().is_some_and(|now| now.verified) {
+                answer.known = known;
+            }
+            answer.pins = pins;
+            answer.drawn = number;
+            if trouble.is_some() {
+                answer.trouble = trouble;
+            }
+        });
+        standing.request = Some(request);
+    }
+}
+
+fn step(standing: &mut Standing, shared: &Shared, request: &Request) -> Result<(), String> {
+    let before = standing.request.take();
+    let new_study = before.as_ref().is_none_or(|before| before.study != request.study);
+    if new_study {
+        if let Some(scene) = &mut standing.scene {
+            scene.turn_to(&request.study).map_err(|error| error.to_string())?;
+        }
+        standing.known = None;
+        standing.pins.clear();
+        *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    }
+    let before = before.filter(|_| !new_study);
+    let model = request.study.model();
+    let evaluate = |design: &Design| {
+        model
+            .evaluate(design, GridChoice::Reference)
+            .map_err(|error| error.to_string())
+    };
+
+    let verified = shared
+        .verified
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .clone()
+        .filter(|(study, evaluation)| *study == request.study && Some(evaluation.design) == request.design);
+    standing.known = match (&request.design, verified, standing.known.take()) {
+        (None, ..) => None,
+        (Some(_), Some((_, evaluation)), _) => Some(Known {
+            evaluation,
+            verified: true,
+        }),
+        (Some(design), None, Some(known)) if known.evaluation.design == *design => Some(known),
+        (Some(design), None, _) => Some(Known {
+            evaluation: evaluate(design)?,
+            verified: false,
+        }),
+    };
+    if let Some(known) = standing.known.as_ref().filter(|known| !known.verified) {
+        shared
+            .to_verify
+            .put((Arc::clone(&request.study), known.evaluation.design));
+    }
+    let new_pins = before.as_ref().is_none_or(|before| before.pins != request.pins);
+    if new_pins {
+        standing.pins = request
+            .pins
+            .iter()
+            .map(|(_, design)| evaluate(design))
+            .collect::<Result<_, _>>()?;
+    }
+
+    let Some(scene) = &mut standing.scene else {
+        return Ok(());
+    };
+    let mut draw = || -> Result<(), crate::recording::RecordingError> {
+        if before
+            .as_ref()
+            .is_some_and(|before| before.comparing != request.comparing)
+        {
+            scene.layout(&request.study, request.comparing)?;
+        }
+        let shown = standing.known.as_ref().map(|known| Shown {
+            model: &model,
+            evaluation: &known.evaluation,
+            pose: request.pose,
+            heatmap_phi: request.heatmap_phi,
+            layers: &request.layers,
+        });
+        scene.design(shown.as_ref())?;
+        if new_pins {
+            let pins: Vec<Pinned<'_>> = request
+                .pins
+                .iter()
+                .zip(&standing.pins)
+                .map(|((name, _), evaluation)| Pinned { evaluation, name })
+                .collect();
+            scene.pins(&model, &pins)?;
+        }
+        let moved = before
+            .as_ref()
+            .is_none_or(|before| before.design != request.design || !Arc::ptr_eq(&before.front, &request.front));
+        if moved {
+            let marked = standing.known.as_ref().map(|known| &known.evaluation);
+            scene.front(&request.study, &request.front, marked)?;
+        }
+        Ok(())
+    };
+    draw().map_err(|error| format!("the scene cannot be drawn: {error}"))
+}

@@ -1,0 +1,166 @@
+//! Every evaluated design of a run, in columns: about 200 bytes each, so that a million fit in memory.
+
+use crate::evaluation::{Constraint, Evaluation};
+use crate::mechanism::{Architecture, Design, VARIABLES, WorkingMode};
+
+/// Evaluated designs in the order of their ids, which begin at 0 and leave none out.
+#[derive(Debug, Clone, Default)]
+pub struct Store {
+    /// Place of the architecture in [`Architecture::ALL`].
+    architecture: Vec<u8>,
+    mode: Vec<WorkingMode>,
+    generation: Vec<u32>,
+    values: [Vec<f64>; VARIABLES.len()],
+    mass: Vec<f64>,
+    radius: Vec<f64>,
+    /// `φ_c` \[deg\]; not a number for an infeasible design.
+    phi: Vec<f64>,
+    violation: Vec<f64>,
+    margins: [Vec<f64>; Constraint::ALL.len()],
+    /// A bit for each active constraint.
+    active: Vec<u8>,
+}
+
+/// What is stored of one design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Generation, from 1.
+    pub generation: u32,
+    /// The design.
+    pub design: Design,
+    /// Mass in motion \[kg\].
+    pub mass: f64,
+    /// `R_w` \[m\]; 0 for an infeasible design.
+    pub radius: f64,
+    /// `φ_c` \[deg\].
+    pub phi: Option<f64>,
+    /// Violation, 0 for a feasible design.
+    pub violation: f64,
+    /// Relative margins in the order of [`Constraint::ALL`].
+    pub margins: [f64; Constraint::ALL.len()],
+    /// A bit for each active constraint, the first the lowest.
+    pub active: u8,
+}
+
+impl Row {
+    /// The row of an evaluation.
+    pub fn new(generation: usize, evaluation: &Evaluation) -> Self {
+        Self {
+            generation: generation.try_into().unwrap_or(u32::MAX),
+            design: evaluation.design,
+            mass: evaluation.mass,
+            radius: evaluation.workspace_radius,
+            phi: evaluation.home_phi_deg,
+            violation: evaluation.violation,
+            margins: evaluation.constraints.map(|report| report.margin),
+            active: evaluation
+                .active()
+                .fold(0, |bits, constraint| bits | 1 << constraint as u8),
+        }
+    }
+}
+
+impl Store {
+    /// Number of designs.
+    pub fn len(&self) -> usize {
+        self.mass.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.mass.is_empty()
+    }
+
+    /// Adds a design; its id is the number of those before it.
+    pub fn push(&mut self, row: &Row) {
+        let index = Architecture::ALL
+            .iter()
+            .position(|&architecture| architecture == row.design.architecture)
+            .unwrap_or(0);
+        self.architecture.push(index as u8);
+        self.mode.push(row.design.working_mode);
+        self.generation.push(row.generation);
+        for (column, value) in self.values.iter_mut().zip(row.design.values()) {
+            column.push(value);
+        }
+        self.mass.push(row.mass);
+        self.radius.push(row.radius);
+        self.phi.push(row.phi.unwrap_or(f64::NAN));
+        self.violation.push(row.violation);
+        for (column, margin) in self.margins.iter_mut().zip(row.margins) {
+            column.push(margin);
+        }
+        self.active.push(row.active);
+    }
+
+    /// Moves the designs of `other` behind these.
+    pub fn append(&mut self, other: &mut Store) {
+        self.architecture.append(&mut other.architecture);
+        self.mode.append(&mut other.mode);
+        self.generation.append(&mut other.generation);
+        for (column, more) in self.values.iter_mut().zip(&mut other.values) {
+            column.append(more);
+        }
+        self.mass.append(&mut other.mass);
+        self.radius.append(&mut other.radius);
+        self.phi.append(&mut other.phi);
+        self.violation.append(&mut other.violation);
+        for (column, more) in self.margins.iter_mut().zip(&mut other.margins) {
+            column.append(more);
+        }
+        self.active.append(&mut other.active);
+    }
+
+    /// One design.
+    pub fn row(&self, id: usize) -> Option<Row> {
+        let design = self.design(id)?;
+        Some(Row {
+            generation: self.generation[id],
+            design,
+            mass: self.mass[id],
+            radius: self.radius[id],
+            phi: Some(self.phi[id]).filter(|phi| phi.is_finite()),
+            violation: self.violation[id],
+            margins: std::array::from_fn(|k| self.margins[k][id]),
+            active: self.active[id],
+        })
+    }
+
+    /// The design of an id.
+    pub fn design(&self, id: usize) -> Option<Design> {
+        if id >= self.len() {
+            return None;
+        }
+        let values = std::array::from_fn(|k| self.values[k][id]);
+        Design::new(self.architecture(id), self.mode[id], values).ok()
+    }
+
+    /// The architecture of design `id`, which must be there.
+    pub fn architecture(&self, id: usize) -> Architecture {
+        Architecture::ALL[usize::from(self.architecture[id])]
+    }
+
+    /// Whether design `id`, which must be there, is feasible.
+    pub fn is_feasible(&self, id: usize) -> bool {
+        self.radius[id] > 0.0
+    }
+
+    /// All values of a quantity, in the order of ids.
+    pub fn column(&self, quantity: super::Quantity) -> &[f64] {
+        use super::Quantity as Q;
+        match quantity {
+            Q::Mass => &self.mass,
+            Q::Radius => &self.radius,
+            Q::Variable(variable) => &self.values[variable as usize],
+            Q::Phi => &self.phi,
+            Q::Violation => &self.violation,
+            Q::Margin(constraint) => &self.margins[constraint as usize],
+        }
+    }
+
+    /// Memory in use \[bytes\].
+    pub fn bytes(&self) -> usize {
+        let per_row = 1 + size_of::<WorkingMode>() + 4 + 1 + 8 * (VARIABLES.len() + 4 + Constraint::ALL.len());
+        self.mass.capacity() * per_row
+    }
+}

@@ -1,0 +1,96 @@
+//! Colours and marks of the window: one per architecture, the same as in recordings.
+
+use egui::{Color32, Ui};
+use egui_plot::MarkerShape;
+
+use crate::mechanism::Architecture;
+use crate::recording::architecture_rgb;
+
+/// The design in the light.
+pub const CHOSEN: Color32 = Color32::from_rgb(255, 70, 60);
+/// What is changed by hand.
+pub const WHAT_IF: Color32 = Color32::from_rgb(230, 110, 230);
+/// A constraint that is broken.
+pub const BROKEN: Color32 = Color32::from_rgb(230, 70, 60);
+/// A constraint that is active.
+pub const ACTIVE: Color32 = Color32::from_rgb(240, 160, 40);
+/// Something that holds.
+pub const SOUND: Color32 = Color32::from_rgb(90, 180, 110);
+
+/// Colour of an architecture, dark enough to be read on a light ground.
+pub fn architecture(architecture: Architecture, dark: bool) -> Color32 {
+    let [r, g, b] = architecture_rgb(architecture);
+    if dark {
+        Color32::from_rgb(r, g, b)
+    } else {
+        let darker = |value: u8| (f32::from(value) * 0.78) as u8;
+        Color32::from_rgb(darker(r), darker(g), darker(b))
+    }
+}
+
+/// Place of an architecture among all, which gives its mark.
+pub fn index(architecture: Architecture) -> usize {
+    Architecture::ALL
+        .iter()
+        .position(|&other| other == architecture)
+        .unwrap_or(0)
+}
+
+/// Mark of an architecture in a plot.
+pub fn mark(architecture: Architecture) -> MarkerShape {
+    const MARKS: [MarkerShape; 4] = [
+        MarkerShape::Circle,
+        MarkerShape::Square,
+        MarkerShape::Up,
+        MarkerShape::Diamond,
+    ];
+    MARKS[index(architecture) % MARKS.len()]
+}
+
+/// The ground that designs are drawn on.
+pub fn ground(dark: bool) -> Color32 {
+    if dark {
+        Color32::from_gray(16)
+    } else {
+        Color32::from_gray(250)
+    }
+}
+
+/// Infeasible designs.
+pub fn infeasible(dark: bool) -> Color32 {
+    if dark {
+        Color32::from_gray(88)
+    } else {
+        Color32::from_gray(178)
+    }
+}
+
+/// Lines and words that stand out from the ground.
+pub fn ink(ui: &Ui) -> Color32 {
+    ui.visuals().strong_text_color()
+}
+
+/// `share` of a colour over the ground.
+pub fn mix(color: Color32, ground: Color32, share: f32) -> Color32 {
+    let part = |a: u8, b: u8| (f32::from(a) * share + f32::from(b) * (1.0 - share)) as u8;
+    Color32::from_rgb(
+        part(color.r(), ground.r()),
+        part(color.g(), ground.g()),
+        part(color.b(), ground.b()),
+    )
+}
+
+/// A number with four significant digits, in plain form where that is short.
+pub fn number(value: f64) -> String {
+    let size = value.abs();
+    if !value.is_finite() {
+        "–".to_owned()
+    } else if value == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e5).contains(&size) {
+        let digits = (3 - size.log10().floor() as i32).max(0) as usize;
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}

@@ -1,0 +1,172 @@
+//! The embedded Rerun viewer: a pane of the window, fed in-process, whose panels are ours.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use eframe::App as _;
+use egui::{Context, Event, Ui};
+use re_viewer::external::re_log_types::Instance;
+use re_viewer::external::re_sdk_types::blueprint::components::PanelState;
+use re_viewer::external::{re_memory, tokio};
+use re_viewer::{
+    AppEnvironment, AsyncRuntimeHandle, MainThreadToken, SelectionChangeItem, StartupOptions, ViewerEvent,
+    ViewerEventKind,
+};
+
+use crate::recording::{APPLICATION_ID, LiveScene, Picked};
+use crate::study::Study;
+
+/// Memory that the scene may take before its oldest data go.
+const MEMORY: u64 = 2 << 30;
+
+/// The embedded viewer.
+pub struct Viewer {
+    app: re_viewer::App,
+    events: Rc<RefCell<Vec<ViewerEvent>>>,
+    /// Whether keys belong to the viewer: the last click was inside.
+    owns_keys: Arc<AtomicBool>,
+    _runtime: tokio::runtime::Runtime,
+}
+
+/// Keys held back from the viewer.
+fn take_keys(ctx: &Context) -> Vec<Event> {
+    ctx.input_mut(|input| {
+        let (keys, rest) = std::mem::take(&mut input.events)
+            .into_iter()
+            .partition(|event| matches!(event, Event::Key { .. } | Event::Copy | Event::Cut));
+        input.events = rest;
+        keys
+    })
+}
+
+impl Viewer {
+    /// The viewer and the scene that it shows.
+    ///
+    /// # Errors
+    /// The graphics card cannot draw it, or its threads cannot be started.
+    pub fn new(
+        cc: &eframe::CreationContext<'_>,
+        study: &Study,
+    ) -> Result<(Self, LiveScene), Box<dyn std::error::Error + Send + Sync>> {
+        re_viewer::customize_eframe_and_setup_renderer(cc)?;
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(1)
+            .enable_all()
+            .build()?;
+        let events: Rc<RefCell<Vec<ViewerEvent>>> = Rc::default();
+        let queue = Rc::clone(&events);
+        let mut options = StartupOptions {
+            persist_state: false,
+            // It would ask the net for examples.
+            hide_welcome_screen: true,
+            expect_data_soon: Some(true),
+            // Called while the renderer is locked: nothing but taking note of the event may happen here.
+            on_event: Some(Rc::new(move |event| queue.borrow_mut().push(event))),
+            ..StartupOptions::default()
+        };
+        options.panel_state_overrides.top = Some(PanelState::Hidden);
+        options.panel_state_overrides.blueprint = Some(PanelState::Hidden);
+        options.panel_state_overrides.selection = Some(PanelState::Hidden);
+        options.panel_state_overrides.time = Some(PanelState::Hidden);
+
+        // The viewer takes keys at the begin of each pass. They are put aside before that and given back after it, unless
+        // the last click was inside.
+        let owns_keys = Arc::new(AtomicBool::new(false));
+        let aside: Arc<Mutex<Vec<Event>>> = Arc::default();
+        let (owned, put) = (Arc::clone(&owns_keys), Arc::clone(&aside));
+        cc.egui_ctx.on_begin_pass(
+            "kinefront-keys-aside",
+            Arc::new(move |ui| {
+                if !owned.load(Ordering::Relaxed) {
+                    *put.lock().unwrap_or_else(PoisonError::into_inner) = take_keys(ui);
+                }
+            }),
+        );
+        let mut app = re_viewer::App::new(
+            MainThreadToken::i_promise_i_am_on_the_main_thread(),
+            re_viewer::build_info(),
+            AppEnvironment::Custom(APPLICATION_ID.to_owned()),
+            options,
+            cc,
+            // Of its own, so that no credentials are looked for.
+            Some(re_redap_client::ConnectionRegistry::new_without_stored_credentials()),
+            AsyncRuntimeHandle::new_native(runtime.handle().clone()),
+        );
+        cc.egui_ctx.on_begin_pass(
+            "kinefront-keys-back",
+            Arc::new(move |ui| {
+                let keys = std::mem::take(&mut *aside.lock().unwrap_or_else(PoisonError::into_inner));
+                ui.input_mut(|input| input.events.extend(keys));
+            }),
+        );
+        let settings = app.app_options_mut();
+        settings.custom_window_decorations = false;
+        settings.show_notification_toasts = false;
+        settings.show_metrics = false;
+        settings.include_rerun_examples_button_in_recordings_panel = false;
+        settings.memory_limit = re_memory::MemoryLimit::from_bytes(MEMORY);
+
+        let (sender, receiver) = re_log_channel::log_channel(re_log_channel::LogSource::Sdk);
+        app.add_log_receiver(receiver);
+        let sink = rerun::sink::CallbackSink::new(move |messages| {
+            for message in messages {
+                // A viewer that is gone needs nothing more.
+                let _ = sender.send(message.clone().into());
+            }
+        });
+        let scene = LiveScene::new(Box::new(sink), study)?;
+        Ok((
+            Self {
+                app,
+                events,
+                owns_keys,
+                _runtime: runtime,
+            },
+            scene,
+        ))
+    }
+
+    /// Takes in what was sent; to be called before each frame.
+    pub fn logic(&mut self, ctx: &Context, frame: &mut eframe::Frame) {
+        self.app.logic(ctx, frame);
+    }
+
+    /// Draws the viewer into a pane.
+    pub fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let pane = ui.max_rect();
+        if let Some(press) = ui.input(|input| input.pointer.press_origin()) {
+            self.owns_keys.store(pane.contains(press), Ordering::Relaxed);
+        }
+        // Of its shortcuts some close the program, wipe its storage or open a port: none gets through.
+        let keys = take_keys(ui.ctx());
+        ui.push_id("scene", |ui| self.app.ui(ui, frame));
+        ui.ctx().input_mut(|input| input.events.extend(keys));
+    }
+
+    /// What was clicked since the last call.
+    pub fn picked(&mut self) -> Option<Picked> {
+        let mut picked = None;
+        for event in self.events.borrow_mut().drain(..) {
+            if let ViewerEventKind::SelectionChange { items } = event.kind {
+                picked = items.iter().find_map(|item| match item {
+                    // A selection that was not clicked has no place.
+                    SelectionChangeItem::Entity {
+                        entity_path,
+                        instance_id,
+                        position: Some(_),
+                        ..
+                    } => LiveScene::picked(&entity_path.to_string(), instance_of(*instance_id)),
+                    _ => None,
+                });
+            }
+        }
+        picked
+    }
+}
+
+/// Index of the instance; a batch of one is selected as a whole.
+fn instance_of(instance: Instance) -> Option<u64> {
+    Some(instance.specific_index().map_or(0, |index| index.get()))
+}

@@ -1,0 +1,143 @@
+//! Choosing among the members of a front: its knee, a weighted ranking, groups of like members.
+//!
+//! A front is a slice of objectives, both minimised, in the order of the [archive](super::Archive): the first ascending,
+//! the second descending. Each objective is scaled by the range that the front spans in it.
+
+/// The member farthest below the line between the two ends of the front, the first among equals.
+pub fn knee(front: &[[f64; 2]]) -> Option<usize> {
+    smallest(scaled(front).iter().map(|[first, second]| first + second))
+}
+
+/// The members from best to worst by the weighted distance to the ideal point, which has the best of both objectives.
+///
+/// `weight` in \[0, 1\] is the share of the first objective: with 1 the first member comes first, with 0 the last.
+pub fn ranking(front: &[[f64; 2]], weight: f64) -> Vec<usize> {
+    let weight = weight.clamp(0.0, 1.0);
+    let distances: Vec<f64> = scaled(front)
+        .iter()
+        .map(|[first, second]| libm::hypot(weight * first, (1.0 - weight) * second))
+        .collect();
+    let mut order: Vec<usize> = (0..front.len()).collect();
+    // Where one objective has no weight at all, the other decides between equals by the order of the front.
+    order.sort_by(|&a, &b| distances[a].total_cmp(&distances[b]));
+    order
+}
+
+/// Splits the front into at most `count` groups of neighbours, the sum of squared distances to their means the smallest
+/// there is (dynamic programming: on a front, groups are intervals). Each is a range of members.
+pub fn groups(front: &[[f64; 2]], count: usize) -> Vec<std::ops::Range<usize>> {
+    let points = scaled(front);
+    let n = points.len();
+    let count = count.min(n);
+    if count == 0 {
+        return Vec::new();
+    }
+    // Sums over the first k members, so that the cost of an interval is a difference.
+    let mut sums = vec![[0.0; 3]];
+    for &[x, y] in &points {
+        let [sx, sy, squares] = sums[sums.len() - 1];
+        sums.push([sx + x, sy + y, squares + x * x + y * y]);
+    }
+    let cost = |from: usize, to: usize| {
+        let [x, y, squares] = [0, 1, 2].map(|k| sums[to][k] - sums[from][k]);
+        (squares - (x * x + y * y) / (to - from) as f64).max(0.0)
+    };
+    // best[k][to]: least cost of the first `to` members in k + 1 groups, and where the last group begins.
+    let mut best: Vec<Vec<(f64, usize)>> = vec![
+        (0..=n)
+            .map(|to| if to == 0 { (0.0, 0) } else { (cost(0, to), 0) })
+            .collect(),
+    ];
+    for k in 1..count {
+        let before = &best[k - 1];
+        let row = (0..=n)
+            .map(|to| {
+                (k..to)
+                    .map(|from| (before[from].0 + cost(from, to), from))
+                    .min_by(|a, b| a.0.total_cmp(&b.0))
+                    .unwrap_or((f64::INFINITY, 0))
+            })
+            .collect();
+        best.push(row);
+    }
+    let mut ranges = Vec::new();
+    let mut to = n;
+    for k in (0..count).rev() {
+        let from = best[k][to].1;
+        ranges.push(from..to);
+        to = from;
+    }
+    ranges.reverse();
+    ranges
+}
+
+/// Objectives from 0 (best of the front) to 1 (worst).
+fn scaled(front: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let range = |k: usize| {
+        front
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| {
+                [low.min(point[k]), high.max(point[k])]
+            })
+    };
+    let ranges = [range(0), range(1)];
+    let share = |value: f64, [low, high]: [f64; 2]| if high > low { (value - low) / (high - low) } else { 0.0 };
+    front
+        .iter()
+        .map(|point| [share(point[0], ranges[0]), share(point[1], ranges[1])])
+        .collect()
+}
+
+/// Index of the smallest number, the first among equals.
+fn smallest(numbers: impl Iterator<Item = f64>) -> Option<usize> {
+    numbers
+        .enumerate()
+        .fold(None, |best: Option<(usize, f64)>, (index, number)| match best {
+            Some((_, least)) if least <= number => best,
+            _ => Some((index, number)),
+        })
+        .map(|(index, _)| index)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A quarter circle bulging to the ideal point, as a front of 11 members.
+    fn front() -> Vec<[f64; 2]> {
+        (0..=10)
+            .map(|k| {
+                let angle = std::f64::consts::FRAC_PI_2 * f64::from(k) / 10.0;
+                [100.0 * (1.0 - libm::cos(angle)), 2.0 * (1.0 - libm::sin(angle))]
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_knee_of_a_symmetric_front_is_its_middle() {
+        assert_eq!(knee(&front()), Some(5));
+        assert_eq!(knee(&[]), None);
+        assert_eq!(knee(&[[3.0, 4.0]]), Some(0));
+    }
+
+    #[test]
+    fn the_weight_moves_the_ranking_from_end_to_end() {
+        let front = front();
+        assert_eq!(ranking(&front, 1.0)[0], 0);
+        assert_eq!(ranking(&front, 0.5)[0], 5);
+        assert_eq!(ranking(&front, 0.0)[0], 10);
+        let mut all = ranking(&front, 0.3);
+        all.sort_unstable();
+        assert_eq!(all, (0..11).collect::<Vec<_>>());
+    }
+
+    /// Against every split there is.
+    #[test]
+    fn groups_are_the_best_split() {
+        let points: Vec<[f64; 2]> = [0.0, 0.1, 0.15, 2.0, 2.2, 5.0, 5.1, 5.3].map(|x| [x, 6.0 - x]).to_vec();
+        let found = groups(&points, 3);
+        assert_eq!(found, vec![0..3, 3..5, 5..8]);
+        assert_eq!(groups(&points, 100).len(), points.len());
+        assert!(groups(&[], 3).is_empty());
+    }
+}

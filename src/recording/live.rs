@@ -1,0 +1,304 @@
+//! The scene of a window: one design at a pose, pinned designs beside each other, and the front, replaced in place.
+
+use std::cell::RefCell;
+
+use glam::DVec2;
+use rerun::sink::LogSink;
+use rerun::{Transform3D, Vec3D};
+
+use super::draw::Canvas;
+use super::scatter::{Frame, FrontPoint, front_points, selected, staircase};
+use super::stage::{Rows, Stage};
+use super::subject::Subject;
+use super::writer::{RecordingError, Writer};
+use super::{blueprint, colors, paths};
+use crate::evaluation::{Evaluation, Model};
+use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Scene, ellipsoids, manipulator};
+use crate::spatial::Pose;
+use crate::study::Study;
+
+/// Cells along the longer side of a heatmap, and of an outline over φ.
+const HEATMAP: HeatmapSettings = HeatmapSettings { cells: 120 };
+const OUTLINE: HeatmapSettings = HeatmapSettings { cells: 32 };
+
+/// Distance between pinned designs in multiples of the largest `R` among them.
+const PIN_DISTANCE: f64 = 2.6;
+
+/// What of a design is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Layers {
+    /// Rails, bars and joints of the legs.
+    pub legs: bool,
+    /// Bars of the platform.
+    pub platform: bool,
+    /// Names of joints and frames.
+    pub labels: bool,
+    /// The regular workspace, and the poses that stop it from growing.
+    pub workspace: bool,
+    /// Parallel singularities and the edge of reach.
+    pub singularities: bool,
+    /// Ellipsoids at points of the workspace.
+    pub ellipsoids: Option<EllipsoidKind>,
+    /// Field below the manipulator.
+    pub heatmap: Option<Field>,
+    /// The workspace in (x, y, φ).
+    pub configuration: bool,
+}
+
+impl Default for Layers {
+    fn default() -> Self {
+        Self {
+            legs: true,
+            platform: true,
+            labels: true,
+            workspace: true,
+            singularities: true,
+            ellipsoids: None,
+            heatmap: Some(Field::InverseCondition),
+            configuration: true,
+        }
+    }
+}
+
+/// One design as it is to be shown.
+#[derive(Debug, Clone, Copy)]
+pub struct Shown<'a> {
+    /// The physics.
+    pub model: &'a Model,
+    /// The design with what it was evaluated to.
+    pub evaluation: &'a Evaluation,
+    /// Pose of the manipulator; home where it is left out.
+    pub pose: Option<Pose>,
+    /// Orientation of the heatmap \[rad\]; home where it is left out.
+    pub heatmap_phi: Option<f64>,
+    /// What is drawn.
+    pub layers: &'a Layers,
+}
+
+/// A design to compare with others.
+#[derive(Debug, Clone, Copy)]
+pub struct Pinned<'a> {
+    /// The design with what it was evaluated to.
+    pub evaluation: &'a Evaluation,
+    /// What it is called.
+    pub name: &'a str,
+}
+
+/// A member of the scene that was pointed at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Picked {
+    /// The front's design at this place of the front last shown.
+    Front(usize),
+    /// The pinned design at this place.
+    Pin(usize),
+}
+
+/// The scene, on its way to a viewer.
+pub struct LiveScene {
+    writer: Writer,
+    frame: Frame,
+    design: Stage,
+    pins: Stage,
+    front: Stage,
+}
+
+impl LiveScene {
+    /// A scene that goes to `sink`, laid out for `study`.
+    ///
+    /// # Errors
+    /// [`RecordingError::Encode`] when the layout does not encode.
+    pub fn new(sink: Box<dyn LogSink>, study: &Study) -> Result<Self, RecordingError> {
+        let scene = Self {
+            writer: Writer::sending(sink, "scene")?,
+            frame: Frame::new(study),
+            design: Stage::default(),
+            pins: Stage::default(),
+            front: Stage::default(),
+        };
+        scene.layout(study, false)?;
+        Ok(scene)
+    }
+
+    /// Turns to another study.
+    ///
+    /// # Errors
+    /// [`RecordingError::Encode`].
+    pub fn turn_to(&mut self, study: &Study) -> Result<(), RecordingError> {
+        self.frame = Frame::new(study);
+        self.layout(study, false)
+    }
+
+    /// Lays the views out; the one of the pinned designs is in front where `comparing`.
+    ///
+    /// # Errors
+    /// [`RecordingError::Encode`].
+    pub fn layout(&self, study: &Study, comparing: bool) -> Result<(), RecordingError> {
+        let extent = 0.62 * study.bounds.R_m[1];
+        Ok(blueprint::send_live_layout(
+            self.writer.stream(),
+            self.frame.bounds(),
+            extent,
+            comparing,
+        )?)
+    }
+
+    /// Shows a design, or none.
+    ///
+    /// # Errors
+    /// [`RecordingError::Encode`].
+    pub fn design(&mut self, shown: Option<&Shown<'_>>) -> Result<(), RecordingError> {
+        let rows = RefCell::new(Rows::default());
+        if let Some(shown) = shown {
+            draw(&Canvas::collecting(&rows), shown)?;
+        }
+        self.design.show(&self.writer, rows.into_inner())
+    }
+
+    /// Shows pinned designs side by side, each at home with its workspace.
+    ///
+    /// # Errors
+    /// [`RecordingError::Encode`].
+    pub fn pins(&mut self, model: &Model, pins: &[Pinned<'_>]) -> Result<(), RecordingError> {
+        let rows = RefCell::new(Rows::default());
+        let canvas = Canvas::collecting(&rows);
+        let widest = pins
+            .iter()
+            .map(|pin| pin.evaluation.design.base_radius)
+            .fold(0.0, f64::max);
+        for (index, pin) in pins.iter().enumerate() {
+            let root = format!("{}/{index}", paths::PINS);
+            let place = (index as f64 - 0.5 * (pins.len() as f64 - 1.0)) * PIN_DISTANCE * widest;
+            let transform = Transform3D::from_translation(Vec3D::new(place as f32, 0.0, 0.0));
+            rows.borrow_mut().push(&root, &transform);
+            let subject = Subject {
+                model,
+                evaluation: pin.evaluation,
+            };
+            if let Ok(scene) = manipulator(model, &pin.evaluation.design, &subject.home()) {
+                canvas.manipulator(&format!("{root}/manipulator"), &scene)?;
+            }
+            subject.disc(&canvas, &format!("{root}/workspace"))?;
+            let at = glam::DVec3::new(0.0, -1.15 * widest, 0.0);
+            let text = format!(
+                "{}: {:.1} kg, R_w {:.3} m",
+                pin.name, pin.evaluation.mass, pin.evaluation.workspace_radius
+            );
+            canvas.word(&format!("{root}/name"), at, &text, colors::TEXT)?;
+        }
+        self.pins.show(&self.writer, rows.into_inner())
+    }
+
+    /// Shows the front in its own scatter, and marks the selected design.
+    ///
+    /// # Errors
+    /// [`RecordingError::Encode`].
+    pub fn front(
+        &mut self,
+        study: &Study,
+        front: &[FrontPoint],
+        marked: Option<&Evaluation>,
+    ) -> Result<(), RecordingError> {
+        let mut rows = Rows::default();
+        for member in front {
+            self.frame.include(member.mass, member.radius);
+        }
+        if let Some(marked) = marked {
+            self.frame.include(marked.mass, marked.workspace_radius);
+        }
+        rows.push(paths::PLOT, &self.frame.transform());
+        rows.push(paths::AXES, &self.frame.lines());
+        rows.push(paths::TICKS, &self.frame.labels());
+        rows.push(paths::LEGEND, &self.frame.legend(&study.architectures));
+        rows.push(paths::FRONT_LINE, &staircase(front, &self.frame));
+        rows.push(paths::FRONT_DESIGNS, &front_points(front));
+        if let Some(marked) = marked {
+            rows.push(paths::SELECTED, &selected(marked));
+        }
+        self.front.show(&self.writer, rows)
+    }
+
+    /// What stands at an entity of the scene, if it is a design.
+    pub fn picked(entity: &str, instance: Option<u64>) -> Option<Picked> {
+        let entity = entity.strip_prefix('/').unwrap_or(entity);
+        if entity == &paths::FRONT_DESIGNS[1..] {
+            return Some(Picked::Front(instance? as usize));
+        }
+        let rest = entity.strip_prefix(&paths::PINS[1..])?.strip_prefix('/')?;
+        let index = rest.split('/').next()?.parse().ok()?;
+        Some(Picked::Pin(index))
+    }
+}
+
+fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<(), RecordingError> {
+    let Shown {
+        model,
+        evaluation,
+        layers,
+        ..
+    } = *shown;
+    let subject = Subject { model, evaluation };
+    let home = subject.home();
+    let pose = shown.pose.unwrap_or(home);
+    if let Ok(mut scene) = manipulator(model, &evaluation.design, &pose) {
+        keep(&mut scene, layers);
+        canvas.manipulator(paths::MANIPULATOR, &scene)?;
+    }
+    if layers.heatmap.is_some() || layers.singularities {
+        let field = layers.heatmap.unwrap_or(Field::InverseCondition);
+        let phi = shown.heatmap_phi.unwrap_or(home.phi);
+        let mut heatmap =
+            Heatmap::new(model, &evaluation.design, field, phi, HEATMAP).map_err(RecordingError::encode)?;
+        if !layers.singularities {
+            heatmap.singular.clear();
+            heatmap.edges.clear();
+        }
+        if layers.heatmap.is_some() {
+            subject.heatmap(canvas, &heatmap, subject.floor())?;
+        } else {
+            heatmap.threshold.clear();
+            let floor = subject.floor();
+            canvas.outlines(&format!("{}/outlines", paths::HEATMAP), &heatmap, &|p: DVec2| {
+                p.extend(floor)
+            })?;
+        }
+    }
+    if let Some(kind) = layers.ellipsoids
+        && let Some(set) = ellipsoids(model, evaluation, kind).map_err(RecordingError::encode)?
+    {
+        canvas.ellipsoids(
+            &format!("{}/{}", paths::ELLIPSOIDS, kind.key()),
+            &set,
+            0.0,
+            subject.note(),
+        )?;
+    }
+    if layers.workspace {
+        subject.workspace(canvas)?;
+    }
+    if layers.configuration {
+        subject.configuration(canvas)?;
+        subject.layers(canvas, OUTLINE, false)?;
+        let at = subject.space().place(pose.position, pose.phi);
+        canvas.mark(&format!("{}/pose", paths::CONFIGURATION), at, "P", colors::ELLIPSOID)?;
+    }
+    Ok(())
+}
+
+/// Drops the parts that are not to be drawn.
+fn keep(scene: &mut Scene, layers: &Layers) {
+    let platform = |part: Part| part == Part::PlatformBar;
+    scene.solids.retain(|solid| {
+        if platform(solid.part) {
+            layers.platform
+        } else {
+            layers.legs
+        }
+    });
+    scene.lines.retain(|line| match line.part {
+        Part::Rail | Part::Stroke => layers.legs,
+        _ => true,
+    });
+    if !layers.labels {
+        scene.labels.clear();
+    }
+}

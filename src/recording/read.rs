@@ -1,0 +1,189 @@
+//! Reading our recordings back, and copying one that is still being written.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufReader};
+use std::path::{Path, PathBuf};
+
+use rerun::external::arrow::array::{Array, BooleanArray, Float64Array, StringArray};
+use rerun::external::re_log_encoding::{DecodeError, Decoder};
+use rerun::log::{Chunk, LogMsg};
+use rerun::sink::LogSink;
+use rerun::{StoreId, StoreKind, TimelineName};
+
+use super::design;
+use super::sink::RrdFile;
+use super::writer::{RecordingError, Writer};
+use super::{paths, timelines};
+use crate::evaluation::{Evaluation, Model};
+
+/// Why a recording cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// It is no recording, or not one of ours.
+    #[error("{} is no recording of a run: {message}", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// What is missing.
+        message: String,
+    },
+}
+
+/// A design as it stands in a recording, by the names of `designs.csv`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RecordedDesign {
+    /// Generation, from 1.
+    pub generation: usize,
+    /// Its texts.
+    pub texts: BTreeMap<String, String>,
+    /// Its numbers.
+    pub numbers: BTreeMap<String, f64>,
+}
+
+/// What a recording tells of a run.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RecordedRun {
+    /// The study as run, TOML.
+    pub study: String,
+    /// Every evaluated design, in order.
+    pub designs: Vec<RecordedDesign>,
+}
+
+type Messages = Box<dyn Iterator<Item = Result<LogMsg, DecodeError>>>;
+
+fn messages(path: &Path) -> Result<Messages, ReadError> {
+    let file = File::open(path).map_err(|source| ReadError::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    let decoder = Decoder::<LogMsg>::decode_eager(BufReader::new(file)).map_err(|error| foreign(path, error))?;
+    Ok(Box::new(decoder))
+}
+
+fn foreign(path: &Path, message: impl std::fmt::Display) -> ReadError {
+    ReadError::Foreign {
+        path: path.to_owned(),
+        message: message.to_string(),
+    }
+}
+
+/// Reads the study and the designs of a recorded run. What a killed run left half-written at the end is left out.
+///
+/// # Errors
+/// [`ReadError`].
+pub fn read_run(path: &Path) -> Result<RecordedRun, ReadError> {
+    let mut run = RecordedRun::default();
+    for message in messages(path)? {
+        let Ok(message) = message else { break };
+        let LogMsg::ArrowMsg(store, message) = message else {
+            continue;
+        };
+        if store.kind() != StoreKind::Recording {
+            continue;
+        }
+        let chunk = Chunk::from_arrow_msg(&message).map_err(|error| foreign(path, error))?;
+        match chunk.entity_path().to_string().as_str() {
+            paths::DESIGNS => designs(&chunk, &mut run.designs),
+            paths::STUDY => run.study = study(&chunk).unwrap_or_default(),
+            _ => {}
+        }
+    }
+    if run.study.is_empty() {
+        return Err(foreign(path, format!("there is no study at {}", paths::STUDY)));
+    }
+    Ok(run)
+}
+
+/// The TOML in the study's document.
+fn study(chunk: &Chunk) -> Option<String> {
+    let texts = chunk.components().list_arrays().find_map(|list| {
+        let row = list.iter().flatten().next()?;
+        let texts = row.as_any().downcast_ref::<StringArray>()?;
+        let text = texts.iter().flatten().next()?.to_owned();
+        text.contains("```toml").then_some(text)
+    })?;
+    let (_, rest) = texts.split_once("```toml\n")?;
+    let (toml, _) = rest.rsplit_once("```")?;
+    Some(toml.to_owned())
+}
+
+fn designs(chunk: &Chunk, designs: &mut Vec<RecordedDesign>) {
+    let first = designs.len();
+    designs.resize(first + chunk.num_rows(), RecordedDesign::default());
+    let rows = &mut designs[first..];
+    let generation = TimelineName::try_new(timelines::GENERATION).ok();
+    if let Some(column) = generation.and_then(|name| chunk.timelines().get(&name)) {
+        for (row, &time) in rows.iter_mut().zip(column.times_raw()) {
+            row.generation = usize::try_from(time).unwrap_or(0);
+        }
+    }
+    let components = chunk.components();
+    for (descriptor, list) in components.component_descriptors().zip(components.list_arrays()) {
+        let name = descriptor.component.to_string();
+        for (row, values) in rows.iter_mut().zip(list.iter()) {
+            let Some(values) = values.filter(|values| !values.is_empty()) else {
+                continue;
+            };
+            let any = values.as_any();
+            if let Some(numbers) = any.downcast_ref::<Float64Array>() {
+                row.numbers.insert(name.clone(), numbers.value(0));
+            } else if let Some(texts) = any.downcast_ref::<StringArray>() {
+                row.texts.insert(name.clone(), texts.value(0).to_owned());
+            } else if let Some(flags) = any.downcast_ref::<BooleanArray>() {
+                row.numbers.insert(name.clone(), f64::from(u8::from(flags.value(0))));
+            }
+        }
+    }
+}
+
+/// Copies the recording at `from`, as far as it is written, to `to`, which must not exist; `shown` is a design that stands
+/// on its views at the end.
+///
+/// # Errors
+/// What cannot be read or written, in words.
+pub fn save_copy(from: &Path, to: &Path, shown: Option<(&Model, &Evaluation, &str)>) -> Result<(), String> {
+    let read = messages(from).map_err(|error| error.to_string())?;
+    let file = RrdFile::create(to).map_err(|error| format!("cannot write the recording {}: {error}", to.display()))?;
+    let failed = |error: io::Error| format!("cannot write the recording {}: {error}", to.display());
+    let mut recording: Option<StoreId> = None;
+    let mut last = [(timelines::EVALUATION, 0), (timelines::GENERATION, 0)];
+    for message in read {
+        // The run may be in the middle of writing the last one.
+        let Ok(message) = message else { break };
+        if let LogMsg::ArrowMsg(store, arrow) = &message
+            && store.kind() == StoreKind::Recording
+        {
+            recording = Some(store.clone());
+            if let Ok(chunk) = Chunk::from_arrow_msg(arrow) {
+                for (name, time) in &mut last {
+                    let latest = TimelineName::try_new(name)
+                        .ok()
+                        .and_then(|name| chunk.timelines().get(&name)?.times_raw().last().copied());
+                    *time = latest
+                        .and_then(|latest| usize::try_from(latest).ok())
+                        .unwrap_or(0)
+                        .max(*time);
+                }
+            }
+        }
+        file.send(message);
+        file.check().map_err(failed)?;
+    }
+    if let Some(((model, evaluation, heading), store)) = shown.zip(recording) {
+        let builder = Writer::builder().recording_id(store.recording_id().clone());
+        let writer = Writer::over(&file, to, builder).map_err(|error| error.to_string())?;
+        let drawn: Result<(), RecordingError> = design::record_step(&writer, &last, model, evaluation, heading);
+        drawn.and_then(|()| writer.close()).map_err(|error| error.to_string())
+    } else {
+        file.finish().map_err(failed)
+    }
+}

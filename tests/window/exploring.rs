@@ -1,0 +1,226 @@
+//! From a run to a design, a what-if, and back.
+
+use egui::accesskit::{Role, Toggled};
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use kinefront::explorer::{Origin, Phase, Quantity};
+use kinefront::mechanism::Variable;
+use kinefront::study::Outcome;
+
+use super::support::{click_at, idle_window, opened_window, set_slider, until};
+
+#[test]
+fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_restores() {
+    let mut window = idle_window();
+    assert_eq!(*window.state().session().phase(), Phase::Ready);
+    window.get_by_label("▶ Start").click();
+    window.run_steps(4);
+    until(&mut window, "the run ends", |explorer| {
+        *explorer.session().phase() == Phase::Finished(Outcome::Completed)
+    });
+    let session = window.state().session();
+    assert_eq!(session.store().len(), 300);
+    assert_eq!(session.generations().last().map(|last| last.evaluations), Some(300));
+    assert!(session.front().len() > 3 && session.front().iter().all(|entry| entry.verified));
+    // The knee was in the light by itself; that is nothing to undo.
+    assert!(!session.history.can_undo());
+
+    let id = session.front()[session.front().len() / 3].id;
+    let at = window.state().scatter_position(id).expect("a place in the scatter");
+    click_at(&mut window, at);
+    let chosen = window.state().session().document().chosen.clone().expect("a design");
+    assert_eq!(chosen.origin, Origin::Evaluated(id));
+    until(&mut window, "the design is verified", |explorer| {
+        explorer.session().known().is_some_and(|known| known.verified) && explorer.session().is_drawn()
+    });
+    let heading = format!("{} #{id}", chosen.design.architecture);
+    assert!(
+        window.query_by_label(&heading).is_some(),
+        "the inspector shows {heading}"
+    );
+    let known = window.state().session().known().expect("known").clone();
+    let place = window.state().session().place_on_front(id).expect("on the front");
+    assert_eq!(
+        known.evaluation.workspace_radius,
+        window.state().session().front()[place].row.radius
+    );
+
+    set_slider(&mut window, "R", 2.0);
+    let session = window.state().session();
+    let changed = session.document().chosen.clone().expect("a design");
+    assert_eq!(changed.origin, Origin::WhatIf { from: Some(id) });
+    assert_eq!(changed.design.base_radius, 2.0);
+    assert!(window.query_by_label("what if: not of the run").is_some());
+    until(&mut window, "the what-if is evaluated", |explorer| {
+        explorer.session().known().is_some()
+    });
+    let what_if = window.state().session().known().expect("known").evaluation.clone();
+    assert_ne!(what_if.mass, 0.0);
+    assert_eq!(what_if.design, changed.design);
+
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    window.run_steps(3);
+    assert_eq!(window.state().session().document().chosen, Some(chosen));
+    window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    window.run_steps(3);
+    assert_eq!(window.state().session().document().chosen, Some(changed));
+}
+
+#[test]
+fn a_run_is_paused_stepped_resumed_stopped_and_started_again() {
+    let mut window = idle_window();
+    window
+        .state_mut()
+        .session_mut()
+        .editor
+        .change(|study| study.optimizer.evaluations = 30_000);
+    window.get_by_label("▶ Start").click();
+    window.run_steps(4);
+    until(&mut window, "designs come", |explorer| {
+        explorer.session().store().len() >= 60
+    });
+    window.get_by_label("⏸ Pause").click();
+    window.run_steps(4);
+    assert_eq!(*window.state().session().phase(), Phase::Paused);
+    // The generation under way still comes.
+    std::thread::sleep(std::time::Duration::from_millis(400));
+    window.run_steps(3);
+    let held = window.state().session().generations().len();
+    window.get_by_label("⏭ Step").click();
+    until(&mut window, "one generation more", |explorer| {
+        explorer.session().generations().len() == held + 1
+    });
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    window.run_steps(3);
+    assert_eq!(window.state().session().generations().len(), held + 1);
+    window.get_by_label("▶ Resume").click();
+    until(&mut window, "it goes on", |explorer| {
+        explorer.session().generations().len() > held + 2
+    });
+    window.get_by_label("⏹ Stop").click();
+    until(&mut window, "it stops", |explorer| {
+        *explorer.session().phase() == Phase::Finished(Outcome::Stopped)
+    });
+    let designs = window.state().session().store().len();
+    assert!(designs < 30_000 && window.state().session().front().iter().all(|entry| entry.verified));
+    window.get_by_label("▶ Start").click();
+    window.run_steps(3);
+    assert!(window.state().session().store().len() < designs);
+    window.state_mut().session_mut().close();
+}
+
+#[test]
+fn arrow_keys_walk_along_the_lit_front_and_p_pins() {
+    let mut window = opened_window();
+    let front: Vec<usize> = window.state().session().front().iter().map(|entry| entry.id).collect();
+    let here = |window: &super::support::Window| match window
+        .state()
+        .session()
+        .document()
+        .chosen
+        .as_ref()
+        .map(|c| c.origin.clone())
+    {
+        Some(Origin::Evaluated(id)) => id,
+        other => panic!("{other:?}"),
+    };
+    let knee = here(&window);
+    let place = front.iter().position(|&id| id == knee).expect("on the front");
+    window.key_press(Key::ArrowRight);
+    window.run_steps(2);
+    assert_eq!(here(&window), front[(place + 1).min(front.len() - 1)]);
+    window.key_press(Key::ArrowLeft);
+    window.run_steps(2);
+    assert_eq!(here(&window), knee);
+    for _ in 0..front.len() {
+        window.key_press(Key::ArrowLeft);
+    }
+    window.run_steps(2);
+    assert_eq!(here(&window), front[0]);
+
+    window.key_press(Key::P);
+    window.run_steps(2);
+    window.key_press(Key::K);
+    window.run_steps(2);
+    window.key_press(Key::P);
+    window.run_steps(2);
+    let pins = &window.state().session().document().pins;
+    assert_eq!(pins.len(), 2);
+    assert_eq!(pins[0].name, format!("#{}", front[0]));
+}
+
+#[test]
+fn one_filter_holds_everywhere() {
+    let mut window = opened_window();
+    let all = window.state().session().front().len();
+    let architecture = window.state().session().front()[0].row.design.architecture;
+    window.get_by_label(&format!("{architecture} in the light")).click();
+    window.run_steps(3);
+    let document = window.state().session().document().clone();
+    assert_eq!(document.filter.hidden, [architecture]);
+    let toggled = window
+        .get_by_label(&format!("{architecture} in the light"))
+        .accesskit_node()
+        .toggled();
+    assert_eq!(toggled, Some(Toggled::False));
+    // Dimmed, not gone.
+    assert_eq!(window.state().session().front().len(), all);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    window.run_steps(2);
+    assert!(window.state().session().document().filter.is_empty());
+
+    let (low, high) = (0.3, 0.9);
+    window.state_mut().session_mut().history.edit(|document| {
+        document.filter.set_range(Quantity::Radius, Some([low, high]));
+    });
+    window.key_press(Key::ArrowRight);
+    window.run_steps(2);
+    let session = window.state().session();
+    let sieve = session.document().filter.sieve(session.store());
+    let lit = (0..session.store().len()).filter(|&id| sieve.passes(id)).count();
+    let inside = session
+        .store()
+        .column(Quantity::Radius)
+        .iter()
+        .filter(|r| (low..=high).contains(*r))
+        .count();
+    assert_eq!(lit, inside);
+    assert!(inside > 0 && inside < session.store().len());
+}
+
+#[test]
+fn the_platform_stops_at_its_limits_and_says_which() {
+    let mut window = opened_window();
+    set_slider(&mut window, "pose x", 3.9);
+    let stopped = window.get_by_label_contains("stopped: leg");
+    let words = stopped
+        .value()
+        .or_else(|| stopped.accesskit_node().label())
+        .expect("a reason");
+    assert!(words.contains("reach") || words.contains("limit"), "{words}");
+    let session = window.state().session();
+    let (pose, design) = (
+        session.pose().expect("a pose"),
+        session.document().chosen.as_ref().expect("a design").design,
+    );
+    assert!(pose.position.x > 0.0);
+    assert!(session.model().pose(&design, &pose).expect("a grid").is_ok());
+    window.get_by_label("Home").click();
+    window.run_steps(3);
+    assert_eq!(window.state().session().pose(), window.state().session().home());
+}
+
+#[test]
+fn any_two_quantities_stand_against_each_other() {
+    let mut window = opened_window();
+    for (k, quantity) in Quantity::all().into_iter().enumerate() {
+        let scatter = kinefront::explorer::axes(quantity, Quantity::Variable(Variable::BaseRadius), k % 2 == 0);
+        window.state_mut().set_axes(scatter);
+        window.run_steps(3);
+    }
+    assert!(
+        window
+            .query_by_role_and_label(Role::Image, "Scatter of designs")
+            .is_some()
+    );
+}

@@ -1,0 +1,308 @@
+//! Files: saved, opened, dropped, pasted, wrong.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use kinefront::explorer::{Explorer, Origin, Phase, Subject, open};
+use kinefront::recording::read_run;
+
+use super::support::{idle_window, opened_window, run_folder, small_study, until, window};
+
+/// A finished run in a window.
+fn finished() -> super::support::Window {
+    let mut window = window(Subject::Study {
+        study: Box::new(small_study()),
+        path: None,
+        start: true,
+    });
+    until(&mut window, "the run ends", |explorer| {
+        matches!(explorer.session().phase(), Phase::Finished(_))
+            && explorer.session().known().is_some_and(|k| k.verified)
+    });
+    window
+}
+
+/// Types a path where one is asked for.
+fn give_path(window: &mut super::support::Window, path: &std::path::Path) {
+    window.run_steps(3);
+    let field = window.get_by_label("Path");
+    field.focus();
+    window.run_steps(2);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    window.get_by_label("Path").type_text(&path.display().to_string());
+    window.run_steps(2);
+    window.get_by_label("OK").click();
+    window.run_steps(2);
+    until(window, "the file is written", |explorer| !explorer.is_busy());
+}
+
+#[test]
+fn a_recording_is_saved_and_read_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut window = finished();
+    let path = folder.path().join("session.rrd");
+    window.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    give_path(&mut window, &path);
+    assert!(path.exists(), "{:?}", window.state().session().notices);
+
+    let recorded = read_run(&path).expect("a recording of ours");
+    assert_eq!(recorded.designs.len(), 300);
+    let store = window.state().session().store();
+    for (id, design) in recorded.designs.iter().enumerate() {
+        let row = store.row(id).expect("a row");
+        assert_eq!(design.numbers["mass_kg"], row.mass);
+        assert_eq!(design.numbers["workspace_radius_m"], row.radius);
+        assert_eq!(design.generation, row.generation as usize);
+    }
+    // By a reader that is not ours.
+    if let Some(mut python) = python() {
+        let script = "import json, pathlib, subprocess, sys, rerun\n\
+            command = pathlib.Path(rerun.__file__).parent.parent / 'rerun_cli' / 'rerun'\n\
+            done = subprocess.run([str(command), 'rrd', 'verify', sys.argv[1]], capture_output=True, text=True)\n\
+            assert done.returncode == 0 and '1 file verified without error' in done.stderr, done.stderr\n\
+            from rerun.experimental import RrdReader\n\
+            rows = {}\n\
+            for chunk in RrdReader(sys.argv[1]).stream():\n\
+            \x20   name = str(chunk.entity_path)\n\
+            \x20   rows[name] = rows.get(name, 0) + chunk.to_record_batch().num_rows\n\
+            print(rows['/designs'], rows['/card'])\n";
+        let output = python.arg("-c").arg(script).arg(&path).output().expect("Python runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let counts: Vec<usize> = text
+            .split_whitespace()
+            .map(|word| word.parse().expect("a count"))
+            .collect();
+        // A card for each of the front, one for the knee, one for the design in the light.
+        assert_eq!(counts, [300, window.state().session().front().len() + 2]);
+    }
+
+    // And explored again.
+    let opened = open(&path).expect("opens");
+    assert_eq!(opened.store.len(), 300);
+    assert_eq!(opened.study, small_study());
+    assert!(!opened.front.is_empty());
+}
+
+fn python() -> Option<std::process::Command> {
+    let interpreter = std::env::var("KINEFRONT_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let found = std::process::Command::new(&interpreter)
+        .args(["-c", "import rerun.experimental"])
+        .output()
+        .is_ok_and(|output| output.status.success());
+    if !found {
+        let message = format!("skipped: {interpreter} with rerun was not found (see README, Tests)");
+        assert!(std::env::var_os("KINEFRONT_REQUIRE_PYTHON").is_none(), "{message}");
+        eprintln!("{message}");
+    }
+    found.then(|| std::process::Command::new(interpreter))
+}
+
+#[test]
+fn a_run_folder_is_saved_and_opened_to_the_same() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut window = finished();
+    let path = folder.path().join("run");
+    let ctx = window.ctx.clone();
+    window
+        .state_mut()
+        .act(&ctx, kinefront::explorer::Purpose::SaveRun, path.clone());
+    until(&mut window, "the folder is written", |explorer| !explorer.is_busy());
+    for file in ["study.toml", "designs.csv", "front.csv", "run.json", "recording.rrd"] {
+        assert!(
+            path.join(file).exists(),
+            "{file}: {:?}",
+            window.state().session().notices
+        );
+    }
+    let opened = open(&path).expect("opens");
+    let session = window.state().session();
+    assert_eq!(opened.front, session.front());
+    assert_eq!(opened.history, session.generations());
+    assert_eq!(opened.store.len(), session.store().len());
+    for id in 0..opened.store.len() {
+        assert_eq!(opened.store.row(id), session.store().row(id));
+    }
+    // A folder that holds a run is not written over.
+    window
+        .state_mut()
+        .act(&ctx, kinefront::explorer::Purpose::SaveRun, path);
+    until(&mut window, "it is refused", |explorer| !explorer.is_busy());
+    let notices = &window.state().session().notices;
+    assert!(
+        notices
+            .iter()
+            .any(|notice| notice.is_error && notice.text.contains("is there already")),
+        "{notices:?}"
+    );
+}
+
+#[test]
+fn the_front_is_exported_with_stars_and_notes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("front.csv");
+    let mut window = opened_window();
+    window.key_press(Key::S);
+    window.run_steps(2);
+    let chosen = match window
+        .state()
+        .session()
+        .document()
+        .chosen
+        .as_ref()
+        .map(|chosen| chosen.origin.clone())
+    {
+        Some(Origin::Evaluated(id)) => id,
+        other => panic!("{other:?}"),
+    };
+    let ctx = window.ctx.clone();
+    window
+        .state_mut()
+        .act(&ctx, kinefront::explorer::Purpose::ExportFront, path.clone());
+    let mut reader = csv::Reader::from_path(&path).expect("a table");
+    let header = reader.headers().expect("a header").clone();
+    assert_eq!(
+        header.iter().take(13).collect::<Vec<_>>(),
+        kinefront::study::TABLE_HEADER
+    );
+    let starred = header.iter().position(|title| title == "starred").expect("starred");
+    let rows: Vec<csv::StringRecord> = reader.records().map(|record| record.expect("a row")).collect();
+    assert_eq!(rows.len(), window.state().session().front().len());
+    let stars: Vec<&csv::StringRecord> = rows.iter().filter(|row| &row[starred] == "true").collect();
+    assert_eq!(stars.len(), 1);
+    assert_eq!(stars[0][0], chosen.to_string());
+}
+
+#[test]
+fn a_design_is_copied_and_pasted_as_text() {
+    let mut window = opened_window();
+    let design = window
+        .state()
+        .session()
+        .document()
+        .chosen
+        .as_ref()
+        .expect("a design")
+        .design;
+    window.event(egui::Event::Copy);
+    window.step();
+    let copied = window
+        .output()
+        .platform_output
+        .commands
+        .iter()
+        .find_map(|command| match command {
+            egui::OutputCommand::CopyText(text) => Some(text.clone()),
+            _ => None,
+        });
+    assert_eq!(copied, Some(design.to_string()));
+    window.event(egui::Event::Paste("3-RPR R=2 r=0.5 Lb=2 rj=0.03 rp=0.04".to_owned()));
+    window.run_steps(2);
+    let chosen = window.state().session().document().chosen.clone().expect("a design");
+    assert_eq!(chosen.origin, Origin::WhatIf { from: None });
+    assert_eq!(chosen.design.architecture.name(), "3-RPR");
+    window.event(egui::Event::Paste("3-RPR R=two".to_owned()));
+    window.run_steps(2);
+    let notices = &window.state().session().notices;
+    assert!(
+        notices
+            .iter()
+            .any(|notice| notice.is_error && notice.text.contains("`two` is not a number")),
+        "{notices:?}"
+    );
+    assert_eq!(window.state().session().document().chosen, Some(chosen));
+}
+
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+#[test]
+fn files_are_dropped_and_wrong_ones_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut window = idle_window();
+    let mut drop_file = |window: &mut super::support::Window, path: PathBuf| {
+        window.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+        window.run_steps(3);
+    };
+    drop_file(&mut window, run_folder().join("designs.csv"));
+    assert!(matches!(window.state().session().phase(), Phase::Opened(_)));
+    assert!(!window.state().session().front().is_empty());
+    let designs = window.state().session().store().len();
+
+    let wrong = folder.path().join("wrong.toml");
+    std::fs::write(&wrong, "[bounds]\nR_m = [4, 0.5]\n").expect("a file");
+    let cut = folder.path().join("cut.rrd");
+    std::fs::write(&cut, b"RRF2 and then nothing").expect("a file");
+    for (path, words) in [
+        (wrong, "bounds.R_m"),
+        (cut, "no recording of a run"),
+        (folder.path().join("none"), "is no run"),
+    ] {
+        drop_file(&mut window, path);
+        let notices = &window.state().session().notices;
+        assert!(
+            notices
+                .iter()
+                .any(|notice| notice.is_error && notice.text.contains(words)),
+            "{words}: {notices:?}"
+        );
+    }
+    // What was there survives.
+    assert_eq!(window.state().session().store().len(), designs);
+}
+
+#[test]
+fn layout_axes_and_recent_files_are_remembered() {
+    #[derive(Default)]
+    struct Memory(std::collections::BTreeMap<String, String>);
+    impl eframe::Storage for Memory {
+        fn get_string(&self, key: &str) -> Option<String> {
+            self.0.get(key).cloned()
+        }
+        fn set_string(&mut self, key: &str, value: String) {
+            self.0.insert(key.to_owned(), value);
+        }
+        fn remove_string(&mut self, key: &str) {
+            self.0.remove(key);
+        }
+        fn flush(&mut self) {}
+    }
+    let mut memory = Memory::default();
+    let mut window = idle_window();
+    let ctx = window.ctx.clone();
+    window
+        .state_mut()
+        .act(&ctx, kinefront::explorer::Purpose::OpenFolder, run_folder());
+    let axes = kinefront::explorer::axes(
+        kinefront::explorer::Quantity::Radius,
+        kinefront::explorer::Quantity::Mass,
+        true,
+    );
+    window.state_mut().set_axes(axes);
+    eframe::App::save(window.state_mut(), &mut memory);
+    assert!(!memory.0.is_empty());
+    let memory: &'static Memory = Box::leak(Box::new(memory));
+    let again = egui_kittest::Harness::builder().build_eframe(move |cc| {
+        cc.storage = Some(memory);
+        let subject = Subject::Study {
+            study: Box::new(small_study()),
+            path: None,
+            start: false,
+        };
+        Explorer::new(cc, subject, None, false).expect("a window")
+    });
+    assert_eq!(again.state().scatter_axes(), axes);
+    assert_eq!(again.state().recent(), [run_folder()]);
+}

@@ -1,0 +1,83 @@
+//! Pictures of every panel, light and dark, of one and the same run.
+//!
+//! `UPDATE_SNAPSHOTS=1` makes those anew that differ. Drawn by a software renderer if there is one, so that machines agree.
+
+use egui_kittest::{Harness, SnapshotOptions, SnapshotResults};
+use kinefront::explorer::{Panel, Panels, Session, StudyEditor};
+
+use super::support::{run_folder, small_study};
+
+/// A session with everything in it that a panel can show.
+fn session() -> Session {
+    let mut session =
+        Session::new(StudyEditor::new(small_study(), None), None, std::sync::Arc::new(|| {})).expect("a session");
+    session.open(&run_folder());
+    let front: Vec<usize> = session.front().iter().map(|entry| entry.id).collect();
+    for place in [0, front.len() / 2, front.len() - 1] {
+        session.choose(front[place]);
+        session.toggle_pin();
+    }
+    session.choose_knee();
+    session.toggle_star();
+    session.history.edit(|document| {
+        document.notes.insert(front[1], "the one to build".to_owned());
+        document
+            .filter
+            .set_range(kinefront::explorer::Quantity::Radius, Some([0.2, 1.5]));
+    });
+    for _ in 0..2000 {
+        session.update();
+        if session.known().is_some_and(|known| known.verified) && session.is_drawn() {
+            return session;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    panic!("the design was not verified");
+}
+
+fn size(panel: Panel) -> egui::Vec2 {
+    match panel {
+        Panel::Scatter => egui::vec2(560.0, 480.0),
+        Panel::Table | Panel::Parallel | Panel::Compare => egui::vec2(820.0, 360.0),
+        Panel::Pose => egui::vec2(400.0, 560.0),
+        _ => egui::vec2(420.0, 520.0),
+    }
+}
+
+#[test]
+fn every_panel_looks_as_it_did() {
+    let mut results = SnapshotResults::new();
+    for theme in [egui::Theme::Dark, egui::Theme::Light] {
+        for panel in Panel::ALL.into_iter().filter(|&panel| panel != Panel::Scene) {
+            let (mut session, mut panels) = (session(), Panels::default());
+            let mut harness = Harness::builder()
+                .with_size(size(panel))
+                .with_theme(theme)
+                .with_step_dt(1.0 / 60.0)
+                // Edges of letters and lines differ a little between drivers.
+                .with_options(SnapshotOptions::new().threshold(1.2).max_failed_pixels(60))
+                .wgpu()
+                .build_ui(move |ui| {
+                    egui::Frame::central_panel(ui.style()).show(ui, |ui| {
+                        session.update();
+                        panels.ui(panel, ui, &mut session);
+                    });
+                });
+            // The cloud takes some frames, and so does a layout that measures itself.
+            harness.run_steps(12);
+            harness.snapshot(format!(
+                "{}_{}",
+                panel.title().replace(' ', "_").to_lowercase(),
+                name(theme)
+            ));
+            results.extend_harness(&mut harness);
+        }
+    }
+}
+
+fn name(theme: egui::Theme) -> &'static str {
+    match theme {
+        egui::Theme::Dark => "dark",
+        egui::Theme::Light => "light",
+    }
+}

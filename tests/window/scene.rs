@@ -1,0 +1,151 @@
+//! What the window sends to the embedded viewer.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+
+use kinefront::evaluation::{GridChoice, Model};
+use kinefront::mechanism::{Design, WorkingMode};
+use kinefront::recording::{Layers, LiveScene, Picked, Pinned, Shown};
+use kinefront::scene::EllipsoidKind;
+use kinefront::study::BUILTIN;
+use rerun::external::arrow::array::Array as _;
+use rerun::log::{Chunk, LogMsg};
+use rerun::sink::CallbackSink;
+
+/// Instances of the largest component of each entity, as last sent.
+type Standing = BTreeMap<String, usize>;
+
+fn scene() -> (LiveScene, Arc<Mutex<Standing>>) {
+    let standing: Arc<Mutex<Standing>> = Arc::default();
+    let seen = Arc::clone(&standing);
+    let sink = CallbackSink::new(move |messages| {
+        for message in messages {
+            let LogMsg::ArrowMsg(store, message) = message else {
+                continue;
+            };
+            if store.kind() != rerun::StoreKind::Recording {
+                continue;
+            }
+            let chunk = Chunk::from_arrow_msg(message).expect("a chunk");
+            assert!(
+                chunk.is_static() || chunk.entity_path().to_string().starts_with("/__"),
+                "{}",
+                chunk.entity_path()
+            );
+            let components = chunk.components();
+            let largest = components
+                .list_arrays()
+                .map(|list| list.value(0).len())
+                .max()
+                .unwrap_or(0);
+            seen.lock()
+                .expect("a lock")
+                .insert(chunk.entity_path().to_string(), largest);
+        }
+    });
+    let study = BUILTIN[0].study().expect("sound");
+    (LiveScene::new(Box::new(sink), &study).expect("a scene"), standing)
+}
+
+fn design(text: &str) -> Design {
+    Design::parse(text, WorkingMode::ALL_PLUS).expect("a design")
+}
+
+/// Entities that show something, below a path.
+fn shown(standing: &Mutex<Standing>, below: &str) -> Vec<String> {
+    // The sink has a thread of its own.
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    let standing = standing.lock().expect("a lock");
+    let entities = standing
+        .iter()
+        .filter(|(entity, count)| entity.starts_with(below) && **count > 0);
+    entities.map(|(entity, _)| entity.clone()).collect()
+}
+
+#[test]
+fn what_is_no_longer_drawn_disappears() {
+    let (mut scene, standing) = scene();
+    let model = Model::default();
+    let evaluation = model
+        .evaluate(
+            &design("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"),
+            GridChoice::Reference,
+        )
+        .expect("a grid");
+    let mut layers = Layers {
+        ellipsoids: Some(EllipsoidKind::Stiffness),
+        ..Layers::default()
+    };
+    let show = |scene: &mut LiveScene, layers: &Layers| {
+        let shown = Shown {
+            model: &model,
+            evaluation: &evaluation,
+            pose: None,
+            heatmap_phi: None,
+            layers,
+        };
+        scene.design(Some(&shown)).expect("drawn");
+    };
+    show(&mut scene, &layers);
+    for below in [
+        "/design/heatmap/inverse_condition/field",
+        "/design/ellipsoids/stiffness",
+        "/design/manipulator/legs",
+        "/configuration",
+    ] {
+        assert!(!shown(&standing, below).is_empty(), "{below} is drawn");
+    }
+    layers.heatmap = None;
+    layers.ellipsoids = None;
+    layers.legs = false;
+    layers.configuration = false;
+    show(&mut scene, &layers);
+    for below in [
+        "/design/heatmap/inverse_condition",
+        "/design/legend",
+        "/design/ellipsoids",
+        "/design/manipulator/legs",
+        "/configuration",
+    ] {
+        assert_eq!(shown(&standing, below), Vec::<String>::new());
+    }
+    assert!(!shown(&standing, "/design/manipulator/platform").is_empty());
+    assert!(
+        !shown(&standing, "/design/heatmap/outlines").is_empty(),
+        "singularities stand by themselves"
+    );
+    scene.design(None).expect("drawn");
+    assert_eq!(shown(&standing, "/design"), Vec::<String>::new());
+}
+
+#[test]
+fn pins_stand_side_by_side_and_what_is_picked_is_known() {
+    let (mut scene, standing) = scene();
+    let model = Model::default();
+    let evaluations: Vec<_> = [
+        "3-PRR R=3 r=1.2 Lb=1.9 rj=0.03 rp=0.05",
+        "3-RRR R=2 r=0.5 Lb=1.5 rj=0.04 rp=0.05",
+    ]
+    .into_iter()
+    .map(|text| model.evaluate(&design(text), GridChoice::Reference).expect("a grid"))
+    .collect();
+    let pins: Vec<Pinned<'_>> = evaluations
+        .iter()
+        .map(|evaluation| Pinned { evaluation, name: "a" })
+        .collect();
+    scene.pins(&model, &pins).expect("drawn");
+    assert!(!shown(&standing, "/pins/1/manipulator").is_empty());
+    scene.pins(&model, &pins[..1]).expect("drawn");
+    assert!(!shown(&standing, "/pins/0/manipulator").is_empty());
+    assert_eq!(shown(&standing, "/pins/1"), Vec::<String>::new());
+
+    assert_eq!(
+        LiveScene::picked("/scatter/plot/front/designs", Some(7)),
+        Some(Picked::Front(7))
+    );
+    assert_eq!(
+        LiveScene::picked("/pins/1/manipulator/legs", None),
+        Some(Picked::Pin(1))
+    );
+    assert_eq!(LiveScene::picked("/design/manipulator/legs", Some(2)), None);
+}

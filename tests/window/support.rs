@@ -1,0 +1,95 @@
+//! A window without a screen, and a run to look at.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use egui::accesskit::{Action, ActionData, ActionRequest, Role};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use kinefront::explorer::{Explorer, Subject};
+use kinefront::study::Study;
+
+/// A small study: quick, and with all three architectures.
+pub fn small_study() -> Study {
+    let text = "name = \"small\"\n[grid.reference]\nphi_step_deg = 5\ndirections = 12\nray_steps = 20\nhalvings = 6\n\
+                [grid.fine]\nphi_step_deg = 2.5\ndirections = 24\nray_steps = 40\nhalvings = 8\n\
+                [optimizer]\nevaluations = 300\nseed = 5\nthreads = 2\n\
+                [[references]]\nname = \"ID-II\"\ndesign = \"3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056\"\n\
+                mass_kg = 484.8\nworkspace_radius_m = 1.207\n";
+    Study::parse(text, "small").expect("sound")
+}
+
+/// The folder of a run of that study.
+pub fn run_folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/run")
+}
+
+pub type Window = Harness<'static, Explorer>;
+
+/// A window on `subject`, without the embedded viewer.
+pub fn window(subject: Subject) -> Window {
+    Harness::builder()
+        .with_size(egui::vec2(1600.0, 1000.0))
+        .with_step_dt(1.0 / 60.0)
+        .with_max_steps(64)
+        .build_eframe(move |cc| Explorer::new(cc, subject, None, false).expect("a window"))
+}
+
+pub fn idle_window() -> Window {
+    window(Subject::Study {
+        study: Box::new(small_study()),
+        path: None,
+        start: false,
+    })
+}
+
+pub fn opened_window() -> Window {
+    let mut window = window(Subject::Run(run_folder()));
+    until(&mut window, "the design is verified", |explorer| {
+        explorer.session().known().is_some_and(|known| known.verified)
+    });
+    window
+}
+
+/// Frames until `done`, which threads bring about.
+pub fn until(window: &mut Window, what: &str, done: impl Fn(&Explorer) -> bool) {
+    let since = Instant::now();
+    while !done(window.state()) {
+        assert!(since.elapsed() < Duration::from_secs(120), "waited in vain: {what}");
+        std::thread::sleep(Duration::from_millis(5));
+        window.step();
+    }
+    window.run_steps(3);
+}
+
+/// Sets a slider to a value, as an assistive tool would.
+pub fn set_slider(window: &mut Window, label: &str, value: f64) {
+    let (target_node, target_tree) = window
+        .get_by_role_and_label(Role::Slider, label)
+        .accesskit_node()
+        .locate();
+    window.event(egui::Event::AccessKitActionRequest(ActionRequest {
+        action: Action::SetValue,
+        target_node,
+        target_tree,
+        data: Some(ActionData::NumericValue(value)),
+    }));
+    window.run_steps(2);
+}
+
+/// A click of the mouse at a place.
+pub fn click_at(window: &mut Window, at: egui::Pos2) {
+    window.hover_at(at);
+    window.run_steps(2);
+    window.drag_at(at);
+    window.run_steps(1);
+    for event in [egui::Event::PointerButton {
+        pos: at,
+        button: egui::PointerButton::Primary,
+        pressed: false,
+        modifiers: egui::Modifiers::NONE,
+    }] {
+        window.event(event);
+    }
+    window.run_steps(3);
+}
