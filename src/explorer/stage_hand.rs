@@ -114,6 +114,18 @@ struct Shared {
 }
 
 impl Shared {
+    /// The design as it was verified last, if it is this one.
+    fn verified(&self, study: &Arc<Study>, design: &Design) -> Option<Known> {
+        let verified = self.verified.lock().unwrap_or_else(PoisonError::into_inner);
+        let (_, evaluation) = verified
+            .as_ref()
+            .filter(|(of, evaluation)| of == study && evaluation.design == *design)?;
+        Some(Known {
+            evaluation: evaluation.clone(),
+            verified: true,
+        })
+    }
+
     fn answer(&self, change: impl FnOnce(&mut Answer)) {
         change(&mut self.answer.lock().unwrap_or_else(PoisonError::into_inner));
         (self.wake)();
@@ -218,13 +230,11 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
         let trouble = step(&mut standing, shared, &request).err();
         let (known, pins) = (standing.known.clone(), standing.pins.clone());
         shared.answer(|answer| {
-            // The verify thread may have been faster.
-            let same = |a: &Known, b: &Known| a.evaluation.design == b.evaluation.design;
-            let finer = answer.known.as_ref().is_some_and(|before| before.verified);
-            let keep = finer && matches!((&answer.known, &known), (Some(before), Some(now)) if same(before, now));
-            if !keep || known.as_ref().is_some_and(|now| now.verified) {
-                answer.known = known;
-            }
+            // The verify thread may have been faster, and have found another design in the answer.
+            let finer = known
+                .as_ref()
+                .and_then(|known| shared.verified(&request.study, &known.evaluation.design));
+            answer.known = finer.or(known);
             answer.pins = pins;
             answer.drawn = number;
             if trouble.is_some() {
@@ -254,18 +264,12 @@ fn step(standing: &mut Standing, shared: &Shared, request: &Request) -> Result<(
             .map_err(|error| error.to_string())
     };
 
-    let verified = shared
-        .verified
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .clone()
-        .filter(|(study, evaluation)| *study == request.study && Some(evaluation.design) == request.design);
+    let verified = request
+        .design
+        .and_then(|design| shared.verified(&request.study, &design));
     standing.known = match (&request.design, verified, standing.known.take()) {
         (None, ..) => None,
-        (Some(_), Some((_, evaluation)), _) => Some(Known {
-            evaluation,
-            verified: true,
-        }),
+        (Some(_), Some(known), _) => Some(known),
         (Some(design), None, Some(known)) if known.evaluation.design == *design => Some(known),
         (Some(design), None, _) => Some(Known {
             evaluation: evaluate(design)?,
@@ -294,7 +298,7 @@ fn step(standing: &mut Standing, shared: &Shared, request: &Request) -> Result<(
             .as_ref()
             .is_some_and(|before| before.comparing != request.comparing)
         {
-            scene.layout(&request.study, request.comparing)?;
+            scene.compare(request.comparing)?;
         }
         let shown = standing.known.as_ref().map(|known| Shown {
             model: &model,

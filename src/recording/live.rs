@@ -21,6 +21,9 @@ use crate::study::Study;
 const HEATMAP: HeatmapSettings = HeatmapSettings { cells: 120 };
 const OUTLINE: HeatmapSettings = HeatmapSettings { cells: 32 };
 
+/// What the 3-D views are set up for, as a multiple of `R`.
+const VIEW: f64 = 1.2;
+
 /// Distance between pinned designs in multiples of the largest `R` among them.
 const PIN_DISTANCE: f64 = 2.6;
 
@@ -97,6 +100,9 @@ pub enum Picked {
 pub struct LiveScene {
     writer: Writer,
     frame: Frame,
+    /// Size that the 3-D views are set up for \[m\].
+    extent: f64,
+    comparing: bool,
     design: Stage,
     pins: Stage,
     front: Stage,
@@ -111,11 +117,13 @@ impl LiveScene {
         let scene = Self {
             writer: Writer::sending(sink, "scene")?,
             frame: Frame::new(study),
+            extent: VIEW * study.bounds.R_m[1],
+            comparing: false,
             design: Stage::default(),
             pins: Stage::default(),
             front: Stage::default(),
         };
-        scene.layout(study, false)?;
+        scene.layout()?;
         Ok(scene)
     }
 
@@ -125,21 +133,39 @@ impl LiveScene {
     /// [`RecordingError::Encode`].
     pub fn turn_to(&mut self, study: &Study) -> Result<(), RecordingError> {
         self.frame = Frame::new(study);
-        self.layout(study, false)
+        self.extent = VIEW * study.bounds.R_m[1];
+        self.layout()
     }
 
-    /// Lays the views out; the one of the pinned designs is in front where `comparing`.
+    /// Brings the pinned designs to the front, or the one in the light.
     ///
     /// # Errors
     /// [`RecordingError::Encode`].
-    pub fn layout(&self, study: &Study, comparing: bool) -> Result<(), RecordingError> {
-        let extent = 0.62 * study.bounds.R_m[1];
+    pub fn compare(&mut self, comparing: bool) -> Result<(), RecordingError> {
+        self.comparing = comparing;
+        self.layout()
+    }
+
+    fn layout(&self) -> Result<(), RecordingError> {
+        let stream = self.writer.stream();
         Ok(blueprint::send_live_layout(
-            self.writer.stream(),
+            stream,
             self.frame.bounds(),
-            extent,
-            comparing,
+            self.extent,
+            self.comparing,
         )?)
+    }
+
+    /// Sets the views up anew for a design that is far from the size they are set up for; else the eye stays where a person
+    /// has put it.
+    fn fit(&mut self, evaluation: &Evaluation) -> Result<(), RecordingError> {
+        const ALIKE: std::ops::Range<f64> = 0.6..1.5;
+        let wanted = VIEW * evaluation.design.base_radius;
+        if ALIKE.contains(&(wanted / self.extent)) {
+            return Ok(());
+        }
+        self.extent = wanted;
+        self.layout()
     }
 
     /// Shows a design, or none.
@@ -149,6 +175,7 @@ impl LiveScene {
     pub fn design(&mut self, shown: Option<&Shown<'_>>) -> Result<(), RecordingError> {
         let rows = RefCell::new(Rows::default());
         if let Some(shown) = shown {
+            self.fit(shown.evaluation)?;
             draw(&Canvas::collecting(&rows), shown)?;
         }
         self.design.show(&self.writer, rows.into_inner())

@@ -266,6 +266,15 @@ impl eframe::App for Explorer {
         eframe::set_value(storage, eframe::APP_KEY, &remembered);
     }
 
+    fn raw_input_hook(&mut self, _: &Context, input: &mut egui::RawInput) {
+        // A script's pictures show no trace of a mouse that happens to lie somewhere.
+        if self.script.is_some() {
+            input
+                .events
+                .retain(|event| !matches!(event, egui::Event::PointerMoved(_)));
+        }
+    }
+
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
         visuals.panel_fill.to_normalized_gamma_f32()
     }

@@ -190,17 +190,19 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
         .spacing([8.0, 4.0])
         .show(ui, |ui| {
             for report in &known.evaluation.constraints {
-                ui.label(report.constraint.id());
-                ui.label(report.constraint.name().replace('_', " "));
+                let name = report.constraint.name().replace('_', " ");
+                if report.active {
+                    ui.colored_label(theme::ACTIVE, report.constraint.id());
+                    ui.colored_label(theme::ACTIVE, format!("{name}, active"));
+                } else {
+                    ui.label(report.constraint.id());
+                    ui.label(name);
+                }
                 margin_bar(ui, report);
-                ui.horizontal(|ui| {
-                    if report.active {
-                        ui.colored_label(theme::ACTIVE, "active");
-                    }
-                    if report.pose.is_some() && ui.small_button("worst pose").clicked() {
-                        worst = Some(report.constraint);
-                    }
-                });
+                let hover = "moves the platform to where the value is least";
+                if report.pose.is_some() && ui.small_button("pose").on_hover_text(hover).clicked() {
+                    worst = Some(report.constraint);
+                }
                 ui.end_row();
             }
         });
@@ -211,7 +213,7 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
 
 /// A margin as a bar from its threshold: to the right where the constraint holds.
 fn margin_bar(ui: &mut Ui, report: &ConstraintReport) {
-    const WIDTH: f32 = 110.0;
+    const WIDTH: f32 = 96.0;
     let (rect, response) = ui.allocate_exact_size(Vec2::new(WIDTH, 14.0), Sense::hover());
     let painter = ui.painter_at(rect);
     let middle = rect.left() + 0.3 * WIDTH;

@@ -79,85 +79,89 @@ impl TablePanel {
             )
         }))
         .collect();
-        let mut table = TableBuilder::new(ui)
-            .id_salt("front")
-            .striped(true)
-            .sense(Sense::click())
-            .column(Column::exact(22.0))
-            .column(Column::initial(52.0))
-            .columns(Column::initial(84.0).at_least(40.0).clip(true), columns.len() - 2)
-            .column(Column::initial(70.0))
-            .column(Column::remainder().clip(true))
-            .min_scrolled_height(0.0);
-        if chosen != self.last_chosen
-            && let Some(row) = order
-                .iter()
-                .position(|&place| Some(session.front()[place].id) == chosen)
-        {
-            table = table.scroll_to_row(row, Some(Align::Center));
-        }
-        self.last_chosen = chosen;
         let (mut clicked, mut starred) = (None, None);
-        let filter = session.document().filter.clone();
-        let sieve = filter.sieve(session.store());
-        table
-            .header(20.0, |mut header| {
-                for (key, title) in &columns {
-                    header.col(|ui| {
-                        let arrow = match (*key == self.key, self.descending) {
-                            (false, _) => "",
-                            (true, false) => " ⏶",
-                            (true, true) => " ⏷",
-                        };
-                        if ui
-                            .add(egui::Button::new(format!("{title}{arrow}")).frame(false))
-                            .clicked()
-                        {
-                            self.descending = *key == self.key && !self.descending;
-                            self.key = *key;
-                        }
-                    });
+        egui::ScrollArea::horizontal()
+            .auto_shrink([false, false])
+            .show(ui, |ui| {
+                let mut table = TableBuilder::new(ui)
+                    .id_salt("front")
+                    .striped(true)
+                    .sense(Sense::click())
+                    .column(Column::exact(22.0))
+                    .column(Column::initial(52.0))
+                    .columns(Column::initial(84.0).at_least(40.0).clip(true), columns.len() - 2)
+                    .column(Column::initial(70.0))
+                    .column(Column::remainder().clip(true))
+                    .min_scrolled_height(0.0);
+                if chosen != self.last_chosen
+                    && let Some(row) = order
+                        .iter()
+                        .position(|&place| Some(session.front()[place].id) == chosen)
+                {
+                    table = table.scroll_to_row(row, Some(Align::Center));
                 }
-                header.col(|ui| drop(ui.label("active")));
-                header.col(|ui| drop(ui.label("note")));
-            })
-            .body(|body| {
-                body.rows(18.0, order.len(), |mut row| {
-                    let entry = &session.front()[order[row.index()]];
-                    let lit = entry.id < session.store().len() && sieve.passes(entry.id);
-                    row.set_selected(Some(entry.id) == chosen);
-                    row.col(|ui| {
-                        let star = session.document().stars.contains(&entry.id);
-                        if ui
-                            .add(egui::Button::new(if star { "★" } else { "☆" }).frame(false))
-                            .clicked()
-                        {
-                            starred = Some(entry.id);
+                self.last_chosen = chosen;
+                let filter = session.document().filter.clone();
+                let sieve = filter.sieve(session.store());
+                table
+                    .header(20.0, |mut header| {
+                        for (key, title) in &columns {
+                            header.col(|ui| {
+                                let arrow = match (*key == self.key, self.descending) {
+                                    (false, _) => "",
+                                    (true, false) => " ⏶",
+                                    (true, true) => " ⏷",
+                                };
+                                if ui
+                                    .add(egui::Button::new(format!("{title}{arrow}")).frame(false))
+                                    .clicked()
+                                {
+                                    self.descending = *key == self.key && !self.descending;
+                                    self.key = *key;
+                                }
+                            });
                         }
-                    });
-                    for (key, _) in &columns[1..] {
-                        row.col(|ui| {
-                            let text = RichText::new(cell(entry, *key));
-                            let text = if lit { text } else { text.weak() };
-                            let text = match key {
-                                Key::Architecture if lit => text.color(theme::architecture(
-                                    entry.row.design.architecture,
-                                    ui.visuals().dark_mode,
-                                )),
-                                _ => text,
-                            };
-                            ui.add(Label::new(text).selectable(false));
+                        header.col(|ui| drop(ui.label("active")));
+                        header.col(|ui| drop(ui.label("note")));
+                    })
+                    .body(|body| {
+                        body.rows(18.0, order.len(), |mut row| {
+                            let entry = &session.front()[order[row.index()]];
+                            let lit = entry.id < session.store().len() && sieve.passes(entry.id);
+                            row.set_selected(Some(entry.id) == chosen);
+                            row.col(|ui| {
+                                let star = session.document().stars.contains(&entry.id);
+                                if ui
+                                    .add(egui::Button::new(if star { "★" } else { "☆" }).frame(false))
+                                    .clicked()
+                                {
+                                    starred = Some(entry.id);
+                                }
+                            });
+                            for (key, _) in &columns[1..] {
+                                row.col(|ui| {
+                                    let text = RichText::new(cell(entry, *key));
+                                    let text = if lit { text } else { text.weak() };
+                                    let text = match key {
+                                        Key::Architecture if lit => text.color(theme::architecture(
+                                            entry.row.design.architecture,
+                                            ui.visuals().dark_mode,
+                                        )),
+                                        _ => text,
+                                    };
+                                    ui.add(Label::new(text).selectable(false));
+                                });
+                            }
+                            row.col(|ui| drop(ui.add(Label::new(active(entry)).selectable(false))));
+                            row.col(|ui| {
+                                let note = session.document().notes.get(&entry.id).cloned().unwrap_or_default();
+                                ui.add(Label::new(note).selectable(false));
+                            });
+                            if row.response().clicked() {
+                                clicked = Some(entry.id);
+                            }
                         });
-                    }
-                    row.col(|ui| drop(ui.add(Label::new(active(entry)).selectable(false))));
-                    row.col(|ui| {
-                        let note = session.document().notes.get(&entry.id).cloned().unwrap_or_default();
-                        ui.add(Label::new(note).selectable(false));
                     });
-                    if row.response().clicked() {
-                        clicked = Some(entry.id);
-                    }
-                });
             });
         if let Some(id) = clicked {
             session.choose(id);

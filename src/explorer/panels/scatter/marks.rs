@@ -82,7 +82,7 @@ impl Scatter {
             let text = Text::new(
                 "",
                 PlotPoint::new(at[0], at[1]),
-                format!("\u{a0}\u{a0}\u{a0}{}", reference.name),
+                format!("\u{a0}\u{a0}\u{a0}\u{a0}\u{a0}\u{a0}{}", reference.name),
             )
             .color(ink)
             .anchor(Align2::LEFT_CENTER);
