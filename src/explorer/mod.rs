@@ -46,3 +46,4 @@ pub use session::{MOST_PINS, Notice, Phase, Reference, Session, Staging, Wake};
 pub use stage_hand::Known;
 pub use store::{Row, Store};
 pub use study_editor::StudyEditor;
+pub use theme::dress;

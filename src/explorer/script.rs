@@ -176,7 +176,11 @@ impl Script {
             Step::Filter(quantity, range) => session
                 .history
                 .edit(|document| document.filter.set_range(*quantity, Some(*range))),
-            Step::File(purpose, path) => explorer.act(ctx, *purpose, path.clone()),
+            Step::File(purpose, path) => {
+                // What was saved before is nothing to see in a picture.
+                session.notices.retain(|notice| notice.is_error);
+                explorer.act(ctx, *purpose, path.clone());
+            }
             Step::Frames(path) => self.times = Some((path.clone(), Vec::new(), Instant::now())),
             Step::Quit => {
                 self.write_times(explorer);

@@ -35,6 +35,8 @@ pub struct Request {
     pub pins: Vec<(String, Design)>,
     /// Whether the pinned designs are in front.
     pub comparing: bool,
+    /// Whether the viewer's colours are light.
+    pub light: bool,
     /// Whether the design is known from the fine grid: then it is drawn again with those numbers.
     pub verified: bool,
     /// The front as it stands.
@@ -306,6 +308,7 @@ fn step(standing: &mut Standing, shared: &Shared, request: &Request) -> Result<(
             pose: request.pose,
             heatmap_phi: request.heatmap_phi,
             layers: &request.layers,
+            light: request.light,
         });
         scene.design(shown.as_ref())?;
         if new_pins {

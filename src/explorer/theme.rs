@@ -1,6 +1,6 @@
 //! Colours and marks of the window: one per architecture, the same as in recordings.
 
-use egui::{Color32, Ui};
+use egui::{Color32, Context, Ui};
 use egui_plot::MarkerShape;
 
 use crate::mechanism::Architecture;
@@ -16,6 +16,11 @@ pub const BROKEN: Color32 = Color32::from_rgb(230, 70, 60);
 pub const ACTIVE: Color32 = Color32::from_rgb(240, 160, 40);
 /// Something that holds.
 pub const SOUND: Color32 = Color32::from_rgb(90, 180, 110);
+
+/// Fonts and colours, the embedded viewer's: one look for all.
+pub fn dress(ctx: &Context) {
+    re_viewer::external::re_ui::apply_style_and_install_loaders(ctx);
+}
 
 /// Colour of an architecture, dark enough to be read on a light ground.
 pub fn architecture(architecture: Architecture, dark: bool) -> Color32 {

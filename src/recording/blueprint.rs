@@ -94,13 +94,13 @@ pub(super) fn send_design_layout(recording: &RecordingStream, extent: f64, first
     Ok(())
 }
 
-/// Sends the layout of a window's scene; `extent` \[m\] is what its 3-D views are set up for. Where `comparing`, the pinned
-/// designs are in front.
+/// Sends the layout of a window's scene; `extent` \[m\] is what its 3-D views are set up for. The pinned designs are in
+/// front where `comparing` gives what their view is set up for.
 pub(super) fn send_live_layout(
     recording: &RecordingStream,
     scatter_bounds: Range2D,
     extent: f64,
-    comparing: bool,
+    comparing: Option<f64>,
 ) -> Result<(), ChunkError> {
     let mut layout = Layout::new();
     let manipulator = layout.space("Manipulator", paths::DESIGN, &["+ $origin/**"], extent)?;
@@ -108,16 +108,10 @@ pub(super) fn send_live_layout(
     let scatter = layout.view("2D", "Front", paths::SCATTER, &["+ $origin/**"])?;
     layout.property(&scatter, "VisualBounds2D", &parts::VisualBounds2D::new(scatter_bounds))?;
     let pins = layout.view("3D", "Pinned designs", paths::PINS, &["+ $origin/**"])?;
-    layout.eye(&pins, [0.0, -3.6, 4.4], [0.0, -0.1, 0.0], extent)?;
-    let design = layout.container(ContainerKind::Horizontal, &[manipulator, configuration], &[1.9, 1.0])?;
-    layout.log(
-        design.path.clone(),
-        &parts::ContainerBlueprint::update_fields().with_display_name("Design"),
-    )?;
-    let tabs = if comparing {
-        [pins, design, scatter]
-    } else {
-        [design, pins, scatter]
+    layout.eye(&pins, [0.0, -1.4, 3.2], [0.0, -0.1, 0.0], comparing.unwrap_or(extent))?;
+    let tabs = match comparing {
+        Some(_) => [pins, manipulator, configuration, scatter],
+        None => [manipulator, configuration, pins, scatter],
     };
     let root = layout.container(ContainerKind::Tabs, &tabs, &[])?;
     layout.finish(&root, timelines::EVALUATION, PlayState::Paused)?;

@@ -48,6 +48,8 @@ pub(super) const SINGULAR: [u8; 3] = [255, 40, 40];
 pub(super) const LIMIT: [u8; 3] = [255, 70, 60];
 /// Text and ticks.
 pub(super) const TEXT: [u8; 3] = [205, 208, 214];
+/// Text on a light ground.
+pub(super) const INK: [u8; 3] = [12, 14, 18];
 /// Ellipsoids.
 pub(super) const ELLIPSOID: [u8; 3] = [255, 235, 140];
 

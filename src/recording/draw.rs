@@ -42,7 +42,11 @@ enum Target<'a> {
     /// Rows are written at once, at one moment.
     Written(&'a Writer, Moment<'a>),
     /// Rows are put together, to be shown at once.
-    Collected(&'a RefCell<Rows>),
+    Collected {
+        rows: &'a RefCell<Rows>,
+        /// Words are dark: a viewer in light colours puts them on a light ground.
+        dark_words: bool,
+    },
 }
 
 impl<'a> Canvas<'a> {
@@ -52,14 +56,14 @@ impl<'a> Canvas<'a> {
     }
 
     /// Puts what is drawn into `rows`.
-    pub(super) fn collecting(rows: &'a RefCell<Rows>) -> Self {
-        Self(Target::Collected(rows))
+    pub(super) fn collecting(rows: &'a RefCell<Rows>, dark_words: bool) -> Self {
+        Self(Target::Collected { rows, dark_words })
     }
 
     fn row(&self, entity: &str, archetype: &dyn AsComponents) -> Outcome {
         match &self.0 {
             Target::Written(writer, moment) => writer.row(entity, moment, archetype),
-            Target::Collected(rows) => {
+            Target::Collected { rows, .. } => {
                 rows.borrow_mut().push(entity, archetype);
                 Ok(())
             }
@@ -149,6 +153,10 @@ impl<'a> Canvas<'a> {
 
     /// Words at points, without a dot of their own.
     fn labels(&self, entity: &str, labels: Vec<(DVec3, String)>, color: Color) -> Outcome {
+        let color = match self.0 {
+            Target::Collected { dark_words: true, .. } => rgb(colors::INK),
+            _ => color,
+        };
         let count = labels.len();
         let points = Points3D::new(labels.iter().map(|(at, _)| point(*at)))
             .with_labels(labels.into_iter().map(|(_, text)| text))

@@ -22,7 +22,7 @@ const HEATMAP: HeatmapSettings = HeatmapSettings { cells: 120 };
 const OUTLINE: HeatmapSettings = HeatmapSettings { cells: 32 };
 
 /// What the 3-D views are set up for, as a multiple of `R`.
-const VIEW: f64 = 1.2;
+const VIEW: f64 = 1.0;
 
 /// Distance between pinned designs in multiples of the largest `R` among them.
 const PIN_DISTANCE: f64 = 2.6;
@@ -76,6 +76,8 @@ pub struct Shown<'a> {
     pub heatmap_phi: Option<f64>,
     /// What is drawn.
     pub layers: &'a Layers,
+    /// Whether the viewer's own colours are light.
+    pub light: bool,
 }
 
 /// A design to compare with others.
@@ -102,7 +104,11 @@ pub struct LiveScene {
     frame: Frame,
     /// Size that the 3-D views are set up for \[m\].
     extent: f64,
+    /// The same of the pinned designs.
+    pins_extent: f64,
     comparing: bool,
+    /// Words are dark: the viewer's ground for them is light.
+    light: bool,
     design: Stage,
     pins: Stage,
     front: Stage,
@@ -118,7 +124,9 @@ impl LiveScene {
             writer: Writer::sending(sink, "scene")?,
             frame: Frame::new(study),
             extent: VIEW * study.bounds.R_m[1],
+            pins_extent: 1.0,
             comparing: false,
+            light: false,
             design: Stage::default(),
             pins: Stage::default(),
             front: Stage::default(),
@@ -148,11 +156,12 @@ impl LiveScene {
 
     fn layout(&self) -> Result<(), RecordingError> {
         let stream = self.writer.stream();
+        let comparing = self.comparing.then_some(self.pins_extent);
         Ok(blueprint::send_live_layout(
             stream,
             self.frame.bounds(),
             self.extent,
-            self.comparing,
+            comparing,
         )?)
     }
 
@@ -176,7 +185,8 @@ impl LiveScene {
         let rows = RefCell::new(Rows::default());
         if let Some(shown) = shown {
             self.fit(shown.evaluation)?;
-            draw(&Canvas::collecting(&rows), shown)?;
+            self.light = shown.light;
+            draw(&Canvas::collecting(&rows, shown.light), shown)?;
         }
         self.design.show(&self.writer, rows.into_inner())
     }
@@ -187,11 +197,19 @@ impl LiveScene {
     /// [`RecordingError::Encode`].
     pub fn pins(&mut self, model: &Model, pins: &[Pinned<'_>]) -> Result<(), RecordingError> {
         let rows = RefCell::new(Rows::default());
-        let canvas = Canvas::collecting(&rows);
+        let canvas = Canvas::collecting(&rows, self.light);
         let widest = pins
             .iter()
             .map(|pin| pin.evaluation.design.base_radius)
             .fold(0.0, f64::max);
+        // As wide as their row, and as high as one of them.
+        let extent = widest * (0.5 * PIN_DISTANCE * pins.len() as f64 / 1.9).max(VIEW);
+        if (extent - self.pins_extent).abs() > 0.1 * extent && widest > 0.0 {
+            self.pins_extent = extent;
+            if self.comparing {
+                self.layout()?;
+            }
+        }
         for (index, pin) in pins.iter().enumerate() {
             let root = format!("{}/{index}", paths::PINS);
             let place = (index as f64 - 0.5 * (pins.len() as f64 - 1.0)) * PIN_DISTANCE * widest;

@@ -50,7 +50,7 @@ fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_re
     let changed = session.document().chosen.clone().expect("a design");
     assert_eq!(changed.origin, Origin::WhatIf { from: Some(id) });
     assert_eq!(changed.design.base_radius, 2.0);
-    assert!(window.query_by_label("what if: not of the run").is_some());
+    assert!(window.query_by_label("not of the run").is_some());
     until(&mut window, "the what-if is evaluated", |explorer| {
         explorer.session().known().is_some()
     });

@@ -3,7 +3,7 @@
 //! `UPDATE_SNAPSHOTS=1` makes those anew that differ. Drawn by a software renderer if there is one, so that machines agree.
 
 use egui_kittest::{Harness, SnapshotOptions, SnapshotResults};
-use kinefront::explorer::{Panel, Panels, Session, StudyEditor};
+use kinefront::explorer::{Panel, Panels, Session, StudyEditor, dress};
 
 use super::support::{run_folder, small_study};
 
@@ -49,7 +49,7 @@ fn every_panel_looks_as_it_did() {
     let mut results = SnapshotResults::new();
     for theme in [egui::Theme::Dark, egui::Theme::Light] {
         for panel in Panel::ALL.into_iter().filter(|&panel| panel != Panel::Scene) {
-            let (mut session, mut panels) = (session(), Panels::default());
+            let (mut session, mut panels, mut dressed) = (session(), Panels::default(), false);
             let mut harness = Harness::builder()
                 .with_size(size(panel))
                 .with_theme(theme)
@@ -58,6 +58,12 @@ fn every_panel_looks_as_it_did() {
                 .with_options(SnapshotOptions::new().threshold(1.2).max_failed_pixels(60))
                 .wgpu()
                 .build_ui(move |ui| {
+                    if !dressed {
+                        dress(ui.ctx());
+                        ui.ctx().set_theme(theme);
+                        dressed = true;
+                        return;
+                    }
                     egui::Frame::central_panel(ui.style()).show(ui, |ui| {
                         session.update();
                         panels.ui(panel, ui, &mut session);

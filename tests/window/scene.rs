@@ -33,9 +33,12 @@ fn scene() -> (LiveScene, Arc<Mutex<Standing>>) {
                 chunk.entity_path()
             );
             let components = chunk.components();
+            // How solids are filled says nothing about whether there are any.
             let largest = components
-                .list_arrays()
-                .map(|list| list.value(0).len())
+                .component_descriptors()
+                .zip(components.list_arrays())
+                .filter(|(descriptor, _)| !descriptor.component.ends_with("fill_mode"))
+                .map(|(_, list)| list.value(0).len())
                 .max()
                 .unwrap_or(0);
             seen.lock()
@@ -83,6 +86,7 @@ fn what_is_no_longer_drawn_disappears() {
             pose: None,
             heatmap_phi: None,
             layers,
+            light: false,
         };
         scene.design(Some(&shown)).expect("drawn");
     };

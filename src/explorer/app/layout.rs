@@ -29,7 +29,7 @@ pub(super) fn layout() -> Tree<Panel> {
     };
     let left = split(LinearDir::Vertical, &[(scatter, 1.5), (run, 1.0)]);
     let middle = split(LinearDir::Vertical, &[(scene, 2.0), (below, 1.0)]);
-    let right = split(LinearDir::Vertical, &[(design, 1.1), (pose, 1.0)]);
+    let right = split(LinearDir::Vertical, &[(design, 1.3), (pose, 1.0)]);
     let root = split(LinearDir::Horizontal, &[(left, 1.15), (middle, 1.75), (right, 0.9)]);
     Tree::new("kinefront", root, tiles)
 }

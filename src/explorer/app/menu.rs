@@ -99,7 +99,7 @@ impl Explorer {
         let mut away = None;
         for (index, notice) in self.session.notices.iter().enumerate() {
             ui.horizontal_wrapped(|ui| {
-                if ui.small_button("✕").clicked() {
+                if ui.small_button("×").clicked() {
                     away = Some(index);
                 }
                 let color = if notice.is_error { theme::BROKEN } else { theme::SOUND };

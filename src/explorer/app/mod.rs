@@ -7,7 +7,9 @@ mod shortcuts;
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
 
 use egui::{Context, Ui, UserData, ViewportCommand};
 use egui_tiles::Tree;
@@ -19,7 +21,7 @@ use super::files::{self, Dialog, Job, Purpose};
 use super::panels::scatter::{Axis, Scatter};
 use super::panels::{Panel, Panels};
 use super::viewer::Viewer;
-use super::{Phase, Script, Session, StudyEditor};
+use super::{Phase, Script, Session, StudyEditor, theme};
 use crate::study::Study;
 
 /// What the window opens with.
@@ -47,6 +49,10 @@ struct Remembered {
     dark: bool,
 }
 
+/// Fewest and most milliseconds between two frames that news ask for.
+const QUICKEST: u64 = 8;
+const SLOWEST: u64 = 400;
+
 /// Files that are remembered.
 const RECENT: usize = 8;
 
@@ -69,6 +75,8 @@ pub struct Explorer {
         Receiver<Result<String, String>>,
     ),
     jobs: usize,
+    /// Milliseconds between two frames that news ask for.
+    pace: Arc<AtomicU64>,
 }
 
 impl Explorer {
@@ -90,11 +98,14 @@ impl Explorer {
             let (viewer, scene) = Viewer::new(cc, editor.study())?;
             (Some(viewer), Some(scene))
         } else {
+            theme::dress(&cc.egui_ctx);
             (None, None)
         };
         let ctx = cc.egui_ctx.clone();
-        // Soon is enough: what comes within a frame's time is shown in one.
-        let wake = Arc::new(move || ctx.request_repaint_after(std::time::Duration::from_millis(8)));
+        // What comes within a frame's time is shown in one. Where frames are drawn by the processor, the search needs it more.
+        let pace = Arc::new(AtomicU64::new(QUICKEST));
+        let paced = Arc::clone(&pace);
+        let wake = Arc::new(move || ctx.request_repaint_after(Duration::from_millis(paced.load(Ordering::Relaxed))));
         let mut session = Session::new(editor, scene, wake)?;
         match &subject {
             Subject::Study { start: true, .. } => session.start(),
@@ -129,6 +140,7 @@ impl Explorer {
             dialog: None,
             ended: channel(),
             jobs: 0,
+            pace,
         })
     }
 
@@ -220,6 +232,9 @@ impl eframe::App for Explorer {
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
+        let took = frame.info().cpu_usage.map_or(0, |seconds| (1e3 * seconds) as u64);
+        self.pace.store((4 * took).clamp(QUICKEST, SLOWEST), Ordering::Relaxed);
+        self.session.staging.light = !ui.visuals().dark_mode;
         self.deliveries(&ctx);
         self.shortcuts(&ctx);
         if !ctx.input(|input| input.pointer.any_down()) {
@@ -246,7 +261,7 @@ impl eframe::App for Explorer {
         self.help(ui);
         if self.session.is_running() && *self.session.phase() != Phase::Paused {
             // Rate and time left go on where no news come.
-            ctx.request_repaint_after(std::time::Duration::from_millis(250));
+            ctx.request_repaint_after(Duration::from_millis(250));
         }
         if ctx.input(|input| input.viewport().close_requested()) {
             self.session.close();

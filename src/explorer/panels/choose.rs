@@ -143,7 +143,7 @@ fn filter(ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
                 ui.label("to");
                 ui.add(DragValue::new(high).speed(speed).max_decimals(4))
                     .labelled_by(label.id);
-                lift = ui.small_button("✕").clicked();
+                lift = ui.small_button("×").clicked();
             }
             if lift {
                 edited.ranges.remove(&key);

@@ -43,7 +43,7 @@ impl ComparePanel {
                             if ui.button(RichText::new(&pin.name).color(color).strong()).clicked() {
                                 choose = Some(index);
                             }
-                            let close = ui.small_button("✕");
+                            let close = ui.small_button("×");
                             close.widget_info(|| {
                                 egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("Unpin {}", pin.name))
                             });

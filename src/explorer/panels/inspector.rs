@@ -44,7 +44,7 @@ fn heading(ui: &mut Ui, session: &mut Session) {
     ui.horizontal_wrapped(|ui| {
         ui.heading(format!("{} {name}", chosen.design.architecture));
         if session.is_what_if() {
-            ui.colored_label(theme::WHAT_IF, "what if: not of the run");
+            ui.colored_label(theme::WHAT_IF, "not of the run");
             if ui
                 .button("Keep")
                 .on_hover_text("keeps it in the list of designs")
@@ -217,7 +217,7 @@ fn margin_bar(ui: &mut Ui, report: &ConstraintReport) {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(WIDTH, 14.0), Sense::hover());
     let painter = ui.painter_at(rect);
     let middle = rect.left() + 0.3 * WIDTH;
-    painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
+    painter.rect_filled(rect, 2.0, Color32::from_gray(128).gamma_multiply(0.25));
     // A margin of 1 is half the room that is left: large ones differ little.
     let share = |margin: f64| (margin.abs() / (1.0 + margin.abs())) as f32;
     let color = if report.margin < 0.0 {

@@ -267,7 +267,7 @@ impl ParallelPanel {
             for entry in session.front() {
                 if (entry.id < store.len() && sieve.passes(entry.id)) == lit {
                     let color = theme::architecture(entry.row.design.architecture, dark);
-                    let share = if lit { 0.95 } else { 0.15 };
+                    let share = if lit { 0.7 } else { 0.15 };
                     line(&|axis| axis.of(&entry.row), theme::mix(color, ground, share), 1.3);
                 }
             }

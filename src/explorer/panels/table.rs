@@ -143,10 +143,9 @@ impl TablePanel {
                                     let text = RichText::new(cell(entry, *key));
                                     let text = if lit { text } else { text.weak() };
                                     let text = match key {
-                                        Key::Architecture if lit => text.color(theme::architecture(
-                                            entry.row.design.architecture,
-                                            ui.visuals().dark_mode,
-                                        )),
+                                        Key::Architecture if lit && Some(entry.id) != chosen => text.color(
+                                            theme::architecture(entry.row.design.architecture, ui.visuals().dark_mode),
+                                        ),
                                         _ => text,
                                     };
                                     ui.add(Label::new(text).selectable(false));

@@ -52,7 +52,12 @@ pub struct Notice {
     pub text: String,
     /// Whether something went wrong.
     pub is_error: bool,
+    /// When it was told.
+    pub since: Instant,
 }
+
+/// Time that a message stays which tells of nothing wrong.
+const GLANCE: Duration = Duration::from_secs(8);
 
 /// A design that comes with the study.
 #[derive(Debug, Clone)]
@@ -76,6 +81,8 @@ pub struct Staging {
     pub layers: Layers,
     /// Whether the pinned designs are in front.
     pub comparing: bool,
+    /// Whether the window's colours are light.
+    pub light: bool,
 }
 
 /// Wakes the window when there is something new.
@@ -281,12 +288,22 @@ impl Session {
 
     /// Tells something.
     pub fn tell(&mut self, text: String) {
-        self.notices.push(Notice { text, is_error: false });
+        self.put_notice(text, false);
     }
 
     /// Tells that something went wrong.
     pub fn tell_error(&mut self, text: String) {
-        self.notices.push(Notice { text, is_error: true });
+        self.put_notice(text, true);
+    }
+
+    fn put_notice(&mut self, text: String, is_error: bool) {
+        // Said twice is said once.
+        self.notices.retain(|notice| notice.text != text);
+        self.notices.push(Notice {
+            text,
+            is_error,
+            since: Instant::now(),
+        });
     }
 }
 

@@ -10,7 +10,7 @@ use super::super::open::{Opened, open};
 use super::super::running::Running;
 use super::super::stage_hand::Request;
 use super::super::{FrontEntry, Store, StudyEditor};
-use super::{Phase, Session, references};
+use super::{GLANCE, Phase, Session, references};
 use crate::optimize::knee;
 use crate::recording::FrontPoint;
 use crate::study::{RunControl, Study, Subscriber, spawn};
@@ -176,6 +176,8 @@ impl Session {
             }
         }
         self.follow();
+        self.notices
+            .retain(|notice| notice.is_error || notice.since.elapsed() < GLANCE);
         self.answer = self.hand.answer();
         if let Some(trouble) = self.answer.trouble.clone()
             && self.notices.iter().all(|notice| notice.text != trouble)
@@ -241,6 +243,7 @@ impl Session {
             layers: self.staging.layers,
             pins: document.pins.iter().map(|pin| (pin.name.clone(), pin.design)).collect(),
             comparing: self.staging.comparing,
+            light: self.staging.light,
             front: Arc::clone(&self.front_points),
         };
         self.asked = self.hand.ask(request);
