@@ -95,24 +95,6 @@ pub fn smaller_eigenvalue(xx: f64, xy: f64, yy: f64) -> f64 {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rotation_keeps_length_and_turns_by_its_angle() {
-        let v = Rotation::new(0.3).apply(unit(0.4));
-        assert!((v - unit(0.7)).length() < 1e-15);
-    }
-
-    #[test]
-    fn smaller_eigenvalue_of_known_matrices() {
-        assert_eq!(smaller_eigenvalue(3.0, 0.0, 5.0), 3.0);
-        assert!((smaller_eigenvalue(2.0, 1.0, 2.0) - 1.0).abs() < 1e-15);
-        assert_eq!(smaller_eigenvalue(0.0, 0.0, 0.0), 0.0);
-    }
-}
-
 impl std::str::FromStr for Pose {
     type Err = String;
 
@@ -142,5 +124,23 @@ impl std::str::FromStr for Pose {
             values[index].ok_or_else(|| format!("`{}` is missing; a pose has x, y (m) and phi_deg", KEYS[index]))
         };
         Ok(Pose::new(value(0)?, value(1)?, value(2)?.to_radians()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rotation_keeps_length_and_turns_by_its_angle() {
+        let v = Rotation::new(0.3).apply(unit(0.4));
+        assert!((v - unit(0.7)).length() < 1e-15);
+    }
+
+    #[test]
+    fn smaller_eigenvalue_of_known_matrices() {
+        assert_eq!(smaller_eigenvalue(3.0, 0.0, 5.0), 3.0);
+        assert!((smaller_eigenvalue(2.0, 1.0, 2.0) - 1.0).abs() < 1e-15);
+        assert_eq!(smaller_eigenvalue(0.0, 0.0, 0.0), 0.0);
     }
 }

@@ -25,7 +25,10 @@ const OUTLINE: HeatmapSettings = HeatmapSettings { cells: 32 };
 const VIEW: f64 = 1.0;
 
 /// Distance between pinned designs in multiples of the largest `R` among them.
-const PIN_DISTANCE: f64 = 2.6;
+const PIN_DISTANCE: f64 = 2.1;
+
+/// Width that the view of pinned designs shows, as a multiple of the size it is set up for.
+const PIN_VIEW: f64 = 3.1;
 
 /// What of a design is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -202,28 +205,36 @@ impl LiveScene {
             .iter()
             .map(|pin| pin.evaluation.design.base_radius)
             .fold(0.0, f64::max);
-        // As wide as their row, and as high as one of them.
-        let extent = widest * (0.5 * PIN_DISTANCE * pins.len() as f64 / 1.9).max(VIEW);
+        // Two in a row, so that four are as large as they can be.
+        let columns = pins.len().clamp(1, 2);
+        let rows_of_pins = pins.len().div_ceil(columns).max(1);
+        let extent = widest * (PIN_DISTANCE * columns.max(rows_of_pins) as f64 / PIN_VIEW).max(VIEW);
         if (extent - self.pins_extent).abs() > 0.1 * extent && widest > 0.0 {
             self.pins_extent = extent;
             if self.comparing {
                 self.layout()?;
             }
         }
+        let layers = Layers {
+            labels: false,
+            ..Layers::default()
+        };
         for (index, pin) in pins.iter().enumerate() {
             let root = format!("{}/{index}", paths::PINS);
-            let place = (index as f64 - 0.5 * (pins.len() as f64 - 1.0)) * PIN_DISTANCE * widest;
-            let transform = Transform3D::from_translation(Vec3D::new(place as f32, 0.0, 0.0));
+            let off = |place: usize, count: usize| (place as f64 - 0.5 * (count as f64 - 1.0)) * PIN_DISTANCE * widest;
+            let (x, y) = (off(index % columns, columns), -off(index / columns, rows_of_pins));
+            let transform = Transform3D::from_translation(Vec3D::new(x as f32, y as f32, 0.0));
             rows.borrow_mut().push(&root, &transform);
             let subject = Subject {
                 model,
                 evaluation: pin.evaluation,
             };
-            if let Ok(scene) = manipulator(model, &pin.evaluation.design, &subject.home()) {
+            if let Ok(mut scene) = manipulator(model, &pin.evaluation.design, &subject.home()) {
+                keep(&mut scene, &layers);
                 canvas.manipulator(&format!("{root}/manipulator"), &scene)?;
             }
             subject.disc(&canvas, &format!("{root}/workspace"))?;
-            let at = glam::DVec3::new(0.0, -1.15 * widest, 0.0);
+            let at = glam::DVec3::new(0.0, -0.75 * widest, 0.0);
             let text = format!(
                 "{}: {:.1} kg, R_w {:.3} m",
                 pin.name, pin.evaluation.mass, pin.evaluation.workspace_radius

@@ -83,13 +83,11 @@ pub fn click_at(window: &mut Window, at: egui::Pos2) {
     window.run_steps(2);
     window.drag_at(at);
     window.run_steps(1);
-    for event in [egui::Event::PointerButton {
+    window.event(egui::Event::PointerButton {
         pos: at,
         button: egui::PointerButton::Primary,
         pressed: false,
         modifiers: egui::Modifiers::NONE,
-    }] {
-        window.event(event);
-    }
+    });
     window.run_steps(3);
 }

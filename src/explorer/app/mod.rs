@@ -8,7 +8,7 @@ mod shortcuts;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 use egui::{Context, Ui, UserData, ViewportCommand};
@@ -49,6 +49,9 @@ struct Remembered {
     dark: bool,
 }
 
+/// How work on a file ended, in words.
+type Ended = Result<String, String>;
+
 /// Fewest and most milliseconds between two frames that news ask for.
 const QUICKEST: u64 = 8;
 const SLOWEST: u64 = 400;
@@ -70,10 +73,7 @@ pub struct Explorer {
     asked: Option<(Purpose, String)>,
     dialog: Option<Dialog>,
     /// Ends of work on files.
-    ended: (
-        std::sync::mpsc::Sender<Result<String, String>>,
-        Receiver<Result<String, String>>,
-    ),
+    ended: (Sender<Ended>, Receiver<Ended>),
     jobs: usize,
     /// Milliseconds between two frames that news ask for.
     pace: Arc<AtomicU64>,

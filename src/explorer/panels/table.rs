@@ -89,7 +89,7 @@ impl TablePanel {
                     .sense(Sense::click())
                     .column(Column::exact(22.0))
                     .column(Column::initial(52.0))
-                    .columns(Column::initial(84.0).at_least(40.0).clip(true), columns.len() - 2)
+                    .columns(Column::initial(96.0).at_least(40.0).clip(true), columns.len() - 2)
                     .column(Column::initial(70.0))
                     .column(Column::remainder().clip(true))
                     .min_scrolled_height(0.0);

@@ -109,7 +109,7 @@ impl Extent {
 pub(super) fn tick(axis: Axis, mark: GridMark) -> String {
     if axis.log {
         let value = 10f64.powf(mark.value);
-        if value >= 1e5 || value < 1e-3 {
+        if !(1e-3..1e5).contains(&value) {
             format!("{value:.0e}")
         } else {
             // Without the rounding error of the power.
