@@ -25,16 +25,18 @@ const GENERATION: usize = 500;
 struct Stream {
     pool: Vec<Evaluation>,
     count: usize,
+    /// Designs a second; as fast as they are taken where it is left out.
+    rate: Option<f64>,
 }
 
 impl Stream {
-    fn new(study: &Study, count: usize) -> Self {
+    fn new(study: &Study, count: usize, rate: Option<f64>) -> Self {
         let problem = DesignProblem::new(study);
         let pool = sobol(&problem.variables(), 1500, 1)
             .iter()
             .filter_map(|x| problem.evaluation(x).ok())
             .collect();
-        Self { pool, count }
+        Self { pool, count, rate }
     }
 
     /// Design `id`: one of the pool, a little lighter or heavier.
@@ -64,7 +66,12 @@ impl Stream {
         let mut archive = Archive::default();
         let mut members: Vec<FrontMember> = Vec::new();
         let mut history = Vec::new();
+        let began = Instant::now();
         for generation in 1..=self.count / GENERATION {
+            if let Some(rate) = self.rate {
+                let due = Duration::from_secs_f64((generation * GENERATION) as f64 / rate);
+                std::thread::sleep(due.saturating_sub(began.elapsed()));
+            }
             let first_id = (generation - 1) * GENERATION;
             let evaluations: Vec<Evaluation> = (first_id..first_id + GENERATION)
                 .map(|id| self.evaluation(id))
@@ -167,9 +174,10 @@ fn frame(window: &mut Harness<'static, Explorer>) -> f64 {
 fn stream(
     window: &mut Harness<'static, Explorer>,
     count: usize,
+    rate: Option<f64>,
     keep: fn(Vec<Subscriber>) -> Vec<Subscriber>,
 ) -> (f64, f64, Vec<f64>) {
-    let source = Stream::new(&study(), count);
+    let source = Stream::new(&study(), count, rate);
     let told = Arc::new(Mutex::new(None));
     let tells = Arc::clone(&told);
     window
@@ -202,7 +210,7 @@ fn main() {
     window.run_steps(5);
     println!("memory before: {:.0} MB", memory());
 
-    let (took, waited, mut times) = stream(&mut window, DESIGNS, |subscribers| {
+    let (took, waited, mut times) = stream(&mut window, DESIGNS, None, |subscribers| {
         subscribers.into_iter().skip(2).collect()
     });
     println!(
@@ -238,24 +246,28 @@ fn main() {
     drop(window);
 
     let mut all = self::window();
-    let (took, waited, mut times) = stream(&mut all, 100_000, |subscribers| subscribers);
+    let (took, waited, mut times) = stream(&mut all, 100_000, None, |subscribers| subscribers);
     println!(
         "100000 designs to window, tables and recording: {took:.1} s, of which {waited:.1} s handing over: {:.0} designs/s",
         1e5 / waited.max(1e-9)
     );
     println!("frames meanwhile: {}", percentiles(&mut times));
+    let (_, _, mut times) = stream(&mut all, 50_000, Some(5000.0), |subscribers| subscribers);
+    println!("frames while 5000 designs a second come: {}", percentiles(&mut times));
     drop(all);
-    clicks();
+    clicks("of any size, for which the view is set up anew", [0.5, 4.0]);
+    clicks("of like size", [2.8, 4.0]);
 }
 
 /// From a click to the last row of the scene handed to the viewer.
-fn clicks() {
+fn clicks(of: &str, base_radius: [f64; 2]) {
     let sent = Arc::new(AtomicU64::new(0));
     let counting = Arc::clone(&sent);
     let sink = rerun::sink::CallbackSink::new(move |messages| {
         counting.fetch_add(messages.len() as u64, Ordering::Relaxed);
     });
-    let study = study();
+    let mut study = study();
+    study.bounds.R_m = base_radius;
     let scene = LiveScene::new(Box::new(sink), &study).expect("a scene");
     let mut session =
         Session::new(StudyEditor::new(study.clone(), None), Some(scene), Arc::new(|| {})).expect("a session");
@@ -280,7 +292,7 @@ fn clicks() {
         times.push(since.elapsed().as_secs_f64());
     }
     println!(
-        "from a click to the scene (evaluation, heatmap, workspace, layers; {} messages a design): {}",
+        "from a click to the scene, designs {of} (evaluation, heatmap, workspace, layers; {} messages): {}",
         sent.load(Ordering::Relaxed) / times.len().max(1) as u64,
         percentiles(&mut times)
     );

@@ -323,6 +323,12 @@ pub fn run(subject: Subject, script: Option<Script>) -> Result<(), String> {
     options.persist_window = script.is_none();
     let create = Box::new(move |cc: &eframe::CreationContext<'_>| {
         let explorer = Explorer::new(cc, subject, script, true)?;
+        // An interrupt at the terminal closes the window in good order; without a handler it would leave the run's files.
+        let ctx = cc.egui_ctx.clone();
+        let _ = ctrlc::set_handler(move || {
+            ctx.send_viewport_cmd(ViewportCommand::Close);
+            ctx.request_repaint();
+        });
         Ok(Box::new(explorer) as Box<dyn eframe::App>)
     });
     eframe::run_native("kinefront", options, create).map_err(|error| match error {
