@@ -274,7 +274,7 @@ fn clicks(of: &str, base_radius: [f64; 2]) {
     let problem = DesignProblem::new(&study);
     let model = study.model();
     let mut times = Vec::new();
-    for x in sobol(&problem.variables(), 400, 1) {
+    for x in sobol(&problem.variables(), 150, 1) {
         let Ok(design) = problem.design(&x) else { continue };
         let feasible = model
             .evaluate(&design, GridChoice::Reference)
@@ -290,6 +290,11 @@ fn clicks(of: &str, base_radius: [f64; 2]) {
             session.update();
         }
         times.push(since.elapsed().as_secs_f64());
+        // A person looks before clicking again; the design is verified meanwhile.
+        while !session.known().is_some_and(|known| known.verified) {
+            std::thread::sleep(Duration::from_millis(5));
+            session.update();
+        }
     }
     println!(
         "from a click to the scene, designs {of} (evaluation, heatmap, workspace, layers; {} messages): {}",

@@ -11,12 +11,16 @@
 
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::Builder;
+use std::time::Duration;
 
 use crate::evaluation::{Evaluation, GridChoice};
 use crate::mechanism::Design;
 use crate::recording::{FrontPoint, Layers, LiveScene, Pinned, Shown};
 use crate::spatial::Pose;
 use crate::study::Study;
+
+/// Time after which a design is taken to stay.
+const RESTING: Duration = Duration::from_millis(150);
 
 /// What is to be shown.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,6 +91,17 @@ impl<T> Mailbox<T> {
     fn close(&self) {
         self.state.lock().unwrap_or_else(PoisonError::into_inner).1 = true;
         self.changed.notify_all();
+    }
+
+    /// Waits a while for a thing.
+    fn wait(&self, time: Duration) -> Option<T> {
+        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let empty = |state: &mut (Option<T>, bool)| state.0.is_none() && !state.1;
+        let (mut state, _) = self
+            .changed
+            .wait_timeout_while(state, time, empty)
+            .unwrap_or_else(PoisonError::into_inner);
+        state.0.take()
     }
 
     /// Waits for a thing; `None` once closed.
@@ -197,7 +212,12 @@ impl Drop for StageHand {
 }
 
 fn verify_requests(shared: &Shared) {
-    while let Some((study, design)) = shared.to_verify.take() {
+    while let Some(mut wanted) = shared.to_verify.take() {
+        // A slider that is dragged passes many designs: the one it rests at is verified.
+        while let Some(newer) = shared.to_verify.wait(RESTING) {
+            wanted = newer;
+        }
+        let (study, design) = wanted;
         if let Ok(evaluation) = study.model().evaluate(&design, GridChoice::Fine) {
             *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) = Some((study, evaluation.clone()));
             shared.answer(|answer| {
@@ -230,6 +250,12 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
     };
     while let Some((number, request)) = shared.requests.take() {
         let trouble = step(&mut standing, shared, &request).err();
+        // Drawn first: both would like the processor.
+        if let Some(known) = standing.known.as_ref().filter(|known| !known.verified) {
+            shared
+                .to_verify
+                .put((Arc::clone(&request.study), known.evaluation.design));
+        }
         let (known, pins) = (standing.known.clone(), standing.pins.clone());
         shared.answer(|answer| {
             // The verify thread may have been faster, and have found another design in the answer.
@@ -278,11 +304,6 @@ fn step(standing: &mut Standing, shared: &Shared, request: &Request) -> Result<(
             verified: false,
         }),
     };
-    if let Some(known) = standing.known.as_ref().filter(|known| !known.verified) {
-        shared
-            .to_verify
-            .put((Arc::clone(&request.study), known.evaluation.design));
-    }
     let new_pins = before.as_ref().is_none_or(|before| before.pins != request.pins);
     if new_pins {
         standing.pins = request

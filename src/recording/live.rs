@@ -18,7 +18,7 @@ use crate::spatial::Pose;
 use crate::study::Study;
 
 /// Cells along the longer side of a heatmap, and of an outline over φ.
-const HEATMAP: HeatmapSettings = HeatmapSettings { cells: 120 };
+const HEATMAP: HeatmapSettings = HeatmapSettings { cells: 96 };
 const OUTLINE: HeatmapSettings = HeatmapSettings { cells: 32 };
 
 /// What the 3-D views are set up for, as a multiple of `R`.
