@@ -42,6 +42,8 @@ pub struct FrontPoint {
     pub mass: f64,
     /// `R_w` \[m\].
     pub radius: f64,
+    /// Whether a filter leaves it in the light; else it is dimmed.
+    pub lit: bool,
 }
 
 impl From<&FrontMember> for FrontPoint {
@@ -51,6 +53,7 @@ impl From<&FrontMember> for FrontPoint {
             architecture: member.evaluation.design.architecture,
             mass: member.evaluation.mass,
             radius: member.evaluation.workspace_radius,
+            lit: true,
         }
     }
 }
@@ -58,7 +61,10 @@ impl From<&FrontMember> for FrontPoint {
 /// The front's designs with a line each to read when one is pointed at.
 pub(super) fn front_points(front: &[FrontPoint]) -> Points2D {
     Points2D::new(front.iter().map(|m| position(m.mass, m.radius)))
-        .with_colors(front.iter().map(|m| colors::architecture(m.architecture)))
+        .with_colors(front.iter().map(|m| {
+            let [r, g, b] = colors::architecture_rgb(m.architecture);
+            if m.lit { [r, g, b] } else { [r / 4, g / 4, b / 4] }
+        }))
         .with_radii(std::iter::repeat_n(Radius::new_ui_points(4.0), front.len()))
         .with_labels(
             front

@@ -55,7 +55,7 @@ fn every_panel_looks_as_it_did() {
                 .with_theme(theme)
                 .with_step_dt(1.0 / 60.0)
                 // Edges of letters and lines differ a little between drivers.
-                .with_options(SnapshotOptions::new().threshold(1.2).max_failed_pixels(60))
+                .with_options(SnapshotOptions::new().threshold(2.0).max_failed_pixels(300))
                 .wgpu()
                 .build_ui(move |ui| {
                     if !dressed {

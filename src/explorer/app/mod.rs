@@ -332,9 +332,8 @@ pub fn run(subject: Subject, script: Option<Script>) -> Result<(), String> {
         Ok(Box::new(explorer) as Box<dyn eframe::App>)
     });
     eframe::run_native("kinefront", options, create).map_err(|error| match error {
-        eframe::Error::WinitEventLoop(error) => {
-            format!("there is no display to open a window on ({error}); {headless}")
-        }
+        // What the window library says names a place in its own source.
+        eframe::Error::WinitEventLoop(_) => format!("the display cannot be reached; {headless}"),
         eframe::Error::Wgpu(error) => format!(
             "no graphics card can draw the window ({error}); a driver for Vulkan or OpenGL is needed, in software as \
              Debian's mesa-vulkan-drivers if there is no card; {headless}"

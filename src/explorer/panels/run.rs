@@ -194,7 +194,10 @@ fn progress(ui: &mut Ui, session: &Session) {
         Phase::Finished(Outcome::Completed) => format!("finished in {seconds:.1} s"),
         Phase::Finished(Outcome::Stopped) => format!("stopped after {seconds:.1} s"),
         Phase::Failed => "broke off".to_owned(),
-        Phase::Opened(path) => format!("opened {}", path.display()),
+        Phase::Opened(path) => format!(
+            "opened {}",
+            path.file_name().unwrap_or(path.as_os_str()).to_string_lossy()
+        ),
     };
     ui.label(words);
     if let Some(last) = session.generations().last() {

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use super::document::{Chosen, Document, History, Named, Origin};
 use super::running::Running;
 use super::stage_hand::{Answer, Known, StageHand};
-use super::{FrontEntry, Row, Store, StudyEditor};
+use super::{Filter, FrontEntry, Row, Store, StudyEditor};
 use crate::evaluation::{Evaluation, GridChoice, Model};
 use crate::recording::{FrontPoint, Layers, LiveScene};
 use crate::spatial::Pose;
@@ -108,6 +108,8 @@ pub struct Session {
     place_on_front: BTreeMap<usize, usize>,
     front_points: Arc<Vec<FrontPoint>>,
     front_number: u64,
+    /// The front and filter that `front_points` shows.
+    front_drawn: Option<(u64, Filter)>,
     generations: Vec<GenerationSummary>,
     references: Vec<Reference>,
     hand: StageHand,
@@ -145,6 +147,7 @@ impl Session {
             place_on_front: BTreeMap::new(),
             front_points: Arc::default(),
             front_number: 0,
+            front_drawn: None,
             generations: Vec::new(),
             hand: StageHand::start(scene, move || waking())?,
             answer: Answer::default(),

@@ -215,19 +215,31 @@ impl Session {
             .enumerate()
             .map(|(place, entry)| (entry.id, place))
             .collect();
-        let points = front.iter().map(|entry| FrontPoint {
-            id: entry.id,
-            architecture: entry.row.design.architecture,
-            mass: entry.row.mass,
-            radius: entry.row.radius,
-        });
-        self.front_points = Arc::new(points.collect());
         self.front_number += 1;
         self.front = front;
     }
 
+    /// The front as the scene draws it, dimmed where the filter says so.
+    fn draw_front(&mut self) {
+        let drawn = (self.front_number, self.history.present().filter.clone());
+        if self.front_drawn.as_ref() == Some(&drawn) {
+            return;
+        }
+        let sieve = drawn.1.sieve(&self.store);
+        let points = self.front.iter().map(|entry| FrontPoint {
+            id: entry.id,
+            architecture: entry.row.design.architecture,
+            mass: entry.row.mass,
+            radius: entry.row.radius,
+            lit: entry.id < self.store.len() && sieve.passes(entry.id),
+        });
+        self.front_points = Arc::new(points.collect());
+        self.front_drawn = Some(drawn);
+    }
+
     /// Asks the scene for what is to be shown.
     fn ask(&mut self) {
+        self.draw_front();
         let document = self.history.present();
         let design = document.chosen.as_ref().map(|chosen| chosen.design);
         let request = Request {
