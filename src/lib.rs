@@ -27,6 +27,7 @@
 //! | [`scene`] | a design at a pose → named shapes and fields, free of any renderer |
 //! | [`study`] | study file, run, run folder |
 //! | [`recording`] | events → Rerun |
+//! | [`text`] | numbers for people |
 //! | `explorer` | the window (feature `explorer`) |
 
 pub mod evaluation;
@@ -40,4 +41,5 @@ pub mod scene;
 pub mod spatial;
 pub mod stiffness;
 pub mod study;
+pub mod text;
 pub mod workspace;

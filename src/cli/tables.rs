@@ -6,6 +6,7 @@ use kinefront::evaluation::{Evaluation, Model, PoseReport, Unreachable};
 use kinefront::mechanism::Design;
 use kinefront::spatial::Pose;
 use kinefront::study::{FrontMember, RunSummary};
+use kinefront::text::number;
 
 fn table<const N: usize>(header: [&str; N], right: &[usize]) -> Table {
     let mut table = Table::new();
@@ -16,19 +17,6 @@ fn table<const N: usize>(header: [&str; N], right: &[usize]) -> Table {
         }
     }
     table
-}
-
-/// A number with four significant digits, in plain form where that is short.
-fn number(value: f64) -> String {
-    let size = value.abs();
-    if value == 0.0 {
-        "0".to_owned()
-    } else if (1e-3..1e5).contains(&size) {
-        let digits = (3 - size.log10().floor() as i32).max(0) as usize;
-        format!("{value:.digits$}")
-    } else {
-        format!("{value:.3e}")
-    }
 }
 
 fn pose_text(pose: &Pose) -> String {

@@ -1,29 +1,17 @@
 //! Files: asking for one without holding up the window, and writing one whole or not at all.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 
 use super::Session;
 use crate::recording::{record_design, save_copy};
 
-/// Writes a file beside its place and moves it there, so that what stood there is replaced whole or not at all.
+/// Writes a file; what stood there is replaced whole or not at all.
 ///
 /// # Errors
 /// What went wrong, in words.
 pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), String> {
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    let write = || -> std::io::Result<()> {
-        let mut file = tempfile::NamedTempFile::new_in(folder)?;
-        file.write_all(contents)?;
-        file.as_file().sync_all()?;
-        file.persist(path)?;
-        Ok(())
-    };
-    write().map_err(|error| format!("cannot write {}: {error}", path.display()))
+    crate::study::write_whole(path, contents).map_err(|error| error.to_string())
 }
 
 /// What a chosen file is for.

@@ -5,6 +5,7 @@ use egui_plot::MarkerShape;
 
 use crate::mechanism::Architecture;
 use crate::recording::architecture_rgb;
+pub use crate::text::number;
 
 /// The design in the light.
 pub const CHOSEN: Color32 = Color32::from_rgb(255, 70, 60);
@@ -83,19 +84,4 @@ pub fn mix(color: Color32, ground: Color32, share: f32) -> Color32 {
         part(color.g(), ground.g()),
         part(color.b(), ground.b()),
     )
-}
-
-/// A number with four significant digits, in plain form where that is short.
-pub fn number(value: f64) -> String {
-    let size = value.abs();
-    if !value.is_finite() {
-        "–".to_owned()
-    } else if value == 0.0 {
-        "0".to_owned()
-    } else if (1e-3..1e5).contains(&size) {
-        let digits = (3 - size.log10().floor() as i32).max(0) as usize;
-        format!("{value:.digits$}")
-    } else {
-        format!("{value:.3e}")
-    }
 }

@@ -253,9 +253,15 @@ fn row(id: usize, generation: usize, evaluation: &Evaluation) -> Vec<String> {
     row
 }
 
-/// Writes a file beside its place and moves it there, so that it is either whole or not there.
-fn write_whole(path: &Path, contents: &[u8]) -> Result<(), FolderError> {
-    let partial = path.with_extension("partial");
+/// Writes a file beside its place and moves it there, so that it is either whole or as it was before.
+///
+/// # Errors
+/// [`FolderError::Write`].
+pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), FolderError> {
+    let mut name = std::ffi::OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(".partial");
+    let partial = path.with_file_name(name);
     let write = || -> io::Result<()> {
         let mut file = File::create(&partial)?;
         file.write_all(contents)?;

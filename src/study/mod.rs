@@ -13,7 +13,7 @@ pub use builtin::{BUILTIN, Builtin};
 pub use control::RunControl;
 pub use error::{Fault, StudyError};
 pub use file::Study;
-pub use folder::{FolderError, RunFolder, RunReport, TABLE_HEADER};
+pub use folder::{FolderError, RunFolder, RunReport, TABLE_HEADER, write_whole};
 pub use problem::{CandidateError, DesignProblem};
 pub use run::{
     Batch, Event, FrontMember, GenerationSummary, Outcome, RunSummary, RunTimes, Started, Subscriber, spawn,

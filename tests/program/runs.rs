@@ -184,7 +184,7 @@ fn a_full_disk_is_told() {
     let study = small_study(folder.path());
     let out = folder.path().join("run");
     fs::create_dir(&out).expect("a folder");
-    std::os::unix::fs::symlink("/dev/full", out.join("run.partial")).expect("a link");
+    std::os::unix::fs::symlink("/dev/full", out.join(".run.json.partial")).expect("a link");
     kinefront()
         .arg("optimize")
         .arg(&study)

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use super::document::{Chosen, Document, History, Named, Origin};
 use super::running::Running;
-use super::stage_hand::{Answer, Known, StageHand};
+use super::scene_thread::{Answer, Known, SceneThread};
 use super::{Filter, FrontEntry, Row, Store, StudyEditor};
 use crate::evaluation::{Evaluation, GridChoice, Model};
 use crate::recording::{FrontPoint, Layers, LiveScene};
@@ -112,7 +112,7 @@ pub struct Session {
     front_drawn: Option<(u64, Filter)>,
     generations: Vec<GenerationSummary>,
     references: Vec<Reference>,
-    hand: StageHand,
+    scene: SceneThread,
     answer: Answer,
     asked: u64,
     wake: Wake,
@@ -149,7 +149,7 @@ impl Session {
             front_number: 0,
             front_drawn: None,
             generations: Vec::new(),
-            hand: StageHand::start(scene, move || waking())?,
+            scene: SceneThread::start(scene, move || waking())?,
             answer: Answer::default(),
             asked: 0,
             wake,
@@ -307,6 +307,12 @@ impl Session {
             is_error,
             since: Instant::now(),
         });
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        self.close();
     }
 }
 

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use super::super::document::{Chosen, Document, Origin};
 use super::super::open::{Opened, open};
 use super::super::running::Running;
-use super::super::stage_hand::Request;
+use super::super::scene_thread::Request;
 use super::super::{FrontEntry, Store, StudyEditor};
 use super::{GLANCE, Phase, Session, references};
 use crate::optimize::knee;
@@ -178,7 +178,7 @@ impl Session {
         self.follow();
         self.notices
             .retain(|notice| notice.is_error || notice.since.elapsed() < GLANCE);
-        self.answer = self.hand.answer();
+        self.answer = self.scene.answer();
         if let Some(trouble) = self.answer.trouble.clone()
             && self.notices.iter().all(|notice| notice.text != trouble)
         {
@@ -258,6 +258,6 @@ impl Session {
             light: self.staging.light,
             front: Arc::clone(&self.front_points),
         };
-        self.asked = self.hand.ask(request);
+        self.asked = self.scene.ask(request);
     }
 }

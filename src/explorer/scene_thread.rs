@@ -150,13 +150,13 @@ impl Shared {
 }
 
 /// Evaluates and draws designs on threads of its own.
-pub struct StageHand {
+pub struct SceneThread {
     shared: Arc<Shared>,
     sent: u64,
     last: Option<Request>,
 }
 
-impl StageHand {
+impl SceneThread {
     /// Starts the threads; without a viewer there is no `scene`.
     ///
     /// # Errors
@@ -204,7 +204,7 @@ impl StageHand {
     }
 }
 
-impl Drop for StageHand {
+impl Drop for SceneThread {
     fn drop(&mut self) {
         self.shared.requests.close();
         self.shared.to_verify.close();

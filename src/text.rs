@@ -1,0 +1,36 @@
+//! Numbers for people.
+
+/// A number with four significant digits, in plain form where that is short.
+pub fn number(value: f64) -> String {
+    let size = value.abs();
+    if !value.is_finite() {
+        "–".to_owned()
+    } else if value == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e5).contains(&size) {
+        let digits = (3 - size.log10().floor() as i32).max(0) as usize;
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number;
+
+    #[test]
+    fn four_digits_count() {
+        for (value, text) in [
+            (0.0, "0"),
+            (12.345_67, "12.35"),
+            (-0.001_234_1, "-0.001234"),
+            (99_999.0, "99999"),
+            (1e6, "1.000e6"),
+            (2.5e-7, "2.500e-7"),
+            (f64::NAN, "–"),
+        ] {
+            assert_eq!(number(value), text);
+        }
+    }
+}
