@@ -6,7 +6,7 @@ use super::{Evaluation, report};
 use crate::kinematics::{CharacteristicLength, Jacobian};
 use crate::mechanism::with_leg;
 use crate::mechanism::{Design, Leg, LegSettings, Manipulator};
-use crate::spatial::Rotation;
+use crate::spatial::{Pose, Rotation};
 use crate::stiffness::planar::ActuatorStiffness;
 use crate::stiffness::{Material, StiffnessDefinition, StiffnessModel};
 use crate::workspace::{Grid, GridError, PoseChecker, Thresholds, WorkspaceSpec};
@@ -161,6 +161,15 @@ impl Model {
                 })
             }
         }
+    }
+
+    /// Home of an evaluated design, or for an infeasible one the pose that its constraints are reported at.
+    pub fn home(&self, evaluation: &Evaluation) -> Pose {
+        let reported = || evaluation.constraints.iter().find_map(|report| report.pose);
+        evaluation.home.or_else(reported).unwrap_or(Pose {
+            position: self.workspace.centre,
+            phi: 0.0,
+        })
     }
 
     /// Whether a turn by 120° about the workspace's centre maps the design on itself.

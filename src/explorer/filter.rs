@@ -90,9 +90,10 @@ impl Filter {
 }
 
 impl Sieve<'_> {
-    /// Whether design `id`, which must be there, is in the light.
+    /// Whether design `id` is there and in the light.
     pub fn passes(&self, id: usize) -> bool {
-        (!self.feasible_only || self.store.is_feasible(id))
+        id < self.store.len()
+            && (!self.feasible_only || self.store.is_feasible(id))
             && (self.hidden.is_empty() || !self.hidden.contains(&self.store.architecture(id)))
             && self
                 .ranges

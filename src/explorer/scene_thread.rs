@@ -241,6 +241,8 @@ struct Standing {
     request: Option<Request>,
     known: Option<Known>,
     pins: Vec<Evaluation>,
+    /// The design handed over last to be verified.
+    verifying: Option<Design>,
 }
 
 fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
@@ -252,9 +254,11 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
         let trouble = step(&mut standing, shared, &request).err();
         // Drawn first: both would like the processor.
         if let Some(known) = standing.known.as_ref().filter(|known| !known.verified) {
-            shared
-                .to_verify
-                .put((Arc::clone(&request.study), known.evaluation.design));
+            let design = known.evaluation.design;
+            // Once: a pose that moves on, as a tour's, asks for nothing new.
+            if standing.verifying.replace(design) != Some(design) {
+                shared.to_verify.put((Arc::clone(&request.study), design));
+            }
         }
         let (known, pins) = (standing.known.clone(), standing.pins.clone());
         shared.answer(|answer| {
@@ -281,6 +285,7 @@ fn step(standing: &mut Standing, shared: &Shared, request: &Request) -> Result<(
             scene.turn_to(&request.study).map_err(|error| error.to_string())?;
         }
         standing.known = None;
+        standing.verifying = None;
         standing.pins.clear();
         *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }

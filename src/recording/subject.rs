@@ -33,14 +33,8 @@ impl Subject<'_> {
         &self.evaluation.design
     }
 
-    /// Home, or for an infeasible design the pose that its constraints are reported at.
     pub(super) fn home(&self) -> Pose {
-        let reported = || self.evaluation.constraints.iter().find_map(|report| report.pose);
-        let centre = self.model.workspace.centre;
-        self.evaluation.home.or_else(reported).unwrap_or(Pose {
-            position: centre,
-            phi: 0.0,
-        })
+        self.model.home(self.evaluation)
     }
 
     /// Height of the heatmaps: below every body of the manipulator.

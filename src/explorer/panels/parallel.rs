@@ -265,7 +265,7 @@ impl ParallelPanel {
         }
         for lit in [false, true] {
             for entry in session.front() {
-                if (entry.id < store.len() && sieve.passes(entry.id)) == lit {
+                if sieve.passes(entry.id) == lit {
                     let color = theme::architecture(entry.row.design.architecture, dark);
                     let share = if lit { 0.7 } else { 0.15 };
                     line(&|axis| axis.of(&entry.row), theme::mix(color, ground, share), 1.3);

@@ -127,7 +127,7 @@ impl TablePanel {
                     .body(|body| {
                         body.rows(18.0, order.len(), |mut row| {
                             let entry = &session.front()[order[row.index()]];
-                            let lit = entry.id < session.store().len() && sieve.passes(entry.id);
+                            let lit = sieve.passes(entry.id);
                             row.set_selected(Some(entry.id) == chosen);
                             row.col(|ui| {
                                 let star = session.document().stars.contains(&entry.id);
@@ -166,11 +166,7 @@ impl TablePanel {
             session.choose(id);
         }
         if let Some(id) = starred {
-            session.history.edit(|document| {
-                if !document.stars.remove(&id) {
-                    document.stars.insert(id);
-                }
-            });
+            session.toggle_star_of(id);
         }
     }
 

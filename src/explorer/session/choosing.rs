@@ -153,12 +153,17 @@ impl Session {
             ..
         }) = self.document().chosen
         {
-            self.history.edit(|document| {
-                if !document.stars.remove(&id) {
-                    document.stars.insert(id);
-                }
-            });
+            self.toggle_star_of(id);
         }
+    }
+
+    /// Stars a design of the run, or lifts its star.
+    pub fn toggle_star_of(&mut self, id: usize) {
+        self.history.edit(|document| {
+            if !document.stars.remove(&id) {
+                document.stars.insert(id);
+            }
+        });
     }
 
     /// Pins the design in the light, or lifts its pin.

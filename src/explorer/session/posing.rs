@@ -10,15 +10,9 @@ impl Session {
         self.staging.pose.or_else(|| self.home())
     }
 
-    /// Home of the design in the light, or for one without a workspace the pose that its constraints are reported at.
+    /// Home of the design in the light.
     pub fn home(&self) -> Option<Pose> {
-        let evaluation = &self.known()?.evaluation;
-        let reported = || evaluation.constraints.iter().find_map(|report| report.pose);
-        let fallback = Pose {
-            position: self.model.workspace.centre,
-            phi: 0.0,
-        };
-        Some(evaluation.home.or_else(reported).unwrap_or(fallback))
+        Some(self.model.home(&self.known()?.evaluation))
     }
 
     /// Moves the platform towards `pose`, as far as it gets in a straight line; tells what stopped it.

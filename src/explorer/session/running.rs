@@ -231,7 +231,7 @@ impl Session {
             architecture: entry.row.design.architecture,
             mass: entry.row.mass,
             radius: entry.row.radius,
-            lit: entry.id < self.store.len() && sieve.passes(entry.id),
+            lit: sieve.passes(entry.id),
         });
         self.front_points = Arc::new(points.collect());
         self.front_drawn = Some(drawn);

@@ -42,7 +42,7 @@ impl Scatter {
                 let points: Vec<[f64; 2]> = front
                     .iter()
                     .filter(|entry| entry.row.design.architecture == *architecture)
-                    .filter(|entry| (entry.id < session.store().len() && sieve.passes(entry.id)) == lit)
+                    .filter(|entry| sieve.passes(entry.id) == lit)
                     .map(|entry| self.place(&entry.row))
                     .collect();
                 let color = theme::architecture(*architecture, dark);
