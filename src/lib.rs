@@ -34,6 +34,7 @@ pub mod evaluation;
 #[cfg(feature = "explorer")]
 pub mod explorer;
 pub mod kinematics;
+pub mod lanes;
 pub mod mechanism;
 pub mod optimize;
 pub mod recording;

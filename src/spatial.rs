@@ -16,6 +16,8 @@
 
 use glam::DVec2;
 
+use crate::lanes::Real;
+
 /// Number of legs of the manipulators under study.
 pub const LEGS: usize = 3;
 
@@ -82,17 +84,15 @@ impl Rotation {
 }
 
 /// Smaller eigenvalue of the symmetric matrix `[[xx, xy], [xy, yy]]`.
-#[inline]
-pub fn smaller_eigenvalue(xx: f64, xy: f64, yy: f64) -> f64 {
-    let half_trace = 0.5 * (xx + yy);
-    let half_gap = 0.5 * (xx - yy);
-    let larger = half_trace + (half_gap * half_gap + xy * xy).sqrt();
+#[inline(always)]
+pub fn smaller_eigenvalue<V: Real>(xx: V, xy: V, yy: V) -> V {
+    let half = xx.splat(0.5);
+    let half_trace = half * (xx + yy);
+    let half_gap = half * (xx - yy);
+    let root = (half_gap * half_gap + xy * xy).sqrt();
+    let larger = half_trace + root;
     // det/larger instead of a difference: no cancellation when the matrix is nearly singular.
-    if larger > 0.0 {
-        (xx * yy - xy * xy) / larger
-    } else {
-        half_trace - (half_gap * half_gap + xy * xy).sqrt()
-    }
+    ((xx * yy - xy * xy) / larger).where_set(larger.exceeds(xx.splat(0.0)), half_trace - root)
 }
 
 impl std::str::FromStr for Pose {

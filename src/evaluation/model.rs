@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::{Evaluation, report};
 use crate::kinematics::{CharacteristicLength, Jacobian};
+use crate::lanes::InstructionSet;
 use crate::mechanism::with_leg;
 use crate::mechanism::{Design, Leg, LegSettings, Manipulator};
 use crate::spatial::{Pose, Rotation};
@@ -129,6 +130,7 @@ impl Model {
             definition: self.stiffness_definition,
             length: self.length(design, &manipulator)?,
             thresholds: self.thresholds,
+            instructions: InstructionSet::best(),
         })
     }
 

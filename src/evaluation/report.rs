@@ -3,9 +3,10 @@
 use glam::DVec2;
 
 use super::{Constraint, ConstraintReport, Evaluation, Model};
+use crate::lanes::padded;
 use crate::mechanism::{Design, Leg};
 use crate::spatial::{LEGS, Pose};
-use crate::workspace::{Grid, GridError, PoseChecker, RegularWorkspace, search};
+use crate::workspace::{Grid, GridError, PoseChecker, PoseValues, RegularWorkspace, ValueColumns, search};
 
 /// Rings of a disc, besides its centre, on which values are looked at; at most: smooth fields need no more.
 const MOST_RINGS: f64 = 24.0;
@@ -82,39 +83,35 @@ impl<L: Leg> Reporter<'_, L> {
     }
 
     /// Lowers the reports to the values at one pose, `det A` counted in `sign`.
-    fn visit(&self, reports: &mut Reports, position: DVec2, phi_deg: f64, arms: &[DVec2; LEGS], sign: f64) {
-        let pose = Pose {
-            position,
-            phi: phi_deg.to_radians(),
-        };
-        let values = self.checker.values(position, arms);
-        for report in reports
-            .iter_mut()
-            .filter(|report| report.constraint != Constraint::Assembly)
-        {
-            let value = match &values {
-                Ok(values) => Some(report.constraint.value(self.design, values, sign)),
-                Err((_, shortfall)) if report.constraint == Constraint::Reach => Some(shortfall.slack),
-                Err(_) => None,
-            };
-            if let Some(value) = value
+    fn visit(&self, reports: &mut Reports, values: &Result<PoseValues, f64>, pose: impl Fn() -> Pose, sign: f64) {
+        for report in reports {
+            if let Some(value) = self.value(report.constraint, values, sign)
                 && report.value.is_none_or(|smallest| value < smallest)
             {
                 report.value = Some(value);
                 report.margin = report.constraint.margin(value, report.threshold, self.design);
-                report.pose = Some(pose);
+                report.pose = Some(pose());
             }
         }
     }
 
+    /// Value of a constraint at one pose; `None` for g1, which needs none, and where there is no value out of reach.
+    #[inline]
+    fn value(&self, constraint: Constraint, values: &Result<PoseValues, f64>, sign: f64) -> Option<f64> {
+        match (constraint, values) {
+            (Constraint::Assembly, _) => None,
+            (_, Ok(values)) => Some(constraint.value(self.design, values, sign)),
+            (Constraint::Reach, Err(slack)) => Some(*slack),
+            (_, Err(_)) => None,
+        }
+    }
+
     /// Marks the constraints that fail at one pose.
-    fn mark_failing(&self, reports: &mut Reports, position: DVec2, phi_deg: f64, arms: &[DVec2; LEGS], sign: f64) {
-        let mut there = self.blank();
-        self.visit(&mut there, position, phi_deg, arms, sign);
-        for (report, there) in reports.iter_mut().zip(&there) {
-            report.active |= there
-                .value
-                .is_some_and(|value| !there.constraint.holds(value, there.threshold));
+    fn mark_failing(&self, reports: &mut Reports, values: &Result<PoseValues, f64>, sign: f64) {
+        for report in reports {
+            report.active |= self
+                .value(report.constraint, values, sign)
+                .is_some_and(|value| !report.constraint.holds(value, report.threshold));
         }
     }
 
@@ -125,24 +122,37 @@ impl<L: Leg> Reporter<'_, L> {
         let sign = found.orientations[home].centre_sign.unwrap_or(1.0);
         let mut reports = self.blank();
         let spacing = self.design.base_radius / grid.ray_steps as f64;
-        let rings = (found.radius / spacing).ceil().clamp(1.0, MOST_RINGS);
-        for (index, ray) in found.window(home).zip(&found.home_rays) {
+        let rings = (found.radius / spacing).ceil().clamp(1.0, MOST_RINGS) as usize;
+        let mut disc = Positions::default();
+        disc.push(centre);
+        for direction in &found.directions {
+            for ring in 1..=rings {
+                // The last ring is the rim itself, to the bit.
+                let radius = if ring == rings {
+                    found.radius
+                } else {
+                    found.radius * ring as f64 / rings as f64
+                };
+                disc.push(centre + *direction * radius);
+            }
+        }
+        let mut values = ValueColumns::default();
+        for index in found.window(home) {
             let orientation = &found.orientations[index];
-            let (phi_deg, arms) = (orientation.phi_deg, &orientation.arms);
-            self.visit(&mut reports, centre, phi_deg, arms, sign);
+            disc.values(self.checker, &orientation.arms, &mut values);
+            for at in 0..disc.count {
+                let pose = || Pose::new(disc.xs[at], disc.ys[at], orientation.phi_deg.to_radians());
+                self.visit(&mut reports, &values.get(at), pose, sign);
+            }
+        }
+        for &(index, beyond) in &found.limits {
+            let mut rim = Positions::default();
             for direction in &found.directions {
-                for ring in 1..=rings as usize {
-                    // The last ring is the rim itself, to the bit.
-                    let radius = if ring == rings as usize {
-                        found.radius
-                    } else {
-                        found.radius * ring as f64 / rings
-                    };
-                    self.visit(&mut reports, centre + *direction * radius, phi_deg, arms, sign);
-                }
-                if ray.radius == found.radius {
-                    self.mark_failing(&mut reports, centre + *direction * ray.beyond, phi_deg, arms, sign);
-                }
+                rim.push(centre + *direction * beyond);
+            }
+            rim.values(self.checker, &found.orientations[index].arms, &mut values);
+            for at in 0..rim.count {
+                self.mark_failing(&mut reports, &values.get(at), sign);
             }
         }
         reports
@@ -155,10 +165,8 @@ impl<L: Leg> Reporter<'_, L> {
     fn at_best_centre(&self) -> (Reports, f64) {
         let found = self.found;
         let centre = self.model.workspace.centre;
-        let shortfalls: Vec<(f64, f64)> = found
-            .orientations
-            .iter()
-            .map(|orientation| self.shortfall(centre, &orientation.arms))
+        let shortfalls: Vec<(f64, f64)> = (0..found.orientations.len())
+            .map(|index| self.shortfall(&found.centres.get(index)))
             .collect();
         let best = smallest(shortfalls.iter().map(|(shortfall, _)| *shortfall)).unwrap_or(0);
         let homes = found.homes(&self.model.workspace);
@@ -177,43 +185,31 @@ impl<L: Leg> Reporter<'_, L> {
 
         let mut reports = self.blank();
         let sign_of = |index: usize| if shortfalls[index].1 < 0.0 { -1.0 } else { 1.0 };
-        let orientation = &found.orientations[best];
-        self.visit(
-            &mut reports,
-            centre,
-            orientation.phi_deg,
-            &orientation.arms,
-            sign_of(best),
-        );
+        let phi = found.orientations[best].phi_deg.to_radians();
+        let pose = || Pose::new(centre.x, centre.y, phi);
+        self.visit(&mut reports, &found.centres.get(best), pose, sign_of(best));
         for index in found.window(best_home) {
-            let orientation = &found.orientations[index];
-            self.mark_failing(
-                &mut reports,
-                centre,
-                orientation.phi_deg,
-                &orientation.arms,
-                sign_of(best_home),
-            );
+            self.mark_failing(&mut reports, &found.centres.get(index), sign_of(best_home));
         }
         let assembly = (-reports[Constraint::Assembly as usize].margin).max(0.0);
         (reports, (mean(best_home) + assembly).max(LEAST_VIOLATION))
     }
 
     /// Sum of the relative shortfalls of g2 … g6 at a pose, and the sign of `det A` (0 where unreachable).
-    fn shortfall(&self, position: DVec2, arms: &[DVec2; LEGS]) -> (f64, f64) {
+    fn shortfall(&self, values: &Result<PoseValues, f64>) -> (f64, f64) {
         const AT_POSES: [Constraint; 4] = [
             Constraint::Dexterity,
             Constraint::StiffnessXy,
             Constraint::StiffnessZ,
             Constraint::StiffnessPhiZ,
         ];
-        match self.checker.values(position, arms) {
+        match values {
             Ok(values) => {
                 let sum = AT_POSES
                     .iter()
                     .map(|constraint| {
                         let threshold = constraint.threshold(self.design, &self.checker.thresholds);
-                        let value = constraint.value(self.design, &values, 1.0);
+                        let value = constraint.value(self.design, values, 1.0);
                         (-constraint.margin(value, threshold, self.design)).max(0.0)
                     })
                     .sum();
@@ -227,11 +223,35 @@ impl<L: Leg> Reporter<'_, L> {
                 )
             }
             // Out of reach nothing else has a value: every one counts as wholly missed.
-            Err((_, shortfall)) => {
-                let missed = Constraint::Reach.margin(shortfall.slack, 0.0, self.design);
+            Err(slack) => {
+                let missed = Constraint::Reach.margin(*slack, 0.0, self.design);
                 (AT_POSES.len() as f64 - missed, 0.0)
             }
         }
+    }
+}
+
+/// Positions in columns, padded as the checker reads them.
+#[derive(Default)]
+struct Positions {
+    xs: Vec<f64>,
+    ys: Vec<f64>,
+    count: usize,
+}
+
+impl Positions {
+    fn push(&mut self, position: DVec2) {
+        self.xs.truncate(self.count);
+        self.ys.truncate(self.count);
+        self.xs.push(position.x);
+        self.ys.push(position.y);
+        self.count += 1;
+    }
+
+    fn values<L: Leg>(&mut self, checker: &PoseChecker<L>, arms: &[DVec2; LEGS], values: &mut ValueColumns) {
+        self.xs.resize(padded(self.count), 0.0);
+        self.ys.resize(padded(self.count), 0.0);
+        checker.at_positions(arms, &self.xs, &self.ys, values);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use nalgebra::Matrix3;
 
+use crate::lanes::Real;
 use crate::mechanism::Posture;
 use crate::spatial::{LEGS, cross};
 
@@ -16,17 +17,17 @@ pub enum CharacteristicLength {
     Fixed(f64),
 }
 
-/// Direct (`A`) and inverse (`B`) Jacobian of one pose, row per leg.
+/// Direct (`A`) and inverse (`B`) Jacobian of one pose or of several at once, row per leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Jacobian {
+pub struct Jacobian<V = f64> {
     /// `x` components of `u_i`: first column of `A`.
-    pub ux: [f64; LEGS],
+    pub ux: [V; LEGS],
     /// `y` components of `u_i`: second column of `A`.
-    pub uy: [f64; LEGS],
+    pub uy: [V; LEGS],
     /// `(C_i − P) × u_i` \[m\]: third column of `A`.
-    pub moment: [f64; LEGS],
+    pub moment: [V; LEGS],
     /// Diagonal of `B`.
-    pub drive: [f64; LEGS],
+    pub drive: [V; LEGS],
 }
 
 impl Jacobian {
@@ -42,55 +43,59 @@ impl Jacobian {
         }
     }
 
+    /// `A` as a matrix, rows `[u_ix, u_iy, (C_i − P) × u_i]`.
+    pub fn direct(&self) -> Matrix3<f64> {
+        Matrix3::from_fn(|i, column| [self.ux[i], self.uy[i], self.moment[i]][column])
+    }
+}
+
+impl<V: Real> Jacobian<V> {
     /// `det A` \[m\]: 0 at a parallel singularity.
-    #[inline]
-    pub fn determinant(&self) -> f64 {
+    #[inline(always)]
+    pub fn determinant(&self) -> V {
         let adjugate = self.adjugate_row_xy();
         self.moment[0] * adjugate[0] + self.moment[1] * adjugate[1] + self.moment[2] * adjugate[2]
     }
 
     /// `u_j × u_k` for each leg: the third row of `adj A`.
-    #[inline]
-    fn adjugate_row_xy(&self) -> [f64; LEGS] {
-        [0, 1, 2].map(|i| {
-            let (j, k) = ((i + 1) % LEGS, (i + 2) % LEGS);
-            self.ux[j] * self.uy[k] - self.uy[j] * self.ux[k]
-        })
+    #[inline(always)]
+    fn adjugate_row_xy(&self) -> [V; LEGS] {
+        let (ux, uy) = (&self.ux, &self.uy);
+        [
+            ux[1] * uy[2] - uy[1] * ux[2],
+            ux[2] * uy[0] - uy[2] * ux[0],
+            ux[0] * uy[1] - uy[0] * ux[1],
+        ]
     }
 
     /// `κ_F⁻¹(J)` of `J = diag(1, 1, ℓ) A⁻¹B`, in \[0, 1\]: 1 where isotropic, 0 at any singularity.
     ///
     /// `length` is `ℓ` \[m\]. Computed as `3 |det A · det B| / √(Σ a_i² Σ b_i²)` with the denominators of `A⁻¹` and
     /// `B⁻¹` multiplied out, so that a singular posture gives 0 and no division by zero.
-    #[inline]
-    pub fn inverse_condition(&self, length: f64) -> f64 {
+    #[inline(always)]
+    pub fn inverse_condition(&self, length: f64) -> V {
         let planar = self.adjugate_row_xy();
-        let mut forward = 0.0;
-        let mut inverse = 0.0;
-        let mut determinant = 0.0;
+        let like = self.ux[0];
+        let (zero, one) = (like.splat(0.0), like.splat(1.0));
+        let (length, to_lever) = (like.splat(length), like.splat(1.0 / length));
+        let mut forward = zero;
+        let mut inverse = zero;
+        let mut determinant = zero;
         for i in 0..LEGS {
             let (j, k) = ((i + 1) % LEGS, (i + 2) % LEGS);
             let vx = self.uy[j] * self.moment[k] - self.moment[j] * self.uy[k];
             let vy = self.moment[j] * self.ux[k] - self.ux[j] * self.moment[k];
             let w = length * planar[i];
-            determinant += self.moment[i] * planar[i];
-            forward += self.drive[i] * self.drive[i] * (vx * vx + vy * vy + w * w);
-            let lever = self.moment[i] / length;
+            determinant = determinant + self.moment[i] * planar[i];
+            forward = forward + self.drive[i] * self.drive[i] * (vx * vx + vy * vy + w * w);
+            let lever = self.moment[i] * to_lever;
             let others = self.drive[j] * self.drive[k];
-            inverse += others * others * (1.0 + lever * lever);
+            inverse = inverse + others * others * (one + lever * lever);
         }
         let serial = self.drive[0] * self.drive[1] * self.drive[2];
         let scale = forward * inverse;
-        if scale > 0.0 {
-            // Rounding may carry an isotropic posture past 1.
-            (LEGS as f64 * (determinant * serial).abs() / scale.sqrt()).min(1.0)
-        } else {
-            0.0
-        }
-    }
-
-    /// `A` as a matrix, rows `[u_ix, u_iy, (C_i − P) × u_i]`.
-    pub fn direct(&self) -> Matrix3<f64> {
-        Matrix3::from_fn(|i, column| [self.ux[i], self.uy[i], self.moment[i]][column])
+        let condition = like.splat(LEGS as f64) * (determinant * serial).abs() / scale.sqrt();
+        // Rounding may carry an isotropic posture past 1.
+        condition.smaller(one).where_set(scale.exceeds(zero), zero)
     }
 }

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Design;
+use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, LEGS, Pose, Rotation};
 
 /// Kind of the actuated joint.
@@ -136,6 +137,27 @@ pub struct LegPosture {
     pub slack: f64,
 }
 
+/// One leg at several poses at once: what the constraints need of it, in the lanes where it reaches.
+#[derive(Clone, Copy)]
+pub struct LegLanes<V: Real> {
+    /// `u_i`.
+    pub u: Planar<V>,
+    /// `(C_i − P) × u_i` \[m\].
+    pub moment: V,
+    /// `(C_i − P) · u_i` \[m\].
+    pub along: V,
+    /// `B_ii`.
+    pub drive: V,
+    /// Length of the last bar for the beam model \[m\].
+    pub distal: V,
+    /// `u_i · (B_i − A_i)` and `u_i × (B_i − A_i)` of the bar before the last, for legs that have one \[m\].
+    pub proximal: Option<Planar<V>>,
+    /// Least distance to a joint limit or to the end of reach \[m\]; not above 0 where the leg does not reach.
+    pub slack: V,
+    /// Where the leg reaches.
+    pub reachable: V::Mask,
+}
+
 /// Why a leg does not reach a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ReachReason {
@@ -177,6 +199,11 @@ pub trait Leg: Copy + Send + Sync {
     /// # Errors
     /// [`Shortfall`] when the working mode has no real solution or a joint limit is passed.
     fn inverse(&self, c: DVec2) -> Result<LegPosture, Shortfall>;
+
+    /// [`Leg::inverse`] at several poses at once, with `C_i` at `position + arm`.
+    ///
+    /// Written for speed, in the leg's own axes; it rounds differently from [`Leg::inverse`] and says no reasons.
+    fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> LegLanes<V>;
 
     /// Actuator value: `ρ_i` \[m\], or the crank's angle to `Ox` in (−π, π] \[rad\].
     fn actuator(&self, posture: &LegPosture) -> f64;

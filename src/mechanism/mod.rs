@@ -13,7 +13,8 @@ mod text;
 
 pub use design::{Design, DesignError, VARIABLES, Variable, WorkingMode};
 pub use leg::{
-    Actuator, BarLength, Leg, LegPart, LegPosture, LegSettings, Manipulator, Posture, ReachReason, Segment, Shortfall,
+    Actuator, BarLength, Leg, LegLanes, LegPart, LegPosture, LegSettings, Manipulator, Posture, ReachReason, Segment,
+    Shortfall,
 };
 pub use prr::PrrLeg;
 pub use rpr::RprLeg;

@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use super::{Actuator, Design, Leg, LegPart, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
+use super::{Actuator, Design, Leg, LegLanes, LegPart, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
+use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, HALF_SQRT_3, LEGS, cross};
 
 /// A leg of the 3-PRR.
@@ -70,6 +71,38 @@ impl Leg for PrrLeg {
             drive: u.dot(self.axis),
             slack: reach.min(actuator).min(self.travel - actuator),
         })
+    }
+
+    #[inline(always)]
+    fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> LegLanes<V> {
+        let like = position.x;
+        let axis = Planar::splat(like, self.axis);
+        // In the slider's axes: along it and to its left. What belongs to the orientation alone is kept apart.
+        let offset = arm.minus(Planar::splat(like, self.anchor));
+        let along = position.dot(axis) + offset.dot(axis);
+        let height = axis.cross(position) + axis.cross(offset);
+        let arm = Planar::new(arm.dot(axis), axis.cross(arm));
+
+        let (zero, link, travel) = (like.splat(0.0), like.splat(self.link), like.splat(self.travel));
+        let reach = link - height.abs();
+        let foot = (reach * (link + height.abs())).larger(zero).sqrt();
+        let actuator = along + like.splat(self.sign) * foot;
+        let within = reach.smaller(actuator.smaller(travel - actuator));
+        let slack = within.where_set(reach.at_least(zero), reach);
+
+        let to_unit = 1.0 / self.link;
+        let drive = like.splat(-self.sign * to_unit) * foot;
+        let u = Planar::new(drive, like.splat(to_unit) * height);
+        LegLanes {
+            u: Planar::new(u.x * axis.x - u.y * axis.y, u.x * axis.y + u.y * axis.x),
+            moment: arm.cross(u),
+            along: arm.dot(u),
+            drive,
+            distal: link,
+            proximal: None,
+            slack,
+            reachable: slack.at_least(zero),
+        }
     }
 
     fn actuator(&self, posture: &LegPosture) -> f64 {

@@ -2,7 +2,10 @@
 
 use glam::DVec2;
 
-use super::{Actuator, BarLength, Design, Leg, LegPart, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
+use super::{
+    Actuator, BarLength, Design, Leg, LegLanes, LegPart, LegPosture, LegSettings, ReachReason, Segment, Shortfall,
+};
+use crate::lanes::{Planar, Real};
 use crate::spatial::ANCHOR_DIRECTIONS;
 
 /// A leg of the 3-RPR.
@@ -58,6 +61,29 @@ impl Leg for RprLeg {
             drive: 1.0,
             slack: (length - self.shortest).min(self.longest - length),
         })
+    }
+
+    #[inline(always)]
+    fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> LegLanes<V> {
+        let like = position.x;
+        let leg = position.plus(arm.minus(Planar::splat(like, self.anchor)));
+        let length = leg.dot(leg).sqrt();
+        let (zero, one) = (like.splat(0.0), like.splat(1.0));
+        let slack = (length - like.splat(self.shortest)).smaller(like.splat(self.longest) - length);
+        let u = leg.scaled(one / length);
+        LegLanes {
+            u,
+            moment: arm.cross(u),
+            along: arm.dot(u),
+            drive: one,
+            distal: match self.bar {
+                BarLength::Current => length,
+                BarLength::Longest => like.splat(self.longest),
+            },
+            proximal: None,
+            slack,
+            reachable: slack.at_least(zero) & length.exceeds(zero),
+        }
     }
 
     fn actuator(&self, posture: &LegPosture) -> f64 {

@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use super::{Actuator, Design, Leg, LegPart, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
+use super::{Actuator, Design, Leg, LegLanes, LegPart, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
+use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, cross};
 
 /// A leg of the 3-RRR.
@@ -57,6 +58,34 @@ impl Leg for RrrLeg {
             drive: cross(crank, u),
             slack,
         })
+    }
+
+    #[inline(always)]
+    fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> LegLanes<V> {
+        let like = position.x;
+        let chord = position.plus(arm.minus(Planar::splat(like, self.anchor)));
+        let square = chord.dot(chord);
+        let (zero, quarter, half) = (like.splat(0.0), like.splat(0.25), like.splat(0.5));
+        // The elbow's distance from the chord over the chord's length, squared.
+        let ratio = ((like.splat(self.link * self.link) - quarter * square) / square).larger(zero);
+        let elbow = like.splat(self.sign) * ratio.sqrt();
+        let to_unit = like.splat(1.0 / self.link);
+        let u = chord.scaled(half).minus(chord.perp().scaled(elbow)).scaled(to_unit);
+        // (B − A) × u = (B − A) × (C − A)/L, where only the elbow's part counts.
+        let drive = -(elbow * square * to_unit);
+
+        let reachable = like.splat(4.0 * self.link * self.link).at_least(square) & square.exceeds(zero);
+        let slack = like.splat(2.0 * self.link) - square.sqrt();
+        LegLanes {
+            u,
+            moment: arm.cross(u),
+            along: arm.dot(u),
+            drive,
+            distal: like.splat(self.link),
+            proximal: Some(Planar::new((quarter - ratio) * square * to_unit, -drive)),
+            slack: slack.larger(zero).where_set(reachable, slack.smaller(zero)),
+            reachable,
+        }
     }
 
     fn actuator(&self, posture: &LegPosture) -> f64 {

@@ -1,10 +1,12 @@
 //! Virtual-joint stiffness of the manipulator at `P` (SPEC section 3).
 //!
 //! Two forms of one model: [`planar`] is the closed form that everything uses, [`joint_model`] the general 6×6 form
-//! of Pashkevich et al. that serves as its oracle.
+//! of Pashkevich et al. that serves as its oracle. The closed form is written twice: as it reads, with all of `K`, and
+//! reduced to the numbers that the constraints ask for, at several poses at once ([`StiffnessModel::rigidity_lanes`]).
 
 mod bar;
 pub mod joint_model;
+mod lanes;
 pub mod planar;
 
 pub use bar::{BarCompliance, Material};

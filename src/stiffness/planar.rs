@@ -7,8 +7,10 @@
 use glam::DVec2;
 use nalgebra::{Matrix3, Matrix6};
 
+use super::lanes::Reduced;
 use super::{BarCompliance, Material, Rigidity, StiffnessDefinition};
 use crate::kinematics::Jacobian;
+use crate::lanes::{Planar, Real};
 use crate::mechanism::{Actuator, Design, Leg, LegPosture, Manipulator, Posture};
 use crate::spatial::{LEGS, cross, smaller_eigenvalue};
 
@@ -20,6 +22,8 @@ pub struct StiffnessModel {
     pub(super) platform_radius: f64,
     /// Compliance of the actuator \[m/N or rad/(N·m)\].
     pub(super) actuator: f64,
+    /// The same, prepared for several poses at once.
+    pub(super) reduced: Reduced,
 }
 
 /// Stiffness of the actuators (SPEC section 8, no. 4).
@@ -47,11 +51,15 @@ impl StiffnessModel {
             Actuator::Prismatic => actuators.prismatic,
             Actuator::Revolute => actuators.revolute,
         };
+        let leg_bar = BarCompliance::new(material, design.leg_bar_radius)?;
+        let platform_bar = BarCompliance::new(material, design.platform_bar_radius)?;
+        let actuator = 1.0 / stiffness;
         Some(Self {
-            leg_bar: BarCompliance::new(material, design.leg_bar_radius)?,
-            platform_bar: BarCompliance::new(material, design.platform_bar_radius)?,
+            leg_bar,
+            platform_bar,
             platform_radius: design.platform_radius,
-            actuator: 1.0 / stiffness,
+            actuator,
+            reduced: Reduced::new(design, &leg_bar, &platform_bar, actuator),
         })
     }
 
@@ -91,20 +99,16 @@ impl StiffnessModel {
     #[inline]
     fn bending_compliance<L: Leg>(&self, leg: &L, posture: &LegPosture, arm: DVec2) -> [f64; 6] {
         let mut s = [0.0; 6];
+        let mut add = |section, axis: DVec2, length, to_p: DVec2| {
+            add_bar(&mut s, section, axis.into(), length, to_p.into());
+        };
         // The tip of the platform bar is P itself.
         let platform_axis = -arm / self.platform_radius;
-        add_bar(
-            &mut s,
-            &self.platform_bar,
-            platform_axis,
-            self.platform_radius,
-            DVec2::ZERO,
-        );
-        add_bar(&mut s, &self.leg_bar, posture.u, leg.distal_length(posture), -arm);
+        add(&self.platform_bar, platform_axis, self.platform_radius, DVec2::ZERO);
+        add(&self.leg_bar, posture.u, leg.distal_length(posture), -arm);
         if let Some(bar) = leg.proximal_bar(posture) {
             let to_p = posture.u * posture.length - arm;
-            add_bar(
-                &mut s,
+            add(
                 &self.leg_bar,
                 (bar.to - bar.from) / posture.length,
                 posture.length,
@@ -146,25 +150,21 @@ impl StiffnessModel {
     }
 
     /// `k_xy` and `k_φz` by `definition` from an in-plane block.
-    #[inline]
-    pub fn in_plane_rigidity(k: &[f64; 6], definition: StiffnessDefinition) -> (f64, f64) {
+    #[inline(always)]
+    pub fn in_plane_rigidity<V: Real>(k: &[V; 6], definition: StiffnessDefinition) -> (V, V) {
         let [xx, xy, xm, yy, ym, mm] = *k;
         match definition {
             StiffnessDefinition::Stiffness => (smaller_eigenvalue(xx, xy, yy), mm),
             StiffnessDefinition::Compliance => {
                 // Schur complements: the inverse of a block of K⁻¹ is what is left of K when the rest is free.
+                let (zero, two) = (xx.splat(0.0), xx.splat(2.0));
                 let planar = xx * yy - xy * xy;
-                let rotational = if planar > 0.0 {
-                    mm - (xm * xm * yy - 2.0 * xm * ym * xy + ym * ym * xx) / planar
-                } else {
-                    0.0
-                };
-                let translational = if mm > 0.0 {
-                    smaller_eigenvalue(xx - xm * xm / mm, xy - xm * ym / mm, yy - ym * ym / mm)
-                } else {
-                    0.0
-                };
-                (translational.max(0.0), rotational.max(0.0))
+                let rotational = mm - (xm * xm * yy - two * xm * ym * xy + ym * ym * xx) / planar;
+                let translational = smaller_eigenvalue(xx - xm * xm / mm, xy - xm * ym / mm, yy - ym * ym / mm);
+                (
+                    translational.larger(zero).where_set(mm.exceeds(zero), zero),
+                    rotational.larger(zero).where_set(planar.exceeds(zero), zero),
+                )
             }
         }
     }
@@ -212,25 +212,25 @@ fn along_line(section: &BarCompliance, u: DVec2, bar: DVec2, length: f64) -> f64
 }
 
 /// Adds to `s`, the out-of-plane compliance at `P`, a bar of direction `axis` whose tip lies at `P − to_p`.
-#[inline]
-fn add_bar(s: &mut [f64; 6], section: &BarCompliance, axis: DVec2, length: f64, to_p: DVec2) {
-    let bend = length * section.bending;
-    let twist = length * section.torsion;
+#[inline(always)]
+pub(super) fn add_bar<V: Real>(s: &mut [V; 6], section: &BarCompliance, axis: Planar<V>, length: V, to_p: Planar<V>) {
+    let (half, twelfth) = (length.splat(0.5), length.splat(1.0 / 12.0));
+    let bend = length * length.splat(section.bending);
+    let twist = length * length.splat(section.torsion);
     let normal = axis.perp();
     // A rotation ω at the tip lifts P by ωx·dy − ωy·dx = lever·ω; in the bar's axes that lever has these parts.
-    let lever = DVec2::new(to_p.y, -to_p.x);
+    let lever = Planar::new(to_p.y, -to_p.x);
     let lever_x = lever.dot(axis);
     let lever_y = lever.dot(normal);
-    let half = 0.5 * length;
     // Bending seen from the bar's middle: a rotation L/EI there and a lift of L³/12EI, no coupling.
-    let arm = lever_y - half;
-    s[0] += bend * (length * length / 12.0 + arm * arm) + twist * lever_x * lever_x;
+    let arm = lever_y - half * length;
+    s[0] = s[0] + bend * (length * length * twelfth + arm * arm) + twist * lever_x * lever_x;
     let (x, y) = (twist * lever_x, bend * arm);
-    s[1] += x * axis.x + y * normal.x;
-    s[2] += x * axis.y + y * normal.y;
-    s[3] += twist * axis.x * axis.x + bend * normal.x * normal.x;
-    s[4] += twist * axis.x * axis.y + bend * normal.x * normal.y;
-    s[5] += twist * axis.y * axis.y + bend * normal.y * normal.y;
+    s[1] = s[1] + x * axis.x + y * normal.x;
+    s[2] = s[2] + x * axis.y + y * normal.y;
+    s[3] = s[3] + twist * axis.x * axis.x + bend * normal.x * normal.x;
+    s[4] = s[4] + twist * axis.x * axis.y + bend * normal.x * normal.y;
+    s[5] = s[5] + twist * axis.y * axis.y + bend * normal.y * normal.y;
 }
 
 fn symmetric(k: &[f64; 6]) -> Matrix3<f64> {
@@ -246,7 +246,8 @@ fn first_of_inverse(s: &[f64; 6]) -> f64 {
 }
 
 /// Inverse of a symmetric positive definite 3×3 matrix, upper triangle.
-fn inverse(s: &[f64; 6]) -> [f64; 6] {
+#[inline(always)]
+pub(super) fn inverse<V: Real>(s: &[V; 6]) -> [V; 6] {
     let [a, b, c, d, e, f] = *s;
     let cofactors = [
         d * f - e * e,
@@ -256,17 +257,22 @@ fn inverse(s: &[f64; 6]) -> [f64; 6] {
         b * c - a * e,
         a * d - b * b,
     ];
-    let determinant = a * cofactors[0] + b * cofactors[1] + c * cofactors[2];
-    cofactors.map(|cofactor| cofactor / determinant)
+    let one = a.splat(1.0) / (a * cofactors[0] + b * cofactors[1] + c * cofactors[2]);
+    [
+        cofactors[0] * one,
+        cofactors[1] * one,
+        cofactors[2] * one,
+        cofactors[3] * one,
+        cofactors[4] * one,
+        cofactors[5] * one,
+    ]
 }
 
 /// What is left of `K_zz` when the rotations are free: `1/(K⁻¹)_zz`.
-fn vertical_schur(k: &[f64; 6]) -> f64 {
+#[inline(always)]
+pub(super) fn vertical_schur<V: Real>(k: &[V; 6]) -> V {
+    let (zero, two) = (k[0].splat(0.0), k[0].splat(2.0));
     let minor = k[3] * k[5] - k[4] * k[4];
-    if minor > 0.0 {
-        let taken = (k[1] * k[1] * k[5] - 2.0 * k[1] * k[2] * k[4] + k[2] * k[2] * k[3]) / minor;
-        (k[0] - taken).max(0.0)
-    } else {
-        0.0
-    }
+    let taken = (k[1] * k[1] * k[5] - two * k[1] * k[2] * k[4] + k[2] * k[2] * k[3]) / minor;
+    (k[0] - taken).larger(zero).where_set(minor.exceeds(zero), zero)
 }

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::kinematics::Jacobian;
+use crate::lanes::{InstructionSet, Planar, Real};
 use crate::mechanism::{Leg, Manipulator, Posture, Shortfall};
 use crate::spatial::LEGS;
 use crate::stiffness::{PlanarStiffness, Rigidity, StiffnessDefinition, StiffnessModel};
@@ -20,6 +21,16 @@ pub struct Thresholds {
     pub k_phi_z: f64,
 }
 
+impl Thresholds {
+    /// Whether a reachable pose has them all.
+    pub fn hold(&self, values: &PoseValues) -> bool {
+        values.inverse_condition >= self.inverse_condition
+            && values.rigidity.k_xy >= self.k_xy
+            && values.rigidity.k_phi_z >= self.k_phi_z
+            && values.rigidity.k_z >= self.k_z
+    }
+}
+
 /// Everything the constraints look at, at one reachable pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseValues {
@@ -31,6 +42,25 @@ pub struct PoseValues {
     pub inverse_condition: f64,
     /// `k_xy`, `k_z`, `k_φz`.
     pub rigidity: Rigidity,
+}
+
+/// [`PoseValues`] at several poses at once.
+#[derive(Clone, Copy)]
+pub struct PoseLanes<V: Real> {
+    /// Where every leg reaches; elsewhere nothing but `slack` has a meaning.
+    pub reachable: V::Mask,
+    /// Least distance to a joint limit or to the end of reach \[m\]; not above 0 where a leg does not reach.
+    pub slack: V,
+    /// `det A / ℓ`.
+    pub determinant: V,
+    /// `κ_F⁻¹`.
+    pub inverse_condition: V,
+    /// `k_xy` \[N/m\].
+    pub k_xy: V,
+    /// `k_z` \[N/m\].
+    pub k_z: V,
+    /// `k_φz` \[N·m/rad\].
+    pub k_phi_z: V,
 }
 
 /// One design, made ready for many poses.
@@ -46,6 +76,8 @@ pub struct PoseChecker<L> {
     pub length: f64,
     /// What a good pose must have.
     pub thresholds: Thresholds,
+    /// What poses are taken several at a time with. Changes no bit of a result.
+    pub instructions: InstructionSet,
 }
 
 impl<L: Leg> PoseChecker<L> {
@@ -70,6 +102,50 @@ impl<L: Leg> PoseChecker<L> {
     #[inline]
     pub fn is_good(&self, position: DVec2, arms: &[DVec2; LEGS], sign: f64) -> bool {
         self.good_sign(position, arms) == Some(sign)
+    }
+
+    /// All values at several poses at once, `arms` as in [`Manipulator::arms`].
+    #[inline(always)]
+    pub fn lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS]) -> PoseLanes<V> {
+        let like = position.x;
+        let legs = &self.manipulator.legs;
+        let legs = [
+            legs[0].lanes(position, arms[0]),
+            legs[1].lanes(position, arms[1]),
+            legs[2].lanes(position, arms[2]),
+        ];
+        let jacobian = Jacobian {
+            ux: [legs[0].u.x, legs[1].u.x, legs[2].u.x],
+            uy: [legs[0].u.y, legs[1].u.y, legs[2].u.y],
+            moment: [legs[0].moment, legs[1].moment, legs[2].moment],
+            drive: [legs[0].drive, legs[1].drive, legs[2].drive],
+        };
+        let [k_xy, k_z, k_phi_z] = match &self.stiffness {
+            Some(model) => model.rigidity_lanes(self.definition, &legs, arms, &jacobian),
+            None => [like.splat(0.0); 3],
+        };
+        PoseLanes {
+            reachable: legs[0].reachable & legs[1].reachable & legs[2].reachable,
+            slack: legs[0].slack.smaller(legs[1].slack.smaller(legs[2].slack)),
+            determinant: jacobian.determinant() * like.splat(1.0 / self.length),
+            inverse_condition: jacobian.inverse_condition(self.length),
+            k_xy,
+            k_z,
+            k_phi_z,
+        }
+    }
+
+    /// Where the pose is good, with `det A` of the given sign (±1).
+    #[inline(always)]
+    pub fn good_lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS], sign: V) -> V::Mask {
+        let values = self.lanes(position, arms);
+        let least = &self.thresholds;
+        values.reachable
+            & (values.determinant * sign).exceeds(sign.splat(0.0))
+            & values.inverse_condition.at_least(sign.splat(least.inverse_condition))
+            & values.k_xy.at_least(sign.splat(least.k_xy))
+            & values.k_phi_z.at_least(sign.splat(least.k_phi_z))
+            & values.k_z.at_least(sign.splat(least.k_z))
     }
 
     /// All values at a pose.

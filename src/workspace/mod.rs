@@ -3,10 +3,13 @@
 //! [`PoseChecker`] says whether one pose is good, [`Grid`] which poses are asked, [`search`] finds the largest disc of
 //! good poses and the home orientation.
 
+mod batch;
 mod checker;
 mod grid;
+mod rays;
 mod regular;
 
-pub use checker::{PoseChecker, PoseValues, Thresholds};
+pub use batch::{ArmColumns, ValueColumns};
+pub use checker::{PoseChecker, PoseLanes, PoseValues, Thresholds};
 pub use grid::{Grid, GridError};
-pub use regular::{Ray, RegularWorkspace, WorkspaceSpec, search};
+pub use regular::{RegularWorkspace, WorkspaceSpec, search};

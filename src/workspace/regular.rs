@@ -1,11 +1,15 @@
 //! Largest disc of good poses over a window of orientations, and the home orientation that has it.
 //!
 //! `R(φ)` costs some thousand poses, and most orientations cannot be the ones that decide: windows are taken best
-//! first, by the smallest `R(φ)` known so far of their orientations, and an orientation is only marched when it lies in
-//! the window that leads. The result is the defined maximum, not an estimate of it.
+//! first, by the smallest bound of `R(φ)` known so far of their orientations. Of the window that leads, single rings are
+//! probed first, which lowers its bound cheaply where it is too high; what withstands that is marched ring by ring, no
+//! farther than the bound; and only the orientations that set the bound are worked out to the last halving. The result
+//! is the defined maximum, not an estimate of it.
 
 use glam::DVec2;
 
+use super::batch::{ArmColumns, Turned, ValueColumns};
+use super::rays::{Reach, Rings};
 use super::{Grid, GridError, PoseChecker};
 use crate::mechanism::Leg;
 use crate::spatial::{LEGS, Rotation, unit};
@@ -19,15 +23,6 @@ pub struct WorkspaceSpec {
     pub centre: DVec2,
     /// Home orientation `φ_c` \[deg\] where it is given; the best one otherwise.
     pub home_phi_deg: Option<f64>,
-}
-
-/// How far the disc of one orientation reaches.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ray {
-    /// `R(φ)`: the lower end of the last bracket \[m\].
-    pub radius: f64,
-    /// The upper end: a pose at this radius fails in some direction \[m\].
-    pub beyond: f64,
 }
 
 /// An orientation of the grid.
@@ -52,8 +47,11 @@ pub struct RegularWorkspace {
     pub orientations: Vec<Orientation>,
     /// Steps from a home orientation to either end of its window.
     pub half_window: usize,
-    /// The home window's `R(φ)`, from its first orientation to its last; empty without a home.
-    pub home_rays: Vec<Ray>,
+    /// The orientations of the home window that `radius` is the `R(φ)` of, and for each a radius just beyond, at which
+    /// a pose fails in some direction \[m\]; empty without a home.
+    pub limits: Vec<(usize, f64)>,
+    /// Values at the centre, orientation by orientation.
+    pub centres: ValueColumns,
     /// The directions marched.
     pub directions: Vec<DVec2>,
 }
@@ -82,30 +80,36 @@ fn homes(spec: &WorkspaceSpec, half: usize, count: usize) -> std::ops::Range<usi
 }
 
 /// The orientations that a search looks at: the full turn, or the one window of a given home.
-///
-/// # Errors
-/// [`GridError`] when the turn or the window is no whole number of steps.
-pub fn orientations<L: Leg>(
+fn orientations<L: Leg>(
     checker: &PoseChecker<L>,
     spec: &WorkspaceSpec,
     grid: &Grid,
-) -> Result<Vec<Orientation>, GridError> {
+) -> Result<(Vec<Orientation>, ValueColumns), GridError> {
     let half = grid.half_window(spec.rotation_range_deg)?;
     let (first_deg, count) = match spec.home_phi_deg {
         Some(home) => (home - half as f64 * grid.phi_step_deg, 2 * half + 1),
         None => (0.0, grid.orientations()?),
     };
-    Ok((0..count)
+    let mut orientations: Vec<Orientation> = (0..count)
         .map(|k| {
             let phi_deg = first_deg + k as f64 * grid.phi_step_deg;
-            let arms = checker.manipulator.arms(&Rotation::new(phi_deg.to_radians()));
             Orientation {
                 phi_deg: libm::fmod(libm::fmod(phi_deg, 360.0) + 360.0, 360.0),
-                arms,
-                centre_sign: checker.good_sign(spec.centre, &arms),
+                arms: checker.manipulator.arms(&Rotation::new(phi_deg.to_radians())),
+                centre_sign: None,
             }
         })
-        .collect())
+        .collect();
+    let arms = ArmColumns::new(orientations.iter().map(|orientation| orientation.arms));
+    let centres = checker.in_orientations(spec.centre, &arms);
+    for (index, orientation) in orientations.iter_mut().enumerate() {
+        orientation.centre_sign = centres
+            .get(index)
+            .ok()
+            .filter(|values| values.determinant != 0.0 && checker.thresholds.hold(values))
+            .map(|values| values.determinant.signum());
+    }
+    Ok((orientations, centres))
 }
 
 /// Finds the regular workspace of the design in `checker`.
@@ -123,7 +127,7 @@ pub fn search<L: Leg>(
     symmetric: bool,
 ) -> Result<RegularWorkspace, GridError> {
     let half_window = grid.half_window(spec.rotation_range_deg)?;
-    let orientations = orientations(checker, spec, grid)?;
+    let (orientations, centres) = orientations(checker, spec, grid)?;
     let sector = if symmetric && grid.directions.is_multiple_of(LEGS) {
         grid.directions / LEGS
     } else {
@@ -137,50 +141,124 @@ pub fn search<L: Leg>(
         home: None,
         orientations,
         half_window,
-        home_rays: Vec::new(),
-        directions,
+        limits: Vec::new(),
+        centres,
+        directions: Vec::new(),
     };
-
-    let count = result.orientations.len();
-    let mut rays: Vec<Option<Ray>> = vec![None; count];
-    // Upper bound of each window: infinite until one of its orientations is marched.
-    let mut bounds: Vec<f64> = vec![0.0; count];
-    for home in result.homes(spec) {
-        let mut signs = result.window(home).map(|k| result.orientations[k].centre_sign);
-        let first = signs.next().flatten();
-        if first.is_some() && signs.all(|sign| sign == first) {
-            bounds[home] = f64::INFINITY;
-        }
-    }
-    let order = spread(2 * half_window + 1);
     let step = step_base / grid.ray_steps as f64;
-    while let Some(home) = leader(&bounds) {
-        let indices: Vec<usize> = result.window(home).collect();
-        let Some(&next) = order
-            .iter()
-            .map(|&offset| &indices[offset])
-            .find(|&&k| rays[k].is_none())
-        else {
-            result.radius = bounds[home];
-            result.home = Some(home);
-            result.home_rays = indices.iter().filter_map(|&k| rays[k]).collect();
-            break;
-        };
-        let ray = march(
-            checker,
-            spec.centre,
-            &result.orientations[next],
-            &result.directions,
-            step,
-            grid.halvings,
-        );
-        rays[next] = Some(ray);
-        // The windows that hold `next` are those about the orientations of the window about it.
-        for affected in window(next, half_window, count) {
-            bounds[affected] = bounds[affected].min(ray.radius);
+    let mut search = Search {
+        checker,
+        grid,
+        step,
+        rings: Rings::new(spec.centre, directions, step),
+        reaches: vec![Reach::UNKNOWN; result.orientations.len()],
+        hint: grid.ray_steps / 4,
+        order: spread(2 * half_window + 1),
+        found: &mut result,
+    };
+    search.run(spec);
+    result.directions = search.rings.directions;
+    Ok(result)
+}
+
+struct Search<'a, L> {
+    checker: &'a PoseChecker<L>,
+    grid: &'a Grid,
+    step: f64,
+    rings: Rings,
+    /// Orientation by orientation.
+    reaches: Vec<Reach>,
+    /// A ring near which orientations lately failed.
+    hint: usize,
+    /// The order in which a window's orientations are looked at.
+    order: Vec<usize>,
+    found: &'a mut RegularWorkspace,
+}
+
+impl<L: Leg> Search<'_, L> {
+    fn run(&mut self, spec: &WorkspaceSpec) {
+        let count = self.found.orientations.len();
+        // Upper bound of each window: infinite until a ring of one of its orientations is known to fail.
+        let mut bounds: Vec<f64> = vec![0.0; count];
+        for home in self.found.homes(spec) {
+            let mut signs = self.found.window(home).map(|k| self.found.orientations[k].centre_sign);
+            let first = signs.next().flatten();
+            if first.is_some() && signs.all(|sign| sign == first) {
+                bounds[home] = f64::INFINITY;
+            }
+        }
+        while let Some(home) = leader(&bounds) {
+            let window: Vec<usize> = self.found.window(home).collect();
+            let Some(changed) = self.lower(&window) else {
+                self.found.radius = bounds[home];
+                self.found.home = Some(home);
+                self.found.limits = window
+                    .iter()
+                    .filter_map(|&k| Some((k, self.reaches[k].ray?)))
+                    .filter(|(_, ray)| ray.radius == bounds[home])
+                    .map(|(k, ray)| (k, ray.beyond))
+                    .collect();
+                return;
+            };
+            // The windows that hold an orientation are those about the orientations of the window about it.
+            let bound = self.reaches[changed].bound(self.step);
+            for affected in self::window(changed, self.found.half_window, count) {
+                bounds[affected] = bounds[affected].min(bound);
+            }
         }
     }
-    Ok(result)
+
+    /// Finds an orientation of the leading window whose bound falls, by the cheapest means that has not been tried, and
+    /// gives it; `None` when the window's bound is its radius.
+    fn lower(&mut self, window: &[usize]) -> Option<usize> {
+        let Self {
+            checker,
+            grid,
+            step: _,
+            rings,
+            reaches,
+            hint,
+            order,
+            found,
+        } = self;
+        let turned = |k: usize| Turned {
+            arms: &found.orientations[k].arms,
+            // A leading window has good centres of one sign.
+            sign: found.orientations[k].centre_sign.unwrap_or(1.0),
+        };
+        let last = window.iter().map(|&k| reaches[k].failing).min().unwrap_or(usize::MAX);
+        for &offset in order.iter() {
+            let k = window[offset];
+            let reach = &mut reaches[k];
+            if reach.failing > last && reach.good.max(reach.probed) < last || last == usize::MAX {
+                rings.estimate(
+                    checker,
+                    turned(k),
+                    reach,
+                    if last == usize::MAX { *hint } else { last },
+                    last,
+                );
+                if reach.failing <= last {
+                    *hint = reach.failing;
+                    return Some(k);
+                }
+            }
+        }
+        for &offset in order.iter() {
+            let k = window[offset];
+            let reach = &mut reaches[k];
+            let known = reach.failing;
+            rings.march(checker, turned(k), reach, last.min(known - 1));
+            if reach.failing < known {
+                return Some(k);
+            }
+        }
+        let k = *window
+            .iter()
+            .find(|&&k| reaches[k].failing == last && reaches[k].ray.is_none())?;
+        rings.halve(checker, turned(k), &mut reaches[k], grid);
+        Some(k)
+    }
 }
 
 /// The window with the largest bound above 0, the first among equals.
@@ -210,49 +288,4 @@ fn spread(count: usize) -> Vec<usize> {
         stride /= 2;
     }
     order
-}
-
-/// `R(φ)`: rays from the centre in all directions at once, in steps, to the first failing pose, then halvings.
-///
-/// Rays that pass where another fails reach farther than it, so they are left behind at once; the smallest radius over
-/// the directions is the same as if each were marched to its own end.
-fn march<L: Leg>(
-    checker: &PoseChecker<L>,
-    centre: DVec2,
-    orientation: &Orientation,
-    directions: &[DVec2],
-    step: f64,
-    halvings: u32,
-) -> Ray {
-    let Some(sign) = orientation.centre_sign else {
-        return Ray {
-            radius: 0.0,
-            beyond: 0.0,
-        };
-    };
-    let fails =
-        |direction: &DVec2, radius: f64| !checker.is_good(centre + *direction * radius, &orientation.arms, sign);
-    let mut failing: Vec<DVec2> = Vec::new();
-    let mut steps = 0.0;
-    while failing.is_empty() {
-        // Ends: the reach of every leg is bounded.
-        steps += 1.0;
-        failing.extend(directions.iter().filter(|direction| fails(direction, steps * step)));
-    }
-    let (mut radius, mut beyond) = ((steps - 1.0) * step, steps * step);
-    for _ in 0..halvings {
-        let middle = 0.5 * (radius + beyond);
-        let nearer: Vec<DVec2> = failing
-            .iter()
-            .copied()
-            .filter(|direction| fails(direction, middle))
-            .collect();
-        if nearer.is_empty() {
-            radius = middle;
-        } else {
-            beyond = middle;
-            failing = nearer;
-        }
-    }
-    Ray { radius, beyond }
 }

@@ -3,6 +3,7 @@
 mod forms;
 mod invariants;
 mod joints;
+mod lanes;
 mod optimizers;
 mod reference;
 mod scenes;

@@ -1,0 +1,206 @@
+//! The closed form reduced to `k_xy`, `k_z` and `k_φz`, at several poses at once.
+//!
+//! Along its line a leg's compliance depends on its drive and on the moment of that line alone. Out of the plane
+//! `K_zz` of a leg is `det S_φφ / det S`, `S` its summed compliance and `S_φφ` the block of the rotations: both are the
+//! same at any point of reference and in any axes, so they are taken at `C_i` along `u_i`, where two bars leave
+//! polynomials in the cosine of the angle between them.
+
+use super::planar::{add_bar, inverse, vertical_schur};
+use super::{BarCompliance, StiffnessDefinition, StiffnessModel};
+use crate::kinematics::Jacobian;
+use crate::lanes::{Planar, Real};
+use crate::mechanism::{Design, LegLanes};
+use crate::spatial::LEGS;
+
+/// One design's compliances as multiples of two of them, so that their products stay within the number range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Reduced {
+    /// The compliance along a leg's line that the others are multiples of \[m/N\].
+    along_unit: f64,
+    /// Of the actuator, per squared drive.
+    actuator: f64,
+    /// Axial, per metre of bar.
+    leg_axial: f64,
+    /// Axial, of a bar before the last, per squared metre of it along the line.
+    proximal_axial: f64,
+    /// Bending, of a bar before the last, per squared metre of it across the line.
+    proximal_bending: f64,
+    /// Of the platform bar where the line runs through `P`.
+    platform_base: f64,
+    /// Of the platform bar, per squared moment of the line.
+    platform_moment: f64,
+    /// The bending compliance that the others are multiples of \[1/(N·m²)\].
+    bend_unit: f64,
+    /// Bending and torsion of a leg bar, per metre.
+    leg: [f64; 2],
+    /// Bending and torsion of the platform bar of length `r`.
+    platform: [f64; 2],
+    platform_radius: f64,
+    /// 1/L_b \[1/m\].
+    to_link: f64,
+}
+
+impl Reduced {
+    pub(super) fn new(design: &Design, leg: &BarCompliance, platform: &BarCompliance, actuator: f64) -> Self {
+        let (r, link) = (design.platform_radius, design.link_length);
+        let along_unit = actuator + link * leg.axial + r * platform.axial;
+        let bend_unit = leg.bending.max(platform.bending);
+        Self {
+            along_unit,
+            actuator: actuator / along_unit,
+            leg_axial: leg.axial / along_unit,
+            proximal_axial: leg.axial / link / along_unit,
+            proximal_bending: leg.bending * link / 3.0 / along_unit,
+            platform_base: r * platform.axial / along_unit,
+            platform_moment: (r / 3.0 * platform.bending - platform.axial / r) / along_unit,
+            bend_unit,
+            leg: [leg.bending / bend_unit, leg.torsion / bend_unit],
+            platform: [r * platform.bending / bend_unit, r * platform.torsion / bend_unit],
+            platform_radius: r,
+            to_link: 1.0 / link,
+        }
+    }
+
+    /// Compliance along the line of a leg, in multiples of `along_unit`.
+    #[inline(always)]
+    fn along_line<V: Real>(&self, leg: &LegLanes<V>) -> V {
+        let like = leg.moment;
+        let compliance = leg.drive * leg.drive * like.splat(self.actuator)
+            + leg.distal * like.splat(self.leg_axial)
+            + like.splat(self.platform_base)
+            + leg.moment * leg.moment * like.splat(self.platform_moment);
+        match leg.proximal {
+            Some(bar) => {
+                compliance
+                    + bar.x * bar.x * like.splat(self.proximal_axial)
+                    + bar.y * bar.y * like.splat(self.proximal_bending)
+            }
+            None => compliance,
+        }
+    }
+
+    /// `det S_φφ` and `det S` of a leg, whose quotient is its `K_zz` in multiples of 1/`bend_unit`.
+    #[inline(always)]
+    fn vertical<V: Real>(&self, leg: &LegLanes<V>) -> [V; 2] {
+        let like = leg.moment;
+        let radius = self.platform_radius;
+        let ([b1, t1], [b2, t2]) = (self.leg, self.platform);
+        // The platform bar in the axes of the last bar: from C to P.
+        let to_unit = like.splat(1.0 / radius);
+        let cosine = -(leg.along * to_unit);
+        let length = leg.distal;
+        let (bend, twist) = (length * like.splat(b1), length * like.splat(t1));
+        let half = like.splat(0.5);
+        let lift = like.splat(b2 * radius * radius / 3.0) + bend * length * length * like.splat(1.0 / 3.0);
+        let (p, q) = (half * bend * length, like.splat(0.5 * b2 * radius));
+        let (b2, t2) = (like.splat(b2), like.splat(t2));
+        let square = cosine * cosine;
+        match leg.proximal {
+            None => {
+                let minor = (twist + b2) * (bend + t2) + square * (twist - bend) * (b2 - t2);
+                let tilt = p * p * (twist + b2) + q * q * (t2 + bend)
+                    - (p * q * (twist + t2) * like.splat(2.0)) * cosine
+                    + square * (p * p * (t2 - b2) + q * q * (twist - bend));
+                [minor, lift * minor - tilt]
+            }
+            Some(bar) => {
+                let sine = leg.moment * to_unit;
+                let to_unit = like.splat(self.to_link);
+                let (x, y) = (bar.x * to_unit, bar.y * to_unit);
+                let middle = x + half;
+                let lift = lift + length * length * (bend * (middle * middle + like.splat(1.0 / 12.0)) + twist * y * y);
+                let tilt_x = length * y * ((bend - twist) * x + half * bend) - q * sine;
+                let tilt_y = q * cosine - p - length * (twist * y * y + bend * middle * x);
+                let xx = twist * x * x + bend * y * y + twist + t2 * square + b2 * sine * sine;
+                let xy = (twist - bend) * x * y + (t2 - b2) * cosine * sine;
+                let yy = twist * y * y + bend * x * x + bend + t2 * sine * sine + b2 * square;
+                let minor = xx * yy - xy * xy;
+                let tilt = tilt_x * tilt_x * yy - tilt_x * tilt_y * xy * like.splat(2.0) + tilt_y * tilt_y * xx;
+                [minor, lift * minor - tilt]
+            }
+        }
+    }
+}
+
+impl StiffnessModel {
+    /// `k_xy`, `k_z` and `k_φz` by `definition` in the lanes where all legs reach.
+    #[inline(always)]
+    pub(crate) fn rigidity_lanes<V: Real>(
+        &self,
+        definition: StiffnessDefinition,
+        legs: &[LegLanes<V>; LEGS],
+        arms: &[Planar<V>; LEGS],
+        jacobian: &Jacobian<V>,
+    ) -> [V; 3] {
+        let like = jacobian.ux[0];
+        let reduced = &self.reduced;
+        let c = [
+            reduced.along_line(&legs[0]),
+            reduced.along_line(&legs[1]),
+            reduced.along_line(&legs[2]),
+        ];
+        // One division for three reciprocals.
+        let pairs = [c[1] * c[2], c[2] * c[0], c[0] * c[1]];
+        let one = like.splat(1.0 / reduced.along_unit) / (c[0] * pairs[0]);
+        let mut k = [like.splat(0.0); 6];
+        for i in 0..LEGS {
+            let stiffness = pairs[i] * one;
+            let (x, y, m) = (jacobian.ux[i], jacobian.uy[i], jacobian.moment[i]);
+            let (kx, ky, km) = (x * stiffness, y * stiffness, m * stiffness);
+            k[0] = k[0] + x * kx;
+            k[1] = k[1] + x * ky;
+            k[2] = k[2] + x * km;
+            k[3] = k[3] + y * ky;
+            k[4] = k[4] + y * km;
+            k[5] = k[5] + m * km;
+        }
+        let (k_xy, k_phi_z) = Self::in_plane_rigidity(&k, definition);
+        let k_z = match definition {
+            StiffnessDefinition::Stiffness => {
+                let [n0, d0] = reduced.vertical(&legs[0]);
+                let [n1, d1] = reduced.vertical(&legs[1]);
+                let [n2, d2] = reduced.vertical(&legs[2]);
+                // One division for three quotients.
+                let sum = n0 * d1 * d2 + n1 * d2 * d0 + n2 * d0 * d1;
+                like.splat(1.0 / reduced.bend_unit) * sum / (d0 * d1 * d2)
+            }
+            StiffnessDefinition::Compliance => {
+                let mut k = [like.splat(0.0); 6];
+                for i in 0..LEGS {
+                    let inverse = inverse(&self.bending_lanes(&legs[i], arms[i]));
+                    for entry in 0..k.len() {
+                        k[entry] = k[entry] + inverse[entry];
+                    }
+                }
+                vertical_schur(&k)
+            }
+        };
+        [k_xy, k_z, k_phi_z]
+    }
+
+    /// Out-of-plane compliance of one leg at `P` in base axes, upper triangle.
+    #[inline(always)]
+    fn bending_lanes<V: Real>(&self, leg: &LegLanes<V>, arm: Planar<V>) -> [V; 6] {
+        let like = leg.moment;
+        let zero = like.splat(0.0);
+        let mut s = [zero; 6];
+        let radius = like.splat(self.platform_radius);
+        let platform_axis = arm.scaled(like.splat(-1.0 / self.platform_radius));
+        add_bar(
+            &mut s,
+            &self.platform_bar,
+            platform_axis,
+            radius,
+            Planar::new(zero, zero),
+        );
+        let to_p = Planar::new(-arm.x, -arm.y);
+        add_bar(&mut s, &self.leg_bar, leg.u, leg.distal, to_p);
+        if let Some(bar) = leg.proximal {
+            let axis = leg.u.scaled(bar.x).plus(leg.u.perp().scaled(bar.y));
+            let axis = axis.scaled(like.splat(self.reduced.to_link));
+            let to_p = leg.u.scaled(leg.distal).minus(arm);
+            add_bar(&mut s, &self.leg_bar, axis, leg.distal, to_p);
+        }
+        s
+    }
+}
