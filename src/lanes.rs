@@ -143,37 +143,62 @@ impl From<glam::DVec2> for Planar<f64> {
     }
 }
 
-/// As many numbers as a register of the instruction set `S` holds.
+/// Registers that are worked on side by side: while one waits for a quotient, the other goes on.
+const REGISTERS: usize = 2;
+
+/// As many numbers as two registers of the instruction set `S` hold.
 #[derive(Clone, Copy)]
 pub struct Lanes<S: Simd> {
     simd: S,
-    values: S::f64s,
+    registers: [S::f64s; REGISTERS],
 }
 
 /// Outcome of comparing [`Lanes`].
 #[derive(Clone, Copy)]
 pub struct LaneMask<S: Simd> {
     simd: S,
-    mask: S::m64s,
+    registers: [S::m64s; REGISTERS],
 }
 
 impl<S: Simd> Lanes<S> {
-    /// The numbers of one register.
-    #[inline(always)]
-    pub fn new(simd: S, values: S::f64s) -> Self {
-        Self { simd, values }
-    }
+    /// Number of lanes.
+    pub const COUNT: usize = REGISTERS * S::F64_LANES;
 
-    /// `value` in every lane.
+    /// The same number in every lane.
     #[inline(always)]
     pub fn all(simd: S, value: f64) -> Self {
-        Self::new(simd, simd.splat_f64s(value))
+        let register = simd.splat_f64s(value);
+        Self {
+            simd,
+            registers: [register; REGISTERS],
+        }
     }
 
-    /// The register.
+    /// A column of numbers in groups of [`Lanes::COUNT`]; what does not fill a group is left out.
     #[inline(always)]
-    pub fn values(self) -> S::f64s {
-        self.values
+    pub fn column(column: &[f64]) -> &[[S::f64s; REGISTERS]] {
+        S::as_simd_f64s(column).0.as_chunks().0
+    }
+
+    /// [`Lanes::column`] for writing.
+    #[inline(always)]
+    pub fn column_mut(column: &mut [f64]) -> &mut [[S::f64s; REGISTERS]] {
+        S::as_mut_simd_f64s(column).0.as_chunks_mut().0
+    }
+
+    /// A group of a column.
+    #[inline(always)]
+    pub fn load(simd: S, group: &[S::f64s; REGISTERS]) -> Self {
+        Self {
+            simd,
+            registers: *group,
+        }
+    }
+
+    /// Writes to a group of a column.
+    #[inline(always)]
+    pub fn store(self, group: &mut [S::f64s; REGISTERS]) {
+        *group = self.registers;
     }
 }
 
@@ -183,14 +208,17 @@ impl<S: Simd> LaneMask<S> {
     /// Read from the mask's bytes: `first_true_m64s` of pulp 0.22 counts from the wrong end where masks are bits.
     #[inline(always)]
     pub fn leading(self) -> usize {
-        let bytes = pulp::bytemuck::bytes_of(&self.mask);
-        if bytes.len() < size_of::<u64>() * S::F64_LANES {
-            // A bit for each lane.
-            return bytes[0].trailing_ones() as usize;
-        }
         let mut bits = 0u32;
-        for lane in 0..S::F64_LANES {
-            bits |= u32::from(bytes[size_of::<u64>() * lane] & 1) << lane;
+        for (register, mask) in self.registers.iter().enumerate() {
+            let bytes = pulp::bytemuck::bytes_of(mask);
+            if bytes.len() < size_of::<u64>() * S::F64_LANES {
+                // A bit for each lane.
+                bits |= u32::from(bytes[0]) << (S::F64_LANES * register);
+            } else {
+                for lane in 0..S::F64_LANES {
+                    bits |= u32::from(bytes[size_of::<u64>() * lane] & 1) << (S::F64_LANES * register + lane);
+                }
+            }
         }
         bits.trailing_ones() as usize
     }
@@ -201,9 +229,10 @@ impl<S: Simd> BitAnd for LaneMask<S> {
 
     #[inline(always)]
     fn bitand(self, other: Self) -> Self {
+        let (simd, a, b) = (self.simd, self.registers, other.registers);
         Self {
-            simd: self.simd,
-            mask: self.simd.and_m64s(self.mask, other.mask),
+            simd,
+            registers: [simd.and_m64s(a[0], b[0]), simd.and_m64s(a[1], b[1])],
         }
     }
 }
@@ -215,7 +244,8 @@ macro_rules! operators {
 
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self::new(self.simd, self.simd.$lanewise(self.values, other.values))
+                let (simd, a, b) = (self.simd, self.registers, other.registers);
+                Self { simd, registers: [simd.$lanewise(a[0], b[0]), simd.$lanewise(a[1], b[1])] }
             }
         })+
     };
@@ -228,7 +258,11 @@ impl<S: Simd> Neg for Lanes<S> {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        Self::new(self.simd, self.simd.neg_f64s(self.values))
+        let (simd, a) = (self.simd, self.registers);
+        Self {
+            simd,
+            registers: [simd.neg_f64s(a[0]), simd.neg_f64s(a[1])],
+        }
     }
 }
 
@@ -242,40 +276,60 @@ impl<S: Simd> Real for Lanes<S> {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self::new(self.simd, self.simd.sqrt_f64s(self.values))
+        let (simd, a) = (self.simd, self.registers);
+        Self {
+            simd,
+            registers: [simd.sqrt_f64s(a[0]), simd.sqrt_f64s(a[1])],
+        }
     }
 
     #[inline(always)]
     fn abs(self) -> Self {
-        Self::new(self.simd, self.simd.abs_f64s(self.values))
+        let (simd, a) = (self.simd, self.registers);
+        Self {
+            simd,
+            registers: [simd.abs_f64s(a[0]), simd.abs_f64s(a[1])],
+        }
     }
 
     #[inline(always)]
     fn at_least(self, other: Self) -> LaneMask<S> {
+        let (simd, a, b) = (self.simd, self.registers, other.registers);
         LaneMask {
-            simd: self.simd,
-            mask: self.simd.greater_than_or_equal_f64s(self.values, other.values),
+            simd,
+            registers: [
+                simd.greater_than_or_equal_f64s(a[0], b[0]),
+                simd.greater_than_or_equal_f64s(a[1], b[1]),
+            ],
         }
     }
 
     #[inline(always)]
     fn exceeds(self, other: Self) -> LaneMask<S> {
+        let (simd, a, b) = (self.simd, self.registers, other.registers);
         LaneMask {
-            simd: self.simd,
-            mask: self.simd.greater_than_f64s(self.values, other.values),
+            simd,
+            registers: [simd.greater_than_f64s(a[0], b[0]), simd.greater_than_f64s(a[1], b[1])],
         }
     }
 
     #[inline(always)]
     fn where_set(self, mask: LaneMask<S>, other: Self) -> Self {
-        Self::new(self.simd, self.simd.select_f64s(mask.mask, self.values, other.values))
+        let (simd, mask, a, b) = (self.simd, mask.registers, self.registers, other.registers);
+        Self {
+            simd,
+            registers: [
+                simd.select_f64s(mask[0], a[0], b[0]),
+                simd.select_f64s(mask[1], a[1], b[1]),
+            ],
+        }
     }
 }
 
-/// Lanes of the widest register: buffers of poses are padded to a multiple of it.
-pub const MOST_LANES: usize = 8;
+/// Most lanes that any instruction set has: columns of poses are padded to a multiple of it.
+pub const MOST_LANES: usize = 16;
 
-/// `count` rounded up to whole registers.
+/// `count` rounded up to a multiple of [`MOST_LANES`].
 pub fn padded(count: usize) -> usize {
     count.next_multiple_of(MOST_LANES)
 }

@@ -75,24 +75,24 @@ impl<V: Real> Jacobian<V> {
     #[inline(always)]
     pub fn inverse_condition(&self, length: f64) -> V {
         let planar = self.adjugate_row_xy();
-        let like = self.ux[0];
+        let (ux, uy, m, d) = (&self.ux, &self.uy, &self.moment, &self.drive);
+        let like = ux[0];
         let (zero, one) = (like.splat(0.0), like.splat(1.0));
-        let (length, to_lever) = (like.splat(length), like.splat(1.0 / length));
+        let (length, to_lever) = (like.splat(length), like.splat(1.0 / (length * length)));
+        let drive = [d[0] * d[0], d[1] * d[1], d[2] * d[2]];
         let mut forward = zero;
         let mut inverse = zero;
         let mut determinant = zero;
         for i in 0..LEGS {
             let (j, k) = ((i + 1) % LEGS, (i + 2) % LEGS);
-            let vx = self.uy[j] * self.moment[k] - self.moment[j] * self.uy[k];
-            let vy = self.moment[j] * self.ux[k] - self.ux[j] * self.moment[k];
+            let vx = uy[j] * m[k] - m[j] * uy[k];
+            let vy = m[j] * ux[k] - ux[j] * m[k];
             let w = length * planar[i];
-            determinant = determinant + self.moment[i] * planar[i];
-            forward = forward + self.drive[i] * self.drive[i] * (vx * vx + vy * vy + w * w);
-            let lever = self.moment[i] * to_lever;
-            let others = self.drive[j] * self.drive[k];
-            inverse = inverse + others * others * (one + lever * lever);
+            determinant = determinant + m[i] * planar[i];
+            forward = forward + drive[i] * (vx * vx + vy * vy + w * w);
+            inverse = inverse + drive[j] * drive[k] * (one + m[i] * m[i] * to_lever);
         }
-        let serial = self.drive[0] * self.drive[1] * self.drive[2];
+        let serial = d[0] * d[1] * d[2];
         let scale = forward * inverse;
         let condition = like.splat(LEGS as f64) * (determinant * serial).abs() / scale.sqrt();
         // Rounding may carry an isotropic posture past 1.

@@ -85,7 +85,8 @@ impl Leg for PrrLeg {
 
         let (zero, link, travel) = (like.splat(0.0), like.splat(self.link), like.splat(self.travel));
         let reach = link - height.abs();
-        let foot = (reach * (link + height.abs())).larger(zero).sqrt();
+        // Out of reach this is no number, which no comparison takes for a good one.
+        let foot = (reach * (link + height.abs())).sqrt();
         let actuator = along + like.splat(self.sign) * foot;
         let within = reach.smaller(actuator.smaller(travel - actuator));
         let slack = within.where_set(reach.at_least(zero), reach);

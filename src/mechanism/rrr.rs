@@ -66,8 +66,9 @@ impl Leg for RrrLeg {
         let chord = position.plus(arm.minus(Planar::splat(like, self.anchor)));
         let square = chord.dot(chord);
         let (zero, quarter, half) = (like.splat(0.0), like.splat(0.25), like.splat(0.5));
-        // The elbow's distance from the chord over the chord's length, squared.
-        let ratio = ((like.splat(self.link * self.link) - quarter * square) / square).larger(zero);
+        // The elbow's distance from the chord over the chord's length, squared; negative out of reach, and its root no
+        // number, which no comparison takes for a good one.
+        let ratio = (like.splat(self.link * self.link) - quarter * square) / square;
         let elbow = like.splat(self.sign) * ratio.sqrt();
         let to_unit = like.splat(1.0 / self.link);
         let u = chord.scaled(half).minus(chord.perp().scaled(elbow)).scaled(to_unit);

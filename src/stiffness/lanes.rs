@@ -5,12 +5,12 @@
 //! same at any point of reference and in any axes, so they are taken at `C_i` along `u_i`, where two bars leave
 //! polynomials in the cosine of the angle between them.
 
-use super::planar::{add_bar, inverse, vertical_schur};
+use super::planar::{add_bar, in_plane_block, inverse, vertical_schur};
 use super::{BarCompliance, StiffnessDefinition, StiffnessModel};
 use crate::kinematics::Jacobian;
 use crate::lanes::{Planar, Real};
 use crate::mechanism::{Design, LegLanes};
-use crate::spatial::LEGS;
+use crate::spatial::{LEGS, smaller_eigenvalue};
 
 /// One design's compliances as multiples of two of them, so that their products stay within the number range.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,11 +97,18 @@ impl Reduced {
         let square = cosine * cosine;
         match leg.proximal {
             None => {
-                let minor = (twist + b2) * (bend + t2) + square * (twist - bend) * (b2 - t2);
-                let tilt = p * p * (twist + b2) + q * q * (t2 + bend)
-                    - (p * q * (twist + t2) * like.splat(2.0)) * cosine
-                    + square * (p * p * (t2 - b2) + q * q * (twist - bend));
-                [minor, lift * minor - tilt]
+                // Constant, linear and quadratic in the cosine; of bars of one length they are the same at every pose.
+                let two = like.splat(2.0);
+                let minor = [(twist + b2) * (bend + t2), (twist - bend) * (b2 - t2)];
+                let tilt = [
+                    p * p * (twist + b2) + q * q * (t2 + bend),
+                    two * p * q * (twist + t2),
+                    p * p * (t2 - b2) + q * q * (twist - bend),
+                ];
+                [
+                    minor[0] + square * minor[1],
+                    (lift * minor[0] - tilt[0]) + cosine * tilt[1] + square * (lift * minor[1] - tilt[2]),
+                ]
             }
             Some(bar) => {
                 let sine = leg.moment * to_unit;
@@ -142,40 +149,41 @@ impl StiffnessModel {
         // One division for three reciprocals.
         let pairs = [c[1] * c[2], c[2] * c[0], c[0] * c[1]];
         let one = like.splat(1.0 / reduced.along_unit) / (c[0] * pairs[0]);
-        let mut k = [like.splat(0.0); 6];
-        for i in 0..LEGS {
-            let stiffness = pairs[i] * one;
-            let (x, y, m) = (jacobian.ux[i], jacobian.uy[i], jacobian.moment[i]);
-            let (kx, ky, km) = (x * stiffness, y * stiffness, m * stiffness);
-            k[0] = k[0] + x * kx;
-            k[1] = k[1] + x * ky;
-            k[2] = k[2] + x * km;
-            k[3] = k[3] + y * ky;
-            k[4] = k[4] + y * km;
-            k[5] = k[5] + m * km;
-        }
-        let (k_xy, k_phi_z) = Self::in_plane_rigidity(&k, definition);
-        let k_z = match definition {
+        let stiffness = [pairs[0] * one, pairs[1] * one, pairs[2] * one];
+        match definition {
             StiffnessDefinition::Stiffness => {
+                let zero = like.splat(0.0);
+                let (mut xx, mut xy, mut yy, mut mm) = (zero, zero, zero, zero);
+                for i in 0..LEGS {
+                    let (x, y, m) = (jacobian.ux[i], jacobian.uy[i], jacobian.moment[i]);
+                    let (kx, ky) = (x * stiffness[i], y * stiffness[i]);
+                    xx = xx + x * kx;
+                    xy = xy + x * ky;
+                    yy = yy + y * ky;
+                    mm = mm + m * m * stiffness[i];
+                }
                 let [n0, d0] = reduced.vertical(&legs[0]);
                 let [n1, d1] = reduced.vertical(&legs[1]);
                 let [n2, d2] = reduced.vertical(&legs[2]);
                 // One division for three quotients.
-                let sum = n0 * d1 * d2 + n1 * d2 * d0 + n2 * d0 * d1;
-                like.splat(1.0 / reduced.bend_unit) * sum / (d0 * d1 * d2)
+                let sum = n0 * (d1 * d2) + d0 * (n1 * d2 + n2 * d1);
+                let k_z = like.splat(1.0 / reduced.bend_unit) * sum / (d0 * (d1 * d2));
+                [smaller_eigenvalue(xx, xy, yy), k_z, mm]
             }
             StiffnessDefinition::Compliance => {
-                let mut k = [like.splat(0.0); 6];
-                for i in 0..LEGS {
-                    let inverse = inverse(&self.bending_lanes(&legs[i], arms[i]));
-                    for entry in 0..k.len() {
-                        k[entry] = k[entry] + inverse[entry];
-                    }
+                // Leg by leg: an array that a loop runs over would be kept in memory.
+                let in_plane = in_plane_block(jacobian, &stiffness);
+                let k0 = inverse(&self.bending_lanes(&legs[0], arms[0]));
+                let k1 = inverse(&self.bending_lanes(&legs[1], arms[1]));
+                let k2 = inverse(&self.bending_lanes(&legs[2], arms[2]));
+                let mut k = k0;
+                for entry in 0..k.len() {
+                    k[entry] = k0[entry] + k1[entry] + k2[entry];
                 }
-                vertical_schur(&k)
+                let (k_xy, k_phi_z) = Self::in_plane_rigidity(&in_plane, definition);
+                [k_xy, vertical_schur(&k), k_phi_z]
             }
-        };
-        [k_xy, k_z, k_phi_z]
+        }
     }
 
     /// Out-of-plane compliance of one leg at `P` in base axes, upper triangle.

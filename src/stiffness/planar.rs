@@ -80,18 +80,11 @@ impl StiffnessModel {
     /// The in-plane block at a posture, upper triangle as in [`PlanarStiffness::in_plane`].
     #[inline]
     pub fn in_plane<L: Leg>(&self, manipulator: &Manipulator<L>, posture: &Posture, jacobian: &Jacobian) -> [f64; 6] {
-        let mut k = [0.0; 6];
-        for i in 0..LEGS {
-            let stiffness = 1.0 / self.line_compliance(&manipulator.legs[i], &posture.legs[i], posture.arms[i]);
-            let (x, y, m) = (jacobian.ux[i], jacobian.uy[i], jacobian.moment[i]);
-            k[0] += x * x * stiffness;
-            k[1] += x * y * stiffness;
-            k[2] += x * m * stiffness;
-            k[3] += y * y * stiffness;
-            k[4] += y * m * stiffness;
-            k[5] += m * m * stiffness;
-        }
-        k
+        let stiffness = [0, 1, 2].map(|i| {
+            let compliance = self.line_compliance(&manipulator.legs[i], &posture.legs[i], posture.arms[i]);
+            1.0 / compliance
+        });
+        in_plane_block(jacobian, &stiffness)
     }
 
     /// Out-of-plane compliance of one leg at `P`: what its bars give way, upper triangle as in
@@ -200,6 +193,24 @@ impl PlanarStiffness {
         }
         k
     }
+}
+
+/// `Σ w wᵀ k`, `w` the rows of the direct Jacobian and `k` the stiffness along the legs' lines, upper triangle as in
+/// [`PlanarStiffness::in_plane`].
+#[inline(always)]
+pub(super) fn in_plane_block<V: Real>(jacobian: &Jacobian<V>, stiffness: &[V; LEGS]) -> [V; 6] {
+    let mut k = [stiffness[0].splat(0.0); 6];
+    for i in 0..LEGS {
+        let (x, y, m) = (jacobian.ux[i], jacobian.uy[i], jacobian.moment[i]);
+        let (kx, ky, km) = (x * stiffness[i], y * stiffness[i], m * stiffness[i]);
+        k[0] = k[0] + x * kx;
+        k[1] = k[1] + x * ky;
+        k[2] = k[2] + x * km;
+        k[3] = k[3] + y * ky;
+        k[4] = k[4] + y * km;
+        k[5] = k[5] + m * km;
+    }
+    k
 }
 
 /// Displacement along `u` per unit of force on a line along `u` through one end of a bar whose other end is clamped.

@@ -51,18 +51,18 @@ impl<L: Leg> WithSimd for Leading<'_, L> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> usize {
         let (arms, sign) = self.turned.lanes(simd);
-        let (xs, ys) = (S::as_simd_f64s(self.xs).0, S::as_simd_f64s(self.ys).0);
+        let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         let mut at = 0;
-        for (&x, &y) in xs.iter().zip(ys) {
+        for (x, y) in xs.iter().zip(ys) {
             if at >= self.count {
                 break;
             }
-            let position = Planar::new(Lanes::new(simd, x), Lanes::new(simd, y));
+            let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
             let leading = self.checker.good_lanes(position, &arms, sign).leading();
-            if leading < S::F64_LANES {
+            if leading < Lanes::<S>::COUNT {
                 return (at + leading).min(self.count);
             }
-            at += S::F64_LANES;
+            at += Lanes::<S>::COUNT;
         }
         self.count
     }
@@ -84,12 +84,11 @@ impl<L: Leg> WithSimd for Good<'_, L> {
     fn with_simd<S: Simd>(self, simd: S) {
         let (arms, sign) = self.turned.lanes(simd);
         let (one, zero) = (sign.splat(1.0), sign.splat(0.0));
-        let (xs, ys) = (S::as_simd_f64s(self.xs).0, S::as_simd_f64s(self.ys).0);
-        for ((&x, &y), good) in xs.iter().zip(ys).zip(S::as_mut_simd_f64s(self.good).0) {
-            let position = Planar::new(Lanes::new(simd, x), Lanes::new(simd, y));
-            *good = one
-                .where_set(self.checker.good_lanes(position, &arms, sign), zero)
-                .values();
+        let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
+        for ((x, y), good) in xs.iter().zip(ys).zip(Lanes::<S>::column_mut(self.good)) {
+            let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
+            one.where_set(self.checker.good_lanes(position, &arms, sign), zero)
+                .store(good);
         }
     }
 }
@@ -145,38 +144,41 @@ impl ValueColumns {
     #[inline(always)]
     fn writer<S: Simd>(&mut self) -> Writer<'_, S> {
         Writer {
-            reachable: S::as_mut_simd_f64s(&mut self.reachable).0,
-            slack: S::as_mut_simd_f64s(&mut self.slack).0,
-            determinant: S::as_mut_simd_f64s(&mut self.determinant).0,
-            inverse_condition: S::as_mut_simd_f64s(&mut self.inverse_condition).0,
-            k_xy: S::as_mut_simd_f64s(&mut self.k_xy).0,
-            k_z: S::as_mut_simd_f64s(&mut self.k_z).0,
-            k_phi_z: S::as_mut_simd_f64s(&mut self.k_phi_z).0,
+            reachable: Lanes::<S>::column_mut(&mut self.reachable),
+            slack: Lanes::<S>::column_mut(&mut self.slack),
+            determinant: Lanes::<S>::column_mut(&mut self.determinant),
+            inverse_condition: Lanes::<S>::column_mut(&mut self.inverse_condition),
+            k_xy: Lanes::<S>::column_mut(&mut self.k_xy),
+            k_z: Lanes::<S>::column_mut(&mut self.k_z),
+            k_phi_z: Lanes::<S>::column_mut(&mut self.k_phi_z),
         }
     }
 }
 
+/// What one step of a loop reads or writes of a column.
+type Group<S> = [<S as Simd>::f64s; 2];
+
 struct Writer<'a, S: Simd> {
-    reachable: &'a mut [S::f64s],
-    slack: &'a mut [S::f64s],
-    determinant: &'a mut [S::f64s],
-    inverse_condition: &'a mut [S::f64s],
-    k_xy: &'a mut [S::f64s],
-    k_z: &'a mut [S::f64s],
-    k_phi_z: &'a mut [S::f64s],
+    reachable: &'a mut [Group<S>],
+    slack: &'a mut [Group<S>],
+    determinant: &'a mut [Group<S>],
+    inverse_condition: &'a mut [Group<S>],
+    k_xy: &'a mut [Group<S>],
+    k_z: &'a mut [Group<S>],
+    k_phi_z: &'a mut [Group<S>],
 }
 
 impl<S: Simd> Writer<'_, S> {
     #[inline(always)]
-    fn put(&mut self, register: usize, values: PoseLanes<Lanes<S>>) {
+    fn put(&mut self, group: usize, values: PoseLanes<Lanes<S>>) {
         let (one, zero) = (values.slack.splat(1.0), values.slack.splat(0.0));
-        self.reachable[register] = one.where_set(values.reachable, zero).values();
-        self.slack[register] = values.slack.values();
-        self.determinant[register] = values.determinant.values();
-        self.inverse_condition[register] = values.inverse_condition.values();
-        self.k_xy[register] = values.k_xy.values();
-        self.k_z[register] = values.k_z.values();
-        self.k_phi_z[register] = values.k_phi_z.values();
+        one.where_set(values.reachable, zero).store(&mut self.reachable[group]);
+        values.slack.store(&mut self.slack[group]);
+        values.determinant.store(&mut self.determinant[group]);
+        values.inverse_condition.store(&mut self.inverse_condition[group]);
+        values.k_xy.store(&mut self.k_xy[group]);
+        values.k_z.store(&mut self.k_z[group]);
+        values.k_phi_z.store(&mut self.k_phi_z[group]);
     }
 }
 
@@ -195,11 +197,11 @@ impl<L: Leg> WithSimd for AtPositions<'_, L> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let (arms, _) = self.turned.lanes(simd);
-        let (xs, ys) = (S::as_simd_f64s(self.xs).0, S::as_simd_f64s(self.ys).0);
+        let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         let mut writer = self.values.writer::<S>();
-        for (register, (&x, &y)) in xs.iter().zip(ys).enumerate() {
-            let position = Planar::new(Lanes::new(simd, x), Lanes::new(simd, y));
-            writer.put(register, self.checker.lanes(position, &arms));
+        for (group, (x, y)) in xs.iter().zip(ys).enumerate() {
+            let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
+            writer.put(group, self.checker.lanes(position, &arms));
         }
     }
 }
@@ -241,17 +243,17 @@ impl<L: Leg> WithSimd for InOrientations<'_, L> {
     fn with_simd<S: Simd>(self, simd: S) {
         let position = Planar::splat(Lanes::all(simd, 0.0), self.position);
         let [x0, y0, x1, y1, x2, y2] = &self.arms.0;
-        let (x0, y0) = (S::as_simd_f64s(x0).0, S::as_simd_f64s(y0).0);
-        let (x1, y1) = (S::as_simd_f64s(x1).0, S::as_simd_f64s(y1).0);
-        let (x2, y2) = (S::as_simd_f64s(x2).0, S::as_simd_f64s(y2).0);
+        let (x0, y0) = (Lanes::<S>::column(x0), Lanes::<S>::column(y0));
+        let (x1, y1) = (Lanes::<S>::column(x1), Lanes::<S>::column(y1));
+        let (x2, y2) = (Lanes::<S>::column(x2), Lanes::<S>::column(y2));
         let mut writer = self.values.writer::<S>();
-        for register in 0..x0.len() {
+        for group in 0..x0.len() {
             let arms = [
-                Planar::new(Lanes::new(simd, x0[register]), Lanes::new(simd, y0[register])),
-                Planar::new(Lanes::new(simd, x1[register]), Lanes::new(simd, y1[register])),
-                Planar::new(Lanes::new(simd, x2[register]), Lanes::new(simd, y2[register])),
+                Planar::new(Lanes::load(simd, &x0[group]), Lanes::load(simd, &y0[group])),
+                Planar::new(Lanes::load(simd, &x1[group]), Lanes::load(simd, &y1[group])),
+                Planar::new(Lanes::load(simd, &x2[group]), Lanes::load(simd, &y2[group])),
             ];
-            writer.put(register, self.checker.lanes(position, &arms));
+            writer.put(group, self.checker.lanes(position, &arms));
         }
     }
 }
