@@ -112,8 +112,22 @@ impl Model {
     /// # Errors
     /// [`GridError`] when the grid does not fit the rotation range; a study is checked for that when it is read.
     pub fn evaluate(&self, design: &Design, grid: GridChoice) -> Result<Evaluation, GridError> {
+        self.evaluate_with(design, grid, InstructionSet::best())
+    }
+
+    /// [`Model::evaluate`] with a given set of instructions, which changes no bit of the result.
+    ///
+    /// # Errors
+    /// As [`Model::evaluate`].
+    pub fn evaluate_with(
+        &self,
+        design: &Design,
+        grid: GridChoice,
+        instructions: InstructionSet,
+    ) -> Result<Evaluation, GridError> {
         with_leg!(design.architecture, L => {
-            let checker = self.checker::<L>(design)?;
+            let mut checker = self.checker::<L>(design)?;
+            checker.instructions = instructions;
             report::evaluate(self, &checker, design, self.grid(grid))
         })
     }

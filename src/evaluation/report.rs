@@ -5,8 +5,8 @@ use glam::DVec2;
 use super::{Constraint, ConstraintReport, Evaluation, Model};
 use crate::lanes::padded;
 use crate::mechanism::{Design, Leg};
-use crate::spatial::{LEGS, Pose};
-use crate::workspace::{Grid, GridError, PoseChecker, PoseValues, RegularWorkspace, ValueColumns, search};
+use crate::spatial::Pose;
+use crate::workspace::{Grid, GridError, PoseChecker, PoseValues, RegularWorkspace, Turned, ValueColumns, search};
 
 /// Rings of a disc, besides its centre, on which values are looked at; at most: smooth fields need no more.
 const MOST_RINGS: f64 = 24.0;
@@ -85,13 +85,18 @@ impl<L: Leg> Reporter<'_, L> {
     /// Lowers the reports to the values at one pose, `det A` counted in `sign`.
     fn visit(&self, reports: &mut Reports, values: &Result<PoseValues, f64>, pose: impl Fn() -> Pose, sign: f64) {
         for report in reports {
-            if let Some(value) = self.value(report.constraint, values, sign)
-                && report.value.is_none_or(|smallest| value < smallest)
-            {
-                report.value = Some(value);
-                report.margin = report.constraint.margin(value, report.threshold, self.design);
-                report.pose = Some(pose());
+            if let Some(value) = self.value(report.constraint, values, sign) {
+                self.lower(report, value, &pose);
             }
+        }
+    }
+
+    /// Lowers a report to a value found at a pose.
+    fn lower(&self, report: &mut ConstraintReport, value: f64, pose: impl FnOnce() -> Pose) {
+        if report.value.is_none_or(|smallest| value < smallest) {
+            report.value = Some(value);
+            report.margin = report.constraint.margin(value, report.threshold, self.design);
+            report.pose = Some(pose());
         }
     }
 
@@ -136,22 +141,33 @@ impl<L: Leg> Reporter<'_, L> {
                 disc.push(centre + *direction * radius);
             }
         }
-        let mut values = ValueColumns::default();
+        disc.pad();
+        let indices: Vec<f64> = (0..disc.xs.len()).map(|index| index as f64).collect();
         for index in found.window(home) {
             let orientation = &found.orientations[index];
-            disc.values(self.checker, &orientation.arms, &mut values);
-            for at in 0..disc.count {
-                let pose = || Pose::new(disc.xs[at], disc.ys[at], orientation.phi_deg.to_radians());
-                self.visit(&mut reports, &values.get(at), pose, sign);
+            let turned = Turned {
+                arms: &orientation.arms,
+                sign,
+            };
+            let minima = self.checker.smallest(turned, &disc.xs, &disc.ys, &indices);
+            for (report, minimum) in reports[Constraint::Reach as usize..].iter_mut().zip(minima) {
+                if minimum.value.is_finite() {
+                    let (x, y) = (disc.xs[minimum.index], disc.ys[minimum.index]);
+                    let pose = || Pose::new(x, y, orientation.phi_deg.to_radians());
+                    self.lower(report, minimum.value, pose);
+                }
             }
         }
+        let mut values = ValueColumns::default();
         for &(index, beyond) in &found.limits {
             let mut rim = Positions::default();
             for direction in &found.directions {
                 rim.push(centre + *direction * beyond);
             }
-            rim.values(self.checker, &found.orientations[index].arms, &mut values);
-            for at in 0..rim.count {
+            rim.pad();
+            self.checker
+                .at_positions(&found.orientations[index].arms, &rim.xs, &rim.ys, &mut values);
+            for at in 0..found.directions.len() {
                 self.mark_failing(&mut reports, &values.get(at), sign);
             }
         }
@@ -236,22 +252,20 @@ impl<L: Leg> Reporter<'_, L> {
 struct Positions {
     xs: Vec<f64>,
     ys: Vec<f64>,
-    count: usize,
 }
 
 impl Positions {
     fn push(&mut self, position: DVec2) {
-        self.xs.truncate(self.count);
-        self.ys.truncate(self.count);
         self.xs.push(position.x);
         self.ys.push(position.y);
-        self.count += 1;
     }
 
-    fn values<L: Leg>(&mut self, checker: &PoseChecker<L>, arms: &[DVec2; LEGS], values: &mut ValueColumns) {
-        self.xs.resize(padded(self.count), 0.0);
-        self.ys.resize(padded(self.count), 0.0);
-        checker.at_positions(arms, &self.xs, &self.ys, values);
+    /// Fills up with the first position, which changes no smallest value.
+    fn pad(&mut self) {
+        let length = padded(self.xs.len());
+        for column in [&mut self.xs, &mut self.ys] {
+            column.resize(length, column[0]);
+        }
     }
 }
 

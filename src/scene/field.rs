@@ -1,10 +1,9 @@
 //! Scalar fields over poses.
 
 use crate::evaluation::{Constraint, Model};
-use crate::kinematics::Jacobian;
-use crate::mechanism::{Design, Leg, Posture};
-use crate::spatial::smaller_eigenvalue;
-use crate::workspace::PoseChecker;
+use crate::mechanism::Design;
+use crate::stiffness::StiffnessDefinition;
+use crate::workspace::PoseValues;
 
 /// What a heatmap shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -105,26 +104,26 @@ impl Field {
         }
     }
 
-    /// The value at a pose that the leg type of `checker` reaches. Finite: a displacement without end is shown as a
-    /// kilometre. Only as much is computed as the field needs.
-    pub(super) fn value<L: Leg>(
-        self,
-        model: &Model,
-        design: &Design,
-        checker: &PoseChecker<L>,
-        posture: &Posture,
-        jacobian: &Jacobian,
-    ) -> f64 {
-        const FARTHEST: f64 = 1e3;
-        let in_plane = || checker.in_plane(posture, jacobian);
+    /// Definition of the stiffness values that [`Field::value`] takes: the model's, or for a displacement that of what
+    /// gives way with the rotation free.
+    pub(super) fn definition(self, model: &Model) -> StiffnessDefinition {
         match self {
-            Field::InverseCondition => jacobian.inverse_condition(checker.length),
-            Field::Determinant => jacobian.determinant() / checker.length,
-            Field::StiffnessXy => checker.in_plane_rigidity(&in_plane()).0,
-            Field::StiffnessPhiZ => checker.in_plane_rigidity(&in_plane()).1,
-            Field::StiffnessZ => checker.vertical_rigidity(posture, jacobian),
+            Field::Displacement => StiffnessDefinition::Compliance,
+            _ => model.stiffness_definition,
+        }
+    }
+
+    /// The value at a reachable pose. Finite: a displacement without end is shown as a kilometre.
+    pub(super) fn value(self, model: &Model, design: &Design, values: &PoseValues) -> f64 {
+        const FARTHEST: f64 = 1e3;
+        match self {
+            Field::InverseCondition => values.inverse_condition,
+            Field::Determinant => values.determinant,
+            Field::StiffnessXy => values.rigidity.k_xy,
+            Field::StiffnessPhiZ => values.rigidity.k_phi_z,
+            Field::StiffnessZ => values.rigidity.k_z,
             Field::Displacement => {
-                let softest = free_stiffness(&in_plane()).map_or(0.0, |k| smaller_eigenvalue(k[0], k[1], k[2]));
+                let softest = values.rigidity.k_xy;
                 if softest > model.in_plane_force / FARTHEST {
                     model.in_plane_force / softest
                 } else {
@@ -132,10 +131,9 @@ impl Field {
                 }
             }
             Field::WorstMargin => {
-                let values = checker.values_at(posture, jacobian);
                 let margin = |constraint: Constraint| {
                     let threshold = constraint.threshold(design, &model.thresholds);
-                    constraint.margin(constraint.value(design, &values, 1.0), threshold, design)
+                    constraint.margin(constraint.value(design, values, 1.0), threshold, design)
                 };
                 [
                     Constraint::Reach,

@@ -1,13 +1,13 @@
 //! Loops over many poses of one design, compiled for every instruction set.
 //!
-//! Positions come as two columns that can be read up to a multiple of [`MOST_LANES`](crate::lanes::MOST_LANES); what
+//! Positions come as two columns that can be read up to a multiple of [`MOST_LANES`]; what
 //! stands past `count` is computed and not looked at.
 
 use glam::DVec2;
 use pulp::{Simd, WithSimd};
 
 use super::{PoseChecker, PoseLanes, PoseValues};
-use crate::lanes::{Lanes, Planar, Real, padded};
+use crate::lanes::{Lanes, MOST_LANES, Planar, Real, padded};
 use crate::mechanism::Leg;
 use crate::spatial::LEGS;
 use crate::stiffness::Rigidity;
@@ -206,6 +206,77 @@ impl<L: Leg> WithSimd for AtPositions<'_, L> {
     }
 }
 
+/// The quantities that constraints bound, smallest first found of each.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Minimum {
+    /// Its value; infinite where no pose has one.
+    pub value: f64,
+    /// The pose, the first among equals.
+    pub index: usize,
+}
+
+/// Smallest slack, `κ_F⁻¹`, `k_xy`, `k_z`, `k_φz` and `det A / ℓ` (counted positive in the given sign) over many poses.
+pub type Minima = [Minimum; 6];
+
+struct Smallest<'a, L> {
+    checker: &'a PoseChecker<L>,
+    turned: Turned<'a>,
+    xs: &'a [f64],
+    ys: &'a [f64],
+    /// 0, 1, 2, … for each pose.
+    indices: &'a [f64],
+}
+
+impl<L: Leg> WithSimd for Smallest<'_, L> {
+    type Output = Minima;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Minima {
+        let (arms, sign) = self.turned.lanes(simd);
+        let infinite = sign.splat(f64::INFINITY);
+        let mut values = [infinite; 6];
+        let mut indices = [sign.splat(0.0); 6];
+        let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
+        for ((x, y), index) in xs.iter().zip(ys).zip(Lanes::<S>::column(self.indices)) {
+            let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
+            let index = Lanes::load(simd, index);
+            let found = self.checker.lanes(position, &arms);
+            let reachable = found.reachable;
+            macro_rules! lower {
+                ($($k:literal: $value:expr,)+) => {$({
+                    let smaller = values[$k].exceeds($value);
+                    values[$k] = $value.where_set(smaller, values[$k]);
+                    indices[$k] = index.where_set(smaller, indices[$k]);
+                })+};
+            }
+            lower! {
+                0: found.slack,
+                1: found.inverse_condition.where_set(reachable, infinite),
+                2: found.k_xy.where_set(reachable, infinite),
+                3: found.k_z.where_set(reachable, infinite),
+                4: found.k_phi_z.where_set(reachable, infinite),
+                5: (found.determinant * sign).where_set(reachable, infinite),
+            }
+        }
+        let mut minima = [Minimum {
+            value: f64::INFINITY,
+            index: 0,
+        }; 6];
+        let mut lanes = [[0.0; MOST_LANES]; 2];
+        for (minimum, (value, index)) in minima.iter_mut().zip(values.into_iter().zip(indices)) {
+            value.store(&mut Lanes::<S>::column_mut(&mut lanes[0])[0]);
+            index.store(&mut Lanes::<S>::column_mut(&mut lanes[1])[0]);
+            for lane in 0..Lanes::<S>::COUNT {
+                let (value, index) = (lanes[0][lane], lanes[1][lane] as usize);
+                if value < minimum.value || (value == minimum.value && index < minimum.index) {
+                    *minimum = Minimum { value, index };
+                }
+            }
+        }
+        minima
+    }
+}
+
 /// Arms of many orientations, a column for each component, padded.
 #[derive(Debug, Clone, Default)]
 pub struct ArmColumns([Vec<f64>; 2 * LEGS]);
@@ -281,8 +352,20 @@ impl<L: Leg> PoseChecker<L> {
         });
     }
 
+    /// The smallest values over many positions in one orientation, `indices` counting them from 0. The columns are of
+    /// equal length, a multiple of [`MOST_LANES`].
+    pub fn smallest(&self, turned: Turned<'_>, xs: &[f64], ys: &[f64], indices: &[f64]) -> Minima {
+        self.instructions.run(Smallest {
+            checker: self,
+            turned,
+            xs,
+            ys,
+            indices,
+        })
+    }
+
     /// Values at many positions in one orientation. The columns are of equal length, a multiple of
-    /// [`MOST_LANES`](crate::lanes::MOST_LANES).
+    /// [`MOST_LANES`].
     pub fn at_positions(&self, arms: &[DVec2; LEGS], xs: &[f64], ys: &[f64], values: &mut ValueColumns) {
         values.resize(xs.len());
         self.instructions.run(AtPositions {

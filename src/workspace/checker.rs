@@ -63,6 +63,22 @@ pub struct PoseLanes<V: Real> {
     pub k_phi_z: V,
 }
 
+impl PoseLanes<f64> {
+    /// The values of a single pose, where it is reached.
+    pub fn reached(&self) -> Option<PoseValues> {
+        self.reachable.then_some(PoseValues {
+            slack: self.slack,
+            determinant: self.determinant,
+            inverse_condition: self.inverse_condition,
+            rigidity: Rigidity {
+                k_xy: self.k_xy,
+                k_z: self.k_z,
+                k_phi_z: self.k_phi_z,
+            },
+        })
+    }
+}
+
 /// One design, made ready for many poses.
 #[derive(Debug, Clone, Copy)]
 pub struct PoseChecker<L> {

@@ -9,7 +9,7 @@ mod grid;
 mod rays;
 mod regular;
 
-pub use batch::{ArmColumns, ValueColumns};
+pub use batch::{ArmColumns, Minima, Minimum, Turned, ValueColumns};
 pub use checker::{PoseChecker, PoseLanes, PoseValues, Thresholds};
 pub use grid::{Grid, GridError};
 pub use regular::{RegularWorkspace, WorkspaceSpec, search};

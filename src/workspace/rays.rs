@@ -179,35 +179,104 @@ impl Rings {
     /// that fail.
     ///
     /// Rays that pass where another fails reach farther than it, so they are left behind at once; the smallest radius
-    /// over the directions is the same as if each were marched to its own end.
+    /// over the directions is the same as if each were marched to its own end. One halving waits for the one before, so
+    /// where few directions are left, all the middles that the next ones could ask for are looked at together.
     pub fn halve<L: Leg>(&mut self, checker: &PoseChecker<L>, turned: Turned<'_>, reach: &mut Reach, grid: &Grid) {
-        let mut radius = (reach.failing - 1) as f64 * self.step;
-        let mut beyond = reach.failing as f64 * self.step;
-        let mut failing = self.directions.clone();
-        let (mut xs, mut ys, mut good) = (Vec::new(), Vec::new(), Vec::new());
-        // First the ring itself, which tells the directions that fail at its end.
-        for halving in 0..=grid.halvings {
-            let middle = if halving == 0 { beyond } else { 0.5 * (radius + beyond) };
-            let length = padded(failing.len());
-            xs.clear();
-            ys.clear();
-            for direction in &failing {
-                let position = self.centre + *direction * middle;
-                xs.push(position.x);
-                ys.push(position.y);
+        let mut bracket = [(reach.failing - 1) as f64 * self.step, reach.failing as f64 * self.step];
+        let mut middles = Middles::new(&self.directions);
+        middles.look(checker, turned, self.centre, &[bracket[1]]);
+        middles.keep_failing(0);
+        let mut left = grid.halvings as usize;
+        while left > 0 {
+            let depth = match middles.failing.len() {
+                0..=2 => 3,
+                3..=5 => 2,
+                _ => 1,
             }
-            xs.resize(length, 0.0);
-            ys.resize(length, 0.0);
-            good.resize(length, 0.0);
-            checker.mark_good(turned, &xs, &ys, &mut good);
-            if good[..failing.len()].contains(&0.0) {
-                beyond = middle;
-                let mut flags = good.iter();
-                failing.retain(|_| flags.next() == Some(&0.0));
-            } else {
-                radius = middle;
+            .min(left);
+            // A tree: the halves of bracket k are brackets 2k (near) and 2k + 1 (far).
+            let mut brackets = [bracket; 1 << Self::MOST_HALVINGS];
+            let mut radii = [0.0; 1 << Self::MOST_HALVINGS];
+            for k in 1..1 << depth {
+                let [near, far] = brackets[k];
+                radii[k] = 0.5 * (near + far);
+                if 2 * k + 1 < brackets.len() {
+                    brackets[2 * k] = [near, radii[k]];
+                    brackets[2 * k + 1] = [radii[k], far];
+                }
+            }
+            middles.look(checker, turned, self.centre, &radii[1..1 << depth]);
+            let mut k = 1;
+            for _ in 0..depth {
+                if middles.keep_failing(k - 1) {
+                    bracket[1] = radii[k];
+                    k *= 2;
+                } else {
+                    bracket[0] = radii[k];
+                    k = 2 * k + 1;
+                }
+            }
+            left -= depth;
+        }
+        reach.ray = Some(Ray {
+            radius: bracket[0],
+            beyond: bracket[1],
+        });
+    }
+
+    /// Most halvings whose middles are looked at together.
+    const MOST_HALVINGS: usize = 3;
+}
+
+/// Poses at several radii in the directions that still fail.
+struct Middles {
+    /// The directions looked at.
+    directions: Vec<DVec2>,
+    /// Those of them, by index, that fail at every radius at which one did.
+    failing: Vec<usize>,
+    xs: Vec<f64>,
+    ys: Vec<f64>,
+    good: Vec<f64>,
+}
+
+impl Middles {
+    fn new(directions: &[DVec2]) -> Self {
+        Self {
+            directions: directions.to_vec(),
+            failing: (0..directions.len()).collect(),
+            xs: Vec::new(),
+            ys: Vec::new(),
+            good: Vec::new(),
+        }
+    }
+
+    /// Looks at all poses of the failing directions at `radii`.
+    fn look<L: Leg>(&mut self, checker: &PoseChecker<L>, turned: Turned<'_>, centre: DVec2, radii: &[f64]) {
+        self.directions = self.failing.iter().map(|&index| self.directions[index]).collect();
+        self.failing = (0..self.directions.len()).collect();
+        self.xs.clear();
+        self.ys.clear();
+        for radius in radii {
+            for direction in &self.directions {
+                let position = centre + *direction * *radius;
+                self.xs.push(position.x);
+                self.ys.push(position.y);
             }
         }
-        reach.ray = Some(Ray { radius, beyond });
+        let length = padded(self.xs.len());
+        self.xs.resize(length, 0.0);
+        self.ys.resize(length, 0.0);
+        self.good.resize(length, 0.0);
+        checker.mark_good(turned, &self.xs, &self.ys, &mut self.good);
+    }
+
+    /// Leaves behind the directions that do not fail at the radius of index `radius`, if one fails there, and says so.
+    fn keep_failing(&mut self, radius: usize) -> bool {
+        let good = &self.good[radius * self.directions.len()..];
+        let any = self.failing.iter().any(|&direction| good[direction] == 0.0);
+        if any {
+            self.failing.retain(|&direction| good[direction] == 0.0);
+        }
+        any
     }
 }

@@ -187,23 +187,28 @@ impl<L: Leg> Search<'_, L> {
                 bounds[home] = f64::INFINITY;
             }
         }
-        while let Some(home) = leader(&bounds) {
+        while let Some((home, rival)) = leader(&bounds) {
             let window: Vec<usize> = self.found.window(home).collect();
-            let Some(changed) = self.lower(&window) else {
-                self.found.radius = bounds[home];
-                self.found.home = Some(home);
-                self.found.limits = window
-                    .iter()
-                    .filter_map(|&k| Some((k, self.reaches[k].ray?)))
-                    .filter(|(_, ray)| ray.radius == bounds[home])
-                    .map(|(k, ray)| (k, ray.beyond))
-                    .collect();
-                return;
-            };
-            // The windows that hold an orientation are those about the orientations of the window about it.
-            let bound = self.reaches[changed].bound(self.step);
-            for affected in self::window(changed, self.found.half_window, count) {
-                bounds[affected] = bounds[affected].min(bound);
+            while bounds[home] > 0.0 {
+                let Some(changed) = self.lower(&window) else {
+                    self.found.radius = bounds[home];
+                    self.found.home = Some(home);
+                    self.found.limits = window
+                        .iter()
+                        .filter_map(|&k| Some((k, self.reaches[k].ray?)))
+                        .filter(|(_, ray)| ray.radius == bounds[home])
+                        .map(|(k, ray)| (k, ray.beyond))
+                        .collect();
+                    return;
+                };
+                // The windows that hold an orientation are those about the orientations of the window about it.
+                let bound = self.reaches[changed].bound(self.step);
+                for affected in self::window(changed, self.found.half_window, count) {
+                    bounds[affected] = bounds[affected].min(bound);
+                }
+                if bounds[home] <= rival {
+                    break;
+                }
             }
         }
     }
@@ -261,15 +266,18 @@ impl<L: Leg> Search<'_, L> {
     }
 }
 
-/// The window with the largest bound above 0, the first among equals.
-fn leader(bounds: &[f64]) -> Option<usize> {
-    let mut best: Option<usize> = None;
+/// The window with the largest bound above 0, the first among equals, and the largest bound of the others.
+fn leader(bounds: &[f64]) -> Option<(usize, f64)> {
+    let (mut best, mut largest, mut rival) = (None, 0.0, 0.0);
     for (home, &bound) in bounds.iter().enumerate() {
-        if bound > best.map_or(0.0, |other| bounds[other]) {
-            best = Some(home);
+        if bound > largest {
+            rival = largest;
+            (best, largest) = (Some(home), bound);
+        } else if bound > rival {
+            rival = bound;
         }
     }
-    best
+    best.map(|home| (home, rival))
 }
 
 /// The numbers 0 … `count` − 1, ends first, then ever finer in between: a window falls soonest by its ends.

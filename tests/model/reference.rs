@@ -7,6 +7,8 @@ use kinefront::stiffness::StiffnessDefinition;
 use nalgebra::Matrix6;
 use serde_json::Value;
 
+use super::search::plain_search;
+
 fn fixture(name: &str) -> Value {
     let path = format!("{}/tests/fixtures/{name}", env!("CARGO_MANIFEST_DIR"));
     serde_json::from_str(&std::fs::read_to_string(path).expect("the fixture")).expect("JSON")
@@ -127,6 +129,7 @@ fn designs_agree_on_both_grids_and_both_definitions() {
         let tolerance = 1e-5 * design.base_radius;
         let evaluate = |model: &Model, grid| model.evaluate(&design, grid).expect("a whole grid");
         let reference = evaluate(&model, GridChoice::Reference);
+        let plain = |model: &Model| plain_search(model, &design, &model.reference_grid).radius;
         close(reference.mass, number(&case["mass"]), 1e-12, "mass");
         for (radius, key) in [
             (reference.workspace_radius, "workspace_radius_reference_grid"),
@@ -138,6 +141,9 @@ fn designs_agree_on_both_grids_and_both_definitions() {
                 evaluate(&compliance, GridChoice::Reference).workspace_radius,
                 "workspace_radius_compliance_definition",
             ),
+            // The plain evaluator has to pass the same.
+            (plain(&model), "workspace_radius_reference_grid"),
+            (plain(&compliance), "workspace_radius_compliance_definition"),
         ] {
             let wanted = number(&case[key]);
             assert!(

@@ -190,8 +190,11 @@ fn heatmaps_hold_the_values_of_their_poses_and_contours_lie_on_the_threshold() {
                 if field != Field::Displacement || stiff {
                     let wanted = value_at(position);
                     let off = (value - wanted).abs();
+                    // At the edge of reach the dexterity is the root of a difference that rounding makes.
+                    let root = matches!(field, Field::InverseCondition | Field::WorstMargin);
+                    let least = if root { 1e-6 } else { 1e-12 };
                     assert!(
-                        off <= 1e-6 * wanted.abs() + 1e-12,
+                        off <= 1e-6 * wanted.abs() + least,
                         "{design} {field:?}: {value} instead of {wanted}"
                     );
                 }

@@ -4,10 +4,23 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::Sample;
+use crate::lanes::padded;
 use crate::mechanism::ReachReason;
 
 /// Halvings along a side that the edge of reach cuts: to 2⁻³² of a cell.
 const HALVINGS: u32 = 32;
+
+/// What is drawn: samples where a position is reached.
+pub(super) trait Surface: Sync {
+    /// Samples at many positions, in columns whose length is a multiple of [`MOST_LANES`](crate::lanes::MOST_LANES).
+    fn row(&self, xs: &[f64], ys: &[f64]) -> Vec<Option<Sample>>;
+    /// The sample at one position.
+    fn at(&self, position: DVec2) -> Option<Sample>;
+    /// Whether [`Surface::at`] has a sample.
+    fn reaches(&self, position: DVec2) -> bool;
+    /// What keeps a position from being reached; on the very edge there may be nothing to say.
+    fn reason(&self, position: DVec2) -> Option<ReachReason>;
+}
 
 /// Nodes of a grid, row by row from the lower left corner.
 pub(super) struct Layout {
@@ -70,12 +83,19 @@ pub(super) struct Mesh {
 }
 
 impl Mesh {
-    /// The mesh of what `at` reaches. All calls of `at` run in parallel; the result does not depend on how.
-    pub(super) fn new(layout: &Layout, at: &(impl Fn(DVec2) -> Result<Sample, ReachReason> + Sync)) -> Self {
+    /// The mesh of what `surface` reaches. Rows run in parallel; the result does not depend on how.
+    pub(super) fn new(layout: &Layout, surface: &impl Surface) -> Self {
         let count = layout.columns * layout.rows;
-        let nodes: Vec<Result<Sample, ReachReason>> = (0..count)
+        let nodes: Vec<Option<Sample>> = (0..layout.rows)
             .into_par_iter()
-            .map(|node| at(layout.position(node)))
+            .flat_map_iter(|row| {
+                let first = row * layout.columns;
+                let position = |column: usize| layout.position(first + column.min(layout.columns - 1));
+                let (xs, ys): (Vec<f64>, Vec<f64>) = (0..padded(layout.columns))
+                    .map(|column| position(column).into())
+                    .unzip();
+                surface.row(&xs, &ys).into_iter().take(layout.columns)
+            })
             .collect();
         let cuts: Vec<Cut> = (0..count)
             .into_par_iter()
@@ -86,11 +106,11 @@ impl Mesh {
                     .into_iter()
                     .flatten()
                     .filter_map(move |other| match (nodes[node], nodes[other]) {
-                        (Ok(sample), Err(reason)) => Some((node, other, sample, reason)),
-                        (Err(reason), Ok(sample)) => Some((other, node, sample, reason)),
+                        (Some(sample), None) => Some((node, other, sample)),
+                        (None, Some(sample)) => Some((other, node, sample)),
                         _ => None,
                     })
-                    .map(move |(inner, outer, sample, reason)| cut(layout, at, inner, outer, sample, reason))
+                    .map(move |(inner, outer, sample)| cut(layout, surface, inner, outer, sample))
             })
             .collect();
 
@@ -101,7 +121,7 @@ impl Mesh {
         };
         let mut node_vertex = vec![u32::MAX; count];
         for (node, sample) in nodes.iter().enumerate() {
-            if let Ok(sample) = sample {
+            if let Some(sample) = sample {
                 node_vertex[node] = mesh.vertices.len() as u32;
                 mesh.vertices.push(Vertex {
                     position: layout.position(node),
@@ -163,29 +183,25 @@ impl Mesh {
 }
 
 /// Last reachable point on the side from a reachable node to one that is not.
-fn cut(
-    layout: &Layout,
-    at: &impl Fn(DVec2) -> Result<Sample, ReachReason>,
-    inner: usize,
-    outer: usize,
-    sample: Sample,
-    reason: ReachReason,
-) -> Cut {
-    let mut vertex = Vertex {
-        position: layout.position(inner),
-        sample,
-    };
-    let (mut outside, mut reason) = (layout.position(outer), reason);
+fn cut(layout: &Layout, surface: &impl Surface, inner: usize, outer: usize, sample: Sample) -> Cut {
+    let (mut inside, mut outside) = (layout.position(inner), layout.position(outer));
     for _ in 0..HALVINGS {
-        let position = 0.5 * (vertex.position + outside);
-        match at(position) {
-            Ok(sample) => vertex = Vertex { position, sample },
-            Err(why) => (outside, reason) = (position, why),
+        let position = 0.5 * (inside + outside);
+        if surface.reaches(position) {
+            inside = position;
+        } else {
+            outside = position;
         }
     }
+    let reason = surface
+        .reason(outside)
+        .or_else(|| surface.reason(layout.position(outer)));
     Cut {
         side: layout.side(inner, outer),
-        vertex,
-        reason,
+        vertex: Vertex {
+            position: inside,
+            sample: surface.at(inside).unwrap_or(sample),
+        },
+        reason: reason.unwrap_or(ReachReason::OutOfReach),
     }
 }

@@ -12,13 +12,12 @@ mod mesh;
 use glam::DVec2;
 
 use self::contour::{chains, contour};
-use self::mesh::{Layout, Mesh};
+use self::mesh::{Layout, Mesh, Surface};
 use super::Field;
 use crate::evaluation::Model;
-use crate::kinematics::Jacobian;
 use crate::mechanism::{Design, Leg, ReachReason, with_leg};
 use crate::spatial::{LEGS, Rotation};
-use crate::workspace::{GridError, PoseChecker};
+use crate::workspace::{GridError, PoseChecker, PoseLanes, PoseValues, ValueColumns};
 
 /// How finely a heatmap is laid out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,7 +71,8 @@ impl Heatmap {
         settings: HeatmapSettings,
     ) -> Result<Self, GridError> {
         with_leg!(design.architecture, L => {
-            let checker = model.checker::<L>(design)?;
+            let mut checker = model.checker::<L>(design)?;
+            checker.definition = field.definition(model);
             let sampler = Sampler { model, design, checker: &checker, arms: checker.manipulator.arms(&Rotation::new(phi)), field };
             Ok(sampler.heatmap(phi, settings))
         })
@@ -105,21 +105,46 @@ struct Sampler<'a, L> {
 }
 
 impl<L: Leg> Sampler<'_, L> {
-    fn at(&self, position: DVec2) -> Result<Sample, ReachReason> {
-        let posture = self
-            .checker
-            .manipulator
-            .posture_at(position, &self.arms)
-            .map_err(|(_, shortfall)| shortfall.reason)?;
-        let jacobian = Jacobian::new(&posture);
-        Ok(Sample {
-            value: self
-                .field
-                .value(self.model, self.design, self.checker, &posture, &jacobian),
-            determinant: jacobian.determinant(),
-        })
+    fn of(&self, values: &PoseValues) -> Sample {
+        Sample {
+            value: self.field.value(self.model, self.design, values),
+            determinant: values.determinant,
+        }
     }
 
+    /// Inlined, so that who asks for less than all has less than all worked out.
+    #[inline(always)]
+    fn lanes(&self, position: DVec2) -> PoseLanes<f64> {
+        let [first, second, third] = self.arms;
+        self.checker
+            .lanes(position.into(), &[first.into(), second.into(), third.into()])
+    }
+}
+
+impl<L: Leg> Surface for Sampler<'_, L> {
+    fn row(&self, xs: &[f64], ys: &[f64]) -> Vec<Option<Sample>> {
+        let mut values = ValueColumns::default();
+        self.checker.at_positions(&self.arms, xs, ys, &mut values);
+        (0..xs.len())
+            .map(|index| values.get(index).ok().map(|values| self.of(&values)))
+            .collect()
+    }
+
+    fn at(&self, position: DVec2) -> Option<Sample> {
+        self.lanes(position).reached().map(|values| self.of(&values))
+    }
+
+    fn reaches(&self, position: DVec2) -> bool {
+        self.lanes(position).reachable
+    }
+
+    fn reason(&self, position: DVec2) -> Option<ReachReason> {
+        let posture = self.checker.manipulator.posture_at(position, &self.arms);
+        posture.err().map(|(_, shortfall)| shortfall.reason)
+    }
+}
+
+impl<L: Leg> Sampler<'_, L> {
     /// Box that holds every reachable position.
     fn reach(&self) -> Option<[DVec2; 2]> {
         let boxes = self.checker.manipulator.legs.iter().zip(&self.arms).map(|(leg, arm)| {
@@ -153,9 +178,9 @@ impl<L: Leg> Sampler<'_, L> {
             columns: (size.x / step).ceil() as usize + 1,
             rows: (size.y / step).ceil() as usize + 1,
         };
-        let mesh = Mesh::new(&layout, &|position| self.at(position));
+        let mesh = Mesh::new(&layout, self);
         let threshold = self.field.threshold(self.model);
-        let at = |position| self.at(position).ok();
+        let at = |position| self.at(position);
         heatmap.cells = (layout.columns - 1) * (layout.rows - 1);
         heatmap.threshold = contour(&mesh, threshold, &at, |sample| sample.value);
         heatmap.singular = contour(&mesh, 0.0, &at, |sample| sample.determinant);
