@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::kinematics::Jacobian;
 use crate::lanes::{InstructionSet, Planar, Real};
-use crate::mechanism::{Leg, Manipulator, Posture, Shortfall};
+use crate::mechanism::{Leg, Manipulator, Posture};
 use crate::spatial::LEGS;
 use crate::stiffness::{PlanarStiffness, Rigidity, StiffnessDefinition, StiffnessModel};
 
@@ -114,12 +114,6 @@ impl<L: Leg> PoseChecker<L> {
         (k_z >= self.thresholds.k_z).then(|| determinant.signum())
     }
 
-    /// Whether the pose is good, with `det A` of the given sign.
-    #[inline]
-    pub fn is_good(&self, position: DVec2, arms: &[DVec2; LEGS], sign: f64) -> bool {
-        self.good_sign(position, arms) == Some(sign)
-    }
-
     /// All values at several poses at once, `arms` as in [`Manipulator::arms`].
     #[inline(always)]
     pub fn lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS]) -> PoseLanes<V> {
@@ -162,15 +156,6 @@ impl<L: Leg> PoseChecker<L> {
             & values.k_xy.at_least(sign.splat(least.k_xy))
             & values.k_phi_z.at_least(sign.splat(least.k_phi_z))
             & values.k_z.at_least(sign.splat(least.k_z))
-    }
-
-    /// All values at a pose.
-    ///
-    /// # Errors
-    /// The leg that cannot reach it, and by how much.
-    pub fn values(&self, position: DVec2, arms: &[DVec2; LEGS]) -> Result<PoseValues, (usize, Shortfall)> {
-        let posture = self.manipulator.posture_at(position, arms)?;
-        Ok(self.values_at(&posture, &Jacobian::new(&posture)))
     }
 
     /// All values at a posture.

@@ -1,15 +1,19 @@
 //! Regular dexterous workspace of a design (SPEC section 4).
 //!
 //! [`PoseChecker`] says whether one pose is good, [`Grid`] which poses are asked, [`search`] finds the largest disc of
-//! good poses and the home orientation.
+//! good poses and the home orientation. Poses are taken several at a time ([`PoseChecker::lanes`]); [`plain`] is the
+//! definition as it reads, which both are compared with.
 
 mod batch;
 mod checker;
+mod columns;
 mod grid;
+pub mod plain;
 mod rays;
 mod regular;
 
-pub use batch::{ArmColumns, Minima, Minimum, Turned, ValueColumns};
+pub use batch::{Minima, Minimum, Turned};
 pub use checker::{PoseChecker, PoseLanes, PoseValues, Thresholds};
+pub use columns::{ArmColumns, ValueColumns};
 pub use grid::{Grid, GridError};
 pub use regular::{RegularWorkspace, WorkspaceSpec, search};

@@ -8,9 +8,9 @@
 
 use glam::DVec2;
 
-use super::batch::{ArmColumns, Turned, ValueColumns};
+use super::batch::Turned;
 use super::rays::{Reach, Rings};
-use super::{Grid, GridError, PoseChecker};
+use super::{ArmColumns, Grid, GridError, PoseChecker, ValueColumns};
 use crate::mechanism::Leg;
 use crate::spatial::{LEGS, Rotation, unit};
 

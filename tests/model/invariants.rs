@@ -43,7 +43,8 @@ fn absent(modules: &[&str], words: &[&str]) {
     }
 }
 
-const MODEL: [&str; 6] = [
+const MODEL: [&str; 7] = [
+    "lanes",
     "spatial",
     "mechanism",
     "kinematics",
@@ -81,6 +82,29 @@ fn a_panel_shows_what_others_computed() {
     }
 }
 
+/// One place knows registers, and one the loops over them: everything else is written over `Real`.
+#[test]
+fn instruction_sets_are_known_to_the_lanes() {
+    let outside = [
+        "spatial",
+        "mechanism",
+        "kinematics",
+        "stiffness",
+        "evaluation",
+        "optimize",
+        "study",
+        "scene",
+    ];
+    absent(&outside, &["pulp"]);
+    for module in ["lanes", "workspace"] {
+        // Fused, approximate, or summed over lanes: what would make a result depend on the processor.
+        absent(
+            &[module],
+            &["mul_add", "approx", "reduce_sum", "reduce_product", "relaxed"],
+        );
+    }
+}
+
 #[test]
 fn the_optimizer_knows_nothing_of_robots() {
     let ours = [
@@ -92,6 +116,7 @@ fn the_optimizer_knows_nothing_of_robots() {
         "study",
         "recording",
         "spatial",
+        "lanes",
     ];
     for module in ours {
         absent(&["optimize"], &[&format!("crate::{module}")]);
@@ -132,6 +157,7 @@ fn the_model_does_no_input_or_output_and_reads_no_clock() {
 #[test]
 fn architectures_are_named_in_mechanism_alone() {
     let outside = [
+        "lanes",
         "spatial",
         "kinematics",
         "stiffness",

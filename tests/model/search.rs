@@ -1,83 +1,29 @@
-//! The search for the regular workspace against a plain one that marches every ray of every orientation.
+//! The search for the regular workspace against its definition, which marches every ray of every orientation.
 
 use glam::DVec2;
 use kinefront::evaluation::{Constraint, GridChoice, Model};
 use kinefront::mechanism::{Architecture, Design, Leg, PrrLeg, RprLeg, RrrLeg};
 use kinefront::optimize::sobol;
-use kinefront::spatial::Rotation;
+use kinefront::spatial::LEGS;
 use kinefront::study::{DesignProblem, Study};
+use kinefront::workspace::plain::{PlainWorkspace, plain};
 use kinefront::workspace::{Grid, PoseChecker};
 use proptest::prelude::*;
 use rayon::prelude::*;
 
 use super::strategies::design;
 
-/// What SPEC section 4 gives taken literally, one pose after the other in the plain closed form.
-pub struct Plain {
-    /// `R_w` \[m\]; 0 where no window has a workspace.
-    pub radius: f64,
-    /// Radius of the window about each orientation.
-    windows: Vec<f64>,
-}
-
-fn plain<L: Leg>(model: &Model, design: &Design, grid: &Grid) -> Plain {
+fn plain_of<L: Leg>(model: &Model, design: &Design, grid: &Grid) -> PlainWorkspace {
     let checker: PoseChecker<L> = model.checker(design).expect("a whole grid");
-    let count = grid.orientations().expect("a whole turn");
-    let half = grid
-        .half_window(model.workspace.rotation_range_deg)
-        .expect("a whole window");
-    let centre = model.workspace.centre;
-    let step = design.base_radius / grid.ray_steps as f64;
-    let rays: Vec<(f64, f64)> = (0..count)
-        .map(|k| {
-            let arms = checker
-                .manipulator
-                .arms(&Rotation::new((k as f64 * grid.phi_step_deg).to_radians()));
-            let Some(sign) = checker.good_sign(centre, &arms) else {
-                return (0.0, 0.0);
-            };
-            let radius = (0..grid.directions)
-                .map(|d| {
-                    let angle = (d as f64 * 360.0 / grid.directions as f64).to_radians();
-                    let direction = DVec2::new(libm::cos(angle), libm::sin(angle));
-                    let good = |radius: f64| checker.is_good(centre + direction * radius, &arms, sign);
-                    let first = (1..).find(|&k| !good(f64::from(k) * step)).expect("an end");
-                    let (mut low, mut high) = (f64::from(first - 1) * step, f64::from(first) * step);
-                    for _ in 0..grid.halvings {
-                        let middle = 0.5 * (low + high);
-                        if good(middle) {
-                            low = middle;
-                        } else {
-                            high = middle;
-                        }
-                    }
-                    low
-                })
-                .fold(f64::INFINITY, f64::min);
-            (radius, sign)
-        })
-        .collect();
-    let window = |home: usize| (0..=2 * half).map(move |offset| (home + count - half + offset) % count);
-    let windows: Vec<f64> = (0..count)
-        .map(|home| {
-            let sign = rays[home].1;
-            if sign == 0.0 || window(home).any(|k| rays[k].1 != sign) {
-                return 0.0;
-            }
-            window(home).map(|k| rays[k].0).fold(f64::INFINITY, f64::min)
-        })
-        .collect();
-    Plain {
-        radius: windows.iter().copied().fold(0.0, f64::max),
-        windows,
-    }
+    let good = |position: DVec2, arms: &[DVec2; LEGS]| checker.good_sign(position, arms);
+    plain(&checker.manipulator, &model.workspace, grid, design.base_radius, good).expect("a whole grid")
 }
 
-pub fn plain_search(model: &Model, design: &Design, grid: &Grid) -> Plain {
+pub fn plain_search(model: &Model, design: &Design, grid: &Grid) -> PlainWorkspace {
     match design.architecture {
-        Architecture::Prr => plain::<PrrLeg>(model, design, grid),
-        Architecture::Rpr => plain::<RprLeg>(model, design, grid),
-        Architecture::Rrr => plain::<RrrLeg>(model, design, grid),
+        Architecture::Prr => plain_of::<PrrLeg>(model, design, grid),
+        Architecture::Rpr => plain_of::<RprLeg>(model, design, grid),
+        Architecture::Rrr => plain_of::<RrrLeg>(model, design, grid),
     }
 }
 

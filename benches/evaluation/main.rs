@@ -1,25 +1,32 @@
 //! How fast designs and poses are evaluated: `cargo bench --no-default-features`.
 //!
-//! - `pose`: everything the constraints look at, at one reachable pose; the general 6×6 stiffness against the closed form.
-//! - `design`: one evaluation on the reference grid; a Sobol sample of the paper's bounds, and designs of a converged front.
+//! - `pose`: everything the constraints look at, at one reachable pose: the general 6×6 stiffness, the closed form, and
+//!   the closed form at several poses at once with every instruction set that the machine has.
+//! - `design`: one evaluation on the reference grid, of a Sobol sample of the paper's bounds and of designs of a converged
+//!   front: the definition ray after ray in either form, and the search; its fine grid last.
 //! - `threads`: the front's designs on one thread and on two.
+//!
+//! Before the poses are timed it prints what one costs in operations; `--bench machine` says what those take at best.
 
-use std::cell::Cell;
+mod counted;
+
 use std::hint::black_box;
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec2;
 use kinefront::evaluation::{GridChoice, Model};
 use kinefront::kinematics::Jacobian;
-use kinefront::lanes::{InstructionSet, Planar, Real};
+use kinefront::lanes::{InstructionSet, Planar};
 use kinefront::mechanism::{Architecture, Design, Leg, PrrLeg, RprLeg, RrrLeg};
 use kinefront::optimize::sobol;
-use kinefront::spatial::{LEGS, Rotation};
+use kinefront::spatial::{LEGS, Rotation, smaller_eigenvalue};
 use kinefront::stiffness::joint_model;
 use kinefront::study::{DesignProblem, Study};
+use kinefront::workspace::plain::plain;
 use kinefront::workspace::{PoseChecker, ValueColumns};
 use rayon::prelude::*;
+
+use self::counted::{Counted, OPERATIONS};
 
 /// Designs of one architecture, spread over the paper's bounds.
 fn sample(architecture: Architecture, count: usize) -> Vec<Design> {
@@ -34,7 +41,7 @@ fn sample(architecture: Architecture, count: usize) -> Vec<Design> {
 
 /// Designs of a converged front.
 fn front() -> Vec<Design> {
-    include_str!("front.txt")
+    include_str!("../front.txt")
         .lines()
         .filter(|line| !line.starts_with('#'))
         .map(|line| line.parse().expect("a design"))
@@ -47,106 +54,6 @@ struct Batch<L> {
     arms: [DVec2; LEGS],
     xs: Vec<f64>,
     ys: Vec<f64>,
-}
-
-/// A number that counts what is done with it; what does not depend on the position is done once an orientation and not
-/// counted.
-#[derive(Clone, Copy)]
-struct Counted {
-    value: f64,
-    varies: bool,
-}
-
-thread_local! {
-    /// Sums and products, quotients, square roots, comparisons and choices.
-    static OPERATIONS: Cell<[u32; 4]> = const { Cell::new([0; 4]) };
-}
-
-impl Counted {
-    fn made(value: f64, from: &[Counted], kind: usize) -> Self {
-        let varies = from.iter().any(|operand| operand.varies);
-        if varies {
-            OPERATIONS.with(|cell| {
-                let mut counts = cell.get();
-                counts[kind] += 1;
-                cell.set(counts);
-            });
-        }
-        Self { value, varies }
-    }
-}
-
-impl Add for Counted {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self::made(self.value + other.value, &[self, other], 0)
-    }
-}
-
-impl Sub for Counted {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        Self::made(self.value - other.value, &[self, other], 0)
-    }
-}
-
-impl Mul for Counted {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        // A factor of 1 (the drive of a telescopic leg) is known to the compiler.
-        let one = |operand: Self| !operand.varies && operand.value == 1.0;
-        if one(self) {
-            other
-        } else if one(other) {
-            self
-        } else {
-            Self::made(self.value * other.value, &[self, other], 0)
-        }
-    }
-}
-
-impl Div for Counted {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
-        Self::made(self.value / other.value, &[self, other], 1)
-    }
-}
-
-impl Neg for Counted {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self::made(-self.value, &[self], 3)
-    }
-}
-
-impl Real for Counted {
-    type Mask = bool;
-
-    fn splat(self, value: f64) -> Self {
-        Self { value, varies: false }
-    }
-
-    fn sqrt(self) -> Self {
-        Self::made(self.value.sqrt(), &[self], 2)
-    }
-
-    fn abs(self) -> Self {
-        Self::made(self.value.abs(), &[self], 3)
-    }
-
-    fn at_least(self, other: Self) -> bool {
-        Self::made(0.0, &[self, other], 3);
-        self.value >= other.value
-    }
-
-    fn exceeds(self, other: Self) -> bool {
-        Self::made(0.0, &[self, other], 3);
-        self.value > other.value
-    }
-
-    fn where_set(self, mask: bool, other: Self) -> Self {
-        Self::made(if mask { self.value } else { other.value }, &[self, other], 3)
-    }
 }
 
 /// Prints what one pose costs in floating-point operations.
@@ -196,7 +103,7 @@ fn poses_of<L: Leg>(criterion: &mut Criterion, architecture: Architecture) {
     let posture = |batch: &Batch<L>, k: usize| {
         let position = DVec2::new(batch.xs[k], batch.ys[k]);
         let posture = batch.checker.manipulator.posture_at(position, &batch.arms);
-        posture.ok().expect("reachable")
+        posture.expect("reachable")
     };
     group.bench_function(BenchmarkId::new("general 6x6", architecture), |bencher| {
         bencher.iter(|| {
@@ -249,35 +156,78 @@ fn poses(criterion: &mut Criterion) {
     poses_of::<RrrLeg>(criterion, Architecture::Rrr);
 }
 
-fn evaluate(model: &Model, design: &Design) -> f64 {
-    model
-        .evaluate(design, GridChoice::Reference)
-        .expect("a whole grid")
-        .workspace_radius
+/// The definition, ray after ray, a pose at a time in the given form of the stiffness.
+fn plainly(model: &Model, design: &Design, general: bool) -> f64 {
+    fn of<L: Leg>(model: &Model, design: &Design, general: bool) -> f64 {
+        let checker = model.checker::<L>(design).expect("a whole grid");
+        let least = checker.thresholds;
+        let general_form = |position: DVec2, arms: &[DVec2; LEGS]| {
+            let posture = checker.manipulator.posture_at(position, arms).ok()?;
+            let jacobian = Jacobian::new(&posture);
+            if jacobian.inverse_condition(checker.length) < least.inverse_condition {
+                return None;
+            }
+            let k = joint_model::stiffness(checker.stiffness.as_ref()?, &checker.manipulator, &posture)?;
+            let k_xy = smaller_eigenvalue(k[(0, 0)], k[(0, 1)], k[(1, 1)]);
+            let stiff = k_xy >= least.k_xy && k[(2, 2)] >= least.k_z && k[(5, 5)] >= least.k_phi_z;
+            stiff.then(|| jacobian.determinant().signum())
+        };
+        let closed_form = |position: DVec2, arms: &[DVec2; LEGS]| checker.good_sign(position, arms);
+        let (manipulator, spec, grid) = (&checker.manipulator, &model.workspace, &model.reference_grid);
+        let found = if general {
+            plain(manipulator, spec, grid, design.base_radius, general_form)
+        } else {
+            plain(manipulator, spec, grid, design.base_radius, closed_form)
+        };
+        found.expect("a whole grid").radius
+    }
+    match design.architecture {
+        Architecture::Prr => of::<PrrLeg>(model, design, general),
+        Architecture::Rpr => of::<RprLeg>(model, design, general),
+        Architecture::Rrr => of::<RrrLeg>(model, design, general),
+    }
+}
+
+fn evaluate(model: &Model, design: &Design, grid: GridChoice, instructions: InstructionSet) -> f64 {
+    let evaluation = model.evaluate_with(design, grid, instructions);
+    evaluation.expect("a whole grid").workspace_radius
 }
 
 fn designs(criterion: &mut Criterion) {
     let model = Model::default();
     let mut group = criterion.benchmark_group("design");
-    group.sample_size(20);
-    let mut bench = |name: BenchmarkId, designs: &[Design]| {
+    group.sample_size(10);
+    let mut workloads: Vec<(String, Vec<Design>)> = Architecture::ALL
+        .iter()
+        .map(|&architecture| (format!("sobol {architecture}"), sample(architecture, 32)))
+        .collect();
+    workloads.push(("front".to_owned(), front().into_iter().step_by(4).collect()));
+    for (workload, designs) in &workloads {
         group.throughput(Throughput::Elements(designs.len() as u64));
-        group.bench_function(name, |bencher| {
-            bencher.iter(|| designs.iter().map(|design| evaluate(&model, design)).sum::<f64>());
+        let mut bench = |name: &str, evaluate: &dyn Fn(&Design) -> f64| {
+            group.bench_function(BenchmarkId::new(name, workload), |bencher| {
+                bencher.iter(|| designs.iter().map(evaluate).sum::<f64>());
+            });
+        };
+        bench("plain, general 6x6", &|design| plainly(&model, design, true));
+        bench("plain, closed form", &|design| plainly(&model, design, false));
+        for instructions in InstructionSet::available() {
+            bench(instructions.name(), &|design| {
+                evaluate(&model, design, GridChoice::Reference, instructions)
+            });
+        }
+        bench("fine grid", &|design| {
+            evaluate(&model, design, GridChoice::Fine, InstructionSet::best())
         });
-    };
-    for &architecture in Architecture::ALL {
-        bench(BenchmarkId::new("sobol", architecture), &sample(architecture, 256));
     }
-    bench(BenchmarkId::new("front", "3-PRR"), &front());
     group.finish();
 }
 
 fn threads(criterion: &mut Criterion) {
     let model = Model::default();
     let designs = front();
+    let of = |design: &Design| evaluate(&model, design, GridChoice::Reference, InstructionSet::best());
     let mut group = criterion.benchmark_group("threads");
-    group.sample_size(20);
     group.throughput(Throughput::Elements(designs.len() as u64));
     for threads in [1, 2] {
         let pool = rayon::ThreadPoolBuilder::new()
@@ -285,7 +235,7 @@ fn threads(criterion: &mut Criterion) {
             .build()
             .expect("threads");
         group.bench_function(BenchmarkId::from_parameter(threads), |bencher| {
-            bencher.iter(|| pool.install(|| designs.par_iter().map(|design| evaluate(&model, design)).sum::<f64>()));
+            bencher.iter(|| pool.install(|| designs.par_iter().map(of).sum::<f64>()));
         });
     }
     group.finish();
