@@ -33,7 +33,11 @@ impl WithSimd for Run {
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let mut chains = [simd.splat_f64s(self.start); CHAINS];
         let factor = simd.splat_f64s(black_box(1.000_001));
+        let mut limit = factor;
         for _ in 0..LENGTH {
+            if let Operation::Choices = self.operation {
+                limit = simd.sub_f64s(limit, simd.splat_f64s(1e-9));
+            }
             for chain in &mut chains {
                 *chain = match self.operation {
                     // Half and half.

@@ -148,25 +148,28 @@ const REGISTERS: usize = 2;
 
 /// As many numbers as two registers of the instruction set `S` hold.
 #[derive(Clone, Copy)]
-pub struct Lanes<S: Simd> {
+pub(crate) struct Lanes<S: Simd> {
     simd: S,
     registers: [S::f64s; REGISTERS],
 }
 
 /// Outcome of comparing [`Lanes`].
 #[derive(Clone, Copy)]
-pub struct LaneMask<S: Simd> {
+pub(crate) struct LaneMask<S: Simd> {
     simd: S,
     registers: [S::m64s; REGISTERS],
 }
 
 impl<S: Simd> Lanes<S> {
     /// Number of lanes.
-    pub const COUNT: usize = REGISTERS * S::F64_LANES;
+    pub(crate) const COUNT: usize = {
+        assert!(REGISTERS * S::F64_LANES <= MOST_LANES);
+        REGISTERS * S::F64_LANES
+    };
 
     /// The same number in every lane.
     #[inline(always)]
-    pub fn all(simd: S, value: f64) -> Self {
+    pub(crate) fn all(simd: S, value: f64) -> Self {
         let register = simd.splat_f64s(value);
         Self {
             simd,
@@ -176,19 +179,19 @@ impl<S: Simd> Lanes<S> {
 
     /// A column of numbers in groups of [`Lanes::COUNT`]; what does not fill a group is left out.
     #[inline(always)]
-    pub fn column(column: &[f64]) -> &[[S::f64s; REGISTERS]] {
+    pub(crate) fn column(column: &[f64]) -> &[[S::f64s; REGISTERS]] {
         S::as_simd_f64s(column).0.as_chunks().0
     }
 
     /// [`Lanes::column`] for writing.
     #[inline(always)]
-    pub fn column_mut(column: &mut [f64]) -> &mut [[S::f64s; REGISTERS]] {
+    pub(crate) fn column_mut(column: &mut [f64]) -> &mut [[S::f64s; REGISTERS]] {
         S::as_mut_simd_f64s(column).0.as_chunks_mut().0
     }
 
     /// A group of a column.
     #[inline(always)]
-    pub fn load(simd: S, group: &[S::f64s; REGISTERS]) -> Self {
+    pub(crate) fn load(simd: S, group: &[S::f64s; REGISTERS]) -> Self {
         Self {
             simd,
             registers: *group,
@@ -197,7 +200,7 @@ impl<S: Simd> Lanes<S> {
 
     /// Writes to a group of a column.
     #[inline(always)]
-    pub fn store(self, group: &mut [S::f64s; REGISTERS]) {
+    pub(crate) fn store(self, group: &mut [S::f64s; REGISTERS]) {
         *group = self.registers;
     }
 }
@@ -207,11 +210,11 @@ impl<S: Simd> LaneMask<S> {
     ///
     /// Read from the mask's bytes: `first_true_m64s` of pulp 0.22 counts from the wrong end where masks are bits.
     #[inline(always)]
-    pub fn leading(self) -> usize {
+    pub(crate) fn leading(self) -> usize {
         let mut bits = 0u32;
         for (register, mask) in self.registers.iter().enumerate() {
             let bytes = pulp::bytemuck::bytes_of(mask);
-            if bytes.len() < size_of::<u64>() * S::F64_LANES {
+            if bytes.len() == 1 {
                 // A bit for each lane.
                 bits |= u32::from(bytes[0]) << (S::F64_LANES * register);
             } else {
@@ -330,7 +333,7 @@ impl<S: Simd> Real for Lanes<S> {
 pub const MOST_LANES: usize = 16;
 
 /// `count` rounded up to a multiple of [`MOST_LANES`].
-pub fn padded(count: usize) -> usize {
+pub(crate) fn padded(count: usize) -> usize {
     count.next_multiple_of(MOST_LANES)
 }
 

@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 
-E, G, DENSITY, K_ACT = 210e9, 80e9, 7850.0, 1e7
+E, G, K_ACT = 210e9, 80e9, 1e7
 LEAST = dict(condition=0.1, k_xy=1e6, k_z=1e5, k_phi_z=10 / math.radians(1))
 ANGLES = np.radians([210.0, 330.0, 90.0])
 DESIGNS = {

@@ -6,7 +6,7 @@ use super::{Constraint, ConstraintReport, Evaluation, Model};
 use crate::lanes::padded;
 use crate::mechanism::{Design, Leg};
 use crate::spatial::Pose;
-use crate::workspace::{Grid, GridError, PoseChecker, PoseValues, RegularWorkspace, Turned, ValueColumns, search};
+use crate::workspace::{Grid, GridError, Oriented, PoseChecker, PoseValues, RegularWorkspace, ValueColumns, search};
 
 /// Rings of a disc, besides its centre, on which values are looked at; at most: smooth fields need no more.
 const MOST_RINGS: f64 = 24.0;
@@ -114,9 +114,12 @@ impl<L: Leg> Reporter<'_, L> {
     /// Marks the constraints that fail at one pose.
     fn mark_failing(&self, reports: &mut Reports, values: &Result<PoseValues, f64>, sign: f64) {
         for report in reports {
-            report.active |= self
-                .value(report.constraint, values, sign)
-                .is_some_and(|value| !report.constraint.holds(value, report.threshold));
+            // Out of reach by nothing at all (a leg at its very end, or without length) is out of reach.
+            let unreached = report.constraint == Constraint::Reach && values.is_err();
+            report.active |= unreached
+                || self
+                    .value(report.constraint, values, sign)
+                    .is_some_and(|value| !report.constraint.holds(value, report.threshold));
         }
     }
 
@@ -145,11 +148,11 @@ impl<L: Leg> Reporter<'_, L> {
         let indices: Vec<f64> = (0..disc.xs.len()).map(|index| index as f64).collect();
         for index in found.window(home) {
             let orientation = &found.orientations[index];
-            let turned = Turned {
+            let oriented = Oriented {
                 arms: &orientation.arms,
                 sign,
             };
-            let minima = self.checker.smallest(turned, &disc.xs, &disc.ys, &indices);
+            let minima = self.checker.smallest(oriented, &disc.xs, &disc.ys, &indices);
             for (report, minimum) in reports[Constraint::Reach as usize..].iter_mut().zip(minima) {
                 if minimum.value.is_finite() {
                     let (x, y) = (disc.xs[minimum.index], disc.ys[minimum.index]);
@@ -158,20 +161,25 @@ impl<L: Leg> Reporter<'_, L> {
                 }
             }
         }
+        self.mark_beyond(&mut reports, sign);
+        reports
+    }
+
+    /// Marks the constraints that fail just beyond what limits the workspace.
+    fn mark_beyond(&self, reports: &mut Reports, sign: f64) {
         let mut values = ValueColumns::default();
-        for &(index, beyond) in &found.limits {
+        for &(index, beyond) in &self.found.limits {
             let mut rim = Positions::default();
-            for direction in &found.directions {
-                rim.push(centre + *direction * beyond);
+            for direction in &self.found.directions {
+                rim.push(self.model.workspace.centre + *direction * beyond);
             }
             rim.pad();
-            self.checker
-                .at_positions(&found.orientations[index].arms, &rim.xs, &rim.ys, &mut values);
-            for at in 0..found.directions.len() {
-                self.mark_failing(&mut reports, &values.get(at), sign);
+            let arms = &self.found.orientations[index].arms;
+            self.checker.at_positions(arms, &rim.xs, &rim.ys, &mut values);
+            for at in 0..self.found.directions.len() {
+                self.mark_failing(reports, &values.get(at), sign);
             }
         }
-        reports
     }
 
     /// Values at the centre pose of the best orientation of a design without a workspace, and its violation.
@@ -206,6 +214,9 @@ impl<L: Leg> Reporter<'_, L> {
         self.visit(&mut reports, &found.centres.get(best), pose, sign_of(best));
         for index in found.window(best_home) {
             self.mark_failing(&mut reports, &found.centres.get(index), sign_of(best_home));
+        }
+        if !reports.iter().any(|report| report.active) {
+            self.mark_beyond(&mut reports, sign_of(best_home));
         }
         let assembly = (-reports[Constraint::Assembly as usize].margin).max(0.0);
         (reports, (mean(best_home) + assembly).max(LEAST_VIOLATION))

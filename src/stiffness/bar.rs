@@ -35,7 +35,7 @@ pub struct BarCompliance {
 
 impl BarCompliance {
     /// The compliance of a bar of `radius` \[m\]; `None` where its section is too thin to carry anything that a
-    /// number can tell (a radius of 0, or one whose inertia or its inverse underflows).
+    /// number can tell (a radius of 0, or one whose inertia or its inverse underflows), or beyond all measure.
     pub fn new(material: &Material, radius: f64) -> Option<Self> {
         let area = std::f64::consts::PI * radius * radius;
         let inertia = 0.25 * area * radius * radius;
@@ -45,7 +45,7 @@ impl BarCompliance {
             torsion: 1.0 / (material.shear_modulus * (2.0 * inertia)),
         };
         // Squares and products of these are formed later: keep far from the ends of the number range.
-        let usable = |value: f64| value < 1e60;
+        let usable = |value: f64| value > 1e-60 && value < 1e60;
         (inertia > 0.0 && usable(compliance.axial) && usable(compliance.bending) && usable(compliance.torsion))
             .then_some(compliance)
     }

@@ -7,20 +7,20 @@ use glam::DVec2;
 use pulp::{Simd, WithSimd};
 
 use super::PoseChecker;
-use crate::lanes::{Lanes, MOST_LANES, Planar, Real};
+use crate::lanes::{Lanes, MOST_LANES, Planar, Real, padded};
 use crate::mechanism::Leg;
 use crate::spatial::LEGS;
 
 /// An orientation in which poses are asked for.
 #[derive(Debug, Clone, Copy)]
-pub struct Turned<'a> {
+pub(crate) struct Oriented<'a> {
     /// `C_i − P` in base axes \[m\].
     pub arms: &'a [DVec2; LEGS],
     /// Sign that `det A` must have.
     pub sign: f64,
 }
 
-impl Turned<'_> {
+impl Oriented<'_> {
     #[inline(always)]
     pub(super) fn lanes<S: Simd>(&self, simd: S) -> ([Planar<Lanes<S>>; LEGS], Lanes<S>) {
         let sign = Lanes::all(simd, self.sign);
@@ -38,7 +38,7 @@ impl Turned<'_> {
 /// Number of poses before the first that is not good; `count` where all are.
 struct Leading<'a, L> {
     checker: &'a PoseChecker<L>,
-    turned: Turned<'a>,
+    oriented: Oriented<'a>,
     xs: &'a [f64],
     ys: &'a [f64],
     count: usize,
@@ -49,7 +49,7 @@ impl<L: Leg> WithSimd for Leading<'_, L> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> usize {
-        let (arms, sign) = self.turned.lanes(simd);
+        let (arms, sign) = self.oriented.lanes(simd);
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         let mut at = 0;
         for (x, y) in xs.iter().zip(ys) {
@@ -70,7 +70,7 @@ impl<L: Leg> WithSimd for Leading<'_, L> {
 /// Writes 1 for each pose that is good and 0 for each that is not.
 struct Good<'a, L> {
     checker: &'a PoseChecker<L>,
-    turned: Turned<'a>,
+    oriented: Oriented<'a>,
     xs: &'a [f64],
     ys: &'a [f64],
     good: &'a mut [f64],
@@ -81,7 +81,7 @@ impl<L: Leg> WithSimd for Good<'_, L> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let (arms, sign) = self.turned.lanes(simd);
+        let (arms, sign) = self.oriented.lanes(simd);
         let (one, zero) = (sign.splat(1.0), sign.splat(0.0));
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         for ((x, y), good) in xs.iter().zip(ys).zip(Lanes::<S>::column_mut(self.good)) {
@@ -92,21 +92,21 @@ impl<L: Leg> WithSimd for Good<'_, L> {
     }
 }
 
-/// The quantities that constraints bound, smallest first found of each.
+/// Smallest value of a quantity over many poses.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Minimum {
-    /// Its value; infinite where no pose has one.
+pub(crate) struct Minimum {
+    /// The value; infinite where no pose has one.
     pub value: f64,
     /// The pose, the first among equals.
     pub index: usize,
 }
 
-/// Smallest slack, `κ_F⁻¹`, `k_xy`, `k_z`, `k_φz` and `det A / ℓ` (counted positive in the given sign) over many poses.
-pub type Minima = [Minimum; 6];
+/// Smallest slack, `κ_F⁻¹`, `k_xy`, `k_z`, `k_φz` and `det A / ℓ` (counted positive in the given sign).
+pub(crate) type Minima = [Minimum; 6];
 
 struct Smallest<'a, L> {
     checker: &'a PoseChecker<L>,
-    turned: Turned<'a>,
+    oriented: Oriented<'a>,
     xs: &'a [f64],
     ys: &'a [f64],
     /// 0, 1, 2, … for each pose.
@@ -118,7 +118,7 @@ impl<L: Leg> WithSimd for Smallest<'_, L> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Minima {
-        let (arms, sign) = self.turned.lanes(simd);
+        let (arms, sign) = self.oriented.lanes(simd);
         let infinite = sign.splat(f64::INFINITY);
         let mut values = [infinite; 6];
         let mut indices = [sign.splat(0.0); 6];
@@ -165,10 +165,12 @@ impl<L: Leg> WithSimd for Smallest<'_, L> {
 
 impl<L: Leg> PoseChecker<L> {
     /// The poses at the first `count` positions before the first that is not good; `count` where all are.
-    pub(super) fn leading(&self, turned: Turned<'_>, xs: &[f64], ys: &[f64], count: usize) -> usize {
+    pub(super) fn leading(&self, oriented: Oriented<'_>, xs: &[f64], ys: &[f64], count: usize) -> usize {
+        // A column that ends early must not pass for one of good poses.
+        assert!(xs.len() == ys.len() && xs.len() >= padded(count));
         self.instructions.run(Leading {
             checker: self,
-            turned,
+            oriented,
             xs,
             ys,
             count,
@@ -176,10 +178,11 @@ impl<L: Leg> PoseChecker<L> {
     }
 
     /// Writes 1 for each position at which the pose is good and 0 for each other one.
-    pub(super) fn mark_good(&self, turned: Turned<'_>, xs: &[f64], ys: &[f64], good: &mut [f64]) {
+    pub(super) fn mark_good(&self, oriented: Oriented<'_>, xs: &[f64], ys: &[f64], good: &mut [f64]) {
+        assert!(xs.len() == ys.len() && xs.len() == good.len() && xs.len().is_multiple_of(MOST_LANES));
         self.instructions.run(Good {
             checker: self,
-            turned,
+            oriented,
             xs,
             ys,
             good,
@@ -188,10 +191,11 @@ impl<L: Leg> PoseChecker<L> {
 
     /// The smallest values over many positions in one orientation, `indices` counting them from 0. The columns are of
     /// equal length, a multiple of [`MOST_LANES`].
-    pub fn smallest(&self, turned: Turned<'_>, xs: &[f64], ys: &[f64], indices: &[f64]) -> Minima {
+    pub(crate) fn smallest(&self, oriented: Oriented<'_>, xs: &[f64], ys: &[f64], indices: &[f64]) -> Minima {
+        assert!(xs.len() == ys.len() && xs.len() == indices.len() && xs.len().is_multiple_of(MOST_LANES));
         self.instructions.run(Smallest {
             checker: self,
-            turned,
+            oriented,
             xs,
             ys,
             indices,

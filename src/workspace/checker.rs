@@ -44,6 +44,25 @@ pub struct PoseValues {
     pub rigidity: Rigidity,
 }
 
+impl PoseValues {
+    /// The same, with 0 for what has left the number range: nothing that is no number leaves the model.
+    pub(super) fn finite(mut self) -> Self {
+        for value in [
+            &mut self.slack,
+            &mut self.determinant,
+            &mut self.inverse_condition,
+            &mut self.rigidity.k_xy,
+            &mut self.rigidity.k_z,
+            &mut self.rigidity.k_phi_z,
+        ] {
+            if !value.is_finite() {
+                *value = 0.0;
+            }
+        }
+        self
+    }
+}
+
 /// [`PoseValues`] at several poses at once.
 #[derive(Clone, Copy)]
 pub struct PoseLanes<V: Real> {
@@ -66,7 +85,7 @@ pub struct PoseLanes<V: Real> {
 impl PoseLanes<f64> {
     /// The values of a single pose, where it is reached.
     pub fn reached(&self) -> Option<PoseValues> {
-        self.reachable.then_some(PoseValues {
+        let values = PoseValues {
             slack: self.slack,
             determinant: self.determinant,
             inverse_condition: self.inverse_condition,
@@ -75,7 +94,8 @@ impl PoseLanes<f64> {
                 k_z: self.k_z,
                 k_phi_z: self.k_phi_z,
             },
-        })
+        };
+        self.reachable.then(|| values.finite())
     }
 }
 
@@ -97,7 +117,8 @@ pub struct PoseChecker<L> {
 }
 
 impl<L: Leg> PoseChecker<L> {
-    /// Sign of `det A` with `P` at `position`, if the pose is good in every other respect.
+    /// Sign of `det A` with `P` at `position`, if the pose is good in every other respect: a pose at a time in the plain
+    /// closed form, which [`PoseChecker::lanes`], what decides in evaluations, is compared with.
     #[inline]
     pub fn good_sign(&self, position: DVec2, arms: &[DVec2; LEGS]) -> Option<f64> {
         let posture = self.manipulator.posture_at(position, arms).ok()?;
@@ -147,7 +168,7 @@ impl<L: Leg> PoseChecker<L> {
 
     /// Where the pose is good, with `det A` of the given sign (±1).
     #[inline(always)]
-    pub fn good_lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS], sign: V) -> V::Mask {
+    pub(super) fn good_lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS], sign: V) -> V::Mask {
         let values = self.lanes(position, arms);
         let least = &self.thresholds;
         values.reachable

@@ -3,15 +3,18 @@
 use glam::DVec2;
 use pulp::{Simd, WithSimd};
 
-use super::batch::Turned;
+use super::batch::Oriented;
 use super::{PoseChecker, PoseLanes, PoseValues};
-use crate::lanes::{Lanes, Planar, Real, padded};
+use crate::lanes::{Lanes, MOST_LANES, Planar, Real, padded};
 use crate::mechanism::Leg;
 use crate::spatial::LEGS;
 use crate::stiffness::Rigidity;
 
+/// Longest distance that is told \[m\].
+const FARTHEST: f64 = 1e100;
+
 /// Values at many poses, a column each, padded.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct ValueColumns {
     /// 1 where every leg reaches, 0 elsewhere: there only the slack has a meaning.
     reachable: Vec<f64>,
@@ -44,20 +47,21 @@ impl ValueColumns {
     /// The distance to the nearest limit that is passed \[m\], ≤ 0, where a leg does not reach.
     pub fn get(&self, index: usize) -> Result<PoseValues, f64> {
         if self.reachable[index] == 0.0 {
-            return Err(self.slack[index]);
+            // Far beyond the number range there is no distance to tell; it is long.
+            let slack = self.slack[index];
+            return Err(if slack > -FARTHEST { slack.min(0.0) } else { -FARTHEST });
         }
-        // Beyond the number range a stiffness is none: nothing that is no number leaves.
-        let stiffness = |column: &[f64]| if column[index].is_finite() { column[index] } else { 0.0 };
         Ok(PoseValues {
             slack: self.slack[index],
             determinant: self.determinant[index],
             inverse_condition: self.inverse_condition[index],
             rigidity: Rigidity {
-                k_xy: stiffness(&self.k_xy),
-                k_z: stiffness(&self.k_z),
-                k_phi_z: stiffness(&self.k_phi_z),
+                k_xy: self.k_xy[index],
+                k_z: self.k_z[index],
+                k_phi_z: self.k_phi_z[index],
             },
-        })
+        }
+        .finite())
     }
 
     #[inline(always)]
@@ -104,7 +108,7 @@ impl<S: Simd> Writer<'_, S> {
 /// Values at many positions in one orientation.
 struct AtPositions<'a, L> {
     checker: &'a PoseChecker<L>,
-    turned: Turned<'a>,
+    oriented: Oriented<'a>,
     xs: &'a [f64],
     ys: &'a [f64],
     values: &'a mut ValueColumns,
@@ -115,7 +119,7 @@ impl<L: Leg> WithSimd for AtPositions<'_, L> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let (arms, _) = self.turned.lanes(simd);
+        let (arms, _) = self.oriented.lanes(simd);
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         let mut writer = self.values.writer::<S>();
         for (group, (x, y)) in xs.iter().zip(ys).enumerate() {
@@ -127,7 +131,7 @@ impl<L: Leg> WithSimd for AtPositions<'_, L> {
 
 /// Arms of many orientations, a column for each component, padded.
 #[derive(Debug, Clone, Default)]
-pub struct ArmColumns([Vec<f64>; 2 * LEGS]);
+pub(crate) struct ArmColumns([Vec<f64>; 2 * LEGS]);
 
 impl ArmColumns {
     /// The columns of `arms`.
@@ -179,12 +183,13 @@ impl<L: Leg> WithSimd for InOrientations<'_, L> {
 
 impl<L: Leg> PoseChecker<L> {
     /// Values at many positions in one orientation. The columns are of equal length, a multiple of
-    /// [`MOST_LANES`](crate::lanes::MOST_LANES).
+    /// [`MOST_LANES`].
     pub fn at_positions(&self, arms: &[DVec2; LEGS], xs: &[f64], ys: &[f64], values: &mut ValueColumns) {
+        assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MOST_LANES));
         values.resize(xs.len());
         self.instructions.run(AtPositions {
             checker: self,
-            turned: Turned { arms, sign: 1.0 },
+            oriented: Oriented { arms, sign: 1.0 },
             xs,
             ys,
             values,
@@ -192,7 +197,7 @@ impl<L: Leg> PoseChecker<L> {
     }
 
     /// Values at one position in many orientations.
-    pub fn in_orientations(&self, position: DVec2, arms: &ArmColumns) -> ValueColumns {
+    pub(crate) fn in_orientations(&self, position: DVec2, arms: &ArmColumns) -> ValueColumns {
         let mut values = ValueColumns::default();
         values.resize(arms.0[0].len());
         self.instructions.run(InOrientations {

@@ -2,18 +2,19 @@
 //!
 //! [`PoseChecker`] says whether one pose is good, [`Grid`] which poses are asked, [`search`] finds the largest disc of
 //! good poses and the home orientation. Poses are taken several at a time ([`PoseChecker::lanes`]); [`plain`] is the
-//! definition as it reads, which both are compared with.
+//! definition as it reads, which that and the search are compared with.
 
 mod batch;
 mod checker;
 mod columns;
 mod grid;
 pub mod plain;
-mod rays;
 mod regular;
+mod rings;
 
-pub use batch::{Minima, Minimum, Turned};
+pub(crate) use batch::Oriented;
 pub use checker::{PoseChecker, PoseLanes, PoseValues, Thresholds};
-pub use columns::{ArmColumns, ValueColumns};
+pub(crate) use columns::ArmColumns;
+pub use columns::ValueColumns;
 pub use grid::{Grid, GridError};
 pub use regular::{RegularWorkspace, WorkspaceSpec, search};

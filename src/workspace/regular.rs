@@ -8,8 +8,8 @@
 
 use glam::DVec2;
 
-use super::batch::Turned;
-use super::rays::{Reach, Rings};
+use super::batch::Oriented;
+use super::rings::{Reach, Rings};
 use super::{ArmColumns, Grid, GridError, PoseChecker, ValueColumns};
 use crate::mechanism::Leg;
 use crate::spatial::{LEGS, Rotation, unit};
@@ -37,7 +37,7 @@ pub struct Orientation {
 }
 
 /// Outcome of the search.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct RegularWorkspace {
     /// `R_w` \[m\]; 0 where no window has a disc.
     pub radius: f64,
@@ -48,7 +48,7 @@ pub struct RegularWorkspace {
     /// Steps from a home orientation to either end of its window.
     pub half_window: usize,
     /// The orientations of the home window that `radius` is the `R(φ)` of, and for each a radius just beyond, at which
-    /// a pose fails in some direction \[m\]; empty without a home.
+    /// a pose fails in some direction \[m\]. Without a home, one such of a window that came out empty, if there was one.
     pub limits: Vec<(usize, f64)>,
     /// Values at the centre, orientation by orientation.
     pub centres: ValueColumns,
@@ -149,7 +149,6 @@ pub fn search<L: Leg>(
     let mut search = Search {
         checker,
         grid,
-        step,
         rings: Rings::new(spec.centre, directions, step),
         reaches: vec![Reach::UNKNOWN; result.orientations.len()],
         hint: grid.ray_steps / 4,
@@ -164,7 +163,6 @@ pub fn search<L: Leg>(
 struct Search<'a, L> {
     checker: &'a PoseChecker<L>,
     grid: &'a Grid,
-    step: f64,
     rings: Rings,
     /// Orientation by orientation.
     reaches: Vec<Reach>,
@@ -195,16 +193,21 @@ impl<L: Leg> Search<'_, L> {
                     self.found.home = Some(home);
                     self.found.limits = window
                         .iter()
-                        .filter_map(|&k| Some((k, self.reaches[k].ray?)))
-                        .filter(|(_, ray)| ray.radius == bounds[home])
-                        .map(|(k, ray)| (k, ray.beyond))
+                        .filter_map(|&k| Some((k, self.reaches[k].bracket?)))
+                        .filter(|(_, bracket)| bracket.radius == bounds[home])
+                        .map(|(k, bracket)| (k, bracket.beyond))
                         .collect();
                     return;
                 };
                 // The windows that hold an orientation are those about the orientations of the window about it.
-                let bound = self.reaches[changed].bound(self.step);
+                let bound = self.rings.bound(&self.reaches[changed]);
                 for affected in self::window(changed, self.found.half_window, count) {
                     bounds[affected] = bounds[affected].min(bound);
+                }
+                if bounds[home] == 0.0 && self.found.limits.is_empty() {
+                    // What keeps the first of the windows that came out empty from having a workspace.
+                    let beyond = self.reaches[changed].bracket.map(|bracket| (changed, bracket.beyond));
+                    self.found.limits.extend(beyond);
                 }
                 if bounds[home] <= rival {
                     break;
@@ -213,20 +216,19 @@ impl<L: Leg> Search<'_, L> {
         }
     }
 
-    /// Finds an orientation of the leading window whose bound falls, by the cheapest means that has not been tried, and
-    /// gives it; `None` when the window's bound is its radius.
+    /// Learns more of an orientation of the leading window that may lower its bound, by the cheapest means that has not
+    /// been tried, and gives it; `None` when the window's bound is its radius.
     fn lower(&mut self, window: &[usize]) -> Option<usize> {
         let Self {
             checker,
             grid,
-            step: _,
             rings,
             reaches,
             hint,
             order,
             found,
         } = self;
-        let turned = |k: usize| Turned {
+        let oriented = |k: usize| Oriented {
             arms: &found.orientations[k].arms,
             // A leading window has good centres of one sign.
             sign: found.orientations[k].centre_sign.unwrap_or(1.0),
@@ -238,7 +240,7 @@ impl<L: Leg> Search<'_, L> {
             if reach.failing > last && reach.good.max(reach.probed) < last || last == usize::MAX {
                 rings.estimate(
                     checker,
-                    turned(k),
+                    oriented(k),
                     reach,
                     if last == usize::MAX { *hint } else { last },
                     last,
@@ -253,15 +255,15 @@ impl<L: Leg> Search<'_, L> {
             let k = window[offset];
             let reach = &mut reaches[k];
             let known = reach.failing;
-            rings.march(checker, turned(k), reach, last.min(known - 1));
+            rings.march(checker, oriented(k), reach, last.min(known - 1));
             if reach.failing < known {
                 return Some(k);
             }
         }
         let k = *window
             .iter()
-            .find(|&&k| reaches[k].failing == last && reaches[k].ray.is_none())?;
-        rings.halve(checker, turned(k), &mut reaches[k], grid);
+            .find(|&&k| reaches[k].failing == last && reaches[k].bracket.is_none())?;
+        rings.halve(checker, oriented(k), &mut reaches[k], grid);
         Some(k)
     }
 }

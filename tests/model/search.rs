@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 use kinefront::evaluation::{Constraint, GridChoice, Model};
+use kinefront::lanes::InstructionSet;
 use kinefront::mechanism::{Architecture, Design, Leg, PrrLeg, RprLeg, RrrLeg};
 use kinefront::optimize::sobol;
 use kinefront::spatial::LEGS;
@@ -13,18 +14,76 @@ use rayon::prelude::*;
 
 use super::strategies::design;
 
-fn plain_of<L: Leg>(model: &Model, design: &Design, grid: &Grid) -> PlainWorkspace {
+/// Which form says what poses are good.
+#[derive(Clone, Copy)]
+enum Form {
+    /// The closed form as it reads.
+    Plain,
+    /// What evaluations use, one pose at a time.
+    Reduced,
+}
+
+fn plain_of<L: Leg>(model: &Model, design: &Design, grid: &Grid, form: Form) -> PlainWorkspace {
     let checker: PoseChecker<L> = model.checker(design).expect("a whole grid");
-    let good = |position: DVec2, arms: &[DVec2; LEGS]| checker.good_sign(position, arms);
+    let good = |position: DVec2, arms: &[DVec2; LEGS]| match form {
+        Form::Plain => checker.good_sign(position, arms),
+        Form::Reduced => {
+            let [a, b, c] = *arms;
+            let values = checker
+                .lanes::<f64>(position.into(), &[a.into(), b.into(), c.into()])
+                .reached()?;
+            (values.determinant != 0.0 && checker.thresholds.hold(&values)).then(|| values.determinant.signum())
+        }
+    };
     plain(&checker.manipulator, &model.workspace, grid, design.base_radius, good).expect("a whole grid")
 }
 
-pub fn plain_search(model: &Model, design: &Design, grid: &Grid) -> PlainWorkspace {
+fn plain_in(model: &Model, design: &Design, grid: &Grid, form: Form) -> PlainWorkspace {
     match design.architecture {
-        Architecture::Prr => plain_of::<PrrLeg>(model, design, grid),
-        Architecture::Rpr => plain_of::<RprLeg>(model, design, grid),
-        Architecture::Rrr => plain_of::<RrrLeg>(model, design, grid),
+        Architecture::Prr => plain_of::<PrrLeg>(model, design, grid, form),
+        Architecture::Rpr => plain_of::<RprLeg>(model, design, grid, form),
+        Architecture::Rrr => plain_of::<RrrLeg>(model, design, grid, form),
     }
+}
+
+pub fn plain_search(model: &Model, design: &Design, grid: &Grid) -> PlainWorkspace {
+    plain_in(model, design, grid, Form::Plain)
+}
+
+/// The definition with the same form of a pose: then radius and home, the first among equals, are the same to the bit.
+fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
+    let grid = &model.reference_grid;
+    let wanted = plain_in(model, design, grid, Form::Reduced);
+    let first = wanted
+        .windows
+        .iter()
+        .position(|&radius| radius == wanted.radius && radius > 0.0);
+    let assembled = design.link_length + design.platform_radius >= 0.5 * design.base_radius;
+    for instructions in InstructionSet::available() {
+        let found = model
+            .evaluate_with(design, GridChoice::Reference, instructions)
+            .expect("a whole grid");
+        if !assembled {
+            prop_assert_eq!(found.workspace_radius, 0.0);
+            continue;
+        }
+        prop_assert_eq!(
+            found.workspace_radius,
+            wanted.radius,
+            "{}: {}",
+            design,
+            instructions.name()
+        );
+        prop_assert_eq!(
+            found.home_phi_deg,
+            first.map(|home| home as f64 * grid.phi_step_deg),
+            "{}: {}",
+            design,
+            instructions.name()
+        );
+        prop_assert!(found.active().next().is_some(), "{}: nothing is active", design);
+    }
+    Ok(())
 }
 
 /// Same radius; the same home, or one as good.
@@ -97,6 +156,39 @@ proptest! {
         let mut model = Model::default();
         model.workspace.centre = DVec2::new(x, y);
         same(&model, &design).map_err(TestCaseError::fail)?;
+    }
+
+    /// Ties, and grids of any shape: one direction marched, rings of a few poses, hardly a step, no halving.
+    #[test]
+    fn the_search_is_the_definition_to_the_bit(
+        design in design(0.01),
+        directions in 3..40usize,
+        ray_steps in 1..60usize,
+        halvings in 0..=40u32,
+        phi_step_deg in prop::sample::select(&[2.5, 5.0, 10.0][..]),
+        half_window in 0..5u32,
+        off_centre: bool,
+    ) {
+        let mut model = Model {
+            reference_grid: Grid { phi_step_deg, directions, ray_steps, halvings },
+            ..Model::default()
+        };
+        model.workspace.rotation_range_deg = 2.0 * f64::from(half_window) * phi_step_deg;
+        if off_centre {
+            model.workspace.centre = DVec2::new(0.1, -0.05);
+        }
+        exactly(&model, &design)?;
+    }
+
+    /// A given home is the one window of the definition.
+    #[test]
+    fn a_given_home_is_the_window_of_the_definition(design in design(0.01), home in 0..144usize) {
+        let mut model = Model::default();
+        let wanted = plain_in(&model, &design, &model.reference_grid, Form::Reduced).windows[home];
+        model.workspace.home_phi_deg = Some(home as f64 * 2.5);
+        let found = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+        prop_assume!(design.link_length + design.platform_radius >= 0.5 * design.base_radius);
+        prop_assert_eq!(found.workspace_radius, wanted);
     }
 
     /// A report speaks of the workspace it reports.
@@ -176,4 +268,49 @@ fn a_zero_radius_is_infeasible_and_finite() {
         assert_eq!(found.constraint(Constraint::StiffnessXy).value, Some(0.0));
         assert_eq!(found.constraint(Constraint::StiffnessXy).margin, -1.0);
     }
+}
+
+/// Nothing that is no number leaves, however far the input lies beyond what can be built.
+#[test]
+fn sizes_beyond_measure_stay_finite() {
+    let mut far = Model::default();
+    far.workspace.centre = DVec2::new(1e200, 0.0);
+    for architecture in Architecture::ALL {
+        for (model, lengths) in [
+            (Model::default(), "R=1e160 r=1e159 Lb=1e160 rj=0.1 rp=0.1"),
+            (Model::default(), "R=1e-160 r=1e-160 Lb=1e-160 rj=0.1 rp=0.1"),
+            (Model::default(), "R=2 r=1 Lb=2 rj=2e74 rp=2e74"),
+            (Model::default(), "R=2 r=1 Lb=2 rj=1e200 rp=1e-200"),
+            (Model::default(), "R=1 r=1 Lb=1 rj=0.05 rp=0.05"),
+            (far, "R=2 r=1 Lb=2 rj=0.05 rp=0.05"),
+        ] {
+            let design: Design = format!("{architecture} {lengths}").parse().expect("a design");
+            let found = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+            assert!(
+                found.workspace_radius.is_finite() && found.violation.is_finite(),
+                "{design}"
+            );
+            for report in &found.constraints {
+                assert!(
+                    report.value.is_none_or(f64::is_finite) && report.margin.is_finite(),
+                    "{design}: {report:?}"
+                );
+            }
+            assert!(found.active().next().is_some(), "{design}: nothing is active");
+        }
+    }
+}
+
+/// A platform that can go far compared with its base costs time, not memory.
+#[test]
+fn a_disc_of_many_base_radii_is_searched() {
+    let design: Design = "3-RRR R=0.001 r=1 Lb=1 rj=0.1 rp=0.1".parse().expect("a design");
+    let found = Model::default()
+        .evaluate(&design, GridChoice::Reference)
+        .expect("a whole grid");
+    assert!(
+        found.workspace_radius > 100.0 * design.base_radius,
+        "{}",
+        found.workspace_radius
+    );
 }

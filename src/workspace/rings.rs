@@ -6,12 +6,12 @@
 
 use glam::DVec2;
 
-use super::batch::Turned;
+use super::batch::Oriented;
 use super::{Grid, PoseChecker};
-use crate::lanes::{MOST_LANES, padded};
+use crate::lanes::padded;
 use crate::mechanism::Leg;
 
-/// Positions of all rings, ring after ring, as far as they were needed.
+/// The directions and steps of all rays, and room for the positions of a few rings.
 #[derive(Debug)]
 pub(super) struct Rings {
     centre: DVec2,
@@ -22,9 +22,12 @@ pub(super) struct Rings {
     ys: Vec<f64>,
 }
 
-/// How far the disc of one orientation reaches.
+/// Positions laid out at a time on a march.
+const BLOCK: usize = 256;
+
+/// Where the disc of one orientation ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ray {
+pub(super) struct Bracket {
     /// `R(φ)`: the lower end of the last bracket \[m\].
     pub radius: f64,
     /// The upper end: a pose at this radius fails in some direction \[m\].
@@ -41,7 +44,7 @@ pub(super) struct Reach {
     /// The nearest ring known to fail; `usize::MAX` while none is.
     pub failing: usize,
     /// `R(φ)`, once it is worked out.
-    pub ray: Option<Ray>,
+    pub bracket: Option<Bracket>,
 }
 
 impl Reach {
@@ -49,17 +52,8 @@ impl Reach {
         good: 0,
         probed: 0,
         failing: usize::MAX,
-        ray: None,
+        bracket: None,
     };
-
-    /// Upper bound of `R(φ)` \[m\], its value once that is known.
-    pub fn bound(&self, step: f64) -> f64 {
-        match (self.ray, self.failing) {
-            (Some(ray), _) => ray.radius,
-            (None, usize::MAX) => f64::INFINITY,
-            (None, failing) => failing as f64 * step,
-        }
-    }
 }
 
 impl Rings {
@@ -73,37 +67,48 @@ impl Rings {
         }
     }
 
-    /// Makes the positions of rings 1 to `ring` available, and what is read beyond them.
-    fn extend(&mut self, ring: usize) {
-        let count = self.directions.len();
-        let needed = padded(ring * count) + MOST_LANES;
-        if self.xs.len() >= needed {
-            return;
+    /// Upper bound of `R(φ)` \[m\], its value once that is known.
+    pub fn bound(&self, reach: &Reach) -> f64 {
+        match (reach.bracket, reach.failing) {
+            (Some(bracket), _) => bracket.radius,
+            (None, usize::MAX) => f64::INFINITY,
+            (None, failing) => failing as f64 * self.step,
         }
-        // As many rings as fill whole registers, and a few more than are needed now.
-        let rings = (ring + 8).next_multiple_of(MOST_LANES);
-        for k in self.xs.len() / count + 1..=rings {
-            let radius = k as f64 * self.step;
+    }
+
+    /// The poses of rings `first` to `last`, ring after ring, before the first that is not good.
+    fn leading<L: Leg>(
+        &mut self,
+        checker: &PoseChecker<L>,
+        oriented: Oriented<'_>,
+        first: usize,
+        last: usize,
+    ) -> usize {
+        self.xs.clear();
+        self.ys.clear();
+        for ring in first..=last {
+            let radius = ring as f64 * self.step;
             for direction in &self.directions {
                 let position = self.centre + *direction * radius;
                 self.xs.push(position.x);
                 self.ys.push(position.y);
             }
         }
+        let count = self.xs.len();
+        self.xs.resize(padded(count), 0.0);
+        self.ys.resize(padded(count), 0.0);
+        checker.leading(oriented, &self.xs, &self.ys, count)
     }
 
     /// Whether all poses of one ring are good; lowers `reach` where one is not.
-    pub fn probe<L: Leg>(
+    fn probe<L: Leg>(
         &mut self,
         checker: &PoseChecker<L>,
-        turned: Turned<'_>,
+        oriented: Oriented<'_>,
         reach: &mut Reach,
         ring: usize,
     ) -> bool {
-        self.extend(ring);
-        let count = self.directions.len();
-        let from = (ring - 1) * count;
-        let good = checker.leading(turned, &self.xs[from..], &self.ys[from..], count) == count;
+        let good = self.leading(checker, oriented, ring, ring) == self.directions.len();
         if good {
             reach.probed = reach.probed.max(ring);
             if ring == reach.good + 1 {
@@ -115,63 +120,55 @@ impl Rings {
         good
     }
 
-    /// Looks for a failing ring as near to the centre as can be had by bisection, not beyond `farthest`; `hint` is a
-    /// likely one.
+    /// Looks for a failing ring as near to the centre as can be had by bisection, from `hint`, a likely one, outwards to
+    /// `farthest`. For an orientation of which no failing ring is known.
     pub fn estimate<L: Leg>(
         &mut self,
         checker: &PoseChecker<L>,
-        turned: Turned<'_>,
+        oriented: Oriented<'_>,
         reach: &mut Reach,
         hint: usize,
         farthest: usize,
     ) {
-        // Outwards from the hint until a ring fails. Ends: the reach of every leg is bounded.
+        // Outwards until a ring fails. Ends: the reach of every leg is bounded.
         let mut ring = hint.clamp(1, farthest);
-        while reach.failing == usize::MAX {
-            if !self.probe(checker, turned, reach, ring) {
-                break;
-            }
+        while self.probe(checker, oriented, reach, ring) {
             if ring == farthest {
                 return;
             }
             ring = (ring + ring.div_ceil(4)).min(farthest);
         }
         // Inwards in growing strides until one is good, then between the two.
-        let mut low = if reach.probed < reach.failing {
-            reach.probed
-        } else {
-            reach.good
-        };
+        let mut good = reach.probed;
         let mut stride = 1;
-        while reach.failing > low + 1 {
-            let far = reach.failing - low > 2 * stride;
-            let ring = if far {
-                reach.failing - stride
-            } else {
-                usize::midpoint(low, reach.failing)
-            };
-            if self.probe(checker, turned, reach, ring) {
-                low = ring;
-                stride = usize::MAX / 4;
-            } else if far {
-                stride *= 2;
+        while reach.failing > good + 2 * stride {
+            let ring = reach.failing - stride;
+            if self.probe(checker, oriented, reach, ring) {
+                good = ring;
+                break;
+            }
+            stride *= 2;
+        }
+        while reach.failing > good + 1 {
+            let ring = usize::midpoint(good, reach.failing);
+            if self.probe(checker, oriented, reach, ring) {
+                good = ring;
             }
         }
     }
 
     /// Marches from the last ring known to be good to ring `last`, or to the first that fails.
-    pub fn march<L: Leg>(&mut self, checker: &PoseChecker<L>, turned: Turned<'_>, reach: &mut Reach, last: usize) {
-        if reach.good >= last {
-            return;
-        }
-        self.extend(last);
+    pub fn march<L: Leg>(&mut self, checker: &PoseChecker<L>, oriented: Oriented<'_>, reach: &mut Reach, last: usize) {
         let count = self.directions.len();
-        let from = reach.good * count;
-        let wanted = last * count - from;
-        let leading = checker.leading(turned, &self.xs[from..], &self.ys[from..], wanted);
-        reach.good += leading / count;
-        if leading < wanted {
-            reach.failing = reach.failing.min(reach.good + 1);
+        while reach.good < last {
+            let first = reach.good + 1;
+            let end = (first + BLOCK / count).min(last);
+            let leading = self.leading(checker, oriented, first, end);
+            reach.good += leading / count;
+            if reach.good < end {
+                reach.failing = reach.failing.min(reach.good + 1);
+                return;
+            }
         }
     }
 
@@ -181,15 +178,15 @@ impl Rings {
     /// Rays that pass where another fails reach farther than it, so they are left behind at once; the smallest radius
     /// over the directions is the same as if each were marched to its own end. One halving waits for the one before, so
     /// where few directions are left, all the middles that the next ones could ask for are looked at together.
-    pub fn halve<L: Leg>(&mut self, checker: &PoseChecker<L>, turned: Turned<'_>, reach: &mut Reach, grid: &Grid) {
+    pub fn halve<L: Leg>(&mut self, checker: &PoseChecker<L>, oriented: Oriented<'_>, reach: &mut Reach, grid: &Grid) {
         let mut bracket = [(reach.failing - 1) as f64 * self.step, reach.failing as f64 * self.step];
         let mut middles = Middles::new(&self.directions);
-        middles.look(checker, turned, self.centre, &[bracket[1]]);
+        middles.look(checker, oriented, self.centre, &[bracket[1]]);
         middles.keep_failing(0);
         let mut left = grid.halvings as usize;
         while left > 0 {
             let depth = match middles.failing.len() {
-                0..=2 => 3,
+                0..=2 => Self::MOST_HALVINGS,
                 3..=5 => 2,
                 _ => 1,
             }
@@ -205,7 +202,7 @@ impl Rings {
                     brackets[2 * k + 1] = [radii[k], far];
                 }
             }
-            middles.look(checker, turned, self.centre, &radii[1..1 << depth]);
+            middles.look(checker, oriented, self.centre, &radii[1..1 << depth]);
             let mut k = 1;
             for _ in 0..depth {
                 if middles.keep_failing(k - 1) {
@@ -218,7 +215,7 @@ impl Rings {
             }
             left -= depth;
         }
-        reach.ray = Some(Ray {
+        reach.bracket = Some(Bracket {
             radius: bracket[0],
             beyond: bracket[1],
         });
@@ -251,7 +248,7 @@ impl Middles {
     }
 
     /// Looks at all poses of the failing directions at `radii`.
-    fn look<L: Leg>(&mut self, checker: &PoseChecker<L>, turned: Turned<'_>, centre: DVec2, radii: &[f64]) {
+    fn look<L: Leg>(&mut self, checker: &PoseChecker<L>, oriented: Oriented<'_>, centre: DVec2, radii: &[f64]) {
         self.directions = self.failing.iter().map(|&index| self.directions[index]).collect();
         self.failing = (0..self.directions.len()).collect();
         self.xs.clear();
@@ -267,7 +264,7 @@ impl Middles {
         self.xs.resize(length, 0.0);
         self.ys.resize(length, 0.0);
         self.good.resize(length, 0.0);
-        checker.mark_good(turned, &self.xs, &self.ys, &mut self.good);
+        checker.mark_good(oriented, &self.xs, &self.ys, &mut self.good);
     }
 
     /// Leaves behind the directions that do not fail at the radius of index `radius`, if one fails there, and says so.
