@@ -1,14 +1,16 @@
 //! How fast designs and poses are evaluated: `cargo bench --no-default-features`.
 //!
 //! - `pose`: everything the constraints look at, at one reachable pose: the general 6×6 stiffness, the closed form, and
-//!   the closed form at several poses at once with every instruction set that the machine has.
+//!   the closed form at several poses at once with every instruction set that the machine has, all values written.
 //! - `design`: one evaluation on the reference grid, of a Sobol sample of the paper's bounds and of designs of a converged
 //!   front: the definition ray after ray in either form, and the search; its fine grid last.
 //! - `threads`: the front's designs on one thread and on two.
 //!
-//! Before the poses are timed it prints what one costs in operations; `--bench machine` says what those take at best.
+//! A pose's operations are counted, and `pose/limit` is the time that the machine takes for as many of each kind of which
+//! none waits for another.
 
 mod counted;
+mod limit;
 
 use std::hint::black_box;
 
@@ -26,7 +28,7 @@ use kinefront::workspace::plain::plain;
 use kinefront::workspace::{PoseChecker, ValueColumns};
 use rayon::prelude::*;
 
-use self::counted::{Counted, OPERATIONS};
+use self::counted::{Operations, operations};
 
 /// Designs of one architecture, spread over the paper's bounds.
 fn sample(architecture: Architecture, count: usize) -> Vec<Design> {
@@ -56,16 +58,14 @@ struct Batch<L> {
     ys: Vec<f64>,
 }
 
-/// Prints what one pose costs in floating-point operations.
-fn count_operations<L: Leg>(architecture: Architecture, batch: &Batch<L>) {
-    OPERATIONS.set([0; 4]);
-    let [x, y] = [batch.xs[1], batch.ys[1]].map(|value| Counted { value, varies: true });
-    let arms = batch.arms.map(|arm| Planar::splat(x, arm));
-    black_box(batch.checker.lanes(Planar::new(x, y), &arms).k_xy.value);
-    let [linear, quotients, roots, choices] = OPERATIONS.get();
-    println!(
-        "{architecture}: {linear} sums and products, {quotients} quotients, {roots} roots, {choices} comparisons and choices"
-    );
+/// What one pose costs in floating-point operations.
+fn count_operations<L: Leg>(architecture: Architecture, batch: &Batch<L>) -> Operations {
+    let counts = operations(batch.xs[1], batch.ys[1], |x, y| {
+        let arms = batch.arms.map(|arm| Planar::splat(x, arm));
+        black_box(batch.checker.lanes(Planar::new(x, y), &arms).k_xy.value());
+    });
+    println!("{architecture}: {counts:?}");
+    counts
 }
 
 /// Positions in a batch.
@@ -97,8 +97,12 @@ fn batches<L: Leg>(architecture: Architecture) -> Vec<Batch<L>> {
 
 fn poses_of<L: Leg>(criterion: &mut Criterion, architecture: Architecture) {
     let mut batches = batches::<L>(architecture);
-    count_operations(architecture, &batches[0]);
+    let counts = count_operations(architecture, &batches[0]);
     let mut group = criterion.benchmark_group("pose");
+    group.throughput(Throughput::Elements(limit::poses() as u64));
+    group.bench_function(BenchmarkId::new("limit", architecture), |bencher| {
+        bencher.iter(|| black_box(limit::run(counts, black_box(1.000_001))));
+    });
     group.throughput(Throughput::Elements((batches.len() * BATCH) as u64));
     let posture = |batch: &Batch<L>, k: usize| {
         let position = DVec2::new(batch.xs[k], batch.ys[k]);
@@ -225,7 +229,8 @@ fn designs(criterion: &mut Criterion) {
 
 fn threads(criterion: &mut Criterion) {
     let model = Model::default();
-    let designs = front();
+    // Enough that no thread waits long for the other's last design.
+    let designs = front().repeat(10);
     let of = |design: &Design| evaluate(&model, design, GridChoice::Reference, InstructionSet::best());
     let mut group = criterion.benchmark_group("threads");
     group.throughput(Throughput::Elements(designs.len() as u64));

@@ -2,7 +2,7 @@
 //!
 //! Two forms of one model: [`planar`] is the closed form that everything uses, [`joint_model`] the general 6×6 form
 //! of Pashkevich et al. that serves as its oracle. The closed form is written twice: as it reads, with all of `K`, and
-//! reduced to the numbers that the constraints ask for, at several poses at once ([`StiffnessModel::rigidity_lanes`]).
+//! reduced to the numbers that the constraints ask for, at several poses at once (`lanes`).
 
 mod bar;
 pub mod joint_model;

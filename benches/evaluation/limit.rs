@@ -1,0 +1,87 @@
+//! The least time the machine can take for the operations of a pose: as many of each kind, none waiting for another.
+
+use pulp::{Arch, Simd, WithSimd};
+
+use super::counted::Operations;
+
+/// Operations of one kind in flight: more than any latency lasts.
+const CHAINS: usize = 12;
+
+/// Runs the operations of [`poses`] poses on the widest registers.
+pub fn run(operations: Operations, start: f64) -> f64 {
+    Arch::new().dispatch(Mix { operations, start })
+}
+
+/// Poses whose operations [`run`] does.
+pub fn poses() -> usize {
+    struct Lanes;
+    impl WithSimd for Lanes {
+        type Output = usize;
+        fn with_simd<S: Simd>(self, _: S) -> usize {
+            S::F64_LANES
+        }
+    }
+    CHAINS * Arch::new().dispatch(Lanes)
+}
+
+struct Mix {
+    operations: Operations,
+    start: f64,
+}
+
+impl WithSimd for Mix {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let Operations {
+            sums_and_products,
+            quotients,
+            roots,
+            comparisons_and_choices,
+        } = self.operations;
+        let factor = simd.splat_f64s(self.start);
+        let small = simd.splat_f64s(1e-9);
+        let mut limit = factor;
+        let mut chains = [factor; CHAINS];
+        let mut slow = [factor; CHAINS];
+        // A round is an operation on every chain; quotients and roots are strewn evenly among the rounds.
+        let rounds = sums_and_products + comparisons_and_choices;
+        let (mut due, mut done) = (0, 0);
+        for round in 0..rounds {
+            if round < sums_and_products {
+                if round % 2 == 0 {
+                    for chain in &mut chains {
+                        *chain = simd.mul_f64s(*chain, factor);
+                    }
+                } else {
+                    for chain in &mut chains {
+                        *chain = simd.add_f64s(*chain, factor);
+                    }
+                }
+            } else {
+                // The limit moves, so that no round can be left out.
+                limit = simd.sub_f64s(limit, small);
+                for chain in &mut chains[..CHAINS / 2] {
+                    *chain = simd.select_f64s(simd.greater_than_f64s(*chain, limit), limit, *chain);
+                }
+            }
+            due += CHAINS * (quotients + roots);
+            while due >= rounds {
+                due -= rounds;
+                let chain = &mut slow[done % CHAINS];
+                *chain = if done % (quotients + roots) < quotients {
+                    simd.div_f64s(factor, *chain)
+                } else {
+                    simd.sqrt_f64s(*chain)
+                };
+                done += 1;
+            }
+        }
+        let mut sum = limit;
+        for chain in chains.into_iter().chain(slow) {
+            sum = simd.add_f64s(sum, chain);
+        }
+        simd.reduce_sum_f64s(sum)
+    }
+}
