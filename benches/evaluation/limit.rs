@@ -6,6 +6,8 @@ use super::counted::Operations;
 
 /// Operations of one kind in flight: more than any latency lasts.
 const CHAINS: usize = 12;
+/// Of the kinds that take long.
+const SLOW: usize = 4;
 
 /// Runs the operations of [`poses`] poses on the widest registers.
 pub fn run(operations: Operations, start: f64) -> f64 {
@@ -44,13 +46,21 @@ impl WithSimd for Mix {
         let small = simd.splat_f64s(1e-9);
         let mut limit = factor;
         let mut chains = [factor; CHAINS];
-        let mut slow = [factor; CHAINS];
-        // A round is an operation on every chain; quotients and roots are strewn evenly among the rounds.
+        let mut slow = [factor; SLOW];
+        // A round is an operation on every chain; quotients and roots are strewn evenly among the rounds, one at a time, so
+        // that they go on beside the others.
         let rounds = sums_and_products + comparisons_and_choices;
-        let (mut due, mut done) = (0, 0);
-        for round in 0..rounds {
-            if round < sums_and_products {
-                if round % 2 == 0 {
+        let (mut quotients_due, mut roots_due) = (0, 0);
+        let mut round = 0;
+        macro_rules! round {
+            ($($slow:literal)+) => {$(
+                if round >= sums_and_products {
+                    // The limit moves, so that no round can be left out.
+                    limit = simd.sub_f64s(limit, small);
+                    for chain in &mut chains[..CHAINS / 2] {
+                        *chain = simd.select_f64s(simd.greater_than_f64s(*chain, limit), limit, *chain);
+                    }
+                } else if round % 2 == 0 {
                     for chain in &mut chains {
                         *chain = simd.mul_f64s(*chain, factor);
                     }
@@ -59,24 +69,20 @@ impl WithSimd for Mix {
                         *chain = simd.add_f64s(*chain, factor);
                     }
                 }
-            } else {
-                // The limit moves, so that no round can be left out.
-                limit = simd.sub_f64s(limit, small);
-                for chain in &mut chains[..CHAINS / 2] {
-                    *chain = simd.select_f64s(simd.greater_than_f64s(*chain, limit), limit, *chain);
+                quotients_due += CHAINS * quotients;
+                roots_due += CHAINS * roots;
+                if quotients_due >= rounds {
+                    quotients_due -= rounds;
+                    slow[$slow] = simd.div_f64s(factor, slow[$slow]);
+                } else if roots_due >= rounds {
+                    roots_due -= rounds;
+                    slow[$slow] = simd.sqrt_f64s(slow[$slow]);
                 }
-            }
-            due += CHAINS * (quotients + roots);
-            while due >= rounds {
-                due -= rounds;
-                let chain = &mut slow[done % CHAINS];
-                *chain = if done % (quotients + roots) < quotients {
-                    simd.div_f64s(factor, *chain)
-                } else {
-                    simd.sqrt_f64s(*chain)
-                };
-                done += 1;
-            }
+                round += 1;
+            )+};
+        }
+        while round < rounds {
+            round!(0 1 2 3);
         }
         let mut sum = limit;
         for chain in chains.into_iter().chain(slow) {
