@@ -1,12 +1,11 @@
 //! From a search to a report: smallest values and where they are, active constraints, violation.
 
-use glam::DVec2;
-
 use super::{Constraint, ConstraintReport, Evaluation, Model};
-use crate::lanes::padded;
 use crate::mechanism::{Design, Leg};
 use crate::spatial::Pose;
-use crate::workspace::{Grid, GridError, Oriented, PoseChecker, PoseValues, RegularWorkspace, ValueColumns, search};
+use crate::workspace::{
+    Grid, GridError, Oriented, PoseChecker, PoseValues, Positions, RegularWorkspace, ValueColumns, search,
+};
 
 /// Rings of a disc, besides its centre, on which values are looked at; at most: smooth fields need no more.
 const MOST_RINGS: f64 = 24.0;
@@ -254,28 +253,6 @@ impl<L: Leg> Reporter<'_, L> {
                 let missed = Constraint::Reach.margin(*slack, 0.0, self.design);
                 (AT_POSES.len() as f64 - missed, 0.0)
             }
-        }
-    }
-}
-
-/// Positions in columns, padded as the checker reads them.
-#[derive(Default)]
-struct Positions {
-    xs: Vec<f64>,
-    ys: Vec<f64>,
-}
-
-impl Positions {
-    fn push(&mut self, position: DVec2) {
-        self.xs.push(position.x);
-        self.ys.push(position.y);
-    }
-
-    /// Fills up with the first position, which changes no smallest value.
-    fn pad(&mut self) {
-        let length = padded(self.xs.len());
-        for column in [&mut self.xs, &mut self.ys] {
-            column.resize(length, column[0]);
         }
     }
 }

@@ -10,6 +10,33 @@ use crate::mechanism::Leg;
 use crate::spatial::LEGS;
 use crate::stiffness::Rigidity;
 
+/// Positions, a column for each component.
+#[derive(Debug, Default)]
+pub(crate) struct Positions {
+    pub xs: Vec<f64>,
+    pub ys: Vec<f64>,
+}
+
+impl Positions {
+    pub fn clear(&mut self) {
+        self.xs.clear();
+        self.ys.clear();
+    }
+
+    pub fn push(&mut self, position: DVec2) {
+        self.xs.push(position.x);
+        self.ys.push(position.y);
+    }
+
+    /// Fills up to what loops read with the first position, which changes no smallest value.
+    pub fn pad(&mut self) {
+        let length = padded(self.xs.len());
+        for column in [&mut self.xs, &mut self.ys] {
+            column.resize(length, column[0]);
+        }
+    }
+}
+
 /// Longest distance that is told \[m\].
 const FARTHEST: f64 = 1e100;
 

@@ -14,7 +14,7 @@ mod rings;
 
 pub(crate) use batch::Oriented;
 pub use checker::{PoseChecker, PoseLanes, PoseValues, Thresholds};
-pub(crate) use columns::ArmColumns;
 pub use columns::ValueColumns;
+pub(crate) use columns::{ArmColumns, Positions};
 pub use grid::{Grid, GridError};
 pub use regular::{RegularWorkspace, WorkspaceSpec, search};

@@ -7,8 +7,7 @@
 use glam::DVec2;
 
 use super::batch::Oriented;
-use super::{Grid, PoseChecker};
-use crate::lanes::padded;
+use super::{Grid, PoseChecker, Positions};
 use crate::mechanism::Leg;
 
 /// The directions and steps of all rays, and room for the positions of a few rings.
@@ -18,8 +17,7 @@ pub(super) struct Rings {
     /// The directions marched.
     pub directions: Vec<DVec2>,
     step: f64,
-    xs: Vec<f64>,
-    ys: Vec<f64>,
+    positions: Positions,
 }
 
 /// Positions laid out at a time on a march.
@@ -62,8 +60,7 @@ impl Rings {
             centre,
             directions,
             step,
-            xs: Vec::new(),
-            ys: Vec::new(),
+            positions: Positions::default(),
         }
     }
 
@@ -84,20 +81,16 @@ impl Rings {
         first: usize,
         last: usize,
     ) -> usize {
-        self.xs.clear();
-        self.ys.clear();
+        self.positions.clear();
         for ring in first..=last {
             let radius = ring as f64 * self.step;
             for direction in &self.directions {
-                let position = self.centre + *direction * radius;
-                self.xs.push(position.x);
-                self.ys.push(position.y);
+                self.positions.push(self.centre + *direction * radius);
             }
         }
-        let count = self.xs.len();
-        self.xs.resize(padded(count), 0.0);
-        self.ys.resize(padded(count), 0.0);
-        checker.leading(oriented, &self.xs, &self.ys, count)
+        let count = self.positions.xs.len();
+        self.positions.pad();
+        checker.leading(oriented, &self.positions.xs, &self.positions.ys, count)
     }
 
     /// Whether all poses of one ring are good; lowers `reach` where one is not.
@@ -231,8 +224,7 @@ struct Middles {
     directions: Vec<DVec2>,
     /// Those of them, by index, that fail at every radius at which one did.
     failing: Vec<usize>,
-    xs: Vec<f64>,
-    ys: Vec<f64>,
+    positions: Positions,
     good: Vec<f64>,
 }
 
@@ -241,8 +233,7 @@ impl Middles {
         Self {
             directions: directions.to_vec(),
             failing: (0..directions.len()).collect(),
-            xs: Vec::new(),
-            ys: Vec::new(),
+            positions: Positions::default(),
             good: Vec::new(),
         }
     }
@@ -251,20 +242,15 @@ impl Middles {
     fn look<L: Leg>(&mut self, checker: &PoseChecker<L>, oriented: Oriented<'_>, centre: DVec2, radii: &[f64]) {
         self.directions = self.failing.iter().map(|&index| self.directions[index]).collect();
         self.failing = (0..self.directions.len()).collect();
-        self.xs.clear();
-        self.ys.clear();
+        self.positions.clear();
         for radius in radii {
             for direction in &self.directions {
-                let position = centre + *direction * *radius;
-                self.xs.push(position.x);
-                self.ys.push(position.y);
+                self.positions.push(centre + *direction * *radius);
             }
         }
-        let length = padded(self.xs.len());
-        self.xs.resize(length, 0.0);
-        self.ys.resize(length, 0.0);
-        self.good.resize(length, 0.0);
-        checker.mark_good(oriented, &self.xs, &self.ys, &mut self.good);
+        self.positions.pad();
+        self.good.resize(self.positions.xs.len(), 0.0);
+        checker.mark_good(oriented, &self.positions.xs, &self.positions.ys, &mut self.good);
     }
 
     /// Leaves behind the directions that do not fail at the radius of index `radius`, if one fails there, and says so.
