@@ -90,7 +90,7 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
     }
     tell(&study, &summary, &path, arguments)?;
     Ok(match summary.outcome {
-        Outcome::Completed => Ending::Done,
+        Outcome::Completed | Outcome::TimeUp | Outcome::Stagnated => Ending::Done,
         Outcome::Stopped => Ending::Interrupted,
     })
 }
@@ -193,12 +193,18 @@ fn tell(study: &Study, summary: &RunSummary, path: &Path, arguments: &Arguments)
         writeln!(out, "{}", tables::front(summary))?;
         writeln!(
             out,
-            "{} evaluations ({} feasible) in {:.1} s, verified in {:.1} s; front {} ({} dropped), hypervolume {:.1} kg m",
+            "{} evaluations ({} feasible) in {:.1} s{}, verified in {:.1} s; front {} of {} ({} dropped), hypervolume {:.1} kg m",
             last.map_or(0, |last| last.evaluations),
             last.map_or(0, |last| last.feasible),
             summary.times.search_s,
+            match summary.outcome {
+                Outcome::Completed | Outcome::Stopped => "",
+                Outcome::TimeUp => ", when its time was up",
+                Outcome::Stagnated => ", when it hardly gained any more",
+            },
             summary.times.verification_s,
             summary.front.len(),
+            summary.verified,
             summary.dropped,
             summary.verified_hypervolume,
         )?;

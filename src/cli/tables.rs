@@ -143,12 +143,13 @@ pub fn front(summary: &RunSummary) -> String {
             "rj",
             "rp",
             "active",
+            "",
         ],
         &[0, 2, 3, 4, 5, 6, 7, 8, 9],
     );
     let count = summary.front.len();
     let rows = count.min(MOST_ROWS);
-    for FrontMember { id, evaluation, .. } in summary.spread(MOST_ROWS) {
+    for (place, FrontMember { id, evaluation, .. }) in summary.spread(MOST_ROWS) {
         let mut row = vec![
             id.to_string(),
             evaluation.design.architecture.to_string(),
@@ -162,6 +163,7 @@ pub fn front(summary: &RunSummary) -> String {
         }));
         let active: Vec<&str> = evaluation.active().map(|constraint| constraint.id()).collect();
         row.push(active.join(" "));
+        row.push(summary.mark(place).to_owned());
         table.add_row(row);
     }
     let left_out = if rows < count {

@@ -11,13 +11,16 @@
 //! ```
 
 mod constraint;
+mod lightest;
 mod model;
 mod pose;
 mod report;
+mod sizing;
 
 pub use constraint::{Constraint, ConstraintReport};
 pub use model::{GridChoice, Model};
 pub use pose::{PoseReport, Unreachable};
+pub use sizing::{BarRanges, Demand};
 
 use crate::mechanism::Design;
 use crate::spatial::Pose;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 
 use super::Session;
+use super::running::Writing;
 use crate::recording::{record_design, save_copy};
 
 /// Writes a file; what stood there is replaced whole or not at all.
@@ -166,12 +167,14 @@ fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
         session.tell_error("there is no run to save: an opened one lies where it was opened from".to_owned());
         return None;
     };
+    let writing = session.writing();
     let model = *session.model();
     let shown = session
         .known()
         .map(|known| known.evaluation.clone())
         .zip(session.chosen_name());
     Some(Box::new(move || {
+        writing.iter().for_each(Writing::wait);
         let shown = shown
             .as_ref()
             .map(|(evaluation, name)| (&model, evaluation, name.as_str()));
@@ -205,7 +208,9 @@ fn save_run(session: &mut Session, path: PathBuf) -> Option<Job> {
         session.tell_error("there is no run to save: an opened one lies where it was opened from".to_owned());
         return None;
     };
+    let writing = session.writing();
     Some(Box::new(move || {
+        writing.iter().for_each(Writing::wait);
         let failed = |what: &Path, error: std::io::Error| format!("cannot write {}: {error}", what.display());
         std::fs::create_dir_all(&path).map_err(|error| failed(&path, error))?;
         let entries = std::fs::read_dir(&folder).map_err(|error| failed(&folder, error))?;

@@ -1,8 +1,8 @@
 //! A run under way in the window, with the files it leaves.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::mpsc::sync_channel;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -27,8 +27,42 @@ pub struct Running {
     /// Its news.
     pub intake: Arc<Intake>,
     folder: Arc<TempDir>,
+    writing: Writing,
     threads: Vec<JoinHandle<()>>,
     clock: Clock,
+}
+
+/// The run's files that are still being written.
+#[derive(Debug, Clone, Default)]
+pub struct Writing(Arc<(Mutex<usize>, Condvar)>);
+
+impl Writing {
+    fn count(&self) -> MutexGuard<'_, usize> {
+        self.0.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// One more, until what is returned is dropped.
+    fn begin(&self) -> BeingWritten {
+        *self.count() += 1;
+        BeingWritten(self.clone())
+    }
+
+    /// Waits until all are whole: a recording draws its front for a while after the run has ended.
+    pub fn wait(&self) {
+        let mut count = self.count();
+        while *count > 0 {
+            count = self.0.1.wait(count).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+struct BeingWritten(Writing);
+
+impl Drop for BeingWritten {
+    fn drop(&mut self) {
+        *self.0.count() -= 1;
+        self.0.0.1.notify_all();
+    }
 }
 
 /// Time that a run has worked, pauses left out.
@@ -73,7 +107,12 @@ impl Running {
                 .map_err(|error| format!("cannot start the run: {error}"))
         };
         // Each keeps the folder until it is done with its file.
-        let (held, told, as_run) = (Arc::clone(&folder), Arc::clone(&intake), study.clone());
+        let writing = Writing::default();
+        let (held, told, as_run) = (
+            (Arc::clone(&folder), writing.begin()),
+            Arc::clone(&intake),
+            study.clone(),
+        );
         listen(
             "tables",
             Box::new(move |events| {
@@ -83,7 +122,7 @@ impl Running {
                 drop(held);
             }),
         )?;
-        let (held, told) = (Arc::clone(&folder), Arc::clone(&intake));
+        let (held, told) = ((Arc::clone(&folder), writing.begin()), Arc::clone(&intake));
         listen(
             "recorder",
             Box::new(move |events| {
@@ -103,6 +142,7 @@ impl Running {
             control,
             intake,
             folder,
+            writing,
             threads,
             clock: Clock {
                 worked: Duration::ZERO,
@@ -124,6 +164,11 @@ impl Running {
     /// Folder with the run's files; whole once the run has ended.
     pub fn folder(&self) -> PathBuf {
         self.folder.path().join("run")
+    }
+
+    /// Its files that are still being written.
+    pub fn writing(&self) -> &Writing {
+        &self.writing
     }
 
     /// Time worked so far.

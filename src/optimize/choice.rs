@@ -1,4 +1,4 @@
-//! Choosing among the members of a front: its knee, a weighted ranking, groups of like members.
+//! Choosing among the members of a front: its knee, evenly spread ones, a weighted ranking, groups of like members.
 //!
 //! A front is a slice of objectives, both minimised, in the order of the [archive](super::Archive): the first ascending,
 //! the second descending. Each objective is scaled by the range that the front spans in it.
@@ -6,6 +6,33 @@
 /// The member farthest below the line between the two ends of the front, the first among equals.
 pub fn knee(front: &[[f64; 2]]) -> Option<usize> {
     smallest(scaled(front).iter().map(|[first, second]| first + second))
+}
+
+/// At most `most` members, evenly spread: both ends and the knee, then again and again the one farthest from those
+/// chosen (Gonzalez 1985). In the order of the front.
+pub fn spread(front: &[[f64; 2]], most: usize) -> Vec<usize> {
+    if front.len() <= most {
+        return (0..front.len()).collect();
+    }
+    let points = scaled(front);
+    let mut chosen = Vec::with_capacity(most);
+    let mut distances = vec![f64::INFINITY; points.len()];
+    let mut next = Some(0);
+    while let Some(place) = next.filter(|_| chosen.len() < most) {
+        chosen.push(place);
+        for (distance, point) in distances.iter_mut().zip(&points) {
+            *distance = distance.min(libm::hypot(point[0] - points[place][0], point[1] - points[place][1]));
+        }
+        next = match chosen.len() {
+            1 => Some(points.len() - 1),
+            2 => knee(front),
+            _ => smallest(distances.iter().map(|distance| -distance)),
+        };
+    }
+    chosen.sort_unstable();
+    // The knee may be one of the ends.
+    chosen.dedup();
+    chosen
 }
 
 /// The members from best to worst by the weighted distance to the ideal point, which has the best of both objectives.
@@ -129,6 +156,37 @@ mod tests {
         let mut all = ranking(&front, 0.3);
         all.sort_unstable();
         assert_eq!(all, (0..11).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_spread_has_the_ends_the_knee_and_no_crowd() {
+        // Many members at one end, few elsewhere.
+        let front: Vec<[f64; 2]> = (0..=200)
+            .map(|k| {
+                let share = libm::pow(f64::from(k) / 200.0, 3.0);
+                [share, (1.0 - share) * (1.0 - share)]
+            })
+            .collect();
+        let chosen = spread(&front, 12);
+        assert_eq!(chosen.len(), 12);
+        for member in [Some(0), Some(200), knee(&front)] {
+            assert!(member.is_some_and(|member| chosen.contains(&member)));
+        }
+        let gaps: Vec<f64> = chosen
+            .windows(2)
+            .map(|pair| {
+                libm::hypot(
+                    front[pair[1]][0] - front[pair[0]][0],
+                    front[pair[1]][1] - front[pair[0]][1],
+                )
+            })
+            .collect();
+        let (least, most) = (
+            gaps.iter().copied().fold(f64::INFINITY, f64::min),
+            gaps.iter().copied().fold(0.0, f64::max),
+        );
+        assert!(most < 2.5 * least, "{gaps:?}");
+        assert_eq!(spread(&front, 500).len(), 201);
     }
 
     /// Against every split there is.

@@ -27,7 +27,7 @@
 
 use super::dominance::{Relation, pareto};
 use super::random::Random;
-use super::{Algorithm, Evaluated, Variable, doe};
+use super::{Algorithm, Candidate, Evaluated, Variable, doe};
 
 /// Bits of a real variable.
 const REAL_BITS: u32 = 16;
@@ -263,17 +263,20 @@ impl Moga2 {
 }
 
 impl Algorithm for Moga2 {
-    fn ask(&mut self) -> Vec<Vec<f64>> {
+    fn ask(&mut self) -> Vec<Candidate> {
         let size = self.settings.population.max(2);
         if self.population.is_empty() {
-            return doe::sobol(&self.variables, size, self.seed);
+            let sample = doe::sobol(&self.variables, size, self.seed);
+            return sample.into_iter().map(Candidate::from).collect();
         }
         let mut pool = std::mem::take(&mut self.population);
         pool.extend(self.elite.iter().cloned());
         self.random.shuffle(&mut pool);
         pool.truncate(size);
         self.population = pool;
-        (0..self.population.len()).map(|index| self.offspring(index)).collect()
+        (0..self.population.len())
+            .map(|index| self.offspring(index).into())
+            .collect()
     }
 
     fn tell(&mut self, evaluated: Vec<Evaluated>) {

@@ -309,7 +309,7 @@ fn summary_text(summary: &RunSummary) -> String {
         summary.dropped,
         summary.verified_hypervolume,
     );
-    for member in summary.spread(MOST_ROWS) {
+    for (_, member) in summary.spread(MOST_ROWS) {
         let e = &member.evaluation;
         let [base, platform, link, leg_bar, platform_bar] = e.design.values();
         let active: Vec<&str> = e.active().map(|constraint| constraint.id()).collect();

@@ -283,9 +283,26 @@ impl Study {
         if let Some(threads) = o.threads {
             check.range("optimizer.threads", threads, 1, 1024);
         }
+        check.range("optimizer.front_designs", o.front_designs, 3, 100_000);
+        if let Some(seconds) = o.time_limit_s {
+            check.positive("optimizer.time_limit_s", seconds);
+        }
+        if let Some(stagnation) = &o.stagnation {
+            let most = 100_000_000;
+            check.range("optimizer.stagnation.evaluations", stagnation.evaluations, 1, most);
+            check.at_least_zero("optimizer.stagnation.gain", stagnation.gain);
+        }
+        check.range("optimizer.front_de.generation", o.front_de.generation, 2, 65_536);
+        check.range("optimizer.front_de.population", o.front_de.population, 4, 65_536);
+        check.range("optimizer.front_de.growth", o.front_de.growth, 1, 100_000_000);
+        check.range("optimizer.front_de.most", o.front_de.most, 4, 65_536);
+        check.range("optimizer.front_de.neighbours", o.front_de.neighbours, 1, 65_536);
+        check.positive("optimizer.front_de.scale", o.front_de.scale);
         check.range("optimizer.moga2.population", o.moga2.population, 2, 65_536);
         check.range("optimizer.nsga2.population", o.nsga2.population, 2, 65_536);
         for (key, share) in [
+            ("front_de.crossover", o.front_de.crossover),
+            ("front_de.best", o.front_de.best),
             ("moga2.directional_crossover", o.moga2.directional_crossover),
             ("moga2.selection", o.moga2.selection),
             ("moga2.mutation", o.moga2.mutation),

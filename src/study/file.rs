@@ -128,9 +128,10 @@ impl Study {
         }
     }
 
-    /// Population of the algorithm chosen.
+    /// Candidates of a generation of the algorithm chosen.
     pub fn population(&self) -> usize {
         match self.optimizer.algorithm {
+            AlgorithmName::FrontDe => self.optimizer.front_de.generation,
             AlgorithmName::Moga2 => self.optimizer.moga2.population,
             AlgorithmName::Nsga2 => self.optimizer.nsga2.population,
         }

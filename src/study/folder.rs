@@ -10,8 +10,7 @@ use std::sync::mpsc::Receiver;
 
 use serde::Serialize;
 
-use super::run::{Batch, Event, GenerationSummary, Outcome, RunSummary, RunTimes};
-use super::{AlgorithmName, Study};
+use super::{AlgorithmName, Batch, Event, GenerationSummary, Outcome, RunSummary, RunTimes, Study};
 use crate::evaluation::{Constraint, Evaluation};
 
 /// First columns of `designs.csv` and `front.csv`; values, margins, active constraints and violation follow.
@@ -77,6 +76,7 @@ pub struct RunReport<'a> {
     generations: usize,
     front_size: usize,
     front_dropped_by_verification: usize,
+    front_verified: usize,
     hypervolume_reference: HypervolumeReference,
     hypervolume_kg_m: f64,
     verified_hypervolume_kg_m: f64,
@@ -111,6 +111,7 @@ impl<'a> RunReport<'a> {
             generations: summary.history.len(),
             front_size: summary.front.len(),
             front_dropped_by_verification: summary.dropped,
+            front_verified: summary.verified,
             hypervolume_reference: HypervolumeReference {
                 mass_kg: study.hypervolume.reference_mass_kg,
                 workspace_radius_m: 0.0,
@@ -194,10 +195,11 @@ impl RunFolder {
         let front_path = self.path.join("front.csv");
         let table = || -> Result<Vec<u8>, csv::Error> {
             let mut table = csv::Writer::from_writer(Vec::new());
-            table.write_record(header().chain(["workspace_radius_reference_m".to_owned()]))?;
-            for member in &summary.front {
+            table.write_record(header().chain(["workspace_radius_reference_m", "mark"].map(str::to_owned)))?;
+            for (place, member) in summary.front.iter().enumerate() {
                 let record = row(member.id, member.generation, &member.evaluation);
-                table.write_record(record.into_iter().chain([member.reference_radius.to_string()]))?;
+                let more = [member.reference_radius.to_string(), summary.mark(place).to_owned()];
+                table.write_record(record.into_iter().chain(more))?;
             }
             table
                 .into_inner()

@@ -3,23 +3,24 @@
 mod builtin;
 mod control;
 mod error;
+mod events;
 mod file;
 mod folder;
 mod problem;
 mod run;
 mod sections;
+mod stopping;
 
 pub use builtin::{BUILTIN, Builtin};
 pub use control::RunControl;
 pub use error::{Fault, StudyError};
+pub use events::{Batch, Event, FrontMember, GenerationSummary, Outcome, RunSummary, RunTimes, Started, Subscriber};
 pub use file::Study;
 pub use folder::{FolderError, RunFolder, RunReport, TABLE_HEADER, write_whole};
 pub use problem::{CandidateError, DesignProblem};
-pub use run::{
-    Batch, Event, FrontMember, GenerationSummary, Outcome, RunSummary, RunTimes, Started, Subscriber, spawn,
-};
+pub use run::spawn;
 pub use sections::{
     ActuatorSection, AlgorithmName, Bounds, GridSection, Grids, HypervolumeSection, LengthChoice, MaterialSection,
-    ModelSection, OptimizerSection, ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar,
+    ModelSection, OptimizerSection, ReferenceDesign, RequirementSection, Stagnation, StiffnessChoice, TelescopicBar,
     WorkspaceSection,
 };

@@ -1,9 +1,9 @@
 //! A study as a problem for the optimizer: `x` = the architecture, then the five lengths.
 
 use super::Study;
-use crate::evaluation::{Evaluation, GridChoice, Model};
-use crate::mechanism::{Architecture, Design, DesignError, VARIABLES, WorkingMode};
-use crate::optimize::{Outcome, Problem, Variable};
+use crate::evaluation::{BarRanges, Demand, Evaluation, GridChoice, Model};
+use crate::mechanism::{Architecture, Design, DesignError, VARIABLES, Variable, WorkingMode};
+use crate::optimize::{Aim, Outcome, Problem, Variable as Unknown};
 use crate::workspace::GridError;
 
 /// Designs of a study, encoded for an optimizer.
@@ -71,22 +71,38 @@ impl DesignProblem {
     }
 
     /// The variables of the problem.
-    pub fn variables(&self) -> Vec<Variable> {
-        std::iter::once(Variable::Categorical {
+    pub fn variables(&self) -> Vec<Unknown> {
+        std::iter::once(Unknown::Categorical {
             choices: self.architectures.len(),
         })
-        .chain(
-            self.ranges
-                .iter()
-                .map(|&[lower, upper]| Variable::Real { lower, upper }),
-        )
+        .chain(self.ranges.iter().map(|&[lower, upper]| Unknown::Real { lower, upper }))
         .collect()
     }
 }
 
 impl Problem for DesignProblem {
-    fn variables(&self) -> Vec<Variable> {
+    fn variables(&self) -> Vec<Unknown> {
         DesignProblem::variables(self)
+    }
+
+    /// The lightest bars for the geometry in `x`. A workspace that the geometry does not allow is made the largest that it
+    /// does.
+    fn complete(&self, x: &[f64], aim: Aim) -> Option<Vec<f64>> {
+        let design = self.design(x).ok()?;
+        let range = |variable: Variable| self.ranges[variable as usize];
+        let ranges = BarRanges {
+            leg: range(Variable::LegBarRadius),
+            platform: range(Variable::PlatformBarRadius),
+        };
+        let sized = |demand| self.model.sized(&design, &ranges, demand).ok().flatten();
+        let sized = match aim {
+            Aim::Level(level) if level < 0.0 => sized(Demand::Radius(-level)).or_else(|| sized(Demand::Largest)),
+            Aim::Level(_) | Aim::Best => sized(Demand::Largest),
+        }?;
+        let mut x = x.to_vec();
+        x[1 + Variable::LegBarRadius as usize] = sized.leg_bar_radius;
+        x[1 + Variable::PlatformBarRadius as usize] = sized.platform_bar_radius;
+        Some(x)
     }
 
     fn evaluate(&self, x: &[f64]) -> Outcome {

@@ -17,143 +17,18 @@
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::sync::mpsc::SyncSender;
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use super::{AlgorithmName, DesignProblem, RunControl, Study};
+use super::stopping::Stopping;
+use super::{
+    AlgorithmName, Batch, DesignProblem, Event, FrontMember, GenerationSummary, Outcome, RunControl, RunSummary,
+    RunTimes, Started, Study, Subscriber,
+};
 use crate::evaluation::{Evaluation, GridChoice};
-use crate::optimize::{Algorithm, Archive, Evaluated, Moga2, Nsga2, hypervolume};
-
-/// Where a listener receives events.
-pub type Subscriber = SyncSender<Arc<Event>>;
-
-/// What the worker tells.
-#[derive(Debug, Clone)]
-pub enum Event {
-    /// The run begins.
-    Started(Started),
-    /// Designs were evaluated, a generation's worth.
-    Evaluated(Batch),
-    /// A generation is done.
-    Generation(GenerationSummary),
-    /// The archive of non-dominated designs changed; sorted by mass, radii from the reference grid.
-    Front(Vec<FrontMember>),
-    /// The front is being verified on the fine grid.
-    Verifying {
-        /// Designs done.
-        done: usize,
-        /// Designs in all.
-        total: usize,
-    },
-    /// The run ended.
-    Finished(RunSummary),
-    /// The run broke off.
-    Failed(String),
-}
-
-/// What is known at the start.
-#[derive(Debug, Clone)]
-pub struct Started {
-    /// The study as run.
-    pub study: Arc<Study>,
-    /// Worker threads used.
-    pub threads: usize,
-}
-
-/// Designs of one generation, in order.
-#[derive(Debug, Clone)]
-pub struct Batch {
-    /// Generation, from 1.
-    pub generation: usize,
-    /// Id of the first design; the others follow.
-    pub first_id: usize,
-    /// The designs.
-    pub evaluations: Vec<Evaluation>,
-}
-
-/// State after a generation.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct GenerationSummary {
-    /// Generation, from 1.
-    pub generation: usize,
-    /// Evaluations so far.
-    pub evaluations: usize,
-    /// Feasible designs so far.
-    pub feasible: usize,
-    /// Non-dominated designs.
-    pub front_size: usize,
-    /// Hypervolume of the front on the reference grid \[kg·m\].
-    pub hypervolume: f64,
-}
-
-/// A non-dominated design.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FrontMember {
-    /// Id of its evaluation.
-    pub id: usize,
-    /// Generation of its evaluation.
-    pub generation: usize,
-    /// Its evaluation; in a finished run the one on the fine grid.
-    pub evaluation: Evaluation,
-    /// `R_w` on the reference grid \[m\].
-    pub reference_radius: f64,
-}
-
-/// Why a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Outcome {
-    /// The budget is spent.
-    Completed,
-    /// It was asked to stop.
-    Stopped,
-}
-
-/// Where the time went \[s\].
-#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
-pub struct RunTimes {
-    /// The search, verification left out.
-    pub search_s: f64,
-    /// Evaluating designs.
-    pub evaluation_s: f64,
-    /// Asking and telling the algorithm and keeping the archive.
-    pub optimizer_s: f64,
-    /// Handing events to listeners, waiting for slow ones included.
-    pub publish_s: f64,
-    /// Verifying the front on the fine grid.
-    pub verification_s: f64,
-}
-
-/// A run at its end.
-#[derive(Debug, Clone)]
-pub struct RunSummary {
-    /// Why it ended.
-    pub outcome: Outcome,
-    /// Worker threads used.
-    pub threads: usize,
-    /// State after each generation.
-    pub history: Vec<GenerationSummary>,
-    /// The front, verified on the fine grid, sorted by `R_w`.
-    pub front: Vec<FrontMember>,
-    /// Non-dominated designs of the reference grid that verification dropped: infeasible or dominated on the fine one.
-    pub dropped: usize,
-    /// Hypervolume of the verified front \[kg·m\].
-    pub verified_hypervolume: f64,
-    /// Where the time went.
-    pub times: RunTimes,
-}
-
-impl RunSummary {
-    /// At most `most` designs of the front, evenly spread over it with both its ends: what fits a table.
-    pub fn spread(&self, most: usize) -> impl Iterator<Item = &FrontMember> {
-        let count = self.front.len();
-        let rows = count.min(most);
-        (0..rows).map(move |k| &self.front[if rows > 1 { k * (count - 1) / (rows - 1) } else { 0 }])
-    }
-}
+use crate::optimize::{Algorithm, Archive, Evaluated, FrontDe, Moga2, Nsga2, Problem, hypervolume, knee, spread};
 
 /// Starts the run of a study on a thread of its own.
 ///
@@ -208,6 +83,8 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
     let threads = pool.current_num_threads();
     let reference = [study.hypervolume.reference_mass_kg, 0.0];
     let budget = study.optimizer.evaluations;
+    let front_designs = study.optimizer.front_designs;
+    let stopping = Stopping::new(&study.optimizer);
     let mut algorithm = algorithm(&study, &problem);
     publisher.send(Event::Started(Started {
         study: Arc::new(study),
@@ -232,11 +109,14 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
         times.optimizer_s += asked.elapsed().as_secs_f64();
 
         let began = Instant::now();
-        let evaluations: Vec<Evaluation> = pool
+        let (values, evaluations): (Vec<Vec<f64>>, Vec<Evaluation>) = pool
             .install(|| {
                 candidates
-                    .par_iter()
-                    .map(|x| problem.evaluation(x))
+                    .into_par_iter()
+                    .map(|candidate| {
+                        let x = problem.completed(candidate);
+                        problem.evaluation(&x).map(|evaluation| (x, evaluation))
+                    })
                     .collect::<Result<_, _>>()
             })
             .map_err(|error| error.to_string())?;
@@ -244,8 +124,8 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
 
         let telling = Instant::now();
         let mut front_changed = false;
-        let mut evaluated = Vec::with_capacity(candidates.len());
-        for (offset, (x, evaluation)) in candidates.into_iter().zip(&evaluations).enumerate() {
+        let mut evaluated = Vec::with_capacity(values.len());
+        for (offset, (x, evaluation)) in values.into_iter().zip(&evaluations).enumerate() {
             let candidate = Evaluated {
                 x,
                 outcome: DesignProblem::outcome(evaluation),
@@ -293,26 +173,37 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
         };
         history.push(summary);
         publisher.send(Event::Generation(summary));
+        if evaluated_count < budget
+            && let Some(reason) = stopping.reason(start.elapsed(), &history)
+        {
+            outcome = reason;
+            break;
+        }
     }
     times.search_s = start.elapsed().as_secs_f64();
 
     let found = members.len();
     let verifying = Instant::now();
-    let Some(front) = verify(members.into_values().collect(), &problem, &pool, control, publisher)? else {
+    let Some(verified) = verify(members.into_values().collect(), &problem, &pool, control, publisher)? else {
         return Ok(());
     };
     times.verification_s = verifying.elapsed().as_secs_f64();
     times.publish_s = publisher.spent.as_secs_f64();
-    let objectives = front
+    let objectives: Vec<[f64; 2]> = verified
         .iter()
-        .map(|member| DesignProblem::outcome(&member.evaluation).objectives);
+        .map(|member| DesignProblem::outcome(&member.evaluation).objectives)
+        .collect();
+    let shown = spread(&objectives, front_designs);
+    let knee = knee(&objectives).and_then(|knee| shown.iter().position(|&place| place == knee));
     publisher.send(Event::Finished(RunSummary {
         outcome,
         threads,
         history,
-        dropped: found - front.len(),
+        dropped: found - verified.len(),
         verified_hypervolume: hypervolume(objectives, reference),
-        front,
+        verified: verified.len(),
+        front: shown.into_iter().map(|place| verified[place].clone()).collect(),
+        knee,
         times,
     }));
     Ok(())
@@ -321,6 +212,7 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
 fn algorithm(study: &Study, problem: &DesignProblem) -> Box<dyn Algorithm> {
     let (variables, seed) = (problem.variables(), study.optimizer.seed);
     match study.optimizer.algorithm {
+        AlgorithmName::FrontDe => Box::new(FrontDe::new(variables, study.optimizer.front_de, seed)),
         AlgorithmName::Moga2 => Box::new(Moga2::new(variables, study.optimizer.moga2, seed)),
         AlgorithmName::Nsga2 => Box::new(Nsga2::new(variables, study.optimizer.nsga2, seed)),
     }

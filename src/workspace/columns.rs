@@ -4,7 +4,7 @@ use glam::DVec2;
 use pulp::{Simd, WithSimd};
 
 use super::batch::Oriented;
-use super::{PoseChecker, PoseLanes, PoseValues};
+use super::{PoseChecker, PoseLanes, PoseValues, Thresholds};
 use crate::lanes::{Lanes, MOST_LANES, Planar, Real, padded};
 use crate::mechanism::Leg;
 use crate::spatial::LEGS;
@@ -28,11 +28,27 @@ impl Positions {
         self.ys.push(position.y);
     }
 
+    /// Those of the given indices.
+    pub fn chosen(&self, indices: &[usize]) -> Self {
+        let [xs, ys] = [&self.xs, &self.ys].map(|column| indices.iter().map(|&index| column[index]).collect());
+        Self { xs, ys }
+    }
+
+    pub fn extend(&mut self, positions: &[DVec2]) {
+        self.xs.extend(positions.iter().map(|position| position.x));
+        self.ys.extend(positions.iter().map(|position| position.y));
+    }
+
+    pub fn truncate(&mut self, count: usize) {
+        self.xs.truncate(count);
+        self.ys.truncate(count);
+    }
+
     /// Fills up to what loops read with the first position, which changes no smallest value.
     pub fn pad(&mut self) {
         let length = padded(self.xs.len());
         for column in [&mut self.xs, &mut self.ys] {
-            column.resize(length, column[0]);
+            column.resize(length, column.first().copied().unwrap_or(0.0));
         }
     }
 }
@@ -89,6 +105,32 @@ impl ValueColumns {
             },
         }
         .finite())
+    }
+
+    /// `k_xy`, `k_z` and `k_φz` of the first `count` poses as shares of what is asked, a column each; boundless where
+    /// a leg does not reach: there it is not the stiffness that is missing.
+    pub(crate) fn rigidity_shares(&self, thresholds: &Thresholds, count: usize) -> [Vec<f64>; 3] {
+        [
+            (&self.k_xy, thresholds.k_xy),
+            (&self.k_z, thresholds.k_z),
+            (&self.k_phi_z, thresholds.k_phi_z),
+        ]
+        .map(|(column, threshold)| {
+            column
+                .iter()
+                .zip(&self.reachable)
+                .take(count)
+                .map(|(value, reachable)| {
+                    // `max` takes the number of a pair with none.
+                    let share = (value / threshold.max(f64::MIN_POSITIVE)).max(0.0);
+                    if *reachable > 0.0 {
+                        share.min(f64::MAX)
+                    } else {
+                        f64::MAX
+                    }
+                })
+                .collect()
+        })
     }
 
     #[inline(always)]
@@ -156,48 +198,85 @@ impl<L: Leg> WithSimd for AtPositions<'_, L> {
     }
 }
 
-/// Arms of many orientations, a column for each component, padded.
+/// Arms of many poses, a column for each component, padded.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ArmColumns([Vec<f64>; 2 * LEGS]);
 
 impl ArmColumns {
     /// The columns of `arms`.
     pub fn new(arms: impl ExactSizeIterator<Item = [DVec2; LEGS]>) -> Self {
-        let length = padded(arms.len());
-        let mut columns: [Vec<f64>; 2 * LEGS] = std::array::from_fn(|_| Vec::with_capacity(length));
+        let mut columns = Self::default();
         for arms in arms {
-            for (leg, arm) in arms.iter().enumerate() {
-                columns[2 * leg].push(arm.x);
-                columns[2 * leg + 1].push(arm.y);
+            columns.push(&arms);
+        }
+        columns.pad();
+        columns
+    }
+
+    pub fn clear(&mut self) {
+        self.0.iter_mut().for_each(Vec::clear);
+    }
+
+    pub fn push(&mut self, arms: &[DVec2; LEGS]) {
+        for (leg, arm) in arms.iter().enumerate() {
+            self.0[2 * leg].push(arm.x);
+            self.0[2 * leg + 1].push(arm.y);
+        }
+    }
+
+    /// Those of the given indices.
+    pub fn chosen(&self, indices: &[usize]) -> Self {
+        Self(
+            self.0
+                .each_ref()
+                .map(|column| indices.iter().map(|&index| column[index]).collect()),
+        )
+    }
+
+    /// The same arms `count` times.
+    pub fn extend(&mut self, arms: &[DVec2; LEGS], count: usize) {
+        for (leg, arm) in arms.iter().enumerate() {
+            for (column, value) in [(2 * leg, arm.x), (2 * leg + 1, arm.y)] {
+                let length = self.0[column].len() + count;
+                self.0[column].resize(length, value);
             }
         }
-        for column in &mut columns {
-            column.resize(length, 0.0);
+    }
+
+    pub fn truncate(&mut self, count: usize) {
+        self.0.iter_mut().for_each(|column| column.truncate(count));
+    }
+
+    /// Fills up to what loops read with the first arms, which changes no smallest value.
+    pub fn pad(&mut self) {
+        for column in &mut self.0 {
+            column.resize(padded(column.len()), column.first().copied().unwrap_or(0.0));
         }
-        Self(columns)
     }
 }
 
-/// Values at one position in many orientations.
-struct InOrientations<'a, L> {
+/// Values at many poses.
+struct AtPoses<'a, L> {
     checker: &'a PoseChecker<L>,
-    position: DVec2,
+    xs: &'a [f64],
+    ys: &'a [f64],
     arms: &'a ArmColumns,
     values: &'a mut ValueColumns,
 }
 
-impl<L: Leg> WithSimd for InOrientations<'_, L> {
+impl<L: Leg> WithSimd for AtPoses<'_, L> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let position = Planar::splat(Lanes::all(simd, 0.0), self.position);
+        let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         let [x0, y0, x1, y1, x2, y2] = &self.arms.0;
         let (x0, y0) = (Lanes::<S>::column(x0), Lanes::<S>::column(y0));
         let (x1, y1) = (Lanes::<S>::column(x1), Lanes::<S>::column(y1));
         let (x2, y2) = (Lanes::<S>::column(x2), Lanes::<S>::column(y2));
         let mut writer = self.values.writer::<S>();
-        for group in 0..x0.len() {
+        for group in 0..xs.len() {
+            let position = Planar::new(Lanes::load(simd, &xs[group]), Lanes::load(simd, &ys[group]));
             let arms = [
                 Planar::new(Lanes::load(simd, &x0[group]), Lanes::load(simd, &y0[group])),
                 Planar::new(Lanes::load(simd, &x1[group]), Lanes::load(simd, &y1[group])),
@@ -223,16 +302,28 @@ impl<L: Leg> PoseChecker<L> {
         });
     }
 
+    /// Values at many poses, one for each of `positions` and of `arms`, both padded.
+    pub(crate) fn at_poses(&self, positions: &Positions, arms: &ArmColumns, values: &mut ValueColumns) {
+        assert!(arms.0.iter().all(|column| column.len() == positions.xs.len()));
+        values.resize(positions.xs.len());
+        self.instructions.run(AtPoses {
+            checker: self,
+            xs: &positions.xs,
+            ys: &positions.ys,
+            arms,
+            values,
+        });
+    }
+
     /// Values at one position in many orientations.
     pub(crate) fn in_orientations(&self, position: DVec2, arms: &ArmColumns) -> ValueColumns {
+        let count = arms.0[0].len();
+        let positions = Positions {
+            xs: vec![position.x; count],
+            ys: vec![position.y; count],
+        };
         let mut values = ValueColumns::default();
-        values.resize(arms.0[0].len());
-        self.instructions.run(InOrientations {
-            checker: self,
-            position,
-            arms,
-            values: &mut values,
-        });
+        self.at_poses(&positions, arms, &mut values);
         values
     }
 }

@@ -8,5 +8,7 @@ mod optimizers;
 mod reference;
 mod scenes;
 mod search;
+mod sizing;
 mod strategies;
 mod studies;
+mod test_problems;

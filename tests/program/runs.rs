@@ -62,8 +62,47 @@ fn a_run_leaves_its_files() {
         .stdout
         .clone();
     let found: serde_json::Value = serde_json::from_slice(&output).expect("JSON");
-    assert_eq!(found["workspace_radius_m"].as_f64(), Some(number(row, 10)));
-    assert_eq!(found["mass_kg"].as_f64(), Some(number(row, 9)));
+    for (key, column) in [("workspace_radius_m", 10), ("mass_kg", 9)] {
+        // The reader of JSON may be off by the last bit.
+        let (found, wanted) = (found[key].as_f64().expect("a number"), number(row, column));
+        assert!(
+            (found - wanted).abs() <= 4.0 * f64::EPSILON * wanted,
+            "{key}: {found} instead of {wanted}"
+        );
+    }
+    // The ends and the knee are marked.
+    let marks: Vec<&str> = front.iter().map(|row| &row[row.len() - 1]).collect();
+    assert_eq!(marks[0], "lightest");
+    assert_eq!(marks[marks.len() - 1], "largest");
+    assert_eq!(marks.iter().filter(|mark| **mark == "knee").count(), 1);
+}
+
+/// The rules that a study may state besides its budget, and the thinned front.
+#[test]
+fn a_run_stops_by_the_rules_of_its_study() {
+    let folder = folder();
+    let sections = [
+        (
+            "stagnated",
+            "evaluations = 2000\n[optimizer.stagnation]\nevaluations = 200\ngain = 0.2",
+        ),
+        ("time_up", "evaluations = 100000000\ntime_limit_s = 0.5"),
+        ("completed", "evaluations = 900\nfront_designs = 7"),
+    ];
+    for (outcome, section) in sections {
+        let study = folder.path().join(format!("{outcome}.toml"));
+        let text = format!("name = \"{outcome}\"\narchitectures = [\"3-PRR\"]\n[optimizer]\n{section}\n");
+        fs::write(&study, text).expect("a study");
+        let out = folder.path().join(outcome);
+        let report = optimize(&study, &out, &[]);
+        assert_eq!(report["outcome"], outcome);
+        let done = report["evaluations"].as_u64().expect("a number");
+        assert_eq!(done == 900, outcome == "completed", "{done} evaluations");
+        if outcome == "completed" {
+            let verified = report["front_verified"].as_u64().expect("a number");
+            assert!(verified > 7 && report["front_size"] == 7, "7 of {verified}");
+        }
+    }
 }
 
 /// One seed, one result to the bit: whatever the threads, and again from the study a run leaves.
@@ -71,7 +110,7 @@ fn a_run_leaves_its_files() {
 fn runs_repeat_to_the_bit() {
     let folder = folder();
     let study = small_study(folder.path());
-    for algorithm in ["moga2", "nsga2"] {
+    for algorithm in ["front-de", "moga2", "nsga2"] {
         let run = |name: &str, study: &Path, more: &[&str]| {
             let out = folder.path().join(format!("{algorithm}-{name}"));
             optimize(study, &out, &[&["--algorithm", algorithm], more].concat());

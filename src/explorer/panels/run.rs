@@ -192,6 +192,8 @@ fn progress(ui: &mut Ui, session: &Session) {
         Phase::Paused => "paused".to_owned(),
         Phase::Verifying { .. } => "search done".to_owned(),
         Phase::Finished(Outcome::Completed) => format!("finished in {seconds:.1} s"),
+        Phase::Finished(Outcome::TimeUp) => format!("time was up after {seconds:.1} s"),
+        Phase::Finished(Outcome::Stagnated) => format!("hardly gained any more after {seconds:.1} s"),
         Phase::Finished(Outcome::Stopped) => format!("stopped after {seconds:.1} s"),
         Phase::Failed => "broke off".to_owned(),
         Phase::Opened(path) => format!(

@@ -110,7 +110,7 @@ fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
                         "stiffness_definition" => &["stiffness", "compliance"],
                         "characteristic_length" => &["platform_radius", "isotropic"],
                         "telescopic_bar" => &["current", "longest"],
-                        "algorithm" => &["moga2", "nsga2"],
+                        "algorithm" => &["front-de", "moga2", "nsga2"],
                         _ => &[],
                     };
                     if choices.is_empty() {

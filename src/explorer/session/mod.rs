@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::document::{Chosen, Document, History, Named, Origin};
-use super::running::Running;
+use super::running::{Running, Writing};
 use super::scene_thread::{Answer, Known, SceneThread};
 use super::{Filter, FrontEntry, Row, Store, StudyEditor};
 use crate::evaluation::{Evaluation, GridChoice, Model};
@@ -230,6 +230,12 @@ impl Session {
     /// Folder of the run's files.
     pub fn run_folder(&self) -> Option<PathBuf> {
         self.run.as_ref().map(Running::folder)
+    }
+
+    /// The run's files that will be whole after a wait: of a run that has ended.
+    pub(super) fn writing(&self) -> Option<Writing> {
+        let ended = matches!(self.phase, Phase::Finished(_) | Phase::Failed);
+        self.run.as_ref().filter(|_| ended).map(|run| run.writing().clone())
     }
 
     /// Designs that come with the study.

@@ -1,0 +1,352 @@
+"""Kinefront's optimizers beside pymoo's and fcmaes-core's on the paper's study, all on Kinefront's evaluator.
+
+    python -m pip install -r benches/comparison/requirements.txt
+    cargo build --release --no-default-features
+    (cd benches/comparison/mode && cargo build --release)
+    python benches/comparison/compare.py run target/release/kinefront benches/comparison/mode/target/release/mode OUT \
+        [--evaluations 6000] [--seeds 11] [--architectures 3-PRR,3-RPR,3-RRR] [--only NAME,NAME]
+    python benches/comparison/compare.py table OUT [--plot screenshots/comparison.png]
+
+A run's quality after N evaluations is the hypervolume of what is non-dominated among its first N designs, every radius
+taken from the fine grid, as a share of the reference front's (`assets/reference_fronts`), from 2000 kg and a radius of 0;
+and the same with the logarithm of the mass. Hypervolumes are moocore's. The candidates of other programs are evaluated
+through `kinefront evaluate --stdin`; to them the architecture is a number cut into equal parts. A run that is in OUT
+already is not repeated.
+"""
+
+import argparse
+import csv
+import json
+import math
+import multiprocessing
+import pathlib
+import statistics
+import subprocess
+import tempfile
+import threading
+import time
+
+import moocore
+import numpy as np
+
+KEYS = ("R", "r", "Lb", "rj", "rp")
+LOWER = [0.5, 0.1, 0.5, 0.0, 0.0]
+UPPER = [4.0, 4.0, 4.0, 0.1, 0.1]
+MARKS = (250, 500, 1000, 2000, 3000, 4000, 6000, 10_000, 15_000, 20_000, 30_000)
+ALL = "3-PRR,3-RPR,3-RRR"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+class Evaluator:
+    """`kinefront evaluate --stdin`: designs as text in, answers out, in order."""
+
+    def __init__(self, program, *more):
+        command = [program, "evaluate", "--stdin", *more]
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    def __call__(self, designs):
+        # Answers come while lines still go in: a thread writes, so that neither pipe fills up.
+        def write():
+            self.process.stdin.write("".join(design + "\n" for design in designs))
+            self.process.stdin.flush()
+
+        writer = threading.Thread(target=write)
+        writer.start()
+        answers = [json.loads(self.process.stdout.readline()) for _ in designs]
+        writer.join()
+        return answers
+
+    def close(self):
+        self.process.stdin.close()
+        self.process.wait()
+
+
+def design_text(architecture, values):
+    return architecture + " " + " ".join(f"{key}={float(value)!r}" for key, value in zip(KEYS, values))
+
+
+def own(algorithm):
+    """One of Kinefront's own, as its users run it."""
+
+    def run(job):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "run"
+            arguments = ["--algorithm", algorithm, "--evaluations", job["evaluations"], "--seed", job["seed"]]
+            arguments += ["--architectures", job["architectures"], "--threads", 1, "--quiet", "--out", out]
+            command = [job["kinefront"], "optimize", "paper", *map(str, arguments)]
+            subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+            with open(out / "designs.csv", newline="") as file:
+                rows = list(csv.DictReader(file))
+            report = json.loads((out / "run.json").read_text())
+        found = [(float(row["mass_kg"]), float(row["workspace_radius_m"])) for row in rows]
+        volume = hypervolume([point for point in found if point[1] > 0.0])
+        assert math.isclose(volume, report["hypervolume_kg_m"], rel_tol=1e-9), "moocore and Kinefront differ"
+        return [(design_text(row["architecture"], [row[key] for key in KEYS]), *point) for row, point in zip(rows, found)]
+
+    return run
+
+
+def pymoo_algorithm(make):
+    """One of pymoo's with its own defaults but the population."""
+
+    def run(job):
+        from pymoo.core.problem import Problem
+        from pymoo.optimize import minimize
+
+        architectures = job["architectures"].split(",")
+        several = len(architectures) > 1
+        evaluator = Evaluator(job["kinefront"])
+        met = []
+
+        class Study(Problem):
+            def __init__(self):
+                more = [0.0] if several else []
+                lower, upper = np.array(LOWER + more), np.array(UPPER + [1.0 for _ in more])
+                super().__init__(n_var=len(lower), n_obj=2, n_ieq_constr=1, xl=lower, xu=upper)
+
+            def _evaluate(self, x, out, *args, **kwargs):
+                places = np.minimum(x[:, 5] * len(architectures), len(architectures) - 1) if several else np.zeros(len(x))
+                designs = [design_text(architectures[int(place)], row[:5]) for place, row in zip(places, x)]
+                answers = evaluator(designs)
+                met.extend(
+                    (design, answer["mass_kg"], answer["workspace_radius_m"]) for design, answer in zip(designs, answers)
+                )
+                out["F"] = np.array([[answer["mass_kg"], -answer["workspace_radius_m"]] for answer in answers])
+                out["G"] = np.array([[answer["violation"]] for answer in answers])
+
+        minimize(Study(), make(), ("n_eval", job["evaluations"]), seed=job["seed"])
+        evaluator.close()
+        return met
+
+    return run
+
+
+def nsga2(population):
+    from pymoo.algorithms.moo.nsga2 import NSGA2
+
+    return NSGA2(pop_size=population)
+
+
+def gde3():
+    from pymoo.algorithms.moo.gde3 import GDE3
+
+    return GDE3(pop_size=60)
+
+
+def sms_emoa():
+    from pymoo.algorithms.moo.sms import SMSEMOA
+
+    return SMSEMOA(pop_size=100)
+
+
+def c_taea():
+    from pymoo.algorithms.moo.ctaea import CTAEA
+    from pymoo.util.ref_dirs import get_reference_directions
+
+    return CTAEA(ref_dirs=get_reference_directions("das-dennis", 2, n_partitions=59))
+
+
+def mode(job):
+    """MODE of fcmaes-core with its own defaults."""
+    arguments = [job["kinefront"], job["architectures"], job["evaluations"], job["seed"], 64]
+    printed = subprocess.run([job["mode"], *map(str, arguments)], check=True, capture_output=True, text=True)
+    designs = printed.stdout.splitlines()[: job["evaluations"]]
+    evaluator = Evaluator(job["kinefront"])
+    answers = evaluator(designs)
+    evaluator.close()
+    return [(design, answer["mass_kg"], answer["workspace_radius_m"]) for design, answer in zip(designs, answers)]
+
+
+ALGORITHMS = {
+    "Kinefront front-de": own("front-de"),
+    "Kinefront NSGA-II": own("nsga2"),
+    "Kinefront after MOGA-II": own("moga2"),
+    "pymoo NSGA-II, population 30": pymoo_algorithm(lambda: nsga2(30)),
+    "pymoo NSGA-II, population 100": pymoo_algorithm(lambda: nsga2(100)),
+    "pymoo GDE3, population 60": pymoo_algorithm(gde3),
+    "pymoo SMS-EMOA, population 100": pymoo_algorithm(sms_emoa),
+    "pymoo C-TAEA, 60 directions": pymoo_algorithm(c_taea),
+    "fcmaes-core MODE, population 64": mode,
+}
+
+
+def hypervolume(points, logarithmic=False):
+    """Of (mass, radius) pairs from 2000 kg and 0 m."""
+    points = [(mass, -radius) for mass, radius in points if mass < 2000.0]
+    if not points:
+        return 0.0
+    points = np.array(points)
+    reference = [2000.0, 0.0]
+    if logarithmic:
+        points[:, 0] = np.log(points[:, 0])
+        reference[0] = math.log(2000.0)
+    return float(moocore.hypervolume(points, ref=reference))
+
+
+def front(designs):
+    """What is feasible and not dominated of (design, mass, radius)."""
+    kept, largest = [], 0.0
+    for design in sorted(designs, key=lambda design: (design[1], -design[2])):
+        if design[2] > largest:
+            kept.append(design)
+            largest = design[2]
+    return kept
+
+
+def reference_front(architectures):
+    name = "combined" if architectures == ALL else architectures
+    with open(ROOT / "assets/reference_fronts" / f"{name}.csv", newline="") as file:
+        return [(float(row["mass_kg"]), float(row["workspace_radius_m"])) for row in csv.DictReader(file)]
+
+
+def measure(job):
+    if job["file"].exists():
+        return
+    start = time.perf_counter()
+    met = ALGORITHMS[job["algorithm"]](job)
+    seconds = time.perf_counter() - start
+    marks = [mark for mark in MARKS if mark <= job["evaluations"]]
+    fronts = {mark: [design for design, _, _ in front(met[:mark])] for mark in marks}
+    designs = sorted(set().union(*fronts.values()))
+    evaluator = Evaluator(job["kinefront"], "--grid", "fine")
+    fine = {
+        design: (answer["mass_kg"], answer["workspace_radius_m"])
+        for design, answer in zip(designs, evaluator(designs))
+        if answer["feasible"]
+    }
+    evaluator.close()
+    volumes = {}
+    for mark in marks:
+        points = [fine[design] for design in fronts[mark] if design in fine]
+        volumes[mark] = [hypervolume(points), hypervolume(points, logarithmic=True)]
+    result = {key: job[key] for key in ("algorithm", "architectures", "seed", "evaluations")}
+    result |= {"seconds": seconds, "hypervolumes": volumes}
+    job["file"].write_text(json.dumps(result, indent=1) + "\n")
+    print(f"{job['algorithm']:34} {job['architectures']:18} seed {job['seed']:2}: {seconds:.1f} s", flush=True)
+
+
+def run(arguments):
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    names = [name for name in ALGORITHMS if not arguments.only or any(part in name for part in arguments.only.split(","))]
+    jobs = []
+    for seed in range(1, arguments.seeds + 1):
+        for name in names:
+            slug = "".join(c if c.isalnum() else "-" for c in f"{name}-{arguments.architectures}")
+            jobs.append(
+                {
+                    "algorithm": name,
+                    "architectures": arguments.architectures,
+                    "seed": seed,
+                    "evaluations": arguments.evaluations,
+                    "kinefront": str(arguments.kinefront.resolve()),
+                    "mode": str(arguments.mode.resolve()),
+                    "file": arguments.out / f"{slug}-{arguments.evaluations}-{seed}.json",
+                }
+            )
+    with multiprocessing.Pool() as pool:
+        for _ in pool.imap_unordered(measure, jobs, chunksize=1):
+            pass
+
+
+def table(arguments):
+    # Of runs that differ in length only, the longer one says all.
+    longest = {}
+    for file in sorted(arguments.out.glob("*.json")):
+        result = json.loads(file.read_text())
+        key = (result["architectures"], result["algorithm"], result["seed"])
+        if key not in longest or longest[key]["evaluations"] < result["evaluations"]:
+            longest[key] = result
+    cases = {}
+    for (architectures, algorithm, _), result in longest.items():
+        cases.setdefault(architectures, {}).setdefault(algorithm, []).append(result)
+    for architectures, algorithms in sorted(cases.items(), key=lambda case: -len(case[0])):
+        reference = reference_front(architectures)
+        whole = [hypervolume(reference), hypervolume(reference, logarithmic=True)]
+        print(f"\n{architectures}, {arguments_seeds(algorithms)} seeds: median (worst) share of the reference front's hypervolume\n")
+        budgets = [1000, 6000, 30_000]
+        print("| | " + " | ".join(f"{budget} | with log mass" for budget in budgets) + " | 90 / 95 / 99 % after |")
+        print("|---|" + "---:|---:|" * len(budgets) + "---:|")
+        for name in ALGORITHMS:
+            results = algorithms.get(name)
+            if not results:
+                continue
+            cells = []
+            for budget in budgets:
+                for kind in range(2):
+                    shares = [r["hypervolumes"][str(budget)][kind] / whole[kind] for r in results if str(budget) in r["hypervolumes"]]
+                    cells.append(f"{100 * statistics.median(shares):.2f} ({100 * min(shares):.2f})" if shares else "–")
+            reached = " / ".join(evaluations_to(results, share, whole[0]) for share in (0.9, 0.95, 0.99))
+            print(f"| {name} | " + " | ".join(cells) + f" | {reached} |")
+    if arguments.plot:
+        plot(arguments.plot, cases)
+
+
+def arguments_seeds(algorithms):
+    counts = {len(results) for results in algorithms.values()}
+    return " or ".join(map(str, sorted(counts)))
+
+
+def curve(results, whole):
+    """Marks and the shares there, one per seed, at those marks that all seeds have."""
+    marks = [mark for mark in MARKS if all(str(mark) in result["hypervolumes"] for result in results)]
+    return marks, [[result["hypervolumes"][str(mark)][0] / whole for result in results] for mark in marks]
+
+
+def evaluations_to(results, share, whole):
+    """The mark by which the median seed has reached a share."""
+    for mark, shares in zip(*curve(results, whole)):
+        if statistics.median(shares) >= share:
+            return str(mark)
+    return "–"
+
+
+def plot(path, cases):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(1, len(cases), figsize=(1.5 + 5.5 * len(cases), 5.2), squeeze=False, layout="constrained")
+    for axis, (architectures, algorithms) in zip(axes[0], sorted(cases.items(), key=lambda case: -len(case[0]))):
+        whole = hypervolume(reference_front(architectures))
+        for index, name in enumerate(name for name in ALGORITHMS if name in algorithms):
+            marks, shares = curve(algorithms[name], whole)
+            ours = name.startswith("Kinefront")
+            missing = [100 * (1 - statistics.median(at)) for at in shares]
+            axis.plot(marks, missing, label=name, color=f"C{index}", lw=2.2 if ours else 1.3, ls="-" if ours else "--")
+            axis.fill_between(
+                marks, [100 * (1 - min(at)) for at in shares], [100 * (1 - max(at)) for at in shares], color=f"C{index}", alpha=0.12
+            )
+        axis.set(xscale="log", yscale="log", title=architectures.replace(",", ", "), xlabel="evaluations")
+        axis.set_ylabel("missing of the reference front's hypervolume [%]")
+        ticks = [0.3, 1, 3, 10, 30]
+        axis.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
+        ticks = [250, 1000, 6000, 30_000]
+        axis.set_xticks(ticks, [f"{tick}" for tick in ticks])
+        axis.minorticks_off()
+        axis.grid(alpha=0.3)
+        axis.legend(fontsize=8)
+    figure.savefig(path, dpi=110)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(required=True)
+    runner = commands.add_parser("run")
+    for name in ("kinefront", "mode", "out"):
+        runner.add_argument(name, type=pathlib.Path)
+    runner.add_argument("--evaluations", type=int, default=6000)
+    runner.add_argument("--seeds", type=int, default=11)
+    runner.add_argument("--architectures", default=ALL)
+    runner.add_argument("--only", help="algorithms whose names contain one of these")
+    runner.set_defaults(command=run)
+    teller = commands.add_parser("table")
+    teller.add_argument("out", type=pathlib.Path)
+    teller.add_argument("--plot", type=pathlib.Path)
+    teller.set_defaults(command=table)
+    arguments = parser.parse_args()
+    arguments.command(arguments)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,397 @@
+//! Reference fronts of the paper's study: the best that is known, for optimizers to be measured against.
+//!
+//! ```text
+//! cargo bench --no-default-features --bench reference_fronts -- make [DIRECTORY]
+//! ```
+//!
+//! Writes `3-PRR.csv`, `3-RPR.csv`, `3-RRR.csv` and `combined.csv` (default: `assets/reference_fronts`), every radius from
+//! the fine grid, by a search that no optimizer's budget could afford. What a file there already holds is taken up and
+//! never made worse, so the command may be repeated. For each architecture:
+//!
+//! 1. the program's own optimizer, two long runs on the reference grid and one on the fine grid;
+//! 2. NSGA-II, a long run on the reference grid, which knows nothing of the problem's structure;
+//! 3. a ladder of radii: at each the mass is minimised over the geometry by differential evolution, the bars sized for it;
+//! 4. the same ladder, all five lengths at once by an evolution strategy that knows no sizing, from the best so far.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use kinefront::evaluation::{BarRanges, Demand, Evaluation, GridChoice, Model};
+use kinefront::mechanism::{Architecture, Design, VARIABLES, Variable};
+use kinefront::optimize::{
+    Archive, Evaluated, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, drive, hypervolume,
+};
+use kinefront::study::{BUILTIN, DesignProblem, Study};
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
+
+/// Steps of the ladder of radii.
+const LADDER: usize = 96;
+
+/// Designs that a step of the ladder starts from, and generations of them.
+const STEP: [usize; 2] = [12, 14];
+
+/// Trials of the evolution strategy at a step of the ladder.
+const TRIALS: usize = 240;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|argument| argument != "--bench")
+        .collect();
+    let [command, rest @ ..] = arguments.as_slice() else {
+        println!("takes half an hour: cargo bench --no-default-features --bench reference_fronts -- make [DIRECTORY]");
+        return;
+    };
+    assert_eq!(command, "make", "the only command is make");
+    let directory = rest.first().map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/reference_fronts"),
+        PathBuf::from,
+    );
+    fs::create_dir_all(&directory).expect("the folder can be made");
+    let study = BUILTIN[0].study().expect("the built-in study is sound");
+    let mut combined = Front::default();
+    for &architecture in Architecture::ALL {
+        let path = directory.join(format!("{architecture}.csv"));
+        let mut front = Front::read(&path, &study);
+        Search::new(&study, architecture).improve(&mut front, &path);
+        combined.take_all(&front);
+        combined.write(&directory.join("combined.csv"));
+    }
+}
+
+/// Designs that nothing known dominates, on the fine grid.
+#[derive(Default, Clone)]
+struct Front(Archive);
+
+impl Front {
+    fn take(&mut self, evaluation: &Evaluation) {
+        let design = &evaluation.design;
+        let mut x = vec![
+            Architecture::ALL
+                .iter()
+                .position(|known| *known == design.architecture)
+                .unwrap_or(0) as f64,
+        ];
+        x.extend(VARIABLES.map(|variable| value(design, variable)));
+        let outcome = DesignProblem::outcome(evaluation);
+        self.0.insert(0, &Evaluated { x, outcome });
+    }
+
+    fn take_all(&mut self, other: &Front) {
+        for member in other.0.iter() {
+            let outcome = Outcome {
+                objectives: member.objectives,
+                violation: 0.0,
+            };
+            self.0.insert(
+                0,
+                &Evaluated {
+                    x: member.x.clone(),
+                    outcome,
+                },
+            );
+        }
+    }
+
+    fn designs(&self, study: &Study) -> Vec<(Design, [f64; 2])> {
+        self.0
+            .iter()
+            .map(|member| {
+                let [architecture, lengths @ ..] = member.x.as_slice() else {
+                    unreachable!("six values")
+                };
+                let lengths: [f64; 5] = lengths.try_into().expect("five lengths");
+                let design = Design::new(Architecture::ALL[*architecture as usize], study.working_mode, lengths);
+                (design.expect("it was evaluated"), member.objectives)
+            })
+            .collect()
+    }
+
+    /// What a file holds, evaluated anew.
+    fn read(path: &Path, study: &Study) -> Self {
+        let mut front = Self::default();
+        let Ok(text) = fs::read_to_string(path) else {
+            return front;
+        };
+        let designs: Vec<Design> = text
+            .lines()
+            .skip(1)
+            .map(|line| {
+                let fields: Vec<&str> = line.split(',').collect();
+                let lengths = [1, 2, 3, 4, 5].map(|k| fields[k].parse().expect("a number"));
+                Design::new(fields[0].parse().expect("an architecture"), study.working_mode, lengths).expect("a design")
+            })
+            .collect();
+        front.evaluate(&study.model(), designs);
+        front
+    }
+
+    fn evaluate(&mut self, model: &Model, designs: Vec<Design>) {
+        let evaluations: Vec<Evaluation> = designs
+            .par_iter()
+            .map(|design| model.evaluate(design, GridChoice::Fine).expect("the grid fits"))
+            .collect();
+        evaluations.iter().for_each(|evaluation| self.take(evaluation));
+    }
+
+    fn write(&self, path: &Path) {
+        let mut text = String::from("architecture,R,r,Lb,rj,rp,mass_kg,workspace_radius_m\n");
+        for member in self.0.iter() {
+            let lengths: Vec<String> = member.x[1..].iter().map(f64::to_string).collect();
+            let [mass, negative_radius] = member.objectives;
+            let architecture = Architecture::ALL[member.x[0] as usize];
+            text += &format!("{architecture},{},{mass},{}\n", lengths.join(","), -negative_radius);
+        }
+        fs::write(path, text).expect("the file can be written");
+    }
+
+    fn report(&self, what: &str) {
+        let volume = hypervolume(self.0.iter().map(|member| member.objectives), [2000.0, 0.0]);
+        let logarithmic = self
+            .0
+            .iter()
+            .map(|member| [member.objectives[0].ln(), member.objectives[1]]);
+        println!(
+            "{what:40} {:5} designs, {volume:9.3} kg m, {:.5} m ln kg",
+            self.0.len(),
+            hypervolume(logarithmic, [2000f64.ln(), 0.0])
+        );
+    }
+}
+
+fn value(design: &Design, variable: Variable) -> f64 {
+    match variable {
+        Variable::BaseRadius => design.base_radius,
+        Variable::PlatformRadius => design.platform_radius,
+        Variable::LinkLength => design.link_length,
+        Variable::LegBarRadius => design.leg_bar_radius,
+        Variable::PlatformBarRadius => design.platform_bar_radius,
+    }
+}
+
+fn lengths(design: &Design) -> [f64; 5] {
+    VARIABLES.map(|variable| value(design, variable))
+}
+
+struct Search {
+    study: Study,
+    architecture: Architecture,
+    model: Model,
+    ranges: [[f64; 2]; 5],
+    bars: BarRanges,
+}
+
+impl Search {
+    fn new(study: &Study, architecture: Architecture) -> Self {
+        let study = Study {
+            architectures: vec![architecture],
+            ..study.clone()
+        };
+        let ranges = VARIABLES.map(|variable| study.bounds.range(variable));
+        Self {
+            model: study.model(),
+            ranges,
+            bars: BarRanges {
+                leg: ranges[3],
+                platform: ranges[4],
+            },
+            architecture,
+            study,
+        }
+    }
+
+    /// Improves a front step by step, and keeps it in a file after each.
+    fn improve(&self, front: &mut Front, path: &Path) {
+        let name = self.architecture;
+        let keep = |front: &Front, what: &str| {
+            front.write(path);
+            front.report(&format!("{name}: {what}"));
+        };
+        keep(front, "at first");
+        self.long_runs(front);
+        keep(front, "after long runs");
+        for round in 0..2 {
+            self.ladder(front, round);
+            keep(front, "after the ladder");
+            self.strategy(front, round);
+            keep(front, "after the evolution strategy");
+        }
+    }
+
+    fn long_runs(&self, front: &mut Front) {
+        let coarse = DesignProblem::new(&self.study);
+        let fine = DesignProblem::new(&Study {
+            grid: kinefront::study::Grids {
+                reference: self.study.grid.fine.clone(),
+                ..self.study.grid.clone()
+            },
+            ..self.study.clone()
+        });
+        let settings = FrontDeSettings {
+            most: 300,
+            ..FrontDeSettings::default()
+        };
+        let own = |problem: &DesignProblem, evaluations: usize, seed: u64| {
+            drive(
+                problem,
+                &mut FrontDe::new(problem.variables(), settings, seed),
+                evaluations,
+            )
+        };
+        let plain = Nsga2Settings {
+            population: 200,
+            ..Nsga2Settings::default()
+        };
+        let runs: Vec<Archive> = (0..4u64)
+            .into_par_iter()
+            .map(|run| match run {
+                0 => own(&fine, 8000, 101),
+                3 => drive(&coarse, &mut Nsga2::new(coarse.variables(), plain, 101), 100_000),
+                seed => own(&coarse, 30_000, 100 + seed),
+            })
+            .collect();
+        for archive in runs {
+            let designs = archive
+                .iter()
+                .map(|member| coarse.design(&member.x).expect("it was evaluated"));
+            front.evaluate(&self.model, designs.collect());
+        }
+    }
+
+    /// The radii at which the mass is minimised: spread over those of the front and a little beyond.
+    fn levels(&self, front: &Front, round: usize) -> Vec<f64> {
+        let radii: Vec<f64> = front.0.iter().map(|member| -member.objectives[1]).collect();
+        let (Some(least), Some(most)) = (radii.first(), radii.last()) else {
+            return Vec::new();
+        };
+        let shift = 0.5 * round as f64;
+        (0..LADDER)
+            .map(|k| least + (most - least) * (k as f64 + shift) / (LADDER as f64 - 1.0))
+            .collect()
+    }
+
+    fn ladder(&self, front: &mut Front, round: usize) {
+        let known = front.designs(&self.study);
+        let found: Vec<Vec<Evaluation>> = self
+            .levels(front, round)
+            .into_par_iter()
+            .enumerate()
+            .map(|(k, level)| self.step(&known, level, (round * LADDER + k) as u64))
+            .collect();
+        found.iter().flatten().for_each(|evaluation| front.take(evaluation));
+    }
+
+    /// Differential evolution of the geometry at one radius; everything feasible that it met.
+    fn step(&self, known: &[(Design, [f64; 2])], level: f64, seed: u64) -> Vec<Evaluation> {
+        let mut random = ChaCha8Rng::seed_from_u64(1000 + seed);
+        let mut near = known.to_vec();
+        near.sort_by(|a, b| (a.1[1] + level).abs().total_cmp(&(b.1[1] + level).abs()));
+        near.truncate(STEP[0]);
+        let mut met = Vec::new();
+        let mut members: Vec<(Design, f64)> = Vec::new();
+        for (design, _) in near {
+            members.push((design, self.sized_mass(&design, level, &mut met)));
+        }
+        for _ in 0..STEP[1] {
+            for k in 0..members.len() {
+                let best = (0..members.len())
+                    .min_by(|&a, &b| members[a].1.total_cmp(&members[b].1))
+                    .unwrap_or(k);
+                let [a, b] = [0, 1].map(|_| (uniform(&mut random) * members.len() as f64) as usize);
+                let mut next = lengths(&members[k].0);
+                for j in 0..3 {
+                    let at = |i: usize| lengths(&members[i].0)[j];
+                    let moved = next[j] + 0.5 * (at(best) - next[j]) + 0.7 * (at(a) - at(b));
+                    // A little noise, so that members that have met can part again.
+                    next[j] = (moved * (1.0 + 2e-3 * (uniform(&mut random) - 0.5)))
+                        .clamp(self.ranges[j][0], self.ranges[j][1]);
+                }
+                let Ok(design) = Design::new(self.architecture, self.study.working_mode, next) else {
+                    continue;
+                };
+                let mass = self.sized_mass(&design, level, &mut met);
+                if mass <= members[k].1 {
+                    members[k] = (design, mass);
+                }
+            }
+        }
+        met
+    }
+
+    /// Mass of a geometry with bars sized for a radius, infinite where the fine grid does not confirm nearly all of it.
+    fn sized_mass(&self, design: &Design, level: f64, met: &mut Vec<Evaluation>) -> f64 {
+        let sized = self
+            .model
+            .sized(design, &self.bars, Demand::Radius(level))
+            .expect("the grid fits");
+        let Some(sized) = sized else { return f64::INFINITY };
+        let evaluation = self.model.evaluate(&sized, GridChoice::Fine).expect("the grid fits");
+        let radius = evaluation.workspace_radius;
+        let mass = if radius >= 0.9 * level {
+            // What is missing is paid for as if mass grew with the cube of the radius.
+            evaluation.mass * (level / radius.min(level)).powi(3)
+        } else {
+            f64::INFINITY
+        };
+        met.push(evaluation);
+        mass
+    }
+
+    fn strategy(&self, front: &mut Front, round: usize) {
+        let known = front.designs(&self.study);
+        let levels = self.levels(front, round);
+        let found: Vec<Vec<Evaluation>> = levels
+            .into_par_iter()
+            .enumerate()
+            .map(|(k, level)| {
+                let start = known.iter().find(|(_, objectives)| -objectives[1] >= level);
+                start.map_or(Vec::new(), |(design, objectives)| {
+                    self.shrink(*design, objectives[0], level, (round * LADDER + k) as u64)
+                })
+            })
+            .collect();
+        found.iter().flatten().for_each(|evaluation| front.take(evaluation));
+    }
+
+    /// Evolution strategy of one parent and one child (Rechenberg's rule of one fifth) on all five lengths.
+    fn shrink(&self, mut design: Design, mut mass: f64, level: f64, seed: u64) -> Vec<Evaluation> {
+        let mut random = ChaCha8Rng::seed_from_u64(9000 + seed);
+        let mut met = Vec::new();
+        let mut width = 0.01;
+        for _ in 0..TRIALS {
+            let mut next = lengths(&design);
+            for (value, range) in next.iter_mut().zip(self.ranges) {
+                *value = (*value * (1.0 + width * gauss(&mut random))).clamp(range[0], range[1]);
+            }
+            let Ok(candidate) = Design::new(self.architecture, self.study.working_mode, next) else {
+                continue;
+            };
+            let lighter = self.model.mass(&candidate) < mass;
+            let evaluation = lighter.then(|| {
+                self.model
+                    .evaluate(&candidate, GridChoice::Fine)
+                    .expect("the grid fits")
+            });
+            match evaluation {
+                Some(evaluation) if evaluation.workspace_radius >= level => {
+                    (design, mass) = (candidate, evaluation.mass);
+                    met.push(evaluation);
+                    width *= 1.5;
+                }
+                _ => width = (width * 0.9).max(1e-6),
+            }
+        }
+        met
+    }
+}
+
+fn uniform(random: &mut ChaCha8Rng) -> f64 {
+    (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+}
+
+fn gauss(random: &mut ChaCha8Rng) -> f64 {
+    let radius = libm::sqrt(-2.0 * libm::log(uniform(random).max(f64::MIN_POSITIVE)));
+    radius * libm::cos(std::f64::consts::TAU * uniform(random))
+}

@@ -1,0 +1,346 @@
+//! Differential evolution along the front, for problems that may have structure.
+//!
+//! With two objectives the best candidates lie on a curve, and so do, piece by piece, their variables. A population held
+//! in the order of the front is therefore crossed among neighbours only: their differences (Storn and Price 1997) point
+//! along the curve and shrink with its width, which differences between its far ends do not. Survivors are cut by
+//! non-domination and crowding (Deb et al. 2002; the crowding is counted anew after each that leaves), as in GDE3
+//! (Kukkonen and Lampinen 2005); the population starts small, to find the front, and grows to fill it.
+//!
+//! - **Structure**: each candidate aims, at the best that its other variables allow or at a level of the second objective
+//!   that is carried along the front by the same differences. A problem that can [complete](super::Problem::complete)
+//!   candidates takes part of the search over; for any other the aim has no meaning.
+//! - **Categories**: each combination of the categorical variables is a niche with a population of its own, for
+//!   differences between unlike things mean nothing. Evaluations go to the niches whose candidates reach the common front,
+//!   and a small share to every one, so that none starves early and none wastes late.
+//! - **Crossover**: where differences do not help (many local fronts, variables that act alone), simulated binary
+//!   crossover and polynomial mutation do; which of the two makes a candidate follows what either achieved lately.
+
+use super::population::{Member, best, ranked, tournament};
+use super::random::Random;
+use super::variation::{cross, mutate};
+use super::{Aim, Algorithm, Archive, Candidate, Evaluated, Variable, doe};
+
+/// Parameters of [`FrontDe`].
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FrontDeSettings {
+    /// Candidates of a generation, and of the first sample; at least 2.
+    pub generation: usize,
+    /// Members of a population at first, at least 4.
+    pub population: usize,
+    /// Evaluations for which a population grows by a member, at least 1.
+    pub growth: usize,
+    /// Members of a population at most.
+    pub most: usize,
+    /// Neighbours on either side along the front.
+    pub neighbours: usize,
+    /// Factor of the differences.
+    pub scale: f64,
+    /// Probability that a variable takes part in a difference.
+    pub crossover: f64,
+    /// Share of candidates that aim at the best their other variables allow, rather than at a level.
+    pub best: f64,
+}
+
+impl Default for FrontDeSettings {
+    fn default() -> Self {
+        Self {
+            generation: 30,
+            population: 20,
+            growth: 40,
+            most: 100,
+            neighbours: 10,
+            scale: 0.5,
+            crossover: 0.9,
+            best: 0.7,
+        }
+    }
+}
+
+/// Share of the candidates that every niche, or either way of making a candidate, has at least.
+const LEAST_SHARE: f64 = 0.03;
+
+/// Weight of a candidate in the running success of its niche and of the way it was made.
+const MEMORY: f64 = 0.02;
+
+/// Probability that two parents are crossed before the mutation.
+const CROSSED: f64 = 0.9;
+
+/// Distribution indices of crossover and mutation.
+const INDICES: [f64; 2] = [15.0, 20.0];
+
+/// The algorithm's state between generations.
+#[derive(Debug, Clone)]
+pub struct FrontDe {
+    variables: Vec<Variable>,
+    settings: FrontDeSettings,
+    random: Random,
+    seed: u64,
+    niches: Vec<Niche>,
+    ways: [Success; 2],
+    /// Of each candidate asked for, its niche and the way it was made.
+    asked: Vec<(usize, Option<usize>)>,
+    archive: Archive,
+    evaluated: usize,
+}
+
+/// Share of the late candidates that reached the common front.
+#[derive(Debug, Clone, Copy)]
+struct Success(f64);
+
+impl Success {
+    const UNKNOWN: Success = Success(0.5);
+
+    fn learn(&mut self, reached: bool) {
+        self.0 += MEMORY * (f64::from(u8::from(reached)) - self.0);
+    }
+}
+
+/// Candidates of one combination of the categorical variables.
+#[derive(Debug, Clone)]
+struct Niche {
+    /// Values of the categorical variables, in the order of the variables.
+    categories: Vec<f64>,
+    /// In the order of the front: feasible ones by the first objective, then the others by violation.
+    population: Vec<Member>,
+    evaluated: usize,
+    success: Success,
+}
+
+impl FrontDe {
+    /// The algorithm before its first generation.
+    pub fn new(variables: Vec<Variable>, settings: FrontDeSettings, seed: u64) -> Self {
+        let niches = combinations(&variables)
+            .into_iter()
+            .map(|categories| Niche {
+                categories,
+                population: Vec::new(),
+                evaluated: 0,
+                success: Success::UNKNOWN,
+            })
+            .collect();
+        Self {
+            variables,
+            settings,
+            random: Random::new(seed),
+            seed,
+            niches,
+            ways: [Success::UNKNOWN; 2],
+            asked: Vec::new(),
+            archive: Archive::default(),
+            evaluated: 0,
+        }
+    }
+
+    /// A Sobol sample, dealt out to the niches in turn.
+    fn sample(&mut self) -> Vec<Candidate> {
+        let count = self.settings.generation.max(2).max(4 * self.niches.len());
+        let mut sample = doe::sobol(&self.variables, count, self.seed);
+        for (index, x) in sample.iter_mut().enumerate() {
+            let niche = index % self.niches.len();
+            self.asked.push((niche, None));
+            set_categories(&self.variables, x, &self.niches[niche].categories);
+        }
+        let aim = Some(Aim::Best);
+        sample.into_iter().map(|x| Candidate { x, aim }).collect()
+    }
+
+    /// One of several by their success, each with its least share.
+    fn draw(&mut self, successes: impl Iterator<Item = Success> + Clone) -> usize {
+        let sum: f64 = successes.clone().map(|success| success.0).sum();
+        let count = successes.clone().count();
+        let least = LEAST_SHARE.min(1.0 / count as f64);
+        let mut draw = self.random.uniform();
+        for (index, success) in successes.enumerate() {
+            let share = if sum > 0.0 { success.0 / sum } else { 1.0 / count as f64 };
+            draw -= least + (1.0 - count as f64 * least) * share;
+            if draw < 0.0 {
+                return index;
+            }
+        }
+        count - 1
+    }
+
+    fn child(&mut self) -> Candidate {
+        let successes: Vec<Success> = self.niches.iter().map(|niche| niche.success).collect();
+        let niche = self.draw(successes.into_iter());
+        if self.niches[niche].population.len() < 4 {
+            self.asked.push((niche, None));
+            return self.anywhere(niche);
+        }
+        let way = self.draw(self.ways.into_iter());
+        self.asked.push((niche, Some(way)));
+        let size = self.niches[niche].population.len();
+        let place = self.random.below(size);
+        let aims_at_best = self.random.chance(self.settings.best);
+        let (x, level) = if way == 0 {
+            self.difference(niche, place)
+        } else {
+            self.crossed(niche)
+        };
+        let aim = match level {
+            Some(level) if !aims_at_best => Aim::Level(level),
+            _ => Aim::Best,
+        };
+        Candidate { x, aim: Some(aim) }
+    }
+
+    /// Any candidate of a niche.
+    fn anywhere(&mut self, niche: usize) -> Candidate {
+        let mut x: Vec<f64> = self
+            .variables
+            .iter()
+            .map(|variable| match *variable {
+                Variable::Real { lower, upper } => lower + self.random.uniform() * (upper - lower),
+                Variable::Categorical { .. } => 0.0,
+            })
+            .collect();
+        set_categories(&self.variables, &mut x, &self.niches[niche].categories);
+        Candidate {
+            x,
+            aim: Some(Aim::Best),
+        }
+    }
+
+    /// A place near `place` along the front.
+    fn near(&mut self, size: usize, place: usize) -> usize {
+        let reach = self.settings.neighbours;
+        if 2 * reach + 1 >= size {
+            return self.random.below(size);
+        }
+        let first = place.saturating_sub(reach).min(size - 2 * reach - 1);
+        first + self.random.below(2 * reach + 1)
+    }
+
+    /// A neighbour, or the member itself, moved by the difference of two others; and the level it moves to.
+    fn difference(&mut self, niche: usize, place: usize) -> (Vec<f64>, Option<f64>) {
+        let size = self.niches[niche].population.len();
+        let base = if self.random.chance(0.5) {
+            place
+        } else {
+            self.near(size, place)
+        };
+        let (mut to, mut from) = (self.near(size, place), self.near(size, place));
+        while to == base {
+            to = self.near(size, place);
+        }
+        while from == base || from == to {
+            from = self.near(size, place);
+        }
+        let forced = self.random.below(self.variables.len());
+        let population = &self.niches[niche].population;
+        let mut x = population[place].candidate.x.clone();
+        let [base, to, from] = [base, to, from].map(|place| &population[place].candidate);
+        for (k, variable) in self.variables.iter().enumerate() {
+            if let Variable::Real { lower, upper } = *variable
+                && (k == forced || self.random.chance(self.settings.crossover))
+            {
+                let moved = base.x[k] + self.settings.scale * (to.x[k] - from.x[k]);
+                // Past a bound: anywhere between it and the base, so that the bound itself is not favoured.
+                x[k] = if moved < lower {
+                    lower + self.random.uniform() * (base.x[k] - lower)
+                } else if moved > upper {
+                    upper - self.random.uniform() * (upper - base.x[k])
+                } else {
+                    moved
+                };
+            }
+        }
+        let level = |member: &Evaluated| member.outcome.objectives[1];
+        let all_feasible = [base, to, from].iter().all(|member| member.outcome.is_feasible());
+        let moved = level(base) + self.settings.scale * (level(to) - level(from));
+        (x, all_feasible.then_some(moved))
+    }
+
+    /// Two members that won a tournament, crossed and mutated; and the level of the first.
+    fn crossed(&mut self, niche: usize) -> (Vec<f64>, Option<f64>) {
+        let population = &self.niches[niche].population;
+        let parents = [(); 2].map(|()| &population[tournament(&mut self.random, population)].candidate);
+        let outcome = parents[0].outcome;
+        let mut pair = parents.map(|parent| parent.x.clone());
+        if self.random.chance(CROSSED) {
+            cross(&mut self.random, &self.variables, INDICES[0], &mut pair);
+        }
+        let [mut x, _] = pair;
+        let probability = 1.0 / self.variables.len() as f64;
+        mutate(&mut self.random, &self.variables, probability, INDICES[1], &mut x);
+        set_categories(&self.variables, &mut x, &self.niches[niche].categories);
+        (x, outcome.is_feasible().then_some(outcome.objectives[1]))
+    }
+}
+
+impl Algorithm for FrontDe {
+    fn ask(&mut self) -> Vec<Candidate> {
+        self.asked.clear();
+        if self.evaluated == 0 {
+            return self.sample();
+        }
+        (0..self.settings.generation.max(2)).map(|_| self.child()).collect()
+    }
+
+    fn tell(&mut self, evaluated: Vec<Evaluated>) {
+        let mut offspring: Vec<Vec<Evaluated>> = vec![Vec::new(); self.niches.len()];
+        for (candidate, &(niche, way)) in evaluated.into_iter().zip(&self.asked) {
+            let reached = self.archive.insert(self.evaluated, &candidate);
+            self.evaluated += 1;
+            self.niches[niche].evaluated += 1;
+            self.niches[niche].success.learn(reached);
+            if let Some(way) = way {
+                self.ways[way].learn(reached);
+            }
+            offspring[niche].push(candidate);
+        }
+        let settings = &self.settings;
+        for (niche, offspring) in self.niches.iter_mut().zip(offspring) {
+            if !offspring.is_empty() {
+                let size = settings.population.max(4) + niche.evaluated / settings.growth.max(1);
+                let members = niche.population.drain(..).map(|member| member.candidate);
+                let pool = members.chain(offspring).collect();
+                niche.population = along_front(best(pool, size.min(settings.most.max(4))));
+            }
+        }
+    }
+}
+
+/// Every combination of the categorical variables' values.
+fn combinations(variables: &[Variable]) -> Vec<Vec<f64>> {
+    variables.iter().fold(vec![Vec::new()], |combinations, variable| {
+        let Variable::Categorical { choices } = *variable else {
+            return combinations;
+        };
+        combinations
+            .iter()
+            .flat_map(|start| {
+                (0..choices.max(1)).map(move |choice| {
+                    let mut next = start.clone();
+                    next.push(choice as f64);
+                    next
+                })
+            })
+            .collect()
+    })
+}
+
+fn set_categories(variables: &[Variable], x: &mut [f64], categories: &[f64]) {
+    let places = x
+        .iter_mut()
+        .zip(variables)
+        .filter(|(_, variable)| matches!(variable, Variable::Categorical { .. }));
+    for ((value, _), category) in places.zip(categories) {
+        *value = *category;
+    }
+}
+
+/// Ranked and in the order of the front: feasible ones by the first objective, then the others by violation.
+fn along_front(candidates: Vec<Evaluated>) -> Vec<Member> {
+    let mut members = ranked(candidates);
+    members.sort_by(|a, b| {
+        let key = |member: &Member| {
+            let outcome = &member.candidate.outcome;
+            (outcome.violation.max(0.0), outcome.objectives[0])
+        };
+        let ((violation_a, first_a), (violation_b, first_b)) = (key(a), key(b));
+        violation_a.total_cmp(&violation_b).then(first_a.total_cmp(&first_b))
+    });
+    members
+}

@@ -1,0 +1,88 @@
+//! When a search ends before its budget is spent.
+
+use std::time::Duration;
+
+use super::{GenerationSummary, OptimizerSection, Outcome, Stagnation};
+
+/// The rules of a study, besides its budget of evaluations.
+#[derive(Debug, Clone)]
+pub(super) struct Stopping {
+    time_limit: Option<f64>,
+    stagnation: Option<Stagnation>,
+}
+
+impl Stopping {
+    pub fn new(optimizer: &OptimizerSection) -> Self {
+        Self {
+            time_limit: optimizer.time_limit_s,
+            stagnation: optimizer.stagnation,
+        }
+    }
+
+    /// Why a search of this duration and history ends, if it does.
+    pub fn reason(&self, elapsed: Duration, history: &[GenerationSummary]) -> Option<Outcome> {
+        if self.time_limit.is_some_and(|limit| elapsed.as_secs_f64() >= limit) {
+            return Some(Outcome::TimeUp);
+        }
+        let Stagnation { evaluations, gain } = self.stagnation?;
+        let last = history.last()?;
+        let since = last.evaluations.checked_sub(evaluations)?;
+        // The state as it was that many evaluations ago, or longer; before it there is nothing to compare with.
+        let before = history.iter().rev().find(|summary| summary.evaluations <= since)?;
+        let stagnated = before.hypervolume > 0.0 && last.hypervolume < before.hypervolume * (1.0 + gain);
+        stagnated.then_some(Outcome::Stagnated)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn history(hypervolumes: &[f64]) -> Vec<GenerationSummary> {
+        hypervolumes
+            .iter()
+            .zip(1..)
+            .map(|(&hypervolume, generation)| GenerationSummary {
+                generation,
+                evaluations: 30 * generation,
+                feasible: 0,
+                front_size: 0,
+                hypervolume,
+            })
+            .collect()
+    }
+
+    fn rule(time_limit: Option<f64>, stagnation: Option<Stagnation>) -> Stopping {
+        Stopping { time_limit, stagnation }
+    }
+
+    #[test]
+    fn stagnation_is_too_little_gain_over_the_evaluations_given() {
+        let rule = rule(
+            None,
+            Some(Stagnation {
+                evaluations: 60,
+                gain: 0.01,
+            }),
+        );
+        let reason = |hypervolumes: &[f64]| rule.reason(Duration::ZERO, &history(hypervolumes));
+        assert_eq!(
+            reason(&[100.0, 100.0]),
+            None,
+            "no 60 evaluations have passed since the first state"
+        );
+        assert_eq!(reason(&[100.0, 100.0, 100.5]), Some(Outcome::Stagnated));
+        assert_eq!(reason(&[100.0, 100.0, 101.5]), None);
+        assert_eq!(reason(&[0.0, 0.0, 0.0, 0.0]), None, "nothing feasible yet");
+    }
+
+    #[test]
+    fn the_time_limit_is_looked_at_after_a_generation() {
+        let rule = rule(Some(2.0), None);
+        assert_eq!(rule.reason(Duration::from_secs(1), &history(&[1.0])), None);
+        assert_eq!(
+            rule.reason(Duration::from_secs(2), &history(&[1.0])),
+            Some(Outcome::TimeUp)
+        );
+    }
+}
