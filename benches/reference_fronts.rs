@@ -5,8 +5,8 @@
 //! ```
 //!
 //! Writes `3-PRR.csv`, `3-RPR.csv`, `3-RRR.csv` and `combined.csv` (default: `assets/reference_fronts`), every radius from
-//! the fine grid, by a search that no optimizer's budget could afford. What a file there already holds is taken up and
-//! never made worse, so the command may be repeated. For each architecture:
+//! the fine grid, by a search that no optimizer's budget could afford. What a file there already holds is taken up, so the
+//! command may be repeated. For each architecture:
 //!
 //! 1. the program's own optimizer, two long runs on the reference grid and one on the fine grid;
 //! 2. NSGA-II, a long run on the reference grid, which knows nothing of the problem's structure;
@@ -19,12 +19,15 @@ use std::path::{Path, PathBuf};
 use kinefront::evaluation::{BarRanges, Demand, Evaluation, GridChoice, Model};
 use kinefront::mechanism::{Architecture, Design, VARIABLES, Variable};
 use kinefront::optimize::{
-    Archive, Evaluated, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, drive, hypervolume,
+    Archive, Evaluated, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, drive, hypervolume, spread,
 };
 use kinefront::study::{BUILTIN, DesignProblem, Study};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
+
+/// Designs kept in a file: so many lose 0.03 % of the hypervolume.
+const KEPT: usize = 2000;
 
 /// Steps of the ladder of radii.
 const LADDER: usize = 96;
@@ -138,7 +141,9 @@ impl Front {
 
     fn write(&self, path: &Path) {
         let mut text = String::from("architecture,R,r,Lb,rj,rp,mass_kg,workspace_radius_m\n");
-        for member in self.0.iter() {
+        let objectives: Vec<[f64; 2]> = self.0.iter().map(|member| member.objectives).collect();
+        for place in spread(&objectives, KEPT) {
+            let member = &self.0[place];
             let lengths: Vec<String> = member.x[1..].iter().map(f64::to_string).collect();
             let [mass, negative_radius] = member.objectives;
             let architecture = Architecture::ALL[member.x[0] as usize];

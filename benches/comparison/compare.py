@@ -4,14 +4,15 @@
     cargo build --release --no-default-features
     (cd benches/comparison/mode && cargo build --release)
     python benches/comparison/compare.py run target/release/kinefront benches/comparison/mode/target/release/mode OUT \
-        [--evaluations 6000] [--seeds 11] [--architectures 3-PRR,3-RPR,3-RRR] [--only NAME,NAME]
+        [--evaluations 6000] [--from 0] [--seeds 11] [--architectures 3-PRR,3-RPR,3-RRR] [--only NAME,NAME]
     python benches/comparison/compare.py table OUT [--plot screenshots/comparison.png]
 
 A run's quality after N evaluations is the hypervolume of what is non-dominated among its first N designs, every radius
 taken from the fine grid, as a share of the reference front's (`assets/reference_fronts`), from 2000 kg and a radius of 0;
 and the same with the logarithm of the mass. Hypervolumes are moocore's. The candidates of other programs are evaluated
 through `kinefront evaluate --stdin`; to them the architecture is a number cut into equal parts. A run that is in OUT
-already is not repeated.
+already is not repeated. No optimizer here looks at its budget, so a longer run goes on from a shorter one: with `--from`
+only what comes later is measured, and the table puts both together.
 """
 
 import argparse
@@ -32,7 +33,7 @@ import numpy as np
 KEYS = ("R", "r", "Lb", "rj", "rp")
 LOWER = [0.5, 0.1, 0.5, 0.0, 0.0]
 UPPER = [4.0, 4.0, 4.0, 0.1, 0.1]
-MARKS = (250, 500, 1000, 2000, 3000, 4000, 6000, 10_000, 15_000, 20_000, 30_000)
+MARKS = (250, 500, 1000, 2000, 3000, 4000, 6000, 15_000, 30_000)
 ALL = "3-PRR,3-RPR,3-RRR"
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -205,7 +206,7 @@ def measure(job):
     start = time.perf_counter()
     met = ALGORITHMS[job["algorithm"]](job)
     seconds = time.perf_counter() - start
-    marks = [mark for mark in MARKS if mark <= job["evaluations"]]
+    marks = [mark for mark in MARKS if job["from"] <= mark <= job["evaluations"]]
     fronts = {mark: [design for design, _, _ in front(met[:mark])] for mark in marks}
     designs = sorted(set().union(*fronts.values()))
     evaluator = Evaluator(job["kinefront"], "--grid", "fine")
@@ -238,6 +239,7 @@ def run(arguments):
                     "architectures": arguments.architectures,
                     "seed": seed,
                     "evaluations": arguments.evaluations,
+                    "from": getattr(arguments, "from"),
                     "kinefront": str(arguments.kinefront.resolve()),
                     "mode": str(arguments.mode.resolve()),
                     "file": arguments.out / f"{slug}-{arguments.evaluations}-{seed}.json",
@@ -249,15 +251,13 @@ def run(arguments):
 
 
 def table(arguments):
-    # Of runs that differ in length only, the longer one says all.
-    longest = {}
+    seeds = {}
     for file in sorted(arguments.out.glob("*.json")):
         result = json.loads(file.read_text())
         key = (result["architectures"], result["algorithm"], result["seed"])
-        if key not in longest or longest[key]["evaluations"] < result["evaluations"]:
-            longest[key] = result
+        seeds.setdefault(key, result)["hypervolumes"] |= result["hypervolumes"]
     cases = {}
-    for (architectures, algorithm, _), result in longest.items():
+    for (architectures, algorithm, _), result in seeds.items():
         cases.setdefault(architectures, {}).setdefault(algorithm, []).append(result)
     for architectures, algorithms in sorted(cases.items(), key=lambda case: -len(case[0])):
         reference = reference_front(architectures)
@@ -287,9 +287,12 @@ def arguments_seeds(algorithms):
 
 
 def curve(results, whole):
-    """Marks and the shares there, one per seed, at those marks that all seeds have."""
-    marks = [mark for mark in MARKS if all(str(mark) in result["hypervolumes"] for result in results)]
-    return marks, [[result["hypervolumes"][str(mark)][0] / whole for result in results] for mark in marks]
+    """Marks and the shares there, one for each seed that has the mark."""
+    shares = {
+        mark: [result["hypervolumes"][str(mark)][0] / whole for result in results if str(mark) in result["hypervolumes"]]
+        for mark in MARKS
+    }
+    return [mark for mark in MARKS if shares[mark]], [at for at in shares.values() if at]
 
 
 def evaluations_to(results, share, whole):
@@ -336,6 +339,7 @@ def main():
     for name in ("kinefront", "mode", "out"):
         runner.add_argument(name, type=pathlib.Path)
     runner.add_argument("--evaluations", type=int, default=6000)
+    runner.add_argument("--from", type=int, default=0)
     runner.add_argument("--seeds", type=int, default=11)
     runner.add_argument("--architectures", default=ALL)
     runner.add_argument("--only", help="algorithms whose names contain one of these")

@@ -11,6 +11,7 @@
 //! ```
 
 mod constraint;
+mod layout;
 mod lightest;
 mod model;
 mod pose;

@@ -7,12 +7,15 @@
 
 use std::f64::consts::TAU;
 
+use glam::DVec2;
+
 use super::Model;
+use super::layout::{Layout, Place};
 use super::lightest::{Problem, Shares, lightest};
 use crate::mechanism::{Design, Leg, with_leg};
 use crate::spatial::{LEGS, Rotation, unit};
 use crate::stiffness::StiffnessModel;
-use crate::workspace::{ArmColumns, GridError, PoseChecker, Positions, ValueColumns};
+use crate::workspace::{GridError, PoseChecker, ValueColumns};
 
 /// Directions of a ring over a sector of 120°.
 const DIRECTIONS: usize = 16;
@@ -42,11 +45,12 @@ pub enum Demand {
 }
 
 impl Model {
-    /// `design` with the lightest bars within `ranges` that keep the stiffness asked for on the rim of the workspace
+    /// `design` with the lightest bars within `ranges` that keep the stiffness asked for on the disc of the workspace
     /// demanded; its own bars are where the search starts. `None` where the geometry or the ranges do not allow it.
     ///
-    /// Rim and orientations are sampled, the latter as on the reference grid, and the home orientation is the one in
-    /// which the design is stiffest before it is sized.
+    /// Disc and orientations are sampled, the latter as on the reference grid; that the poses are good in other respects
+    /// is looked at on the centre and the rim. The home orientation is the one in which the design is stiffest before it
+    /// is sized.
     ///
     /// # Errors
     /// [`GridError`] when the grid does not fit the rotation range.
@@ -65,7 +69,7 @@ struct Sizer<'a, L> {
     /// With the strongest bars until a radius is settled.
     checker: PoseChecker<L>,
     /// Arms orientation by orientation, as the reference grid has them.
-    arms: Vec<[glam::DVec2; LEGS]>,
+    arms: Vec<[DVec2; LEGS]>,
     half_window: usize,
     /// Whether windows run on past the last orientation: not where the home is given.
     turns: bool,
@@ -76,26 +80,6 @@ struct Sizer<'a, L> {
     /// The poses of `laid` that matter when bars are sized.
     chosen: Layout,
     values: ValueColumns,
-}
-
-/// Where a pose lies in the disc.
-#[derive(Clone, Copy)]
-struct Place {
-    orientation: usize,
-    radius: f64,
-    angle: f64,
-    /// Distances to the neighbours that it was laid with, along the radius and in angle.
-    spacing: [f64; 2],
-    refined: bool,
-}
-
-/// Poses in columns.
-#[derive(Default)]
-struct Layout {
-    /// Poses laid, padding left out.
-    count: usize,
-    positions: Positions,
-    arms: ArmColumns,
 }
 
 impl<'a, L: Leg> Sizer<'a, L> {
@@ -178,7 +162,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
     fn lay_ring(&mut self, radius: f64, orientations: &[usize]) -> usize {
         let count = if radius > 0.0 { DIRECTIONS * self.sectors } else { 1 };
         let step = TAU / (LEGS * DIRECTIONS) as f64;
-        let ring: Vec<glam::DVec2> = (0..count).map(|k| self.position(radius, k as f64 * step)).collect();
+        let ring: Vec<DVec2> = (0..count).map(|k| self.position(radius, k as f64 * step)).collect();
         self.laid.clear();
         for &orientation in orientations {
             self.laid.extend(&ring, &self.arms[orientation]);
@@ -208,7 +192,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
         }
         self.laid.clear();
         let of_one = RINGS.len() * DIRECTIONS * self.sectors;
-        let disc: Vec<glam::DVec2> = self.places[..of_one]
+        let disc: Vec<DVec2> = self.places[..of_one]
             .iter()
             .map(|place| self.position(place.radius, place.angle))
             .collect();
@@ -218,7 +202,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
         self.laid.pad();
     }
 
-    fn position(&self, radius: f64, angle: f64) -> glam::DVec2 {
+    fn position(&self, radius: f64, angle: f64) -> DVec2 {
         self.model.workspace.centre + unit(angle) * radius
     }
 
@@ -383,37 +367,5 @@ impl<L: Leg> Shares for Sizer<'_, L> {
         self.checker
             .at_poses(&self.chosen.positions, &self.chosen.arms, &mut self.values);
         self.values.rigidity_shares(&self.checker.thresholds, self.chosen.count)
-    }
-}
-
-impl Layout {
-    fn clear(&mut self) {
-        self.count = 0;
-        self.positions.clear();
-        self.arms.clear();
-    }
-
-    fn push(&mut self, position: glam::DVec2, arms: &[glam::DVec2; LEGS]) {
-        self.count += 1;
-        self.positions.push(position);
-        self.arms.push(arms);
-    }
-
-    /// The same arms at every position.
-    fn extend(&mut self, positions: &[glam::DVec2], arms: &[glam::DVec2; LEGS]) {
-        self.count += positions.len();
-        self.positions.extend(positions);
-        self.arms.extend(arms, positions.len());
-    }
-
-    /// Takes what pads the columns off.
-    fn unpad(&mut self) {
-        self.positions.truncate(self.count);
-        self.arms.truncate(self.count);
-    }
-
-    fn pad(&mut self) {
-        self.positions.pad();
-        self.arms.pad();
     }
 }

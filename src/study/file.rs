@@ -6,9 +6,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use super::optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection};
 use super::sections::{
-    ActuatorSection, AlgorithmName, Bounds, Grids, HypervolumeSection, LengthChoice, MaterialSection, ModelSection,
-    OptimizerSection, ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
+    ActuatorSection, Bounds, Grids, LengthChoice, MaterialSection, ModelSection, ReferenceDesign, RequirementSection,
+    StiffnessChoice, TelescopicBar, WorkspaceSection,
 };
 use crate::evaluation::Model;
 use crate::kinematics::CharacteristicLength;

@@ -6,6 +6,7 @@ mod error;
 mod events;
 mod file;
 mod folder;
+mod optimizer;
 mod problem;
 mod run;
 mod sections;
@@ -17,10 +18,10 @@ pub use error::{Fault, StudyError};
 pub use events::{Batch, Event, FrontMember, GenerationSummary, Outcome, RunSummary, RunTimes, Started, Subscriber};
 pub use file::Study;
 pub use folder::{FolderError, RunFolder, RunReport, TABLE_HEADER, write_whole};
+pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnation};
 pub use problem::{CandidateError, DesignProblem};
 pub use run::spawn;
 pub use sections::{
-    ActuatorSection, AlgorithmName, Bounds, GridSection, Grids, HypervolumeSection, LengthChoice, MaterialSection,
-    ModelSection, OptimizerSection, ReferenceDesign, RequirementSection, Stagnation, StiffnessChoice, TelescopicBar,
-    WorkspaceSection,
+    ActuatorSection, Bounds, GridSection, Grids, LengthChoice, MaterialSection, ModelSection, ReferenceDesign,
+    RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
 };

@@ -1,0 +1,58 @@
+//! Poses of a disc in columns, and where in the disc they lie.
+
+use glam::DVec2;
+
+use crate::spatial::LEGS;
+use crate::workspace::{ArmColumns, Positions};
+
+/// Where a pose lies in the disc.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    pub orientation: usize,
+    pub radius: f64,
+    pub angle: f64,
+    /// Distances to the neighbours that it was laid with, along the radius and in angle.
+    pub spacing: [f64; 2],
+    pub refined: bool,
+}
+
+/// Poses in columns.
+#[derive(Default)]
+pub(super) struct Layout {
+    /// Poses laid, padding left out.
+    pub count: usize,
+    pub positions: Positions,
+    pub arms: ArmColumns,
+}
+
+impl Layout {
+    pub fn clear(&mut self) {
+        self.count = 0;
+        self.positions.clear();
+        self.arms.clear();
+    }
+
+    pub fn push(&mut self, position: DVec2, arms: &[DVec2; LEGS]) {
+        self.count += 1;
+        self.positions.push(position);
+        self.arms.push(arms);
+    }
+
+    /// The same arms at every position.
+    pub fn extend(&mut self, positions: &[DVec2], arms: &[DVec2; LEGS]) {
+        self.count += positions.len();
+        self.positions.extend(positions);
+        self.arms.extend(arms, positions.len());
+    }
+
+    /// Takes what pads the columns off.
+    pub fn unpad(&mut self) {
+        self.positions.truncate(self.count);
+        self.arms.truncate(self.count);
+    }
+
+    pub fn pad(&mut self) {
+        self.positions.pad();
+        self.arms.pad();
+    }
+}
