@@ -32,7 +32,7 @@ pub struct FrontDeSettings {
     pub growth: usize,
     /// Members of a population at most.
     pub most: usize,
-    /// Neighbours on either side along the front.
+    /// Neighbours on either side along the front, at least 1.
     pub neighbours: usize,
     /// Factor of the differences.
     pub scale: f64,
@@ -204,7 +204,8 @@ impl FrontDe {
 
     /// A place near `place` along the front.
     fn near(&mut self, size: usize, place: usize) -> usize {
-        let reach = self.settings.neighbours;
+        // Fewer would leave a difference no two others to be taken from.
+        let reach = self.settings.neighbours.max(1);
         if 2 * reach + 1 >= size {
             return self.random.below(size);
         }
