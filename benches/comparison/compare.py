@@ -262,9 +262,10 @@ def table(arguments):
     for architectures, algorithms in sorted(cases.items(), key=lambda case: -len(case[0])):
         reference = reference_front(architectures)
         whole = [hypervolume(reference), hypervolume(reference, logarithmic=True)]
-        print(f"\n{architectures}, {arguments_seeds(algorithms)} seeds: median (worst) share of the reference front's hypervolume\n")
+        print(f"\n{architectures}: median (worst) share of the reference front's hypervolume\n")
         budgets = [1000, 6000, 30_000]
-        print("| | " + " | ".join(f"{budget} | with log mass" for budget in budgets) + " | 90 / 95 / 99 % after |")
+        heads = [f"{budget}, {seeds_of(algorithms, budget)} seeds | with log mass" for budget in budgets]
+        print("| | " + " | ".join(heads) + " | 90 / 95 / 99 % after |")
         print("|---|" + "---:|---:|" * len(budgets) + "---:|")
         for name in ALGORITHMS:
             results = algorithms.get(name)
@@ -281,8 +282,8 @@ def table(arguments):
         plot(arguments.plot, cases)
 
 
-def arguments_seeds(algorithms):
-    counts = {len(results) for results in algorithms.values()}
+def seeds_of(algorithms, budget):
+    counts = {sum(str(budget) in result["hypervolumes"] for result in results) for results in algorithms.values()}
     return " or ".join(map(str, sorted(counts)))
 
 
@@ -309,7 +310,9 @@ def plot(path, cases):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(1, len(cases), figsize=(1.5 + 5.5 * len(cases), 5.2), squeeze=False, layout="constrained")
+    # Where there is something to compare.
+    cases = {architectures: algorithms for architectures, algorithms in cases.items() if len(algorithms) > 1}
+    figure, axes = plt.subplots(1, len(cases), figsize=(2.5 + 5.5 * len(cases), 5.2), squeeze=False, layout="constrained")
     for axis, (architectures, algorithms) in zip(axes[0], sorted(cases.items(), key=lambda case: -len(case[0]))):
         whole = hypervolume(reference_front(architectures))
         for index, name in enumerate(name for name in ALGORITHMS if name in algorithms):
