@@ -20,7 +20,7 @@ use crate::workspace::{GridError, PoseChecker, ValueColumns};
 /// Directions of a ring over a sector of 120°.
 const DIRECTIONS: usize = 16;
 
-/// Rings of the disc on which bars are sized, as shares of its radius.
+/// Rings of the disc on which bars are sized, besides its centre, as shares of its radius.
 const RINGS: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 
 /// Halvings in search of the largest radius.
@@ -171,7 +171,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
         count
     }
 
-    /// Lays the disc of a radius. A ring is turned by half a step against the one before, so that together they see more
+    /// Lays the disc of a radius, its centre too. A ring is turned by half a step against the one before, so that together they see more
     /// directions.
     fn lay_disc(&mut self, radius: f64, orientations: &[usize]) {
         let step = TAU / (LEGS * DIRECTIONS) as f64;
@@ -179,6 +179,13 @@ impl<'a, L: Leg> Sizer<'a, L> {
         self.disc_radius = radius;
         self.places.clear();
         for &orientation in orientations {
+            self.places.push(Place {
+                orientation,
+                radius: 0.0,
+                angle: 0.0,
+                spacing,
+                refined: false,
+            });
             for (ring, share) in RINGS.iter().enumerate() {
                 let turn = if ring % 2 == 0 { 0.0 } else { 0.5 };
                 self.places.extend((0..DIRECTIONS * self.sectors).map(|k| Place {
@@ -191,7 +198,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
             }
         }
         self.laid.clear();
-        let of_one = RINGS.len() * DIRECTIONS * self.sectors;
+        let of_one = 1 + RINGS.len() * DIRECTIONS * self.sectors;
         let disc: Vec<DVec2> = self.places[..of_one]
             .iter()
             .map(|place| self.position(place.radius, place.angle))
