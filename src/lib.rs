@@ -26,6 +26,9 @@
 //! | [`optimize`] | problems, algorithms, archive; knows nothing of robots |
 //! | [`scene`] | a design at a pose → named shapes and fields, free of any renderer |
 //! | [`study`] | study file, run, run folder |
+//! | [`export`] | a design as files of other programs |
+//! | [`report`] | a run as pages: figures, pictures, comparison with the paper |
+//! | [`palette`] | what colours mean |
 //! | [`recording`] | events → Rerun |
 //! | [`text`] | numbers for people |
 //! | `explorer` | the window (feature `explorer`) |
@@ -33,11 +36,14 @@
 pub mod evaluation;
 #[cfg(feature = "explorer")]
 pub mod explorer;
+pub mod export;
 pub mod kinematics;
 pub mod lanes;
 pub mod mechanism;
 pub mod optimize;
+pub mod palette;
 pub mod recording;
+pub mod report;
 pub mod scene;
 pub mod spatial;
 pub mod stiffness;

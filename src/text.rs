@@ -15,6 +15,20 @@ pub fn number(value: f64) -> String {
     }
 }
 
+/// A number with up to four decimals and no more digits than it needs, as beside a scale.
+pub fn short(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e4).contains(&size) {
+        let rounded = format!("{value:.4}");
+        rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        let text = format!("{value:.2e}");
+        text.replace(".00e", "e").replace("0e", "e")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::number;

@@ -3,10 +3,10 @@
 use std::io::{BufRead, Write};
 
 use kinefront::evaluation::{Evaluation, GridChoice, Model};
+use kinefront::export::EvaluationJson;
 use kinefront::mechanism::{Design, WorkingMode};
 use miette::miette;
 
-use super::json::EvaluationJson;
 use super::{Ending, Failure, GridArgument, load_study, tables, to_json};
 
 #[derive(Debug, clap::Args)]

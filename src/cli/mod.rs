@@ -3,12 +3,14 @@
 mod evaluate;
 #[cfg(feature = "explorer")]
 mod explore;
-mod json;
+mod export;
 mod optimize;
 mod pose;
 mod progress;
+mod report;
 mod show;
 mod study;
+mod subject;
 mod tables;
 
 use std::path::Path;
@@ -39,8 +41,12 @@ enum Command {
     Pose(pose::Arguments),
     /// Record one design with its overlays and a tour of its workspace.
     Show(show::Arguments),
+    /// Write a design for CAD, viewers and simulators, or a run's front as a table.
+    Export(export::Arguments),
     /// Search for light designs with a large regular workspace, without a window.
     Optimize(optimize::Arguments),
+    /// Make a page of runs: fronts, trends, comparison, pictures, sensitivity.
+    Report(report::Arguments),
     /// List, show, check and write study files.
     Study(study::Arguments),
 }
@@ -93,7 +99,9 @@ pub fn run() -> ExitCode {
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
         Some(Command::Pose(arguments)) => pose::run(&arguments),
         Some(Command::Show(arguments)) => show::run(&arguments),
+        Some(Command::Export(arguments)) => export::run(&arguments),
         Some(Command::Optimize(arguments)) => optimize::run(&arguments),
+        Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::Study(arguments)) => study::run(&arguments),
     };
     match outcome {

@@ -2,11 +2,11 @@
 
 use std::io::Write;
 
+use kinefront::export::PoseReportJson;
 use kinefront::mechanism::Design;
 use kinefront::spatial::Pose;
 use miette::{Report, miette};
 
-use super::json::PoseReportJson;
 use super::{Ending, Failure, load_study, tables, to_json};
 
 #[derive(Debug, clap::Args)]

@@ -103,7 +103,8 @@ impl Model {
         f64::from(self.platform_bars) * self.bar_mass(design.platform_bar_radius, design.platform_radius)
     }
 
-    fn bar_mass(&self, radius: f64, length: f64) -> f64 {
+    /// Mass of one bar \[kg\].
+    pub fn bar_mass(&self, radius: f64, length: f64) -> f64 {
         self.material.density * std::f64::consts::PI * radius * radius * length
     }
 

@@ -5,6 +5,8 @@ use std::sync::mpsc::{Receiver, channel};
 
 use super::Session;
 use super::running::Writing;
+use crate::evaluation::GridChoice;
+use crate::export::{ExportError, Format, Subject, export, front_to_parquet};
 use crate::recording::{record_design, save_copy};
 
 /// Writes a file; what stood there is replaced whole or not at all.
@@ -31,7 +33,9 @@ pub enum Purpose {
     /// Where the front's table goes.
     ExportFront,
     /// Where the recording of the design in the light goes.
-    ExportDesign,
+    RecordDesign,
+    /// Where the design in the light goes, for other programs.
+    ExportDesign(Format),
     /// Where a picture of the window goes.
     SavePicture,
     /// Where the filter goes.
@@ -59,8 +63,20 @@ impl Purpose {
             Purpose::SaveStudy => ("Save the study", "study.toml", &[("study", &["toml"])]),
             Purpose::SaveRecording => ("Save the recording", "session.rrd", &[("recording", &["rrd"])]),
             Purpose::SaveRun => ("Save the run's folder", "run", &[]),
-            Purpose::ExportFront => ("Export the front", "front.csv", &[("table", &["csv"])]),
-            Purpose::ExportDesign => ("Export the design", "design.rrd", &[("recording", &["rrd"])]),
+            Purpose::ExportFront => (
+                "Export the front",
+                "front.csv",
+                &[("CSV", &["csv"]), ("Parquet", &["parquet"])],
+            ),
+            Purpose::RecordDesign => ("Record the design", "design.rrd", &[("recording", &["rrd"])]),
+            Purpose::ExportDesign(format) => match format {
+                Format::Gltf => ("Export the design", "design.glb", &[("glTF", &["glb"])]),
+                Format::Mjcf => ("Export the design", "design.xml", &[("MJCF", &["xml"])]),
+                Format::Sdf => ("Export the design", "design.sdf", &[("SDF", &["sdf"])]),
+                Format::Urdf => ("Export the design", "design.urdf", &[("URDF", &["urdf"])]),
+                Format::Dxf => ("Export the design", "design.dxf", &[("DXF", &["dxf"])]),
+                Format::Json => ("Export the design", "design.json", &[("JSON", &["json"])]),
+            },
             Purpose::SavePicture => ("Save a picture", "kinefront.png", &[("picture", &["png"])]),
             Purpose::SaveFilter => ("Save the filter", "filter.toml", &[("filter", &["toml"])]),
             Purpose::OpenFilter => ("Open a filter", "", &[("filter", &["toml"])]),
@@ -143,11 +159,15 @@ pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job
             }
         }
         Purpose::ExportFront => {
-            let written = front_table(session).and_then(|table| write_whole(&path, &table));
+            let parquet = path.extension().is_some_and(|extension| extension == "parquet");
+            let written = front_table(session)
+                .and_then(|table| if parquet { front_to_parquet(&table) } else { Ok(table) })
+                .and_then(|table| write_whole(&path, &table));
             tell(session, written.map(|()| format!("exported {}", path.display())));
         }
         Purpose::SaveRecording => return save_recording(session, path),
-        Purpose::ExportDesign => return export_design(session, path),
+        Purpose::RecordDesign => return record(session, path),
+        Purpose::ExportDesign(format) => return export_design(session, format, path),
         Purpose::SaveRun => return save_run(session, path),
         // The window takes the picture itself.
         Purpose::SavePicture => {}
@@ -183,7 +203,33 @@ fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
     }))
 }
 
-fn export_design(session: &mut Session, path: PathBuf) -> Option<Job> {
+/// The design in the light as it stands: at the pose that is shown.
+fn export_design(session: &mut Session, format: Format, path: PathBuf) -> Option<Job> {
+    let Some(known) = session.known().cloned() else {
+        session.tell_error("no design is chosen".to_owned());
+        return None;
+    };
+    let study = session.study().clone();
+    let pose = session.staging.pose;
+    Some(Box::new(move || {
+        // What is exported is what was verified.
+        let fine = study.model().evaluate(&known.evaluation.design, GridChoice::Fine);
+        let subject = Subject {
+            study: &study,
+            evaluation: &fine.map_err(|error| error.to_string())?,
+            pose,
+        };
+        let bytes = export(&subject, format).map_err(|error| match error {
+            ExportError::Unreachable(leg) => format!("the design does not reach the pose: {leg}"),
+            other => other.to_string(),
+        })?;
+        write_whole(&path, &bytes)?;
+        let lost = format.lost().map(|lost| format!("; not in it: {lost}"));
+        Ok(format!("exported {}{}", path.display(), lost.unwrap_or_default()))
+    }))
+}
+
+fn record(session: &mut Session, path: PathBuf) -> Option<Job> {
     let Some((known, name)) = session.known().cloned().zip(session.chosen_name()) else {
         session.tell_error("no design is chosen".to_owned());
         return None;

@@ -31,6 +31,7 @@ mod study_editor;
 mod theme;
 mod viewer;
 
+pub use crate::study::Row;
 pub use app::{Explorer, Subject, run};
 pub use document::{Chosen, Document, History, Named, Origin};
 pub use files::Purpose;
@@ -44,6 +45,6 @@ pub use quantity::{Better, Quantity};
 pub use scene_thread::Known;
 pub use script::Script;
 pub use session::{MOST_PINS, Notice, Phase, Reference, Session, Staging, Wake};
-pub use store::{Row, Store};
+pub use store::Store;
 pub use study_editor::StudyEditor;
 pub use theme::dress;

@@ -5,11 +5,9 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::front::front_of;
-use super::{FrontEntry, Row, Store};
-use crate::evaluation::Constraint;
-use crate::mechanism::{Design, VARIABLES};
+use super::{FrontEntry, Store};
 use crate::recording;
-use crate::study::{GenerationSummary, Study};
+use crate::study::{GenerationSummary, Row, Study, TableError, read_table};
 
 /// A run that was read back.
 #[derive(Debug)]
@@ -34,13 +32,8 @@ pub enum OpenError {
     #[error("{0}")]
     Study(String),
     /// A table.
-    #[error("{}: {message}", path.display())]
-    Table {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong, and where.
-        message: String,
-    },
+    #[error(transparent)]
+    Table(#[from] TableError),
     /// Its recording.
     #[error(transparent)]
     Recording(#[from] recording::ReadError),
@@ -71,17 +64,17 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
 fn open_folder(folder: &Path) -> Result<Opened, OpenError> {
     let study = Study::read(&folder.join("study.toml")).map_err(|error| OpenError::Study(error.to_string()))?;
     let mut store = Store::default();
-    for (_, row, _) in table(&folder.join("designs.csv"), &study)? {
-        store.push(&row);
+    for entry in read_table(&folder.join("designs.csv"), &study)? {
+        store.push(&entry.row);
     }
     let front_path = folder.join("front.csv");
     let front = if front_path.exists() {
-        table(&front_path, &study)?
+        read_table(&front_path, &study)?
             .into_iter()
-            .map(|(id, row, reference)| FrontEntry {
-                id,
-                reference_radius: reference.unwrap_or(row.radius),
-                row,
+            .map(|entry| FrontEntry {
+                id: entry.id,
+                reference_radius: entry.reference_radius.unwrap_or(entry.row.radius),
+                row: entry.row,
                 verified: true,
             })
             .collect()
@@ -104,7 +97,7 @@ fn open_recording(path: &Path) -> Result<Opened, OpenError> {
     for (index, record) in recorded.designs.iter().enumerate() {
         let text = |name: &str| record.texts.get(name).map(String::as_str);
         let number = |name: &str| record.numbers.get(name).copied();
-        let row = row(&study, record.generation, text, number).map_err(|message| OpenError::Table {
+        let row = Row::read(&study, record.generation, text, number).map_err(|message| TableError {
             path: path.to_owned(),
             message: format!("design #{index}: {message}"),
         })?;
@@ -130,80 +123,4 @@ fn history(path: &Path) -> Vec<GenerationSummary> {
         .and_then(|bytes| serde_json::from_slice::<Report>(&bytes).ok())
         .map(|report| report.history)
         .unwrap_or_default()
-}
-
-/// Id, numbers, and `R_w` on the reference grid where it stands beside.
-type TableRow = (usize, Row, Option<f64>);
-
-fn table(path: &Path, study: &Study) -> Result<Vec<TableRow>, OpenError> {
-    let fault = |message: String| OpenError::Table {
-        path: path.to_owned(),
-        message,
-    };
-    let mut reader = csv::Reader::from_path(path).map_err(|error| fault(error.to_string()))?;
-    let header = reader.headers().map_err(|error| fault(error.to_string()))?.clone();
-    let place = |name: &str| header.iter().position(|title| title == name);
-    let mut rows = Vec::new();
-    for record in reader.records() {
-        let record = match record {
-            Ok(record) => record,
-            // The last line of a run that was killed may be half a line.
-            Err(error) if matches!(error.kind(), csv::ErrorKind::UnequalLengths { .. }) && !rows.is_empty() => break,
-            Err(error) => return Err(fault(error.to_string())),
-        };
-        let line = record.position().map_or(0, csv::Position::line);
-        let text = |name: &str| record.get(place(name)?);
-        let number = |name: &str| text(name)?.parse::<f64>().ok();
-        let whole = |name: &str| {
-            number(name)
-                .map(|value| value as usize)
-                .ok_or_else(|| fault(format!("line {line}: no `{name}`")))
-        };
-        let row = row(study, whole("generation")?, text, number)
-            .map_err(|message| fault(format!("line {line}: {message}")))?;
-        rows.push((whole("id")?, row, number("workspace_radius_reference_m")));
-    }
-    Ok(rows)
-}
-
-/// A row from named texts and numbers, as in `designs.csv`.
-fn row<'a>(
-    study: &Study,
-    generation: usize,
-    text: impl Fn(&str) -> Option<&'a str>,
-    number: impl Fn(&str) -> Option<f64>,
-) -> Result<Row, String> {
-    let wanted = |name: &str| number(name).ok_or_else(|| format!("no number `{name}`"));
-    let architecture = text("architecture")
-        .ok_or("no `architecture`")?
-        .parse()
-        .map_err(|error| format!("{error}"))?;
-    let mode = match text("working_mode") {
-        Some(mode) => mode.parse().map_err(|error| format!("{error}"))?,
-        None => study.working_mode,
-    };
-    let mut values = [0.0; VARIABLES.len()];
-    for (value, variable) in values.iter_mut().zip(VARIABLES) {
-        *value = wanted(variable.key())?;
-    }
-    let design = Design::new(architecture, mode, values).map_err(|error| error.to_string())?;
-    let mut margins = [0.0; Constraint::ALL.len()];
-    for (margin, constraint) in margins.iter_mut().zip(Constraint::ALL) {
-        *margin = wanted(&format!("margin_{}", constraint.id()))?;
-    }
-    let active = text("active").unwrap_or_default();
-    let active = Constraint::ALL
-        .into_iter()
-        .filter(|constraint| active.split('+').any(|id| id == constraint.id()))
-        .fold(0, |bits, constraint| bits | 1 << constraint as u8);
-    Ok(Row {
-        generation: generation.try_into().unwrap_or(u32::MAX),
-        design,
-        mass: wanted("mass_kg")?,
-        radius: wanted("workspace_radius_m")?,
-        phi: number("phi_deg"),
-        violation: wanted("violation")?,
-        margins,
-        active,
-    })
 }

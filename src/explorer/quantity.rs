@@ -62,7 +62,7 @@ impl Quantity {
         match self {
             Quantity::Mass => "mass in motion [kg]".to_owned(),
             Quantity::Radius => "R_w [m]".to_owned(),
-            Quantity::Variable(variable) => format!("{} [m]", symbol(variable)),
+            Quantity::Variable(variable) => format!("{} [m]", variable.symbol()),
             Quantity::Phi => "φ_c [°]".to_owned(),
             Quantity::Margin(constraint) => format!("margin {}", constraint.id()),
             Quantity::Violation => "violation".to_owned(),
@@ -74,7 +74,7 @@ impl Quantity {
         match self {
             Quantity::Mass => "mass".to_owned(),
             Quantity::Radius => "R_w".to_owned(),
-            Quantity::Variable(variable) => symbol(variable).to_owned(),
+            Quantity::Variable(variable) => variable.symbol().to_owned(),
             Quantity::Phi => "φ_c".to_owned(),
             Quantity::Margin(Constraint::DeterminantSign) => "det A".to_owned(),
             Quantity::Margin(constraint) => constraint.id().to_owned(),
@@ -106,16 +106,5 @@ impl Quantity {
             Quantity::Margin(constraint) => row.margins[constraint as usize],
             Quantity::Violation => row.violation,
         }
-    }
-}
-
-/// The paper's symbol of a variable.
-pub fn symbol(variable: Variable) -> &'static str {
-    match variable {
-        Variable::BaseRadius => "R",
-        Variable::PlatformRadius => "r",
-        Variable::LinkLength => "L_b",
-        Variable::LegBarRadius => "r_j",
-        Variable::PlatformBarRadius => "r_p",
     }
 }

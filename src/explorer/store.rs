@@ -1,7 +1,8 @@
 //! Every evaluated design of a run, in columns: about 200 bytes each, so that a million fit in memory.
 
-use crate::evaluation::{Constraint, Evaluation};
+use crate::evaluation::Constraint;
 use crate::mechanism::{Architecture, Design, VARIABLES, WorkingMode};
+use crate::study::Row;
 
 /// Evaluated designs in the order of their ids, which begin at 0 and leave none out.
 #[derive(Debug, Clone, Default)]
@@ -19,45 +20,6 @@ pub struct Store {
     margins: [Vec<f64>; Constraint::ALL.len()],
     /// A bit for each active constraint.
     active: Vec<u8>,
-}
-
-/// What is stored of one design.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
-    /// Generation, from 1.
-    pub generation: u32,
-    /// The design.
-    pub design: Design,
-    /// Mass in motion \[kg\].
-    pub mass: f64,
-    /// `R_w` \[m\]; 0 for an infeasible design.
-    pub radius: f64,
-    /// `φ_c` \[deg\].
-    pub phi: Option<f64>,
-    /// Violation, 0 for a feasible design.
-    pub violation: f64,
-    /// Relative margins in the order of [`Constraint::ALL`].
-    pub margins: [f64; Constraint::ALL.len()],
-    /// A bit for each active constraint, the first the lowest.
-    pub active: u8,
-}
-
-impl Row {
-    /// The row of an evaluation.
-    pub fn new(generation: usize, evaluation: &Evaluation) -> Self {
-        Self {
-            generation: generation.try_into().unwrap_or(u32::MAX),
-            design: evaluation.design,
-            mass: evaluation.mass,
-            radius: evaluation.workspace_radius,
-            phi: evaluation.home_phi_deg,
-            violation: evaluation.violation,
-            margins: evaluation.constraints.map(|report| report.margin),
-            active: evaluation
-                .active()
-                .fold(0, |bits, constraint| bits | 1 << constraint as u8),
-        }
-    }
 }
 
 impl Store {

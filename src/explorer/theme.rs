@@ -4,7 +4,8 @@ use egui::{Color32, Context, Ui};
 use egui_plot::MarkerShape;
 
 use crate::mechanism::Architecture;
-use crate::recording::architecture_rgb;
+use crate::palette;
+use crate::scene::Part;
 pub use crate::text::number;
 
 /// The design in the light.
@@ -25,7 +26,15 @@ pub fn dress(ctx: &Context) {
 
 /// Colour of an architecture, dark enough to be read on a light ground.
 pub fn architecture(architecture: Architecture, dark: bool) -> Color32 {
-    let [r, g, b] = architecture_rgb(architecture);
+    readable(palette::architecture(architecture), dark)
+}
+
+/// Colour of a part, dark enough to be seen on a light ground.
+pub fn part(part: Part, dark: bool) -> Color32 {
+    readable(palette::part(part), dark)
+}
+
+fn readable([r, g, b]: [u8; 3], dark: bool) -> Color32 {
     if dark {
         Color32::from_rgb(r, g, b)
     } else {

@@ -57,6 +57,17 @@ impl Variable {
         }
     }
 
+    /// Symbol in the paper, as text: `R`, `r`, `L_b`, `r_j`, `r_p`.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Variable::BaseRadius => "R",
+            Variable::PlatformRadius => "r",
+            Variable::LinkLength => "L_b",
+            Variable::LegBarRadius => "r_j",
+            Variable::PlatformBarRadius => "r_p",
+        }
+    }
+
     /// Whether zero is a legal value: a bar radius may be 0 (infinitely compliant), a length may not.
     pub fn may_be_zero(self) -> bool {
         matches!(self, Variable::LegBarRadius | Variable::PlatformBarRadius)

@@ -61,9 +61,9 @@ pub struct Segment {
     pub to: DVec2,
 }
 
-/// A leg as it is drawn: its members and joints in the base frame \[m\].
+/// Where a prismatic joint can be, in the base frame \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum LegPart {
+pub enum Guide {
     /// Path of a slider over its whole travel.
     Rail {
         /// Lower limit.
@@ -78,6 +78,11 @@ pub enum LegPart {
         /// Longest leg.
         to: DVec2,
     },
+}
+
+/// A member or joint of a leg in the base frame \[m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LegPart {
     /// Actuated slider.
     Slider {
         /// Its centre.
@@ -92,9 +97,9 @@ pub enum LegPart {
         /// Where the rod comes out.
         to: DVec2,
     },
-    /// Moving half of a telescopic leg, as far as it is out.
+    /// Moving half of a telescopic leg; where the leg is short, part of it is inside the tube.
     Rod {
-        /// Where it comes out.
+        /// Its inner end.
         from: DVec2,
         /// At the platform.
         to: DVec2,
@@ -120,6 +125,35 @@ pub enum LegPart {
         /// Whether it is driven.
         actuated: bool,
     },
+}
+
+/// How a body moves against the one before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LegJoint {
+    /// About z at the body's origin.
+    Passive,
+    /// The actuated joint: along or about what its kind says, at the value \[m or rad\].
+    Actuated {
+        /// Actuator value.
+        value: f64,
+        /// Least and largest value, where the leg type has limits.
+        limits: Option<[f64; 2]>,
+    },
+}
+
+/// A rigid body of a leg at a posture, in the base frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LegBody {
+    /// What it is, as in `crank`.
+    pub name: &'static str,
+    /// Origin of its frame \[m\].
+    pub origin: DVec2,
+    /// x axis of its frame, a unit vector. The actuator of a prismatic joint works along it.
+    pub axis: DVec2,
+    /// The joint to the body before it, or to the base.
+    pub joint: LegJoint,
+    /// What it consists of.
+    pub parts: Vec<LegPart>,
 }
 
 /// One leg at a pose it reaches.
@@ -217,8 +251,11 @@ pub trait Leg: Copy + Send + Sync {
     /// Length of the last bar, along `u_i` up to `C_i`, for the beam model \[m\].
     fn distal_length(&self, posture: &LegPosture) -> f64;
 
-    /// The leg as it is drawn.
-    fn parts(&self, posture: &LegPosture) -> Vec<LegPart>;
+    /// Its rigid bodies, from the base to the platform.
+    fn bodies(&self, posture: &LegPosture) -> Vec<LegBody>;
+
+    /// Where its prismatic joint can be.
+    fn guide(&self, posture: &LegPosture) -> Option<Guide>;
 
     /// Corners of an axis-parallel box that holds every point the leg's end can reach \[m\].
     fn reach_box(&self) -> [DVec2; 2];

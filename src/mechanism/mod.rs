@@ -13,8 +13,8 @@ mod text;
 
 pub use design::{Design, DesignError, VARIABLES, Variable, WorkingMode};
 pub use leg::{
-    Actuator, BarLength, Leg, LegLanes, LegPart, LegPosture, LegSettings, Manipulator, Posture, ReachReason, Segment,
-    Shortfall,
+    Actuator, BarLength, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, Manipulator,
+    Posture, ReachReason, Segment, Shortfall,
 };
 pub use prr::PrrLeg;
 pub use rpr::RprLeg;

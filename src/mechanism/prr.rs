@@ -2,7 +2,10 @@
 
 use glam::DVec2;
 
-use super::{Actuator, Design, Leg, LegLanes, LegPart, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
+use super::{
+    Actuator, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, ReachReason, Segment,
+    Shortfall,
+};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, HALF_SQRT_3, LEGS, cross};
 
@@ -118,24 +121,44 @@ impl Leg for PrrLeg {
         self.anchor
     }
 
-    fn parts(&self, posture: &LegPosture) -> Vec<LegPart> {
+    fn bodies(&self, posture: &LegPosture) -> Vec<LegBody> {
         let c = posture.b + posture.u * posture.length;
         vec![
-            LegPart::Rail {
-                from: self.anchor,
-                to: self.anchor + self.axis * self.travel,
-            },
-            LegPart::Slider {
-                at: posture.b,
+            LegBody {
+                name: "slider",
+                origin: posture.b,
                 axis: self.axis,
+                joint: LegJoint::Actuated {
+                    value: self.actuator(posture),
+                    limits: Some([0.0, self.travel]),
+                },
+                parts: vec![LegPart::Slider {
+                    at: posture.b,
+                    axis: self.axis,
+                }],
             },
-            LegPart::Link { from: posture.b, to: c },
-            LegPart::Joint {
-                at: posture.b,
-                actuated: false,
+            LegBody {
+                name: "link",
+                origin: posture.b,
+                axis: posture.u,
+                joint: LegJoint::Passive,
+                parts: vec![
+                    LegPart::Link { from: posture.b, to: c },
+                    LegPart::Joint {
+                        at: posture.b,
+                        actuated: false,
+                    },
+                    LegPart::Joint { at: c, actuated: false },
+                ],
             },
-            LegPart::Joint { at: c, actuated: false },
         ]
+    }
+
+    fn guide(&self, _: &LegPosture) -> Option<Guide> {
+        Some(Guide::Rail {
+            from: self.anchor,
+            to: self.anchor + self.axis * self.travel,
+        })
     }
 
     fn reach_box(&self) -> [DVec2; 2] {

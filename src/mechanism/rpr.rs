@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use super::{
-    Actuator, BarLength, Design, Leg, LegLanes, LegPart, LegPosture, LegSettings, ReachReason, Segment, Shortfall,
+    Actuator, BarLength, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings,
+    ReachReason, Segment, Shortfall,
 };
 use crate::lanes::{Planar, Real};
 use crate::spatial::ANCHOR_DIRECTIONS;
@@ -98,31 +99,58 @@ impl Leg for RprLeg {
         self.anchor
     }
 
-    fn parts(&self, posture: &LegPosture) -> Vec<LegPart> {
+    fn bodies(&self, posture: &LegPosture) -> Vec<LegBody> {
         let along = |length: f64| self.anchor + posture.u * length;
-        // The two halves of a leg that doubles its length are as long as it is at its shortest.
-        let mouth = along((0.5 * self.longest).min(posture.length));
-        let c = along(posture.length);
+        // Half of the longest leg is in the tube, so that a leg may halve its length; one that gets shorter still has a
+        // shorter tube, out of which the rod sticks behind.
+        let tube = (0.5 * self.longest).min(self.shortest);
+        let (mouth, c) = (along(tube), along(posture.length));
         vec![
-            LegPart::Stroke {
-                from: along(self.shortest),
-                to: along(self.longest),
+            LegBody {
+                name: "tube",
+                origin: self.anchor,
+                axis: posture.u,
+                joint: LegJoint::Passive,
+                parts: vec![
+                    LegPart::Tube {
+                        from: self.anchor,
+                        to: mouth,
+                    },
+                    LegPart::Joint {
+                        at: self.anchor,
+                        actuated: false,
+                    },
+                    LegPart::Joint {
+                        at: mouth,
+                        actuated: true,
+                    },
+                ],
             },
-            LegPart::Tube {
-                from: self.anchor,
-                to: mouth,
+            LegBody {
+                name: "rod",
+                origin: c,
+                axis: posture.u,
+                joint: LegJoint::Actuated {
+                    value: posture.length,
+                    limits: Some([self.shortest, self.longest]),
+                },
+                parts: vec![
+                    LegPart::Rod {
+                        from: along(posture.length - (self.longest - tube)),
+                        to: c,
+                    },
+                    LegPart::Joint { at: c, actuated: false },
+                ],
             },
-            LegPart::Rod { from: mouth, to: c },
-            LegPart::Joint {
-                at: self.anchor,
-                actuated: false,
-            },
-            LegPart::Joint {
-                at: mouth,
-                actuated: true,
-            },
-            LegPart::Joint { at: c, actuated: false },
         ]
+    }
+
+    fn guide(&self, posture: &LegPosture) -> Option<Guide> {
+        let along = |length: f64| self.anchor + posture.u * length;
+        Some(Guide::Stroke {
+            from: along(self.shortest),
+            to: along(self.longest),
+        })
     }
 
     fn reach_box(&self) -> [DVec2; 2] {

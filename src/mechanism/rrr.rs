@@ -2,7 +2,10 @@
 
 use glam::DVec2;
 
-use super::{Actuator, Design, Leg, LegLanes, LegPart, LegPosture, LegSettings, ReachReason, Segment, Shortfall};
+use super::{
+    Actuator, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, ReachReason, Segment,
+    Shortfall,
+};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, cross};
 
@@ -102,24 +105,47 @@ impl Leg for RrrLeg {
         self.anchor
     }
 
-    fn parts(&self, posture: &LegPosture) -> Vec<LegPart> {
+    fn bodies(&self, posture: &LegPosture) -> Vec<LegBody> {
         let c = posture.b + posture.u * posture.length;
         vec![
-            LegPart::Crank {
-                from: self.anchor,
-                to: posture.b,
+            LegBody {
+                name: "crank",
+                origin: self.anchor,
+                axis: (posture.b - self.anchor) / self.link,
+                joint: LegJoint::Actuated {
+                    value: self.actuator(posture),
+                    limits: None,
+                },
+                parts: vec![
+                    LegPart::Crank {
+                        from: self.anchor,
+                        to: posture.b,
+                    },
+                    LegPart::Joint {
+                        at: self.anchor,
+                        actuated: true,
+                    },
+                ],
             },
-            LegPart::Link { from: posture.b, to: c },
-            LegPart::Joint {
-                at: self.anchor,
-                actuated: true,
+            LegBody {
+                name: "link",
+                origin: posture.b,
+                axis: posture.u,
+                joint: LegJoint::Passive,
+                parts: vec![
+                    LegPart::Link { from: posture.b, to: c },
+                    LegPart::Joint {
+                        at: posture.b,
+                        actuated: false,
+                    },
+                    LegPart::Joint { at: c, actuated: false },
+                ],
             },
-            LegPart::Joint {
-                at: posture.b,
-                actuated: false,
-            },
-            LegPart::Joint { at: c, actuated: false },
         ]
+    }
+
+    fn guide(&self, _: &LegPosture) -> Option<Guide> {
+        None
     }
 
     fn reach_box(&self) -> [DVec2; 2] {

@@ -1,9 +1,9 @@
 //! A design's numbers as a card to read, in markdown.
 
-use super::colors::text;
 use crate::evaluation::{Evaluation, Model};
 use crate::mechanism::VARIABLES;
 use crate::scene::{EllipsoidSet, Tour};
+use crate::text::short;
 
 /// The card of a design; `heading` says which one it is.
 pub(super) fn card(
@@ -46,9 +46,9 @@ pub(super) fn card(
             "| {} | {} | {} {} | {} | {:+.1} % | {} |\n",
             report.constraint.id(),
             report.constraint.name().replace('_', " "),
-            report.value.map_or_else(|| "–".to_owned(), text),
+            report.value.map_or_else(|| "–".to_owned(), short),
             report.constraint.unit(),
-            text(report.threshold),
+            short(report.threshold),
             100.0 * report.margin,
             if report.active { "**active**" } else { "" },
         );

@@ -1,41 +1,19 @@
-//! What colours mean.
+//! Colours of the palette as the viewer takes them, and those of overlays.
 
 use rerun::Color;
 
 use crate::mechanism::{Architecture, ReachReason};
+use crate::palette;
 use crate::scene::{Part, Scale};
-
-/// One colour per architecture, told apart by people with any colour vision (Okabe and Ito), as red, green and blue.
-pub fn architecture_rgb(architecture: Architecture) -> [u8; 3] {
-    const PALETTE: [[u8; 3]; 4] = [[86, 180, 233], [230, 159, 0], [0, 190, 140], [204, 121, 167]];
-    let index = Architecture::ALL
-        .iter()
-        .position(|&other| other == architecture)
-        .unwrap_or(0);
-    PALETTE[index % PALETTE.len()]
-}
 
 /// The architecture's colour.
 pub(super) fn architecture(architecture: Architecture) -> Color {
-    rgb(architecture_rgb(architecture))
+    rgb(palette::architecture(architecture))
 }
 
-/// Steel for what moves, orange for what is driven, dark for what stands still.
+/// The part's colour.
 pub(super) fn part(part: Part) -> Color {
-    rgb(match part {
-        Part::Base => [120, 126, 138],
-        Part::Rail => [150, 156, 168],
-        Part::Stroke => [255, 170, 70],
-        Part::Slider | Part::ActuatedJoint => [255, 128, 20],
-        Part::Tube => [92, 104, 124],
-        Part::Rod | Part::Link => [190, 200, 214],
-        Part::Crank => [150, 164, 186],
-        Part::PlatformBar => [90, 150, 235],
-        Part::PassiveJoint => [238, 240, 244],
-        Part::AxisX => [230, 70, 70],
-        Part::AxisY => [80, 200, 90],
-        Part::Workspace => WORKSPACE,
-    })
+    rgb(palette::part(part))
 }
 
 /// The regular workspace.
@@ -164,19 +142,5 @@ impl ColorMap {
         (first..=last)
             .flat_map(|decade| steps.iter().map(move |step| step * libm::pow(10.0, f64::from(decade))))
             .collect()
-    }
-}
-
-/// A value as it stands beside a map or in a card.
-pub(super) fn text(value: f64) -> String {
-    let size = value.abs();
-    if value == 0.0 {
-        "0".to_owned()
-    } else if (1e-3..1e4).contains(&size) {
-        let rounded = format!("{value:.4}");
-        rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        let text = format!("{value:.2e}");
-        text.replace(".00e", "e").replace("0e", "e")
     }
 }

@@ -15,6 +15,7 @@ use super::writer::{Moment, RecordingError, Writer};
 use crate::evaluation::{ConstraintReport, Evaluation};
 use crate::scene::{ConfigurationSpace, EllipsoidSet, Field, Heatmap, Part, RegularCylinder, Scene, Solid, SolidShape};
 use crate::spatial::unit;
+use crate::text::short;
 
 type Outcome = Result<(), RecordingError>;
 
@@ -252,7 +253,7 @@ impl<'a> Canvas<'a> {
         let mut labels = vec![(at(0.5, 1.09), field.title().to_owned())];
         for (value, share) in map.ticks() {
             ticks.push((vec![point(at(1.0, share)), point(at(1.25, share))], rgb(colors::TEXT)));
-            labels.push((at(2.1, share), colors::text(value * factor)));
+            labels.push((at(2.1, share), short(value * factor)));
         }
         self.labels(&format!("{root}/ticks"), labels, rgb(colors::TEXT))?;
         if let Some(share) = map.place(threshold) {
@@ -260,7 +261,7 @@ impl<'a> Canvas<'a> {
                 vec![point(at(-0.6, share)), point(at(1.0, share))],
                 rgb(colors::THRESHOLD),
             ));
-            let text = format!("threshold {}", colors::text(threshold * factor));
+            let text = format!("threshold {}", short(threshold * factor));
             self.labels(
                 &format!("{root}/threshold"),
                 vec![(at(-2.4, share), text)],
@@ -377,7 +378,7 @@ impl<'a> Canvas<'a> {
 
 /// A constraint at its smallest value, in words.
 fn limit_text(report: &ConstraintReport) -> String {
-    let value = report.value.map(colors::text).unwrap_or_default();
+    let value = report.value.map(short).unwrap_or_default();
     let phi = report.pose.map_or(0.0, |pose| pose.phi.to_degrees());
     let unit = report.constraint.unit();
     format!(

@@ -38,7 +38,6 @@ mod stage;
 mod subject;
 mod writer;
 
-pub use colors::architecture_rgb;
 pub use design::record_design;
 pub use live::{Layers, LiveScene, Picked, Pinned, Shown};
 #[cfg(feature = "explorer")]

@@ -62,7 +62,7 @@ impl From<&FrontMember> for FrontPoint {
 pub(super) fn front_points(front: &[FrontPoint]) -> Points2D {
     Points2D::new(front.iter().map(|m| position(m.mass, m.radius)))
         .with_colors(front.iter().map(|m| {
-            let [r, g, b] = colors::architecture_rgb(m.architecture);
+            let [r, g, b] = crate::palette::architecture(m.architecture);
             if m.lit { [r, g, b] } else { [r / 4, g / 4, b / 4] }
         }))
         .with_radii(std::iter::repeat_n(Radius::new_ui_points(4.0), front.len()))

@@ -6,6 +6,8 @@
 //! | [`regular_workspace`] | the cylinder, on the manipulator and in the configuration space |
 //! | [`Heatmap`] | a field over the reachable workspace at one φ: triangles, contours, edges of reach, singularities |
 //! | [`ellipsoids`] | stiffness or displacement at points of the regular workspace |
+//! | [`linkage`] | the manipulator as rigid bodies with joints and masses |
+//! | [`Mesh`] | a solid as triangles |
 //! | [`tour`] | poses along the regular workspace, checked by forward kinematics |
 //!
 //! Lengths are metres in the base frame, z out of the plane. Shapes carry what they are ([`Part`]), not how they look.
@@ -13,7 +15,9 @@
 mod ellipsoid;
 mod field;
 mod heatmap;
+mod linkage;
 mod manipulator;
+mod mesh;
 mod shape;
 mod tour;
 mod workspace;
@@ -21,7 +25,9 @@ mod workspace;
 pub use ellipsoid::{Ellipsoid, EllipsoidKind, EllipsoidSet, ellipsoids};
 pub use field::{Field, Scale};
 pub use heatmap::{Edge, Heatmap, HeatmapSettings};
+pub use linkage::{Body, Closure, Frame, Joint, Linkage, MassBar, linkage};
 pub use manipulator::manipulator;
+pub use mesh::Mesh;
 pub use shape::{Label, Line, Part, Scene, Solid, SolidShape};
 pub use tour::{Tour, tour};
 pub use workspace::{ConfigurationSpace, RegularCylinder, regular_workspace};

@@ -35,6 +35,16 @@ pub struct ActuatorStiffness {
     pub revolute: f64,
 }
 
+impl ActuatorStiffness {
+    /// That of a kind of actuator \[N/m or N·m/rad\].
+    pub fn of(&self, actuator: Actuator) -> f64 {
+        match actuator {
+            Actuator::Prismatic => self.prismatic,
+            Actuator::Revolute => self.revolute,
+        }
+    }
+}
+
 /// The stiffness at a pose in its two decoupled blocks, at `P`, base axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarStiffness {
@@ -47,13 +57,9 @@ pub struct PlanarStiffness {
 impl StiffnessModel {
     /// The model of `design`; `None` when a bar is infinitely compliant, which makes every stiffness 0.
     pub fn new<L: Leg>(design: &Design, material: &Material, actuators: &ActuatorStiffness) -> Option<Self> {
-        let stiffness = match L::ACTUATOR {
-            Actuator::Prismatic => actuators.prismatic,
-            Actuator::Revolute => actuators.revolute,
-        };
         let leg_bar = BarCompliance::new(material, design.leg_bar_radius)?;
         let platform_bar = BarCompliance::new(material, design.platform_bar_radius)?;
-        let actuator = 1.0 / stiffness;
+        let actuator = 1.0 / actuators.of(L::ACTUATOR);
         Some(Self {
             leg_bar,
             platform_bar,

@@ -97,7 +97,7 @@ pub enum Outcome {
 }
 
 /// Where the time went \[s\].
-#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RunTimes {
     /// The search, verification left out.
     pub search_s: f64,

@@ -255,6 +255,20 @@ fn row(id: usize, generation: usize, evaluation: &Evaluation) -> Vec<String> {
     row
 }
 
+/// A table of evaluated designs with their ids, with the columns of `designs.csv`.
+///
+/// # Errors
+/// What went wrong, in words.
+pub fn front_table<'a>(members: impl Iterator<Item = (usize, &'a Evaluation)>) -> Result<Vec<u8>, String> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    let mut write = |record: Vec<String>| table.write_record(record).map_err(|error| error.to_string());
+    write(header().collect())?;
+    for (id, evaluation) in members {
+        write(row(id, 0, evaluation))?;
+    }
+    table.into_inner().map_err(|error| error.to_string())
+}
+
 /// Writes a file beside its place and moves it there, so that it is either whole or as it was before.
 ///
 /// # Errors

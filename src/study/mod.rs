@@ -11,13 +11,14 @@ mod problem;
 mod run;
 mod sections;
 mod stopping;
+mod table;
 
 pub use builtin::{BUILTIN, Builtin};
 pub use control::RunControl;
 pub use error::{Fault, StudyError};
 pub use events::{Batch, Event, FrontMember, GenerationSummary, Outcome, RunSummary, RunTimes, Started, Subscriber};
 pub use file::Study;
-pub use folder::{FolderError, RunFolder, RunReport, TABLE_HEADER, write_whole};
+pub use folder::{FolderError, RunFolder, RunReport, TABLE_HEADER, front_table, write_whole};
 pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnation};
 pub use problem::{CandidateError, DesignProblem};
 pub use run::spawn;
@@ -25,3 +26,4 @@ pub use sections::{
     ActuatorSection, Bounds, GridSection, Grids, LengthChoice, MaterialSection, ModelSection, ReferenceDesign,
     RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
 };
+pub use table::{Row, TableError, TableRow, read_table};

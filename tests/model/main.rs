@@ -6,6 +6,7 @@ mod joints;
 mod lanes;
 mod optimizers;
 mod reference;
+mod reports;
 mod scenes;
 mod search;
 mod sizing;

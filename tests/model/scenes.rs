@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use kinefront::evaluation::{Evaluation, GridChoice, Model, PoseReport};
 use kinefront::mechanism::Design;
 use kinefront::scene::{
-    EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Solid, SolidShape, ellipsoids, manipulator,
+    Body, EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Solid, SolidShape, ellipsoids, linkage, manipulator,
     regular_workspace, tour,
 };
 use kinefront::spatial::Pose;
@@ -97,7 +97,14 @@ fn joints_close_along_every_tour() {
                     }
                     (None, Some(tube), Some(rod)) => {
                         near(tube.0.distance(rod.1), actuators[leg], "telescopic leg");
-                        near(tube.1.distance(rod.0), 0.0, "gap in the telescope");
+                        let (tube_length, rod_length) = (tube.0.distance(tube.1), rod.0.distance(rod.1));
+                        near(tube_length + rod_length, design.link_length, "tube and rod");
+                        // The rod's inner end is in the tube.
+                        near(
+                            rod.0.distance(tube.0) + rod.0.distance(tube.1),
+                            tube_length,
+                            "way along the tube",
+                        );
                         rod
                     }
                     other => panic!("{design}: a leg of {other:?}"),
@@ -318,4 +325,134 @@ fn a_displacement_matches_the_definition_by_compliance() {
             assert!((value * k_xy / model.in_plane_force - 1.0).abs() < 1e-6);
         }
     }
+}
+
+/// Every solid's surface is closed, faces outwards, and holds what its shape holds.
+#[test]
+fn meshes_are_closed_and_as_large_as_their_solids() {
+    use std::collections::BTreeMap;
+
+    let model = Model::default();
+    for text in DESIGNS {
+        let design: Design = text.parse().expect("a design");
+        let evaluation = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+        let scene = manipulator(&model, &design, &evaluation.home.expect("a home")).expect("reachable");
+        for solid in &scene.solids {
+            let mesh = solid.shape.mesh();
+            let mut volume = 0.0;
+            // Each edge is gone along once either way. Points on edges are there more than once: known by their place.
+            let key = |point: DVec3| (point * 1e9).round().to_array().map(|value| value as i64);
+            let mut edges: BTreeMap<_, i32> = BTreeMap::new();
+            for corners in &mesh.triangles {
+                let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize]);
+                volume += a.dot(b.cross(c)) / 6.0;
+                for (from, to) in [(a, b), (b, c), (c, a)] {
+                    *edges.entry((key(from), key(to))).or_default() += 1;
+                    *edges.entry((key(to), key(from))).or_default() -= 1;
+                }
+                let outward = (b - a).cross(c - a);
+                for &corner in corners {
+                    assert!(mesh.normals[corner as usize].dot(outward) > 0.0, "{solid:?}");
+                }
+            }
+            assert!(edges.values().all(|&count| count == 0), "{solid:?} is open");
+            let wanted = match solid.shape {
+                SolidShape::Bar { from, to, radius } => {
+                    let turn = 2.0 * std::f64::consts::PI / 32.0;
+                    16.0 * turn.sin() * radius * radius * from.distance(to)
+                }
+                SolidShape::Block { half_size, .. } => 8.0 * half_size.element_product(),
+            };
+            assert!(
+                (volume - wanted).abs() < 1e-6 * wanted,
+                "{solid:?}: {volume}, not {wanted}"
+            );
+        }
+    }
+}
+
+/// The linkage weighs what the model says, its loops close, and its bodies look like the manipulator.
+#[test]
+fn the_linkage_is_the_manipulator_in_bodies() {
+    let model = Model::default();
+    for text in DESIGNS {
+        let design: Design = text.parse().expect("a design");
+        let evaluation = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+        let home = evaluation.home.expect("a home");
+        let cylinder = regular_workspace(&evaluation, 20.0).expect("a workspace");
+        let poses = tour(&model, &design, &cylinder, 8).expect("a tour").poses;
+        for pose in poses.iter().chain([&home]) {
+            let found = linkage(&model, &design, pose).expect("reachable");
+            let mass: f64 = found.bodies.iter().map(Body::mass).sum();
+            assert!((mass - evaluation.mass).abs() < 1e-9 * mass, "{text}: {mass}");
+            let place = |body: usize, at: DVec2| {
+                let frame = found.bodies[body].frame;
+                frame.origin + DVec2::from_angle(frame.angle).rotate(at)
+            };
+            for (leg, closure) in found.closures.iter().enumerate() {
+                let on_leg = place(closure.leg, closure.on_leg);
+                let on_platform = place(found.platform(), closure.on_platform);
+                assert!(on_leg.distance(on_platform) < 1e-12, "{text}: C{} is open", leg + 1);
+            }
+            let report = model.pose(&design, pose).expect("a whole grid").expect("reachable");
+            let driven = found
+                .bodies
+                .iter()
+                .filter_map(|body| body.joint.filter(|joint| joint.actuated));
+            for (joint, actuator) in driven.zip(report.actuators) {
+                assert!((joint.value - actuator).abs() < 1e-12);
+                if let Some([low, high]) = joint.limits {
+                    assert!((low..=high).contains(&joint.value));
+                }
+            }
+            // Seen from the base again, the bodies' solids are those of the scene.
+            let scene = manipulator(&model, &design, pose).expect("reachable");
+            let ends = |shape: &SolidShape| match *shape {
+                SolidShape::Bar { from, to, .. } => [from, to],
+                SolidShape::Block { centre, half_size, .. } => [centre, half_size],
+            };
+            for body in &found.bodies {
+                for solid in &body.solids {
+                    // Into a frame in which the base's is where it was.
+                    let back = -DVec2::from_angle(-body.frame.angle).rotate(body.frame.origin);
+                    let seen = ends(&solid.seen_from(back, -body.frame.angle).shape);
+                    let same = scene
+                        .solids
+                        .iter()
+                        .filter(|other| other.part == solid.part)
+                        .any(|other| {
+                            let other = ends(&other.shape);
+                            seen[0].distance(other[0]) < 1e-9 && seen[1].distance(other[1]) < 1e-9
+                        });
+                    assert!(same, "{text}: {} has {solid:?}", body.name);
+                }
+            }
+        }
+    }
+}
+
+/// A star of three bars has the moments that the textbook gives.
+#[test]
+fn moments_of_inertia_are_those_of_cylinders() {
+    let model = Model::default();
+    let design: Design = DESIGNS[0].parse().expect("a design");
+    let home = model.home(&model.evaluate(&design, GridChoice::Reference).expect("a whole grid"));
+    let found = linkage(&model, &design, &home).expect("reachable");
+    let platform = &found.bodies[found.platform()];
+    let (mass, length, radius) = (
+        platform.mass() / 3.0,
+        design.platform_radius,
+        design.platform_bar_radius,
+    );
+    let across = mass * (3.0 * radius * radius + length * length) / 12.0 + mass * length * length / 4.0;
+    let along = 0.5 * mass * radius * radius;
+    let [xx, yy, zz, xy] = platform.inertia();
+    for (found, wanted) in [
+        (zz, 3.0 * across),
+        (xx, 1.5 * (across + along)),
+        (yy, 1.5 * (across + along)),
+    ] {
+        assert!((found - wanted).abs() < 1e-9 * wanted, "{found}, not {wanted}");
+    }
+    assert!(xy.abs() < 1e-9 * zz && platform.centre_of_mass().length() < 1e-12);
 }

@@ -1,8 +1,10 @@
 //! The program from outside: commands, files and recordings as other programs meet them.
 
 mod commands;
+mod exports;
 mod outside;
 mod recordings;
+mod reports;
 mod runs;
 mod support;
 #[cfg(feature = "explorer")]

@@ -82,3 +82,27 @@ pub fn script(mut python: Command, name: &str, arguments: &[&Path]) -> String {
     );
     String::from_utf8(output.stdout).expect("UTF-8")
 }
+
+/// A Node.js that finds `package`, or `None` with a word on what is missing.
+///
+/// `KINEFRONT_NODE_PATH` is where packages are; with `KINEFRONT_REQUIRE_NODE` set, a missing one is a failure.
+pub fn node(package: &str) -> Option<Command> {
+    let make = || {
+        let mut node = Command::new("node");
+        if let Some(path) = std::env::var_os("KINEFRONT_NODE_PATH") {
+            node.env("NODE_PATH", path);
+        }
+        node
+    };
+    let found = make()
+        .args(["-e", &format!("require('{package}')")])
+        .output()
+        .is_ok_and(|output| output.status.success());
+    if found {
+        return Some(make());
+    }
+    let message = format!("skipped: Node.js with {package} was not found (see README, Tests)");
+    assert!(std::env::var_os("KINEFRONT_REQUIRE_NODE").is_none(), "{message}");
+    eprintln!("{message}");
+    None
+}

@@ -180,6 +180,42 @@ fn the_front_is_exported_with_stars_and_notes() {
     assert_eq!(stars[0][0], chosen.to_string());
 }
 
+/// The design in the light in every format, and the front as Parquet: whole files that begin as they should.
+#[test]
+fn the_design_is_exported_for_other_programs() {
+    use kinefront::explorer::Purpose;
+    use kinefront::export::Format;
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut window = opened_window();
+    let ctx = window.ctx.clone();
+    let begins = |format: Format| match format {
+        Format::Gltf => "glTF",
+        Format::Mjcf | Format::Sdf | Format::Urdf => "<?xml",
+        Format::Dxf => "  0",
+        Format::Json => "{",
+    };
+    for format in Format::ALL {
+        let path = folder.path().join(format!("design.{}", format.extension()));
+        window
+            .state_mut()
+            .act(&ctx, Purpose::ExportDesign(format), path.clone());
+        for _ in 0..500 {
+            window.step();
+            if !window.state().is_busy() {
+                break;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        let bytes = std::fs::read(&path).expect("an export");
+        assert!(bytes.starts_with(begins(format).as_bytes()), "{format:?}");
+    }
+    let front = folder.path().join("front.parquet");
+    window.state_mut().act(&ctx, Purpose::ExportFront, front.clone());
+    let bytes = std::fs::read(&front).expect("a table");
+    assert!(bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"));
+}
+
 #[test]
 fn a_design_is_copied_and_pasted_as_text() {
     let mut window = opened_window();

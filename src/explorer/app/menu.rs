@@ -8,6 +8,7 @@ use super::super::files::{Dialog, Purpose};
 use super::super::{Panel, Phase, theme};
 use super::shortcuts::SHORTCUTS;
 use super::{Explorer, layout};
+use crate::export::Format;
 
 impl Explorer {
     pub(super) fn menu(&mut self, ui: &mut Ui) {
@@ -21,13 +22,20 @@ impl Explorer {
                     ("Save run folder…", Purpose::SaveRun),
                     ("Save study…", Purpose::SaveStudy),
                     ("Export front…", Purpose::ExportFront),
-                    ("Export design…", Purpose::ExportDesign),
+                    ("Record design…", Purpose::RecordDesign),
                     ("Save picture…", Purpose::SavePicture),
                 ] {
                     if ui.button(text).clicked() {
                         asked = Some(purpose);
                     }
                 }
+                ui.menu_button("Export design", |ui| {
+                    for format in Format::ALL {
+                        if ui.button(format!("{}…", format.title())).clicked() {
+                            asked = Some(Purpose::ExportDesign(format));
+                        }
+                    }
+                });
                 let recent = self.recent.clone();
                 ui.menu_button("Recent", |ui| {
                     for path in recent {

@@ -3,7 +3,6 @@
 use egui::{Color32, Grid, RichText, ScrollArea, Ui};
 
 use crate::evaluation::{Constraint, Evaluation};
-use crate::explorer::quantity::symbol;
 use crate::explorer::{Session, theme};
 use crate::mechanism::VARIABLES;
 
@@ -71,7 +70,7 @@ impl ComparePanel {
                     );
                     for (index, variable) in VARIABLES.into_iter().enumerate() {
                         let values = pins.iter().map(|pin| Some(pin.design.values()[index])).collect();
-                        row(ui, &format!("{} [m]", symbol(variable)), values, None);
+                        row(ui, &format!("{} [m]", variable.symbol()), values, None);
                     }
                     for constraint in Constraint::ALL {
                         let margins = evaluations

@@ -3,7 +3,6 @@
 use egui::{Color32, Grid, ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo, WidgetType};
 
 use crate::evaluation::ConstraintReport;
-use crate::explorer::quantity::symbol;
 use crate::explorer::{Known, Session, theme};
 use crate::mechanism::VARIABLES;
 
@@ -104,7 +103,7 @@ fn sliders(ui: &mut Ui, session: &mut Session, values: &[f64; 5]) {
         let range = low.min(value)..=high.max(value);
         let thin = variable.may_be_zero();
         ui.horizontal(|ui| {
-            ui.add_sized([34.0, 18.0], egui::Label::new(symbol(variable)));
+            ui.add_sized([34.0, 18.0], egui::Label::new(variable.symbol()));
             ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(60.0);
             let slider = Slider::new(&mut value, range)
                 .custom_formatter(move |value, _| {
@@ -124,7 +123,7 @@ fn sliders(ui: &mut Ui, session: &mut Session, values: &[f64; 5]) {
                 });
             let slider = ui.add(slider);
             ui.ctx()
-                .accesskit_node_builder(slider.id, |node| node.set_label(symbol(variable)));
+                .accesskit_node_builder(slider.id, |node| node.set_label(variable.symbol()));
             if slider.changed() {
                 session.what_if(index, value);
             }

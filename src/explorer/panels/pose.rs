@@ -237,24 +237,14 @@ impl Plan {
 
 fn paint(ui: &Ui, painter: &egui::Painter, plan: &Plan, scene: &Scene) {
     let place = |at: DVec3| plan.screen(at.truncate());
+    let dark = ui.visuals().dark_mode;
     for line in &scene.lines {
-        let color = match line.part {
-            Part::AxisX => Color32::from_rgb(230, 70, 70),
-            Part::AxisY => Color32::from_rgb(80, 200, 90),
-            Part::Stroke => theme::ACTIVE,
-            _ => Color32::from_gray(130),
-        };
+        let color = theme::part(line.part, dark);
         let points: Vec<Pos2> = line.points.iter().map(|&at| place(at)).collect();
         painter.line(points, Stroke::new(1.2, color));
     }
     for solid in &scene.solids {
-        let color = match solid.part {
-            Part::PlatformBar => Color32::from_rgb(90, 150, 235),
-            Part::Tube | Part::Crank => Color32::from_rgb(120, 134, 158),
-            Part::Slider | Part::ActuatedJoint => Color32::from_rgb(255, 128, 20),
-            Part::PassiveJoint => Color32::from_gray(170),
-            _ => Color32::from_rgb(165, 178, 198),
-        };
+        let color = theme::part(solid.part, dark);
         match solid.shape {
             // A pin stands upright: a disc from above.
             SolidShape::Bar { from, radius, .. } if matches!(solid.part, Part::ActuatedJoint | Part::PassiveJoint) => {

@@ -1,0 +1,142 @@
+//! `kinefront export`: a design for other programs, or a run's front as a table.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use kinefront::evaluation::GridChoice;
+use kinefront::export::{ExportError, Format, Subject, export, front_to_parquet};
+use kinefront::spatial::Pose;
+use kinefront::study::write_whole;
+use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
+
+use super::subject::SubjectArguments;
+use super::{Ending, Failure};
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Formats of a design: gltf (.glb), mjcf (.xml), sdf, urdf, dxf, json. Formats of a front: csv, parquet.
+
+  kinefront export --design \"3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056\" --out design.glb
+  kinefront export run/front.csv#12 --format mjcf --out design.xml
+  kinefront export run --out front.parquet")]
+pub struct Arguments {
+    #[command(flatten)]
+    subject: SubjectArguments,
+    /// Format [default: by the extension of FILE].
+    #[arg(long, value_name = "FORMAT", value_parser = target)]
+    format: Option<Target>,
+    /// Pose that the design is written at, as in "x=0.1 y=0.2 phi_deg=30" [default: its home].
+    #[arg(long, value_parser = |text: &str| text.parse::<Pose>())]
+    pose: Option<Pose>,
+    /// File to write; it must not exist. `-` is standard output.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// What can be asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Target {
+    Design(Format),
+    Csv,
+    Parquet,
+}
+
+fn target(text: &str) -> Result<Target, String> {
+    match text {
+        "csv" => Ok(Target::Csv),
+        "parquet" => Ok(Target::Parquet),
+        _ => Format::find(text).map(Target::Design).ok_or_else(|| {
+            let known: Vec<&str> = Format::ALL.iter().map(|format| format.key()).collect();
+            format!("expected one of {}, csv, parquet", known.join(", "))
+        }),
+    }
+}
+
+impl Arguments {
+    fn target(&self) -> Result<Target> {
+        if let Some(target) = self.format {
+            return Ok(target);
+        }
+        let extension = self.out.extension().unwrap_or_default().to_string_lossy();
+        let design = || Format::ALL.into_iter().find(|format| format.extension() == extension);
+        match extension.as_ref() {
+            "csv" => Ok(Target::Csv),
+            "parquet" => Ok(Target::Parquet),
+            _ => design().map(Target::Design).ok_or_else(|| {
+                miette!(
+                    help =
+                        "give --format, or a file that ends in .glb, .xml, .sdf, .urdf, .dxf, .json, .csv or .parquet",
+                    "which format {} shall have is not known",
+                    self.out.display()
+                )
+            }),
+        }
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
+    let target = arguments.target().map_err(Failure::Input)?;
+    let to_stdout = arguments.out == Path::new("-");
+    if !to_stdout && arguments.out.exists() {
+        return Err(Failure::Input(miette!(
+            "{} exists already; choose another file, or move that one away",
+            arguments.out.display()
+        )));
+    }
+    let bytes = match target {
+        Target::Design(format) => design(arguments, format)?,
+        Target::Csv | Target::Parquet => front(arguments, target).map_err(Failure::Input)?,
+    };
+    if to_stdout {
+        std::io::stdout().write_all(&bytes)?;
+        return Ok(Ending::Done);
+    }
+    write_whole(&arguments.out, &bytes).map_err(Failure::runtime)?;
+    if let Target::Design(format) = target
+        && let Some(lost) = format.lost()
+    {
+        eprintln!("not in {}: {lost}", format.key().to_uppercase());
+    }
+    writeln!(std::io::stdout(), "wrote {}", arguments.out.display())?;
+    Ok(Ending::Done)
+}
+
+fn design(arguments: &Arguments, format: Format) -> Result<Vec<u8>, Failure> {
+    let (study, design, _) = arguments.subject.read().map_err(Failure::Input)?;
+    let evaluation = study
+        .model()
+        .evaluate(&design, GridChoice::Fine)
+        .map_err(Failure::runtime)?;
+    let subject = Subject {
+        study: &study,
+        evaluation: &evaluation,
+        pose: arguments.pose,
+    };
+    export(&subject, format).map_err(|error| match error {
+        ExportError::Unreachable(_) | ExportError::NoBar(_) => Failure::Input(Report::from_err(error)),
+        ExportError::Format { .. } => Failure::runtime(error),
+    })
+}
+
+/// The front of the run that the row argument names: its folder, or one of its tables.
+fn front(arguments: &Arguments, target: Target) -> Result<Vec<u8>> {
+    let Some(run) = &arguments.subject.row else {
+        return Err(miette!(
+            help = "kinefront export run --out front.parquet",
+            "a table is made of a run's front: name the run's folder, not a design"
+        ));
+    };
+    let path = Path::new(run);
+    let table = if path.is_dir() {
+        path.join("front.csv")
+    } else {
+        path.to_owned()
+    };
+    let text = std::fs::read(&table)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot read {}", table.display()))?;
+    match target {
+        Target::Parquet => front_to_parquet(&text).map_err(|message| miette!("{}: {message}", table.display())),
+        _ => Ok(text),
+    }
+}

@@ -1,0 +1,98 @@
+//! One design of a command's arguments: as text, or as a row of a table.
+
+use std::path::Path;
+
+use kinefront::mechanism::Design;
+use kinefront::study::Study;
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+
+use super::load_study;
+
+#[derive(Debug, clap::Args)]
+pub struct SubjectArguments {
+    /// A design of a table, as in run/front.csv#12: the row whose id is 12.
+    #[arg(
+        value_name = "TABLE#ID",
+        required_unless_present = "design",
+        conflicts_with = "design"
+    )]
+    pub row: Option<String>,
+    /// The design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
+    #[arg(long)]
+    pub design: Option<String>,
+    /// Study file, or the name of one that comes with the program [default: study.toml beside the table, else paper].
+    #[arg(long, value_name = "FILE")]
+    pub study: Option<String>,
+}
+
+impl SubjectArguments {
+    /// The study, the design and what to call it.
+    pub fn read(&self) -> Result<(Study, Design, String)> {
+        if let Some(text) = &self.design {
+            let study = load_study(self.study.as_deref())?;
+            let design = Design::parse(text, study.working_mode).into_diagnostic()?;
+            return Ok((study, design, design.architecture.to_string()));
+        }
+        let row = self.row.as_deref().unwrap_or_default();
+        let (table, id) = row
+            .rsplit_once('#')
+            .ok_or_else(|| miette!("`{row}` names no row; expected one like run/front.csv#12"))?;
+        let table = Path::new(table);
+        let beside = table.with_file_name("study.toml");
+        let study = match &self.study {
+            None if beside.exists() => Study::read(&beside)?,
+            study => load_study(study.as_deref())?,
+        };
+        let text = design_text(table, id).wrap_err_with(|| format!("cannot read {row}"))?;
+        let design = Design::parse(&text, study.working_mode).into_diagnostic()?;
+        Ok((study, design, format!("{}, design #{id}", study_name(table))))
+    }
+}
+
+fn study_name(table: &Path) -> String {
+    let folder = table.parent().filter(|folder| !folder.as_os_str().is_empty());
+    // Its name alone: where it lies is nothing to record.
+    let name = folder.and_then(Path::file_name).unwrap_or(table.as_os_str());
+    name.to_string_lossy().into_owned()
+}
+
+/// The design of the row with the given id, as text.
+fn design_text(table: &Path, id: &str) -> Result<String> {
+    let mut reader = csv::Reader::from_path(table).into_diagnostic()?;
+    let header = reader.headers().into_diagnostic()?.clone();
+    let column = |name: &str| {
+        header
+            .iter()
+            .position(|title| title == name)
+            .ok_or_else(|| miette!("{} has no column `{name}`", table.display()))
+    };
+    let (ids, architecture, mode) = (column("id")?, column("architecture")?, column("working_mode")?);
+    let lengths: Vec<(&str, usize)> = ["R", "r", "Lb", "rj", "rp"]
+        .into_iter()
+        .map(|name| Ok((name, column(name)?)))
+        .collect::<Result<_>>()?;
+    let mut known = Vec::new();
+    for record in reader.records() {
+        let record = record.into_diagnostic()?;
+        if &record[ids] == id {
+            let lengths: Vec<String> = lengths
+                .iter()
+                .map(|(name, k)| format!("{name}={}", &record[*k]))
+                .collect();
+            return Ok(format!(
+                "{} {} mode={}",
+                &record[architecture],
+                lengths.join(" "),
+                &record[mode]
+            ));
+        }
+        known.push(record[ids].to_owned());
+    }
+    let some: Vec<&str> = known.iter().take(8).map(String::as_str).collect();
+    let more = if known.len() > some.len() { ", …" } else { "" };
+    Err(miette!(
+        "{} has no design #{id}; it has #{}{more}",
+        table.display(),
+        some.join(", #")
+    ))
+}

@@ -1,0 +1,177 @@
+//! The plan view for CAD, in millimetres: a layer for each kind of thing.
+
+use ::dxf::entities::{Circle, Entity, EntityType, Line, LwPolyline, Text};
+use ::dxf::enums::{AcadVersion, Units};
+use ::dxf::tables::Layer;
+use ::dxf::{Color, Drawing, LwPolylineVertex, Point};
+use glam::{DVec2, DVec3};
+
+use super::Prepared;
+use crate::scene::{Part, Scene, SolidShape, manipulator};
+use crate::text::number;
+
+/// Millimetres per metre.
+const MM: f64 = 1e3;
+
+/// Layers with their colours of AutoCAD's index.
+const LAYERS: [(&str, u8); 8] = [
+    ("BASE", 8),
+    ("RAILS", 9),
+    ("LEGS", 7),
+    ("PLATFORM", 5),
+    ("JOINTS", 30),
+    ("CENTRE_LINES", 1),
+    ("WORKSPACE", 3),
+    ("TEXT", 2),
+];
+
+pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
+    let design = &subject.evaluation.design;
+    let scene = manipulator(&subject.model, design, &subject.pose).map_err(|error| error.to_string())?;
+    let mut sheet = Sheet::new();
+    sheet.manipulator(&scene);
+    if let Some(cylinder) = subject.cylinder {
+        sheet.circle("WORKSPACE", cylinder.centre, cylinder.radius);
+    }
+    let height = 0.03 * design.base_radius;
+    for label in &scene.labels {
+        sheet.text(label.at.truncate(), height, &label.text);
+    }
+    // Beside the drawing, from the top.
+    let corner = DVec2::new(1.3 * design.base_radius, design.base_radius);
+    for (line, words) in facts(subject).iter().enumerate() {
+        sheet.text(corner - DVec2::new(0.0, 1.6 * height * line as f64), height, words);
+    }
+    let mut bytes = Vec::new();
+    sheet.drawing.save(&mut bytes).map_err(|error| error.to_string())?;
+    Ok(bytes)
+}
+
+fn facts(subject: &Prepared) -> Vec<String> {
+    let (evaluation, pose) = (subject.evaluation, &subject.pose);
+    let mut facts = vec![
+        subject.title(),
+        format!("mass in motion {} kg", number(evaluation.mass)),
+    ];
+    if let Some(cylinder) = subject.cylinder {
+        facts.push(format!(
+            "regular workspace R_w {} mm, {} deg of turn",
+            number(MM * cylinder.radius),
+            number(cylinder.phi_range.to_degrees())
+        ));
+    }
+    let [x, y] = (pose.position * MM).to_array();
+    let phi = pose.phi.to_degrees();
+    facts.push(format!(
+        "drawn at x {} mm, y {} mm, phi {} deg",
+        number(x),
+        number(y),
+        number(phi)
+    ));
+    facts
+}
+
+struct Sheet {
+    drawing: Drawing,
+}
+
+impl Sheet {
+    fn new() -> Self {
+        let mut drawing = Drawing::new();
+        drawing.header.version = AcadVersion::R2000;
+        drawing.header.default_drawing_units = Units::Millimeters;
+        for (name, color) in LAYERS {
+            drawing.add_layer(Layer {
+                name: name.to_owned(),
+                color: Color::from_index(color),
+                ..Layer::default()
+            });
+        }
+        Self { drawing }
+    }
+
+    fn add(&mut self, layer: &str, kind: EntityType) {
+        let mut entity = Entity::new(kind);
+        layer.clone_into(&mut entity.common.layer);
+        self.drawing.add_entity(entity);
+    }
+
+    fn manipulator(&mut self, scene: &Scene) {
+        for line in &scene.lines {
+            let layer = match line.part {
+                Part::Base => "BASE",
+                Part::Rail | Part::Stroke => "RAILS",
+                _ => "CENTRE_LINES",
+            };
+            for ends in line.points.windows(2) {
+                let line = Line::new(point(ends[0].truncate()), point(ends[1].truncate()));
+                self.add(layer, EntityType::Line(line));
+            }
+        }
+        for solid in &scene.solids {
+            let layer = match solid.part {
+                Part::PlatformBar => "PLATFORM",
+                Part::ActuatedJoint | Part::PassiveJoint => "JOINTS",
+                _ => "LEGS",
+            };
+            match solid.shape {
+                SolidShape::Bar { from, to, radius } if from.truncate() == to.truncate() => {
+                    self.circle(layer, from.truncate(), radius);
+                }
+                SolidShape::Bar { from, to, radius } => {
+                    self.bar(layer, from, to, radius);
+                    let axis = Line::new(point(from.truncate()), point(to.truncate()));
+                    self.add("CENTRE_LINES", EntityType::Line(axis));
+                }
+                SolidShape::Block {
+                    centre,
+                    half_size,
+                    angle,
+                } => {
+                    let along = crate::spatial::unit(angle) * half_size.x;
+                    let (from, to) = (centre - along.extend(0.0), centre + along.extend(0.0));
+                    self.bar(layer, from, to, half_size.y);
+                }
+            }
+        }
+    }
+
+    /// The outline of a bar seen from above.
+    fn bar(&mut self, layer: &str, from: DVec3, to: DVec3, radius: f64) {
+        let (from, to) = (from.truncate(), to.truncate());
+        let side = (to - from).normalize_or(DVec2::X).perp() * radius;
+        let corners = [from + side, from - side, to - side, to + side];
+        let mut outline = LwPolyline {
+            vertices: corners.map(vertex).to_vec(),
+            ..LwPolyline::default()
+        };
+        outline.set_is_closed(true);
+        self.add(layer, EntityType::LwPolyline(outline));
+    }
+
+    fn circle(&mut self, layer: &str, centre: DVec2, radius: f64) {
+        self.add(layer, EntityType::Circle(Circle::new(point(centre), MM * radius)));
+    }
+
+    fn text(&mut self, at: DVec2, height: f64, words: &str) {
+        let text = Text {
+            location: point(at),
+            text_height: MM * height,
+            value: words.to_owned(),
+            ..Text::default()
+        };
+        self.add("TEXT", EntityType::Text(text));
+    }
+}
+
+fn point(at: DVec2) -> Point {
+    Point::new(MM * at.x, MM * at.y, 0.0)
+}
+
+fn vertex(at: DVec2) -> LwPolylineVertex {
+    LwPolylineVertex {
+        x: MM * at.x,
+        y: MM * at.y,
+        ..LwPolylineVertex::default()
+    }
+}

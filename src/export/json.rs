@@ -1,0 +1,349 @@
+//! The JSON that other programs rely on. Keys are a contract: add, never rename.
+
+use serde::Serialize;
+
+use super::Prepared;
+use crate::evaluation::{Evaluation, PoseReport, Unreachable};
+use crate::mechanism::{Actuator, Design};
+use crate::scene::{Body, Frame, Linkage};
+use crate::spatial::Pose;
+use crate::stiffness::Material;
+
+/// The lengths of a design.
+#[derive(Debug, Serialize)]
+pub struct DesignJson {
+    #[serde(rename = "R")]
+    base_radius: f64,
+    #[serde(rename = "r")]
+    platform_radius: f64,
+    #[serde(rename = "Lb")]
+    link_length: f64,
+    #[serde(rename = "rj")]
+    leg_bar_radius: f64,
+    #[serde(rename = "rp")]
+    platform_bar_radius: f64,
+}
+
+impl From<&Design> for DesignJson {
+    fn from(design: &Design) -> Self {
+        Self {
+            base_radius: design.base_radius,
+            platform_radius: design.platform_radius,
+            link_length: design.link_length,
+            leg_bar_radius: design.leg_bar_radius,
+            platform_bar_radius: design.platform_bar_radius,
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct PoseJson {
+    x_m: f64,
+    y_m: f64,
+    phi_deg: f64,
+}
+
+impl PoseJson {
+    fn new(pose: &Pose, phi_deg: f64) -> Self {
+        Self {
+            x_m: pose.position.x,
+            y_m: pose.position.y,
+            phi_deg,
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct ConstraintJson {
+    id: &'static str,
+    name: &'static str,
+    value: Option<f64>,
+    threshold: f64,
+    margin: f64,
+    active: bool,
+    pose: Option<PoseJson>,
+}
+
+/// What `kinefront evaluate --json` tells.
+#[derive(Debug, Serialize)]
+pub struct EvaluationJson {
+    architecture: &'static str,
+    design: DesignJson,
+    working_mode: [i8; 3],
+    mass_kg: f64,
+    workspace_radius_m: f64,
+    home: Option<PoseJson>,
+    feasible: bool,
+    violation: f64,
+    constraints: Vec<ConstraintJson>,
+}
+
+impl From<&Evaluation> for EvaluationJson {
+    fn from(evaluation: &Evaluation) -> Self {
+        let design = &evaluation.design;
+        Self {
+            architecture: design.architecture.name(),
+            design: design.into(),
+            working_mode: design.working_mode.signs(),
+            mass_kg: evaluation.mass,
+            workspace_radius_m: evaluation.workspace_radius,
+            home: evaluation
+                .home
+                .zip(evaluation.home_phi_deg)
+                .map(|(pose, phi_deg)| PoseJson::new(&pose, phi_deg)),
+            feasible: evaluation.is_feasible(),
+            violation: evaluation.violation,
+            constraints: evaluation
+                .constraints
+                .iter()
+                .map(|report| ConstraintJson {
+                    id: report.constraint.id(),
+                    name: report.constraint.name(),
+                    value: report.value,
+                    threshold: report.threshold,
+                    margin: report.margin,
+                    active: report.active,
+                    pose: report.pose.map(|pose| PoseJson::new(&pose, pose.phi.to_degrees())),
+                })
+                .collect(),
+        }
+    }
+}
+
+/// What `kinefront pose --json` tells.
+#[derive(Debug, Serialize)]
+pub struct PoseReportJson {
+    reachable: bool,
+    reason: Option<String>,
+    actuators: Option<[f64; 3]>,
+    #[serde(rename = "B")]
+    b: Option<[[f64; 2]; 3]>,
+    #[serde(rename = "C")]
+    c: Option<[[f64; 2]; 3]>,
+    inverse_condition: Option<f64>,
+    k_xy: Option<f64>,
+    k_z: Option<f64>,
+    k_phi_z: Option<f64>,
+    stiffness: Option<[[f64; 6]; 6]>,
+}
+
+impl From<&Result<PoseReport, Unreachable>> for PoseReportJson {
+    fn from(outcome: &Result<PoseReport, Unreachable>) -> Self {
+        let report = outcome.as_ref().ok();
+        Self {
+            reachable: report.is_some(),
+            reason: outcome.as_ref().err().map(ToString::to_string),
+            actuators: report.map(|report| report.actuators),
+            b: report.map(|report| report.b),
+            c: report.map(|report| report.c),
+            inverse_condition: report.map(|report| report.inverse_condition),
+            k_xy: report.map(|report| report.rigidity.k_xy),
+            k_z: report.map(|report| report.rigidity.k_z),
+            k_phi_z: report.map(|report| report.rigidity.k_phi_z),
+            stiffness: report.map(|report| std::array::from_fn(|i| std::array::from_fn(|j| report.stiffness[(i, j)]))),
+        }
+    }
+}
+
+/// A design as `kinefront export --format json` writes it.
+#[derive(Debug, Serialize)]
+struct ExportJson<'a> {
+    kinefront_version: &'static str,
+    study: &'a str,
+    design: String,
+    evaluation: EvaluationJson,
+    pose: PoseJson,
+    at_pose: PoseReportJson,
+    material: MaterialJson,
+    actuator: ActuatorJson,
+    bodies: Vec<BodyJson<'a>>,
+    closures: Vec<ClosureJson<'a>>,
+    tour: Vec<TourJson>,
+}
+
+#[derive(Debug, Serialize)]
+struct MaterialJson {
+    youngs_modulus_pa: f64,
+    shear_modulus_pa: f64,
+    density_kg_per_m3: f64,
+}
+
+impl From<&Material> for MaterialJson {
+    fn from(material: &Material) -> Self {
+        Self {
+            youngs_modulus_pa: material.youngs_modulus,
+            shear_modulus_pa: material.shear_modulus,
+            density_kg_per_m3: material.density,
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct ActuatorJson {
+    kind: &'static str,
+    unit: &'static str,
+    /// N/m, or N·m/rad.
+    stiffness: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct FrameJson {
+    x_m: f64,
+    y_m: f64,
+    angle_rad: f64,
+}
+
+impl From<&Frame> for FrameJson {
+    fn from(frame: &Frame) -> Self {
+        Self {
+            x_m: frame.origin.x,
+            y_m: frame.origin.y,
+            angle_rad: frame.angle,
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct JointJson {
+    kind: &'static str,
+    actuated: bool,
+    value: f64,
+    limits: Option<[f64; 2]>,
+}
+
+#[derive(Debug, Serialize)]
+struct BarJson {
+    from_m: [f64; 2],
+    to_m: [f64; 2],
+    radius_m: f64,
+    mass_kg: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct InertiaJson {
+    xx: f64,
+    yy: f64,
+    zz: f64,
+    xy: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct BodyJson<'a> {
+    name: &'a str,
+    /// `base`, a body's name, or nothing for the platform.
+    parent: Option<&'a str>,
+    /// In the base frame.
+    frame: FrameJson,
+    joint: Option<JointJson>,
+    mass_kg: f64,
+    centre_of_mass_m: [f64; 2],
+    inertia_kg_m2: InertiaJson,
+    bars: Vec<BarJson>,
+}
+
+impl<'a> BodyJson<'a> {
+    fn new(linkage: &'a Linkage, body: &'a Body) -> Self {
+        let [xx, yy, zz, xy] = body.inertia();
+        Self {
+            name: &body.name,
+            parent: match body.parent {
+                Some(parent) => Some(&linkage.bodies[parent].name),
+                None => body.joint.map(|_| "base"),
+            },
+            frame: (&body.frame).into(),
+            joint: body.joint.map(|joint| JointJson {
+                kind: kind(joint.kind),
+                actuated: joint.actuated,
+                value: joint.value,
+                limits: joint.limits,
+            }),
+            mass_kg: body.mass(),
+            centre_of_mass_m: body.centre_of_mass().to_array(),
+            inertia_kg_m2: InertiaJson { xx, yy, zz, xy },
+            bars: body
+                .bars
+                .iter()
+                .map(|bar| BarJson {
+                    from_m: bar.from.to_array(),
+                    to_m: bar.to.to_array(),
+                    radius_m: bar.radius,
+                    mass_kg: bar.mass,
+                })
+                .collect(),
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct ClosureJson<'a> {
+    name: String,
+    leg_body: &'a str,
+    on_leg_m: [f64; 2],
+    on_platform_m: [f64; 2],
+}
+
+#[derive(Debug, Serialize)]
+struct TourJson {
+    #[serde(flatten)]
+    pose: PoseJson,
+    actuators: Option<[f64; 3]>,
+}
+
+fn kind(actuator: Actuator) -> &'static str {
+    match actuator {
+        Actuator::Prismatic => "prismatic",
+        Actuator::Revolute => "revolute",
+    }
+}
+
+pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
+    let Prepared {
+        study,
+        evaluation,
+        model,
+        pose,
+        linkage,
+        ..
+    } = subject;
+    let design = &evaluation.design;
+    let at = |pose: &Pose| model.pose(design, pose).map_err(|error| error.to_string());
+    let actuator = design.architecture.actuator();
+    let tour = subject.tour.iter().flat_map(|tour| &tour.poses);
+    let document = ExportJson {
+        kinefront_version: env!("CARGO_PKG_VERSION"),
+        study: &study.name,
+        design: subject.title(),
+        evaluation: (*evaluation).into(),
+        pose: PoseJson::new(pose, pose.phi.to_degrees()),
+        at_pose: (&at(pose)?).into(),
+        material: (&model.material).into(),
+        actuator: ActuatorJson {
+            kind: kind(actuator),
+            unit: actuator.unit(),
+            stiffness: model.actuators.of(actuator),
+        },
+        bodies: linkage.bodies.iter().map(|body| BodyJson::new(linkage, body)).collect(),
+        closures: linkage
+            .closures
+            .iter()
+            .enumerate()
+            .map(|(leg, closure)| ClosureJson {
+                name: format!("C{}", leg + 1),
+                leg_body: &linkage.bodies[closure.leg].name,
+                on_leg_m: closure.on_leg.to_array(),
+                on_platform_m: closure.on_platform.to_array(),
+            })
+            .collect(),
+        tour: tour
+            .map(|pose| {
+                Ok(TourJson {
+                    pose: PoseJson::new(pose, pose.phi.to_degrees()),
+                    actuators: at(pose)?.ok().map(|report| report.actuators),
+                })
+            })
+            .collect::<Result<_, String>>()?,
+    };
+    let mut bytes = serde_json::to_vec_pretty(&document).map_err(|error| error.to_string())?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}

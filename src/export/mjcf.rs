@@ -1,0 +1,191 @@
+//! MuJoCo: legs as trees, the platform free in the plane, `C_1` to `C_3` as equality constraints, actuators as position
+//! servos whose gain is the study's actuator stiffness.
+
+use super::xml::Element;
+use super::{Format, Prepared, inertial};
+use crate::mechanism::Actuator;
+use crate::palette;
+use crate::scene::{Body, Part, Solid, SolidShape};
+
+pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
+    let linkage = &subject.linkage;
+    let mut world = Element::new("worldbody").child(
+        Element::new("light")
+            .with("directional", "true")
+            .with("pos", "0 0 10")
+            .with("dir", "0.3 0.4 -1"),
+    );
+    if let Some(cylinder) = subject.cylinder {
+        // Shown, and nothing else.
+        let [x, y] = cylinder.centre.to_array();
+        world.push(
+            Element::new("site")
+                .with("name", "regular_workspace")
+                .with("type", "cylinder")
+                .with_numbers("pos", &[x, y, 0.0])
+                .with_numbers("size", &[cylinder.radius, 1e-3])
+                .with("rgba", "0.35 0.7 0.43 0.25"),
+        );
+    }
+    // Bodies are nested in their parents: those that hang on others are put in first.
+    let mut inside: Vec<Vec<Element>> = vec![Vec::new(); linkage.bodies.len()];
+    for (place, body) in linkage.bodies.iter().enumerate().rev() {
+        let mut element = element(subject, body);
+        // Pushed from the last to the first.
+        let nested: Vec<Element> = inside[place].drain(..).rev().collect();
+        element = element.children(nested);
+        match body.parent {
+            Some(parent) => inside[parent].push(element),
+            None => inside[place].push(element),
+        }
+    }
+    let roots = linkage
+        .bodies
+        .iter()
+        .enumerate()
+        .filter(|(_, body)| body.parent.is_none());
+    let roots: Vec<Element> = roots.flat_map(|(place, _)| inside[place].clone()).collect();
+    world = world.children(roots);
+
+    let platform = &linkage.bodies[linkage.platform()];
+    let closures = linkage.closures.iter().enumerate().map(|(leg, closure)| {
+        let [x, y] = closure.on_leg.to_array();
+        Element::new("connect")
+            .with("name", format!("C{}", leg + 1))
+            .with("body1", linkage.bodies[closure.leg].name.clone())
+            .with("body2", platform.name.clone())
+            .with_numbers("anchor", &[x, y, 0.0])
+    });
+    let driven = || {
+        linkage
+            .bodies
+            .iter()
+            .filter_map(|body| Some((body, body.joint.filter(|joint| joint.actuated)?)))
+    };
+    let actuators = driven().map(|(body, joint)| {
+        let servo = Element::new("position")
+            .with("name", format!("{}_servo", body.name))
+            .with("joint", joint_name(body))
+            .with_numbers("kp", &[subject.model.actuators.of(joint.kind)])
+            .with("dampratio", "1");
+        match joint.limits {
+            Some(limits) => servo.with_numbers("ctrlrange", &limits),
+            None => servo,
+        }
+    });
+    let home: Vec<f64> = driven().map(|(_, joint)| joint.value).collect();
+    let root = Element::new("mujoco")
+        .with("model", subject.identifier())
+        .child(
+            Element::new("compiler")
+                .with("angle", "radian")
+                .with("autolimits", "true"),
+        )
+        .child(
+            // The servos are as stiff as K_act, which asks for short steps.
+            Element::new("option")
+                .with("timestep", "0.0001")
+                .with("integrator", "implicitfast")
+                .with("gravity", "0 0 -9.81"),
+        )
+        .child(
+            Element::new("default")
+                .child(Element::new("geom").with("contype", "0").with("conaffinity", "0"))
+                .child(
+                    Element::new("equality")
+                        .with("solref", "0.0002 1")
+                        .with("solimp", "0.9999 0.9999 0.001 0.5 2"),
+                ),
+        )
+        .child(world)
+        .child(Element::new("equality").children(closures))
+        .child(Element::new("actuator").children(actuators))
+        .child(Element::new("sensor").children(["x", "y", "phi"].map(|axis| {
+            Element::new("jointpos")
+                .with("name", format!("platform_{axis}_value"))
+                .with("joint", format!("platform_{axis}"))
+        })))
+        .child(Element::new("keyframe").child(Element::new("key").with("name", "home").with_numbers("ctrl", &home)));
+    root.document(&subject.preamble(Format::Mjcf))
+}
+
+fn joint_name(body: &Body) -> String {
+    format!("{}_joint", body.name)
+}
+
+fn element(subject: &Prepared, body: &Body) -> Element {
+    let frame = subject.linkage.local_frame(body);
+    let mut element = Element::new("body")
+        .with("name", body.name.clone())
+        .with_numbers("pos", &[frame.origin.x, frame.origin.y, 0.0])
+        .with_numbers("euler", &[0.0, 0.0, frame.angle]);
+    match body.joint {
+        Some(joint) => {
+            let mut hinge = Element::new("joint").with("name", joint_name(body));
+            hinge = match joint.kind {
+                Actuator::Prismatic => hinge.with("type", "slide").with("axis", "1 0 0"),
+                Actuator::Revolute => hinge.with("type", "hinge").with("axis", "0 0 1"),
+            };
+            hinge = hinge.with_numbers("ref", &[joint.value]);
+            if let Some(limits) = joint.limits {
+                hinge = hinge.with_numbers("range", &limits);
+            }
+            element.push(hinge);
+        }
+        // Free in the plane; its joints read the pose in the base frame.
+        None => {
+            let (sin, cos) = libm::sincos(frame.angle);
+            for (axis, kind, direction, value) in [
+                ("x", "slide", [cos, -sin, 0.0], frame.origin.x),
+                ("y", "slide", [sin, cos, 0.0], frame.origin.y),
+                ("phi", "hinge", [0.0, 0.0, 1.0], frame.angle),
+            ] {
+                element.push(
+                    Element::new("joint")
+                        .with("name", format!("{}_{axis}", body.name))
+                        .with("type", kind)
+                        .with_numbers("axis", &direction)
+                        .with_numbers("ref", &[value]),
+                );
+            }
+        }
+    }
+    let (mass, centre, [xx, yy, zz, xy]) = inertial(body);
+    element.push(
+        Element::new("inertial")
+            .with_numbers("pos", &[centre.x, centre.y, 0.0])
+            .with_numbers("mass", &[mass])
+            .with_numbers("fullinertia", &[xx, yy, zz, xy, 0.0, 0.0]),
+    );
+    let solids = body.solids.iter().filter(|solid| solid.shape.has_volume());
+    element.children(solids.map(geom)).child(
+        Element::new("site")
+            .with("name", format!("{}_frame", body.name))
+            .with("group", "3"),
+    )
+}
+
+fn geom(solid: &Solid) -> Element {
+    let geom = match solid.shape {
+        SolidShape::Bar { from, to, radius } => Element::new("geom")
+            .with("type", "cylinder")
+            .with_numbers("fromto", &[from.x, from.y, from.z, to.x, to.y, to.z])
+            .with_numbers("size", &[radius]),
+        SolidShape::Block {
+            centre,
+            half_size,
+            angle,
+        } => Element::new("geom")
+            .with("type", "box")
+            .with_numbers("pos", &centre.to_array())
+            .with_numbers("size", &half_size.to_array())
+            .with_numbers("euler", &[0.0, 0.0, angle]),
+    };
+    geom.with_numbers("rgba", &rgba(solid.part))
+}
+
+/// A part's colour, 0 to 1.
+pub(super) fn rgba(part: Part) -> [f64; 4] {
+    let [r, g, b] = palette::part(part).map(|value| (f64::from(value) / 255.0 * 1e3).round() / 1e3);
+    [r, g, b, 1.0]
+}

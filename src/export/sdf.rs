@@ -1,0 +1,139 @@
+//! SDF: a link for every body, a joint for every joint, those that close the loops among them.
+
+use super::xml::{Element, numbers};
+use super::{Format, Prepared, inertial, text};
+use crate::mechanism::Actuator;
+use crate::scene::{Body, Frame, Joint, Solid, SolidShape};
+
+/// Stands for "no limit" where the format asks for a number.
+const UNLIMITED: f64 = 1e16;
+
+pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
+    let linkage = &subject.linkage;
+    let mut model = Element::new("model").with("name", subject.identifier()).child(
+        Element::new("link").with("name", "base").child(
+            // The ground that the legs stand on.
+            Element::new("inertial").leaf("mass", "1"),
+        ),
+    );
+    model.push(
+        Element::new("joint")
+            .with("name", "base_to_world")
+            .with("type", "fixed")
+            .leaf("parent", "world")
+            .leaf("child", "base"),
+    );
+    for body in &linkage.bodies {
+        model.push(link(body));
+    }
+    for body in &linkage.bodies {
+        // The platform hangs on the legs alone.
+        if let Some(joint) = body.joint {
+            let parent = body
+                .parent
+                .map_or("base", |parent| linkage.bodies[parent].name.as_str());
+            model.push(joint_element(
+                &format!("{}_joint", body.name),
+                parent,
+                &body.name,
+                joint,
+                None,
+            ));
+        }
+    }
+    let platform = &linkage.bodies[linkage.platform()];
+    for (leg, closure) in linkage.closures.iter().enumerate() {
+        let passive = Joint {
+            kind: Actuator::Revolute,
+            actuated: false,
+            value: 0.0,
+            limits: None,
+        };
+        let [x, y] = closure.on_platform.to_array();
+        let parent = &linkage.bodies[closure.leg].name;
+        let name = format!("C{}", leg + 1);
+        model.push(joint_element(&name, parent, &platform.name, passive, Some([x, y])));
+    }
+    Element::new("sdf")
+        .with("version", "1.9")
+        .child(model)
+        .document(&subject.preamble(Format::Sdf))
+}
+
+fn pose(x: f64, y: f64, angle: f64) -> String {
+    numbers(&[x, y, 0.0, 0.0, 0.0, angle])
+}
+
+fn link(body: &Body) -> Element {
+    let Frame { origin, angle } = body.frame;
+    let (mass, centre, [xx, yy, zz, xy]) = inertial(body);
+    let inertia = Element::new("inertia")
+        .leaf("ixx", text(xx))
+        .leaf("ixy", text(xy))
+        .leaf("ixz", "0")
+        .leaf("iyy", text(yy))
+        .leaf("iyz", "0")
+        .leaf("izz", text(zz));
+    let solids = body.solids.iter().filter(|solid| solid.shape.has_volume());
+    Element::new("link")
+        .with("name", body.name.clone())
+        .leaf("pose", pose(origin.x, origin.y, angle))
+        .child(
+            Element::new("inertial")
+                .leaf("pose", pose(centre.x, centre.y, 0.0))
+                .leaf("mass", text(mass))
+                .child(inertia),
+        )
+        .children(solids.enumerate().map(|(index, solid)| visual(index, solid)))
+}
+
+fn visual(index: usize, solid: &Solid) -> Element {
+    let (place, shape) = match solid.shape {
+        SolidShape::Bar { from, to, radius } => {
+            let shape = Element::new("cylinder")
+                .leaf("radius", text(radius))
+                .leaf("length", text(from.distance(to)));
+            (super::urdf::bar_pose(from, to), shape)
+        }
+        SolidShape::Block {
+            centre,
+            half_size,
+            angle,
+        } => {
+            let shape = Element::new("box").leaf("size", numbers(&(half_size * 2.0).to_array()));
+            ([centre.x, centre.y, centre.z, 0.0, 0.0, angle], shape)
+        }
+    };
+    let color = numbers(&super::mjcf::rgba(solid.part));
+    Element::new("visual")
+        .with("name", format!("part{index}"))
+        .leaf("pose", numbers(&place))
+        .child(Element::new("geometry").child(shape))
+        .child(
+            Element::new("material")
+                .leaf("ambient", color.clone())
+                .leaf("diffuse", color),
+        )
+}
+
+/// A joint in the child's frame, or at a point of it.
+fn joint_element(name: &str, parent: &str, child: &str, joint: Joint, at: Option<[f64; 2]>) -> Element {
+    let (kind, axis) = match joint.kind {
+        Actuator::Prismatic => ("prismatic", "1 0 0"),
+        Actuator::Revolute => ("revolute", "0 0 1"),
+    };
+    let [lower, upper] = joint.limits.map_or([-UNLIMITED, UNLIMITED], |limits| {
+        limits.map(|limit| limit - joint.value)
+    });
+    let mut element = Element::new("joint").with("name", name).with("type", kind);
+    if let Some([x, y]) = at {
+        element = element.leaf("pose", pose(x, y, 0.0));
+    }
+    element.leaf("parent", parent).leaf("child", child).child(
+        Element::new("axis").leaf("xyz", axis).child(
+            Element::new("limit")
+                .leaf("lower", text(lower))
+                .leaf("upper", text(upper)),
+        ),
+    )
+}

@@ -1,0 +1,121 @@
+//! Tables of designs as Parquet.
+
+use std::sync::Arc;
+
+use parquet::basic::Compression;
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::parser::parse_message_type;
+
+/// A column with its values.
+enum Column {
+    Int(Vec<Option<i64>>),
+    Number(Vec<Option<f64>>),
+    Truth(Vec<Option<bool>>),
+    Text(Vec<Option<String>>),
+}
+
+impl Column {
+    /// The values of a column of our tables; one that is not ours holds numbers, or else texts. No text: no value.
+    fn new(name: &str, texts: &[&str]) -> Result<Self, String> {
+        fn read<T: std::str::FromStr>(name: &str, texts: &[&str]) -> Result<Vec<Option<T>>, String> {
+            let parse = |(row, text): (usize, &&str)| match *text {
+                "" => Ok(None),
+                text => text
+                    .parse()
+                    .map(Some)
+                    .map_err(|_| format!("line {}: `{text}` does not fit the column `{name}`", row + 2)),
+            };
+            texts.iter().enumerate().map(parse).collect()
+        }
+        match name {
+            "id" | "generation" => read(name, texts).map(Self::Int),
+            "feasible" | "verified" | "starred" => read(name, texts).map(Self::Truth),
+            "architecture" | "working_mode" | "active" | "mark" | "note" => read(name, texts).map(Self::Text),
+            _ => read(name, texts)
+                .map(Self::Number)
+                .or_else(|_| read(name, texts).map(Self::Text)),
+        }
+    }
+
+    fn declaration(&self, name: &str) -> String {
+        match self {
+            Self::Int(_) => format!("optional int64 {name};"),
+            Self::Number(_) => format!("optional double {name};"),
+            Self::Truth(_) => format!("optional boolean {name};"),
+            Self::Text(_) => format!("optional binary {name} (string);"),
+        }
+    }
+}
+
+/// A table of designs as it stands in `front.csv` or `designs.csv`, with the same columns.
+///
+/// # Errors
+/// What is wrong with the table, in words.
+pub fn front_to_parquet(table: &[u8]) -> Result<Vec<u8>, String> {
+    let mut reader = csv::Reader::from_reader(table);
+    let header = reader.headers().map_err(|error| error.to_string())?.clone();
+    let records: Vec<csv::StringRecord> = reader
+        .records()
+        .collect::<Result<_, _>>()
+        .map_err(|error| error.to_string())?;
+    let columns: Vec<Column> = header
+        .iter()
+        .enumerate()
+        .map(|(place, name)| {
+            let texts: Vec<&str> = records.iter().map(|record| &record[place]).collect();
+            Column::new(name, &texts)
+        })
+        .collect::<Result<_, _>>()?;
+    write(&header, &columns).map_err(|error| error.to_string())
+}
+
+fn write(header: &csv::StringRecord, columns: &[Column]) -> Result<Vec<u8>, ParquetError> {
+    let fields: Vec<String> = header
+        .iter()
+        .zip(columns)
+        .map(|(name, column)| column.declaration(name))
+        .collect();
+    let schema = parse_message_type(&format!("message designs {{ {} }}", fields.join(" ")))?;
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::SNAPPY)
+        .set_created_by(format!("Kinefront {}", env!("CARGO_PKG_VERSION")))
+        .build();
+    let mut bytes = Vec::new();
+    let mut file = SerializedFileWriter::new(&mut bytes, Arc::new(schema), Arc::new(properties))?;
+    let mut group = file.next_row_group()?;
+    for column in columns {
+        let Some(mut writer) = group.next_column()? else { break };
+        // A level of 0 stands for a missing value.
+        fn split<S, T>(values: &[Option<S>], make: impl Fn(&S) -> T) -> (Vec<T>, Vec<i16>) {
+            let levels = values.iter().map(|value| i16::from(value.is_some())).collect();
+            (values.iter().flatten().map(make).collect(), levels)
+        }
+        match column {
+            Column::Int(values) => {
+                let (values, levels) = split(values, |value| *value);
+                writer.typed::<Int64Type>().write_batch(&values, Some(&levels), None)?;
+            }
+            Column::Number(values) => {
+                let (values, levels) = split(values, |value| *value);
+                writer.typed::<DoubleType>().write_batch(&values, Some(&levels), None)?;
+            }
+            Column::Truth(values) => {
+                let (values, levels) = split(values, |value| *value);
+                writer.typed::<BoolType>().write_batch(&values, Some(&levels), None)?;
+            }
+            Column::Text(values) => {
+                let (values, levels) = split(values, |value| ByteArray::from(value.as_str()));
+                writer
+                    .typed::<ByteArrayType>()
+                    .write_batch(&values, Some(&levels), None)?;
+            }
+        }
+        writer.close()?;
+    }
+    group.close()?;
+    file.close()?;
+    Ok(bytes)
+}

@@ -1,0 +1,178 @@
+//! URDF: the tree that is left when the loops are cut at `C_2` and `C_3`.
+
+use glam::{DVec2, DVec3};
+
+use super::xml::{Element, numbers};
+use super::{Format, Prepared, inertial, text};
+use crate::mechanism::Actuator;
+use crate::scene::{Body, Solid, SolidShape};
+
+/// Force, torque and speed that joints are given, since the format asks for them and the study knows none.
+const EFFORT: f64 = 1e4;
+const SPEED: f64 = 10.0;
+
+pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
+    let linkage = &subject.linkage;
+    let mut robot = Element::new("robot")
+        .with("name", subject.identifier())
+        .child(Element::new("link").with("name", "base"));
+    for body in &linkage.bodies {
+        // The platform's link has its origin where it hangs: in C_1.
+        let shift = match body.joint {
+            Some(_) => DVec2::ZERO,
+            None => linkage.closures[0].on_platform,
+        };
+        robot.push(link(body, shift));
+    }
+    for body in &linkage.bodies {
+        let Some(joint) = body.joint else { continue };
+        let parent = body
+            .parent
+            .map_or("base", |parent| linkage.bodies[parent].name.as_str());
+        let frame = linkage.local_frame(body);
+        let (kind, axis) = match joint.kind {
+            Actuator::Prismatic => ("prismatic", "1 0 0"),
+            Actuator::Revolute => (
+                if joint.limits.is_some() {
+                    "revolute"
+                } else {
+                    "continuous"
+                },
+                "0 0 1",
+            ),
+        };
+        let mut limit = Element::new("limit");
+        if let Some(limits) = joint.limits {
+            let [lower, upper] = limits.map(|value| value - joint.value);
+            limit = limit.with_numbers("lower", &[lower]).with_numbers("upper", &[upper]);
+        }
+        limit = limit
+            .with_numbers("effort", &[EFFORT])
+            .with_numbers("velocity", &[SPEED]);
+        robot.push(
+            hung(
+                &format!("{}_joint", body.name),
+                kind,
+                parent,
+                &body.name,
+                frame.origin,
+                frame.angle,
+            )
+            .child(Element::new("axis").with("xyz", axis))
+            .child(limit),
+        );
+    }
+    let platform = &linkage.bodies[linkage.platform()];
+    let closure = linkage.closures[0];
+    let leg = &linkage.bodies[closure.leg];
+    robot.push(
+        hung(
+            "C1",
+            "continuous",
+            &leg.name,
+            &platform.name,
+            closure.on_leg,
+            platform.frame.angle - leg.frame.angle,
+        )
+        .child(Element::new("axis").with("xyz", "0 0 1")),
+    );
+    // Frames of what was cut, so that a program can close it again: C_i on the leg and on the platform, and P.
+    let mut frames = vec![("P".to_owned(), platform.name.clone(), -closure.on_platform)];
+    for (leg, cut) in linkage.closures.iter().enumerate().skip(1) {
+        frames.push((
+            format!("C{}_leg", leg + 1),
+            linkage.bodies[cut.leg].name.clone(),
+            cut.on_leg,
+        ));
+        frames.push((
+            format!("C{}_platform", leg + 1),
+            platform.name.clone(),
+            cut.on_platform - closure.on_platform,
+        ));
+    }
+    for (name, parent, at) in frames {
+        robot.push(Element::new("link").with("name", name.clone()));
+        robot.push(hung(&format!("{name}_fixed"), "fixed", &parent, &name, at, 0.0));
+    }
+    robot.document(&subject.preamble(Format::Urdf))
+}
+
+fn hung(name: &str, kind: &str, parent: &str, child: &str, at: DVec2, angle: f64) -> Element {
+    Element::new("joint")
+        .with("name", name)
+        .with("type", kind)
+        .child(Element::new("parent").with("link", parent))
+        .child(Element::new("child").with("link", child))
+        .child(origin([at.x, at.y, 0.0, 0.0, 0.0, angle]))
+}
+
+fn origin([x, y, z, roll, pitch, yaw]: [f64; 6]) -> Element {
+    Element::new("origin")
+        .with("xyz", numbers(&[x, y, z]))
+        .with("rpy", numbers(&[roll, pitch, yaw]))
+}
+
+fn link(body: &Body, shift: DVec2) -> Element {
+    let (mass, centre, [xx, yy, zz, xy]) = inertial(body);
+    let inertia = [
+        ("ixx", xx),
+        ("ixy", xy),
+        ("ixz", 0.0),
+        ("iyy", yy),
+        ("iyz", 0.0),
+        ("izz", zz),
+    ]
+    .into_iter()
+    .fold(Element::new("inertia"), |element, (key, value)| {
+        element.with(key, text(value))
+    });
+    let solids = body.solids.iter().filter(|solid| solid.shape.has_volume());
+    Element::new("link")
+        .with("name", body.name.clone())
+        .child(
+            Element::new("inertial")
+                .child(origin([centre.x - shift.x, centre.y - shift.y, 0.0, 0.0, 0.0, 0.0]))
+                .child(Element::new("mass").with("value", text(mass)))
+                .child(inertia),
+        )
+        .children(solids.map(|solid| visual(&solid.seen_from(shift, 0.0))))
+}
+
+fn visual(solid: &Solid) -> Element {
+    let (place, shape) = match solid.shape {
+        SolidShape::Bar { from, to, radius } => {
+            let shape = Element::new("cylinder")
+                .with("radius", text(radius))
+                .with("length", text(from.distance(to)));
+            (bar_pose(from, to), shape)
+        }
+        SolidShape::Block {
+            centre,
+            half_size,
+            angle,
+        } => {
+            let shape = Element::new("box").with_numbers("size", &(half_size * 2.0).to_array());
+            ([centre.x, centre.y, centre.z, 0.0, 0.0, angle], shape)
+        }
+    };
+    let color = Element::new("color").with_numbers("rgba", &super::mjcf::rgba(solid.part));
+    Element::new("visual")
+        .child(origin(place))
+        .child(Element::new("geometry").child(shape))
+        .child(
+            Element::new("material")
+                .with("name", format!("{:?}", solid.part).to_lowercase())
+                .child(color),
+        )
+}
+
+/// Position and roll, pitch, yaw that lay a cylinder along z between two points, which are in the plane or above each
+/// other.
+pub(super) fn bar_pose(from: DVec3, to: DVec3) -> [f64; 6] {
+    let middle = 0.5 * (from + to);
+    let way = (to - from).truncate();
+    let flat = way.length() > 0.0;
+    let pitch = if flat { std::f64::consts::FRAC_PI_2 } else { 0.0 };
+    let yaw = if flat { libm::atan2(way.y, way.x) } else { 0.0 };
+    [middle.x, middle.y, middle.z, 0.0, pitch, yaw]
+}

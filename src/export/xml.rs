@@ -1,0 +1,106 @@
+//! Elements as a tree, written with indentation.
+
+use quick_xml::Writer;
+use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
+
+use super::text;
+
+/// An element.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Element {
+    name: &'static str,
+    attributes: Vec<(&'static str, String)>,
+    content: Vec<Content>,
+}
+
+#[derive(Debug, Clone)]
+enum Content {
+    Element(Element),
+    Text(String),
+}
+
+impl Element {
+    pub(super) fn new(name: &'static str) -> Self {
+        Self {
+            name,
+            ..Self::default()
+        }
+    }
+
+    /// With an attribute.
+    pub(super) fn with(mut self, key: &'static str, value: impl Into<String>) -> Self {
+        self.attributes.push((key, value.into()));
+        self
+    }
+
+    /// With an attribute of numbers.
+    pub(super) fn with_numbers(self, key: &'static str, values: &[f64]) -> Self {
+        self.with(key, numbers(values))
+    }
+
+    /// With an element inside.
+    pub(super) fn child(mut self, child: Element) -> Self {
+        self.push(child);
+        self
+    }
+
+    /// With elements inside.
+    pub(super) fn children(mut self, children: impl IntoIterator<Item = Element>) -> Self {
+        self.content.extend(children.into_iter().map(Content::Element));
+        self
+    }
+
+    /// With an element inside that holds only text.
+    pub(super) fn leaf(self, name: &'static str, words: impl Into<String>) -> Self {
+        let mut leaf = Element::new(name);
+        leaf.content.push(Content::Text(words.into()));
+        self.child(leaf)
+    }
+
+    pub(super) fn push(&mut self, child: Element) {
+        self.content.push(Content::Element(child));
+    }
+
+    /// The document with this root and a comment before it.
+    pub(super) fn document(&self, preamble: &str) -> Result<Vec<u8>, String> {
+        let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
+        let write = |writer: &mut Writer<Vec<u8>>| -> std::io::Result<()> {
+            writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("utf-8"), None)))?;
+            writer.write_event(comment(preamble))?;
+            self.write(writer)
+        };
+        write(&mut writer).map_err(|error| error.to_string())?;
+        let mut bytes = writer.into_inner();
+        bytes.push(b'\n');
+        Ok(bytes)
+    }
+
+    fn write(&self, writer: &mut Writer<Vec<u8>>) -> std::io::Result<()> {
+        let mut start = BytesStart::new(self.name);
+        for (key, value) in &self.attributes {
+            start.push_attribute((*key, value.as_str()));
+        }
+        if self.content.is_empty() {
+            return writer.write_event(Event::Empty(start));
+        }
+        writer.write_event(Event::Start(start))?;
+        for content in &self.content {
+            match content {
+                Content::Element(element) => element.write(writer)?,
+                Content::Text(words) => writer.write_event(Event::Text(BytesText::new(words)))?,
+            }
+        }
+        writer.write_event(Event::End(BytesEnd::new(self.name)))
+    }
+}
+
+fn comment(words: &str) -> Event<'static> {
+    // Two hyphens would end it.
+    Event::Comment(BytesText::from_escaped(format!(" {} ", words.replace("--", "–"))))
+}
+
+/// Numbers with spaces between them.
+pub(super) fn numbers(values: &[f64]) -> String {
+    let texts: Vec<String> = values.iter().map(|&value| text(value)).collect();
+    texts.join(" ")
+}

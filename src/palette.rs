@@ -1,0 +1,32 @@
+//! What colours mean, wherever they are shown: red, green, blue.
+
+use crate::mechanism::Architecture;
+use crate::scene::Part;
+
+/// One colour per architecture, told apart by people with any colour vision (Okabe and Ito).
+pub fn architecture(architecture: Architecture) -> [u8; 3] {
+    const PALETTE: [[u8; 3]; 4] = [[86, 180, 233], [230, 159, 0], [0, 190, 140], [204, 121, 167]];
+    let index = Architecture::ALL
+        .iter()
+        .position(|&other| other == architecture)
+        .unwrap_or(0);
+    PALETTE[index % PALETTE.len()]
+}
+
+/// Steel for what moves, orange for what is driven, dark for what stands still.
+pub fn part(part: Part) -> [u8; 3] {
+    match part {
+        Part::Base => [120, 126, 138],
+        Part::Rail => [150, 156, 168],
+        Part::Stroke => [255, 170, 70],
+        Part::Slider | Part::ActuatedJoint => [255, 128, 20],
+        Part::Tube => [92, 104, 124],
+        Part::Rod | Part::Link => [190, 200, 214],
+        Part::Crank => [150, 164, 186],
+        Part::PlatformBar => [90, 150, 235],
+        Part::PassiveJoint => [238, 240, 244],
+        Part::AxisX => [230, 70, 70],
+        Part::AxisY => [80, 200, 90],
+        Part::Workspace => [255, 255, 255],
+    }
+}

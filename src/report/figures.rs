@@ -1,0 +1,303 @@
+//! The figures of a report.
+
+use super::chart::{Axis, Chart, Mark, Series};
+use super::fits::Trend;
+use super::fronts::Front;
+use super::{Figure, Report, ReportError, slug};
+use crate::evaluation::Constraint;
+use crate::mechanism::{Architecture, Variable};
+use crate::palette;
+
+const MASS: &str = "mass in motion [kg]";
+const RADIUS: &str = "workspace radius R_w [m]";
+/// What a source states, and what this model makes of it.
+const STATED: [u8; 3] = [200, 40, 40];
+const MODELLED: [u8; 3] = [20, 20, 20];
+/// The paper's own algorithm.
+const RIVAL: [u8; 3] = [150, 150, 150];
+/// Readings, told apart on white.
+const READINGS: [[u8; 3]; 12] = [
+    [0, 0, 0],
+    [213, 94, 0],
+    [0, 114, 178],
+    [0, 158, 115],
+    [204, 121, 167],
+    [230, 159, 0],
+    [86, 180, 233],
+    [120, 94, 240],
+    [154, 99, 36],
+    [100, 143, 20],
+    [70, 90, 110],
+    [180, 180, 180],
+];
+
+/// Every figure, in the order of the page.
+pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
+    let mut figures = Figures(Vec::new());
+    for (name, words, logarithmic) in [
+        ("fronts", "Pareto fronts of the architectures.", false),
+        (
+            "fronts-log",
+            "The same over the logarithm of the mass, where light designs are told apart.",
+            true,
+        ),
+    ] {
+        figures.add(name.to_owned(), words.to_owned(), &together(report, logarithmic))?;
+    }
+    for (architecture, front) in &report.fronts.alone {
+        let name = format!("front-{}", slug(architecture.name()));
+        let caption = format!("Pareto front of the {architecture}.");
+        figures.add(name, caption, &alone(report, *architecture, front))?;
+    }
+    for (architecture, trends) in &report.trends {
+        let slug = slug(architecture.name());
+        let of = |bars: bool| trends.iter().filter(move |trend| trend.variable.may_be_zero() == bars);
+        for (kind, words, bars) in [
+            (
+                "lengths",
+                "R, r and L_b along the front, with straight lines fitted",
+                false,
+            ),
+            (
+                "bars",
+                "r_j and r_p along the front, with a straight line and a parabola fitted",
+                true,
+            ),
+        ] {
+            let shown: Vec<&Trend> = of(bars).collect();
+            let caption = format!("{words}; {architecture}.");
+            figures.add(format!("{kind}-{slug}"), caption, &along(&shown))?;
+        }
+        let front = report.fronts.of(*architecture);
+        if let Some(front) = front {
+            let caption =
+                format!("Constraints that stop the workspace from growing, along the front of the {architecture}.");
+            figures.add(format!("active-{slug}"), caption, &active(*architecture, front))?;
+        }
+    }
+    for &(architecture, _) in report.fronts.alone.iter().filter(|_| !report.variations.is_empty()) {
+        let caption = format!("Fronts of the {architecture} where an assumption is read otherwise.");
+        let name = format!("sensitivity-{}", slug(architecture.name()));
+        figures.add(name, caption, &sensitivity(report, architecture))?;
+    }
+    Ok(figures.0)
+}
+
+struct Figures(Vec<Figure>);
+
+impl Figures {
+    fn add(&mut self, name: String, caption: String, chart: &Chart) -> Result<(), ReportError> {
+        let svg = chart.svg().map_err(|message| ReportError::Figure {
+            name: name.clone(),
+            message,
+        })?;
+        self.0.push(Figure { name, caption, svg });
+        Ok(())
+    }
+}
+
+/// An architecture's colour, dark enough for lines on white.
+fn color(architecture: Architecture) -> [u8; 3] {
+    palette::architecture(architecture).map(|value| (f64::from(value) * 0.82) as u8)
+}
+
+/// The reference designs of an architecture, or of all: as stated, and as this model finds them, with their names.
+fn references(report: &Report, of: Option<Architecture>) -> (Vec<Series>, Vec<([f64; 2], String)>) {
+    let of = |architecture: Architecture| of.is_none_or(|of| of == architecture);
+    let found: Vec<_> = report
+        .references
+        .iter()
+        .filter(|reference| of(reference.fine.design.architecture))
+        .collect();
+    let stated: Vec<[f64; 2]> = found
+        .iter()
+        .filter_map(|reference| Some([reference.stated_mass?, reference.stated_radius?]))
+        .collect();
+    let modelled: Vec<[f64; 2]> = found
+        .iter()
+        .map(|reference| [reference.fine.mass, reference.fine.workspace_radius])
+        .collect();
+    let notes = found
+        .iter()
+        .zip(&modelled)
+        .map(|(reference, &at)| (at, reference.name.clone()))
+        .collect();
+    let series = |name: &str, color: [u8; 3], mark: Mark, points: Vec<[f64; 2]>| Series {
+        name: name.to_owned(),
+        color,
+        mark,
+        points,
+    };
+    let mut all = vec![
+        series("reference designs, as stated", STATED, Mark::Rings, stated),
+        series("reference designs, this model", MODELLED, Mark::Crosses, modelled),
+    ];
+    all.retain(|series| !series.points.is_empty());
+    (all, notes)
+}
+
+/// A chart of fronts; over the mass itself up to `most`, or over its logarithm.
+fn front_chart(series: Vec<Series>, notes: Vec<([f64; 2], String)>, logarithmic: bool, most: f64) -> Chart {
+    let values = |axis: usize| {
+        let points = series.iter().flat_map(|series| &series.points);
+        points.map(move |point| point[axis]).collect::<Vec<_>>().into_iter()
+    };
+    let x = if logarithmic {
+        Axis::decades(MASS, values(0))
+    } else {
+        // A last millimetre of workspace may cost tons.
+        Axis::from_zero(MASS, values(0).map(|mass| mass.min(most)))
+    };
+    Chart {
+        x,
+        y: Axis::from_zero(RADIUS, values(1)),
+        names: None,
+        series,
+        notes,
+        // Fronts rise from the left; over the logarithm, late.
+        legend_above: logarithmic,
+    }
+}
+
+fn alone(report: &Report, architecture: Architecture, front: &Front) -> Chart {
+    let mut series = vec![Series {
+        name: format!("{architecture}, {}", report.study.optimizer.algorithm),
+        color: color(architecture),
+        mark: Mark::DottedLine,
+        points: front.points(),
+    }];
+    if let Some(rival) = report.rivals.as_ref().and_then(|rivals| rivals.of(architecture)) {
+        series.push(Series {
+            name: "after MOGA-II, as many evaluations".to_owned(),
+            color: RIVAL,
+            mark: Mark::DottedLine,
+            points: rival.points(),
+        });
+    }
+    let (references, notes) = references(report, Some(architecture));
+    series.extend(references);
+    front_chart(series, notes, false, report.study.hypervolume.reference_mass_kg)
+}
+
+fn together(report: &Report, logarithmic: bool) -> Chart {
+    let mut series: Vec<Series> = report
+        .fronts
+        .alone
+        .iter()
+        .map(|(architecture, front)| Series {
+            name: architecture.to_string(),
+            color: color(*architecture),
+            mark: Mark::DottedLine,
+            points: front.points(),
+        })
+        .collect();
+    if let Some(rivals) = &report.rivals {
+        series.push(Series {
+            name: "after MOGA-II, all together".to_owned(),
+            color: RIVAL,
+            mark: Mark::DottedLine,
+            points: rivals.together.points(),
+        });
+    }
+    let (references, notes) = references(report, None);
+    series.extend(references);
+    front_chart(series, notes, logarithmic, report.study.hypervolume.reference_mass_kg)
+}
+
+/// Variables along `R_w` with the fits that the paper claims: all straight, but r_p.
+fn along(trends: &[&Trend]) -> Chart {
+    const COLORS: [[u8; 3]; 3] = [[0, 114, 178], [213, 94, 0], [0, 158, 115]];
+    let values = |axis: usize| {
+        let points = trends.iter().flat_map(|trend| &trend.points);
+        points.map(move |point| point[axis])
+    };
+    let x = Axis::from_zero(RADIUS, values(0));
+    let y = Axis::from_zero("[m]", values(1));
+    let mut series = Vec::new();
+    for (trend, color) in trends.iter().zip(COLORS) {
+        series.push(Series {
+            name: trend.variable.symbol().to_owned(),
+            color,
+            mark: Mark::Dots,
+            points: trend.points.clone(),
+        });
+        let fit = if trend.variable == Variable::PlatformBarRadius {
+            &trend.quadratic
+        } else {
+            &trend.linear
+        };
+        if let Some(fit) = fit {
+            let radii = trend.free.iter().map(|point| point[0]);
+            let [low, high] = radii.fold([f64::INFINITY, 0.0f64], |[low, high], radius| {
+                [low.min(radius), high.max(radius)]
+            });
+            let at = (0..=60).map(|k| low + (high - low) * f64::from(k) / 60.0);
+            series.push(Series {
+                name: String::new(),
+                color,
+                mark: Mark::ThinLine,
+                points: at.map(|radius| [radius, fit.at(radius)]).collect(),
+            });
+        }
+    }
+    Chart {
+        x,
+        y,
+        names: None,
+        series,
+        notes: Vec::new(),
+        legend_above: true,
+    }
+}
+
+/// Which constraints are active at which `R_w`.
+fn active(architecture: Architecture, front: &Front) -> Chart {
+    let points: Vec<[f64; 2]> = front
+        .shown()
+        .flat_map(|member| {
+            member
+                .active()
+                .map(|constraint| [member.workspace_radius, constraint as u8 as f64])
+        })
+        .collect();
+    let names =
+        Constraint::ALL.map(|constraint| format!("{} {}", constraint.id(), constraint.name().replace('_', " ")));
+    Chart {
+        x: Axis::from_zero(RADIUS, front.shown().map(|member| member.workspace_radius)),
+        y: Axis {
+            label: "",
+            range: [-0.5, names.len() as f64 - 0.5],
+            logarithmic: false,
+        },
+        names: Some(names.to_vec()),
+        series: vec![Series {
+            name: String::new(),
+            color: color(architecture),
+            mark: Mark::Dots,
+            points,
+        }],
+        notes: Vec::new(),
+        legend_above: false,
+    }
+}
+
+/// Fronts of an architecture under every reading.
+fn sensitivity(report: &Report, architecture: Architecture) -> Chart {
+    let series = report
+        .variations
+        .iter()
+        .zip(READINGS.iter().cycle())
+        .filter_map(|(variation, &color)| {
+            Some(Series {
+                name: variation.name().to_owned(),
+                color,
+                mark: if variation.reading.is_none() {
+                    Mark::Line
+                } else {
+                    Mark::ThinLine
+                },
+                points: variation.of(architecture)?.points(),
+            })
+        });
+    front_chart(series.collect(), Vec::new(), true, f64::INFINITY)
+}

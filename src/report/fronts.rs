@@ -1,0 +1,157 @@
+//! Pareto fronts of a report: each architecture's, and that of all together, verified on the fine grid.
+
+use rayon::prelude::*;
+
+use super::{ReportError, Source};
+use crate::evaluation::{Evaluation, GridChoice, Model};
+use crate::mechanism::{Architecture, Design};
+use crate::optimize::{Archive, Evaluated, Outcome, knee, spread};
+use crate::study::DesignProblem;
+
+/// A front: evaluations on the fine grid, non-dominated, by mass and so by `R_w`.
+#[derive(Debug, Clone, Default)]
+pub struct Front {
+    /// All of them.
+    pub members: Vec<Evaluation>,
+    /// Places of those that are drawn and tabulated: evenly spread, with both ends and the knee.
+    pub shown: Vec<usize>,
+    /// Place of the knee.
+    pub knee: Option<usize>,
+}
+
+impl Front {
+    /// The non-dominated feasible ones of `evaluations`, at most `most` of them shown.
+    pub fn new(evaluations: Vec<Evaluation>, most: usize) -> Self {
+        let mut archive = Archive::default();
+        for (id, evaluation) in evaluations.iter().enumerate().filter(|(_, found)| found.is_feasible()) {
+            let outcome = DesignProblem::outcome(evaluation);
+            archive.insert(id, &Evaluated { x: Vec::new(), outcome });
+        }
+        let members: Vec<Evaluation> = archive.iter().map(|member| evaluations[member.id].clone()).collect();
+        let objectives: Vec<[f64; 2]> = archive.iter().map(|member| member.objectives).collect();
+        Self {
+            shown: spread(&objectives, most),
+            knee: knee(&objectives),
+            members,
+        }
+    }
+
+    /// Those that are shown.
+    pub fn shown(&self) -> impl Iterator<Item = &Evaluation> {
+        self.shown.iter().map(|&place| &self.members[place])
+    }
+
+    /// Mass and `R_w` of those that are shown.
+    pub fn points(&self) -> Vec<[f64; 2]> {
+        self.shown()
+            .map(|member| [member.mass, member.workspace_radius])
+            .collect()
+    }
+
+    /// The lightest with at least this `R_w` \[m\].
+    pub fn lightest(&self, radius: f64) -> Option<&Evaluation> {
+        self.members.iter().find(|member| member.workspace_radius >= radius)
+    }
+
+    /// `R_w` of the largest \[m\]; 0 for an empty front.
+    pub fn largest(&self) -> f64 {
+        self.members.last().map_or(0.0, |member| member.workspace_radius)
+    }
+
+    /// Members worth a picture, with what they are: the lightest, the knee, the largest.
+    pub fn marked(&self) -> Vec<(&'static str, &Evaluation)> {
+        let mut marked = Vec::new();
+        let last = self.members.len().saturating_sub(1);
+        for (place, name) in [(Some(0), "lightest"), (self.knee, "knee"), (Some(last), "largest")] {
+            if let Some(member) = place.and_then(|place| self.members.get(place))
+                && !marked
+                    .iter()
+                    .any(|&(_, other): &(_, &Evaluation)| std::ptr::eq(other, member))
+            {
+                marked.push((name, member));
+            }
+        }
+        marked
+    }
+}
+
+/// The fronts of some searches.
+#[derive(Debug, Clone)]
+pub struct Fronts {
+    /// Each architecture's, in the order of the paper; those without a feasible design are left out.
+    pub alone: Vec<(Architecture, Front)>,
+    /// Of all together.
+    pub together: Front,
+}
+
+impl Fronts {
+    /// The fronts of all designs of the sources, evaluated again on the fine grid of `model`.
+    ///
+    /// # Errors
+    /// [`ReportError::NothingFeasible`] when there is no feasible design.
+    pub fn new(sources: &[Source], model: &Model, most: usize) -> Result<Self, ReportError> {
+        let mut alone = Vec::new();
+        for &architecture in Architecture::ALL {
+            let candidates = candidates(sources, architecture);
+            let evaluations: Vec<Evaluation> = candidates
+                .par_iter()
+                .map(|design| model.evaluate(design, GridChoice::Fine))
+                .collect::<Result<_, _>>()?;
+            let front = Front::new(evaluations, most);
+            if !front.members.is_empty() {
+                alone.push((architecture, front));
+            }
+        }
+        let all = alone.iter().flat_map(|(_, front)| front.members.iter().cloned());
+        let together = Front::new(all.collect(), most);
+        if together.members.is_empty() {
+            return Err(ReportError::NothingFeasible);
+        }
+        Ok(Self { alone, together })
+    }
+
+    /// The front of an architecture.
+    pub fn of(&self, architecture: Architecture) -> Option<&Front> {
+        self.alone
+            .iter()
+            .find(|(other, _)| *other == architecture)
+            .map(|(_, front)| front)
+    }
+}
+
+/// The designs of an architecture that are non-dominated on the reference grid.
+fn candidates(sources: &[Source], architecture: Architecture) -> Vec<Design> {
+    let mut archive = Archive::default();
+    let rows: Vec<_> = sources
+        .iter()
+        .flat_map(|source| &source.rows)
+        .filter(|row| row.design.architecture == architecture && row.radius > 0.0)
+        .collect();
+    for (id, row) in rows.iter().enumerate() {
+        let outcome = Outcome {
+            objectives: row.objectives(),
+            violation: 0.0,
+        };
+        archive.insert(id, &Evaluated { x: Vec::new(), outcome });
+    }
+    archive.iter().map(|member| rows[member.id].design).collect()
+}
+
+/// Over which radii which architecture is the lightest: stretches of `R_w` \[m\], in order.
+pub fn lightest_where(fronts: &Fronts) -> Vec<(Architecture, [f64; 2])> {
+    const LEVELS: u32 = 400;
+    let largest = fronts.together.largest();
+    let mut stretches: Vec<(Architecture, [f64; 2])> = Vec::new();
+    for k in 1..=LEVELS {
+        let (from, to) = (f64::from(k - 1), f64::from(k));
+        let [from, to] = [from, to].map(|level| level / f64::from(LEVELS) * largest);
+        let Some(best) = fronts.together.lightest(to) else {
+            continue;
+        };
+        match stretches.last_mut() {
+            Some((architecture, stretch)) if *architecture == best.design.architecture => stretch[1] = to,
+            _ => stretches.push((best.design.architecture, [from, to])),
+        }
+    }
+    stretches
+}

@@ -1,0 +1,380 @@
+//! A run as pages: fronts, trends, comparison with what a study refers to, pictures, and how results move with assumptions.
+//!
+//! [`Report::make`] gathers and computes, [`Report::write`] leaves a folder: `index.html`, which holds everything and loads
+//! nothing, the figures once more as SVG and PNG, the pictures as PNG, and `fronts.csv`.
+
+mod assumptions;
+mod chart;
+mod figures;
+mod fits;
+mod fronts;
+mod page;
+mod picture;
+mod reference;
+mod source;
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+
+pub use assumptions::{READINGS, Reading, Variation};
+pub use fits::{Fit, Trend, trends};
+pub use fronts::{Front, Fronts, lightest_where};
+pub use reference::Reference;
+pub use source::Source;
+
+use crate::evaluation::Evaluation;
+use crate::mechanism::Architecture;
+use crate::study::{AlgorithmName, BUILTIN, FolderError, Study, StudyError, TableError, front_table, write_whole};
+use crate::workspace::GridError;
+
+/// Why a report cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The folder holds no run.
+    #[error("{} holds no run: expected a folder with study.toml and designs.csv", .0.display())]
+    NoRun(PathBuf),
+    /// Its study.
+    #[error(transparent)]
+    Study(#[from] Box<StudyError>),
+    /// Its table.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// Runs that cannot be compared.
+    #[error("{first} and {other} cannot be put in one report: their studies differ in {key}")]
+    Differing {
+        /// Name of the first run.
+        first: String,
+        /// Name of the other run.
+        other: String,
+        /// What they differ in.
+        key: &'static str,
+    },
+    /// No feasible design.
+    #[error("no design of the run is feasible: there is no front to report")]
+    NothingFeasible,
+    /// A search of the report's own broke off.
+    #[error("the search \"{name}\" broke off: {message}")]
+    Run {
+        /// What was searched.
+        name: String,
+        /// Why.
+        message: String,
+    },
+    /// A grid that does not fit.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// A figure or picture.
+    #[error("{name}: {message}")]
+    Figure {
+        /// Its name.
+        name: String,
+        /// What went wrong.
+        message: String,
+    },
+    /// The folder holds a report already.
+    #[error("{} already holds a report; choose another folder, or replace it with --replace", .0.display())]
+    Occupied(PathBuf),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] FolderError),
+}
+
+/// What a report shall have.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Evaluations for each search under another reading; none are made without.
+    pub sensitivity: Option<usize>,
+    /// Size of the pictures of designs \[pixels\].
+    pub picture: [u32; 2],
+    /// Pixels per unit of a figure's PNG.
+    pub scale: f32,
+    /// The command that made it, to be told.
+    pub command: String,
+}
+
+/// A figure or picture by name.
+#[derive(Debug, Clone, PartialEq)]
+struct Figure {
+    /// Its file's name without extension.
+    name: String,
+    /// What it shows.
+    caption: String,
+    svg: String,
+}
+
+/// A picture of a design.
+#[derive(Debug, Clone, PartialEq)]
+struct Picture {
+    name: String,
+    caption: String,
+    evaluation: Evaluation,
+    png: Vec<u8>,
+}
+
+/// A report, made.
+#[derive(Debug, Clone)]
+pub struct Report {
+    study: Study,
+    options: Options,
+    /// What it was made of, without the designs.
+    sources: Vec<Made>,
+    fronts: Fronts,
+    /// Fronts of the algorithm that the paper used, after what is known of it.
+    rivals: Option<Fronts>,
+    references: Vec<Reference>,
+    trends: Vec<(Architecture, Vec<Trend>)>,
+    variations: Vec<Variation>,
+    figures: Vec<Figure>,
+    pictures: Vec<Picture>,
+    /// Whether the study compares with the paper's designs.
+    of_paper: bool,
+    taken: Duration,
+}
+
+/// One search that went into a report.
+#[derive(Debug, Clone)]
+struct Made {
+    name: String,
+    algorithm: AlgorithmName,
+    architectures: String,
+    seed: u64,
+    evaluations: usize,
+    feasible: usize,
+    search_s: Option<f64>,
+}
+
+impl Made {
+    fn new(source: &Source) -> Self {
+        let names: Vec<&str> = source.study.architectures.iter().map(|found| found.name()).collect();
+        Self {
+            name: source.name.clone(),
+            algorithm: source.study.optimizer.algorithm,
+            architectures: names.join(", "),
+            seed: source.study.optimizer.seed,
+            evaluations: source.rows.len(),
+            feasible: source.rows.iter().filter(|row| row.radius > 0.0).count(),
+            search_s: source.times.map(|times| times.search_s),
+        }
+    }
+}
+
+impl Report {
+    /// A report on the runs in `sources`, which must ask for the same. `tell` hears what is being done.
+    ///
+    /// # Errors
+    /// [`ReportError`].
+    pub fn make(sources: &[Source], options: Options, tell: &mut dyn FnMut(&str)) -> Result<Self, ReportError> {
+        Self::with_rivals(sources, &[], options, tell)
+    }
+
+    /// The report on the paper from nothing: each architecture alone and all together, by our algorithm and by that of the
+    /// paper, and all the rest.
+    ///
+    /// # Errors
+    /// [`ReportError`].
+    pub fn of_paper(options: Options, tell: &mut dyn FnMut(&str)) -> Result<Self, ReportError> {
+        let study = BUILTIN[0].study().map_err(Box::new)?;
+        let mut searches = |algorithm: AlgorithmName| -> Result<Vec<Source>, ReportError> {
+            let alone = study.architectures.iter().map(|&architecture| vec![architecture]);
+            let all = std::iter::once(study.architectures.clone());
+            alone
+                .chain(all)
+                .map(|architectures| {
+                    let mut study = study.clone();
+                    study.optimizer.algorithm = algorithm;
+                    let name = match architectures[..] {
+                        [architecture] => format!("{architecture} alone"),
+                        _ => "all together".to_owned(),
+                    };
+                    tell(&format!("searching {name} ({algorithm})"));
+                    study.architectures = architectures;
+                    Source::run(&name, study)
+                })
+                .collect()
+        };
+        let ours = searches(study.optimizer.algorithm)?;
+        let theirs = searches(AlgorithmName::Moga2)?;
+        Self::with_rivals(&ours, &theirs, options, tell)
+    }
+
+    fn with_rivals(
+        sources: &[Source],
+        rivals: &[Source],
+        options: Options,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<Self, ReportError> {
+        let start = Instant::now();
+        let study = common(sources)?;
+        let model = study.model();
+        let most = study.optimizer.front_designs;
+        tell("verifying the fronts");
+        let fronts = Fronts::new(sources, &model, most)?;
+        let rivals_found = match rivals {
+            [] => None,
+            _ => Some(Fronts::new(rivals, &model, most)?),
+        };
+        let references = reference::all(&study, &fronts)?;
+        let trends: Vec<_> = fronts
+            .alone
+            .iter()
+            .map(|(architecture, front)| (*architecture, trends(front, &study.bounds)))
+            .collect();
+        let variations = match options.sensitivity {
+            Some(evaluations) => assumptions::vary(&study, evaluations, tell)?,
+            None => Vec::new(),
+        };
+        tell("drawing");
+        let of_paper = is_paper(&study);
+        let mut report = Self {
+            study,
+            options,
+            sources: sources.iter().chain(rivals).map(Made::new).collect(),
+            fronts,
+            rivals: rivals_found,
+            references,
+            trends,
+            variations,
+            figures: Vec::new(),
+            pictures: Vec::new(),
+            of_paper,
+            taken: Duration::ZERO,
+        };
+        report.figures = figures::all(&report)?;
+        report.pictures = report.draw_pictures()?;
+        let searched = sources.iter().chain(rivals).filter_map(|source| source.times);
+        report.taken = start.elapsed() + searched.map(|times| Duration::from_secs_f64(times.search_s)).sum();
+        Ok(report)
+    }
+
+    fn draw_pictures(&self) -> Result<Vec<Picture>, ReportError> {
+        let model = self.study.model();
+        let marked = self.fronts.alone.iter().flat_map(|(architecture, front)| {
+            front.marked().into_iter().map(move |(mark, evaluation)| {
+                let name = format!("{}-{mark}", architecture.name().to_lowercase());
+                (name, format!("{architecture}, {mark}"), evaluation)
+            })
+        });
+        let referred = self.references.iter().map(|reference| {
+            let name = format!("reference-{}", slug(&reference.name));
+            (name, reference.name.clone(), &reference.fine)
+        });
+        marked
+            .chain(referred)
+            .filter(|(.., evaluation)| evaluation.is_feasible())
+            .collect::<Vec<_>>()
+            .into_par_iter()
+            .map(|(name, caption, evaluation)| {
+                let [width, height] = self.options.picture;
+                let range = self.study.workspace.rotation_range_deg;
+                let png = picture::picture(&model, evaluation, range, [width, height])
+                    .and_then(|pixels| chart::pixels_to_png(width, height, &pixels))
+                    .map_err(|message| ReportError::Figure {
+                        name: name.clone(),
+                        message,
+                    })?;
+                Ok(Picture {
+                    name,
+                    caption,
+                    evaluation: evaluation.clone(),
+                    png,
+                })
+            })
+            .collect()
+    }
+
+    /// Writes the report to a folder; `replace` overwrites the files of one that is there.
+    ///
+    /// # Errors
+    /// [`ReportError::Occupied`] when there is a report and it is not to be replaced, [`ReportError::Write`].
+    pub fn write(&self, folder: &Path, replace: bool) -> Result<(), ReportError> {
+        free(folder, replace)?;
+        let make = |path: &Path| {
+            std::fs::create_dir_all(path).map_err(|source| FolderError::Write {
+                path: path.to_owned(),
+                source,
+            })
+        };
+        let (figures, pictures) = (folder.join("figures"), folder.join("pictures"));
+        make(&figures)?;
+        make(&pictures)?;
+        for figure in &self.figures {
+            write_whole(&figures.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
+            let png = chart::png(&figure.svg, self.options.scale).map_err(|message| ReportError::Figure {
+                name: figure.name.clone(),
+                message,
+            })?;
+            write_whole(&figures.join(format!("{}.png", figure.name)), &png)?;
+        }
+        for picture in &self.pictures {
+            write_whole(&pictures.join(format!("{}.png", picture.name)), &picture.png)?;
+        }
+        let members = self.fronts.alone.iter().flat_map(|(_, front)| front.shown());
+        let table = front_table(members.enumerate()).map_err(|message| ReportError::Figure {
+            name: "fronts.csv".to_owned(),
+            message,
+        })?;
+        write_whole(&folder.join("fronts.csv"), &table)?;
+        // Last: where it stands, the rest is there.
+        write_whole(&folder.join("index.html"), page::html(self).as_bytes())?;
+        Ok(())
+    }
+}
+
+/// Whether a report may be written to the folder.
+///
+/// # Errors
+/// [`ReportError::Occupied`].
+pub fn free(folder: &Path, replace: bool) -> Result<(), ReportError> {
+    if folder.join("index.html").exists() && !replace {
+        return Err(ReportError::Occupied(folder.to_owned()));
+    }
+    Ok(())
+}
+
+/// The study of all sources, with the architectures of all of them.
+fn common(sources: &[Source]) -> Result<Study, ReportError> {
+    let Some((first, others)) = sources.split_first() else {
+        return Err(ReportError::NothingFeasible);
+    };
+    let mut study = first.study.clone();
+    for other in others {
+        let theirs = &other.study;
+        let same = [
+            ("material", study.material == theirs.material),
+            ("actuators", study.actuators == theirs.actuators),
+            ("requirements", study.requirements == theirs.requirements),
+            ("workspace", study.workspace == theirs.workspace),
+            ("model", study.model == theirs.model),
+            ("bounds", study.bounds == theirs.bounds),
+            ("grid.fine", study.grid.fine == theirs.grid.fine),
+            ("working_mode", study.working_mode == theirs.working_mode),
+        ];
+        if let Some((key, _)) = same.into_iter().find(|(_, same)| !same) {
+            return Err(ReportError::Differing {
+                first: first.name.clone(),
+                other: other.name.clone(),
+                key,
+            });
+        }
+        study.architectures.extend(&theirs.architectures);
+    }
+    let every = Architecture::ALL.iter().copied();
+    study.architectures = every.filter(|found| study.architectures.contains(found)).collect();
+    Ok(study)
+}
+
+/// Whether a study refers to the paper's designs.
+fn is_paper(study: &Study) -> bool {
+    let paper = BUILTIN[0].study();
+    !study.references.is_empty() && paper.is_ok_and(|paper| paper.references == study.references)
+}
+
+/// A name for a file.
+fn slug(name: &str) -> String {
+    let parts = name
+        .split(|c: char| !c.is_alphanumeric())
+        .filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join("-").to_lowercase()
+}

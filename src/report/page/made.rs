@@ -1,0 +1,102 @@
+//! How a report was made, and where the paper's figures and tables are.
+
+use maud::{Markup, html};
+
+use super::optional;
+use crate::mechanism::{Architecture, VARIABLES};
+use crate::report::Report;
+use crate::text::number;
+
+/// Where a reader of the paper finds what.
+pub(super) fn guide() -> Markup {
+    let places: [(&str, &str, &str); 11] = [
+        ("Fig. 1, the manipulators", "pictures", "Designs"),
+        ("Fig. 2 to 4, flexible models of the legs", "made", "How this was made"),
+        ("Fig. 5, a regular workspace", "pictures", "Designs (green)"),
+        ("Fig. 6, Pareto front", "figure-fronts", "Pareto fronts, all together"),
+        (
+            "Fig. 7, fronts of the three architectures",
+            "figure-fronts",
+            "Pareto fronts",
+        ),
+        (
+            "Fig. 8, CAD designs",
+            "picture-reference-id-i",
+            "Designs, ID-I to ID-III",
+        ),
+        ("Fig. 9, R, r, L_b along R_w", "variables", "Design variables"),
+        ("Fig. 10, r_j, r_p along R_w", "variables", "Design variables"),
+        ("Tab. 1, bounds", "made", "How this was made"),
+        ("Tab. 2, the algorithm's parameters", "made", "How this was made"),
+        ("Tab. 3, three Pareto-optimal designs", "designs", "Reference designs"),
+    ];
+    html! {
+        p {
+            "Damien Chablat, Stéphane Caro, Raza Ur-Rehman and Philippe Wenger: "
+            em { "Comparison of Planar Parallel Manipulator Architectures based on a Multi-objective Design Optimization Approach" }
+            ", ASME IDETC/CIE 2010, DETC2010-28650. Its study was run again from nothing; here is each of its figures and tables, and "
+            a href="#differences" { "where and why the numbers differ" } "."
+        }
+        details {
+            summary { "Where each figure and table of the paper is" }
+            table { tbody { @for (paper, id, here) in places { tr { td { (paper) } td { a href={ "#" (id) } { (here) } } } } } }
+        }
+    }
+}
+
+pub(super) fn made(report: &Report) -> Markup {
+    let study = &report.study;
+    let taken = report.taken.as_secs_f64();
+    html! {
+        p {
+            "Kinefront " (env!("CARGO_PKG_VERSION")) ", " (number(taken)) " s on "
+            (rayon::current_num_threads()) " threads. One seed gives one result, whatever the number of threads."
+        }
+        pre { code { (report.options.command) } }
+        div.scroll { table {
+            caption { "Searches." }
+            thead { tr {
+                th { "search" } th { "architectures" } th { "algorithm" } th.number { "seed" }
+                th.number { "evaluations" } th.number { "feasible" } th.number { "time [s]" }
+            } }
+            tbody { @for source in &report.sources { tr {
+                td { (source.name) } td { (source.architectures) } td { (source.algorithm) } td.number { (source.seed) }
+                td.number { (source.evaluations) } td.number { (source.feasible) } (optional(source.search_s))
+            } } }
+        } }
+        div.scroll { table {
+            caption { "Bounds [m]." }
+            thead { tr { th { "" } @for variable in VARIABLES { th.number { (variable.symbol()) } } } }
+            tbody { @for (name, end) in [("lower", 0), ("upper", 1)] { tr {
+                td { (name) } @for variable in VARIABLES { td.number { (study.bounds.range(variable)[end]) } }
+            } } }
+        } }
+        div.scroll { table {
+            caption { "The flexible model of each leg: springs from the base to the platform's centre, joined by rigid bodies; two passive revolutes." }
+            thead { tr { th { "architecture" } th { "actuator" } th { "leg" } th { "platform" } } }
+            tbody { @for (architecture, _) in &report.fronts.alone { tr {
+                td { (architecture) } td { (actuator(*architecture)) }
+                td { (bars(*architecture)) } td { "bar of length r and radius r_p: 6 springs" }
+            } } }
+        } }
+        details {
+            summary { "The study as run" }
+            pre { code { (toml::to_string(study).unwrap_or_default()) } }
+        }
+    }
+}
+
+fn actuator(architecture: Architecture) -> String {
+    let kind = match architecture.actuator() {
+        crate::mechanism::Actuator::Prismatic => "prismatic",
+        crate::mechanism::Actuator::Revolute => "revolute",
+    };
+    format!("{kind}: 1 spring")
+}
+
+fn bars(architecture: Architecture) -> String {
+    match architecture.bars_per_leg() {
+        1 => "bar of radius r_j: 6 springs".to_owned(),
+        count => format!("{count} bars of length L_b and radius r_j: 6 springs each"),
+    }
+}

@@ -1,0 +1,246 @@
+//! The manipulator as rigid bodies that hang on each other: what simulators and animations need.
+
+use glam::DVec2;
+
+use super::manipulator::Sizes;
+use super::{Solid, SolidShape};
+use crate::evaluation::{Model, Unreachable};
+use crate::mechanism::{Actuator, Design, Leg, LegJoint, LegPart, Manipulator, with_leg};
+use crate::spatial::{LEGS, Pose, Rotation};
+
+/// A planar frame in the base frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// Its origin \[m\].
+    pub origin: DVec2,
+    /// Angle from `Ox` to its x axis \[rad\].
+    pub angle: f64,
+}
+
+/// A joint by which a body hangs on its parent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Joint {
+    /// What it does: a prismatic one moves along the body's x axis, a revolute one turns about z at its origin.
+    pub kind: Actuator,
+    /// Whether it is driven.
+    pub actuated: bool,
+    /// Its value \[m or rad\]: the actuator's, and 0 for a passive joint.
+    pub value: f64,
+    /// Least and largest value, where it has limits.
+    pub limits: Option<[f64; 2]>,
+}
+
+/// A bar that has mass, in its body's frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MassBar {
+    /// One end \[m\].
+    pub from: DVec2,
+    /// The other end \[m\].
+    pub to: DVec2,
+    /// Radius \[m\].
+    pub radius: f64,
+    /// Mass \[kg\].
+    pub mass: f64,
+}
+
+/// A rigid body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// As in `leg1_crank`, or `platform`.
+    pub name: String,
+    /// Place of the body it hangs on; `None` for the base.
+    pub parent: Option<usize>,
+    /// Its frame.
+    pub frame: Frame,
+    /// The joint to its parent; `None` for the platform, which nothing but the closures holds in the plane.
+    pub joint: Option<Joint>,
+    /// Its mass, bar by bar. A slider has none in this model, as in the paper.
+    pub bars: Vec<MassBar>,
+    /// What it looks like, in its own frame.
+    pub solids: Vec<Solid>,
+}
+
+impl Body {
+    /// Mass \[kg\].
+    pub fn mass(&self) -> f64 {
+        self.bars.iter().map(|bar| bar.mass).sum()
+    }
+
+    /// Centre of mass in the body's frame \[m\]; its origin where it has no mass.
+    pub fn centre_of_mass(&self) -> DVec2 {
+        let mass = self.mass();
+        let weighted: DVec2 = self.bars.iter().map(|bar| 0.5 * (bar.from + bar.to) * bar.mass).sum();
+        if mass > 0.0 { weighted / mass } else { DVec2::ZERO }
+    }
+
+    /// Moments of inertia `[xx, yy, zz, xy]` about the centre of mass in the body's axes \[kg·m²\]: solid cylinders.
+    pub fn inertia(&self) -> [f64; 4] {
+        let centre = self.centre_of_mass();
+        let mut inertia = [0.0; 4];
+        for bar in &self.bars {
+            let way = bar.to - bar.from;
+            let length = way.length();
+            let axis = way.normalize_or(DVec2::X);
+            let along = 0.5 * bar.mass * bar.radius * bar.radius;
+            let across = bar.mass * (3.0 * bar.radius * bar.radius + length * length) / 12.0;
+            let offset = 0.5 * (bar.from + bar.to) - centre;
+            let (cc, ss, cs) = (axis.x * axis.x, axis.y * axis.y, axis.x * axis.y);
+            inertia[0] += along * cc + across * ss + bar.mass * offset.y * offset.y;
+            inertia[1] += along * ss + across * cc + bar.mass * offset.x * offset.x;
+            inertia[2] += across + bar.mass * offset.length_squared();
+            inertia[3] += (along - across) * cs - bar.mass * offset.x * offset.y;
+        }
+        inertia
+    }
+}
+
+/// A revolute joint that closes a loop: `C_i`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Closure {
+    /// Place of the leg's last body.
+    pub leg: usize,
+    /// `C_i` in the frame of that body \[m\].
+    pub on_leg: DVec2,
+    /// `C_i` in the platform frame \[m\].
+    pub on_platform: DVec2,
+}
+
+/// The manipulator at a pose as rigid bodies: those of leg 1, 2 and 3, each from the base outwards, then the platform.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Linkage {
+    /// The bodies.
+    pub bodies: Vec<Body>,
+    /// The joints `C_1`, `C_2`, `C_3`.
+    pub closures: [Closure; LEGS],
+}
+
+impl Linkage {
+    /// Place of the platform.
+    pub fn platform(&self) -> usize {
+        self.bodies.len() - 1
+    }
+
+    /// Frame of a body in its parent's.
+    pub fn local_frame(&self, body: &Body) -> Frame {
+        let Some(parent) = body.parent.map(|parent| self.bodies[parent].frame) else {
+            return body.frame;
+        };
+        let back = Rotation::new(-parent.angle);
+        Frame {
+            origin: back.apply(body.frame.origin - parent.origin),
+            angle: body.frame.angle - parent.angle,
+        }
+    }
+}
+
+/// The rigid bodies of `design` at `pose`.
+///
+/// # Errors
+/// The leg that does not get there.
+pub fn linkage(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage, Unreachable> {
+    with_leg!(design.architecture, L => build::<L>(model, design, pose))
+}
+
+fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage, Unreachable> {
+    let manipulator = Manipulator::<L>::new(design, &model.legs);
+    let posture = manipulator
+        .posture(pose)
+        .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+    let sizes = Sizes::new(design);
+    let mut bodies: Vec<Body> = Vec::new();
+    let mut last = [0; LEGS];
+    for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
+        for (depth, body) in leg.bodies(state).into_iter().enumerate() {
+            let frame = Frame {
+                origin: body.origin,
+                angle: libm::atan2(body.axis.y, body.axis.x),
+            };
+            let local = |solid: Solid| solid.seen_from(frame.origin, frame.angle);
+            let joint = match body.joint {
+                LegJoint::Passive => Joint {
+                    kind: Actuator::Revolute,
+                    actuated: false,
+                    value: 0.0,
+                    limits: None,
+                },
+                LegJoint::Actuated { value, limits } => Joint {
+                    kind: L::ACTUATOR,
+                    actuated: true,
+                    value,
+                    limits,
+                },
+            };
+            let solids: Vec<Solid> = body.parts.iter().map(|part| local(sizes.solid(index, part))).collect();
+            let bars = body.parts.iter().filter_map(|part| match *part {
+                LegPart::Tube { from, to }
+                | LegPart::Rod { from, to }
+                | LegPart::Crank { from, to }
+                | LegPart::Link { from, to } => Some((from, to)),
+                LegPart::Slider { .. } | LegPart::Joint { .. } => None,
+            });
+            let bars = bars
+                .map(|(from, to)| mass_bar(model, &frame, [from, to], design.leg_bar_radius, 1.0))
+                .collect();
+            last[index] = bodies.len();
+            bodies.push(Body {
+                name: format!("leg{}_{}", index + 1, body.name),
+                parent: (depth > 0).then(|| bodies.len() - 1),
+                frame,
+                joint: Some(joint),
+                bars,
+                solids,
+            });
+        }
+    }
+    let frame = Frame {
+        origin: pose.position,
+        angle: pose.phi,
+    };
+    // The study may count another number of bars than the three that are there (SPEC section 8, no. 1).
+    let share = f64::from(model.platform_bars) / LEGS as f64;
+    let ends = posture.arms.map(|arm| pose.position + arm);
+    bodies.push(Body {
+        name: "platform".to_owned(),
+        parent: None,
+        frame,
+        joint: None,
+        bars: ends
+            .map(|c| mass_bar(model, &frame, [c, pose.position], design.platform_bar_radius, share))
+            .to_vec(),
+        solids: (0..LEGS)
+            .map(|index| {
+                let bar = sizes.platform_bar(index, ends[index], pose.position);
+                bar.seen_from(frame.origin, frame.angle)
+            })
+            .collect(),
+    });
+    let closures = [0, 1, 2].map(|index| {
+        let on = |frame: &Frame| Rotation::new(-frame.angle).apply(ends[index] - frame.origin);
+        Closure {
+            leg: last[index],
+            on_leg: on(&bodies[last[index]].frame),
+            on_platform: manipulator.platform_joints[index],
+        }
+    });
+    Ok(Linkage { bodies, closures })
+}
+
+fn mass_bar(model: &Model, frame: &Frame, [from, to]: [DVec2; 2], radius: f64, share: f64) -> MassBar {
+    let back = Rotation::new(-frame.angle);
+    MassBar {
+        from: back.apply(from - frame.origin),
+        to: back.apply(to - frame.origin),
+        radius,
+        mass: share * model.bar_mass(radius, from.distance(to)),
+    }
+}
+
+impl SolidShape {
+    /// Whether the shape has a volume: a bar of radius 0 has none.
+    pub fn has_volume(&self) -> bool {
+        match *self {
+            SolidShape::Bar { radius, from, to } => radius > 0.0 && from != to,
+            SolidShape::Block { half_size, .. } => half_size.min_element() > 0.0,
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! Designs for other programs, read by those programs.
+
+use std::path::{Path, PathBuf};
+
+use predicates::str::contains;
+use serde_json::Value;
+
+use super::support::{DESIGN, folder, kinefront, node, optimize, python, script, small_study};
+
+/// A design of each architecture with its actuators' stiffness, another one each.
+const DESIGNS: [(&str, f64); 3] = [
+    (DESIGN, 1e7),
+    ("3-RPR R=2.0 r=0.5 Lb=3.0 rj=0.03 rp=0.03", 1e7),
+    ("3-RRR R=2.0 r=0.6 Lb=1.6 rj=0.05 rp=0.04", 1e7),
+];
+
+/// Exports a design to `NAME.EXTENSION` in `folder`; the format follows from the extension.
+fn export(design: &str, folder: &Path, name: &str) -> PathBuf {
+    let path = folder.join(name);
+    kinefront()
+        .args(["export", "--design", design, "--out"])
+        .arg(&path)
+        .assert()
+        .success()
+        .stdout(contains("wrote"));
+    path
+}
+
+fn read_json(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON")
+}
+
+#[test]
+fn mujoco_follows_the_tour_with_the_loops_closed() {
+    let Some(_) = python(&["mujoco", "numpy"]) else { return };
+    let folder = folder();
+    std::thread::scope(|scope| {
+        for (index, (design, stiffness)) in DESIGNS.into_iter().enumerate() {
+            let folder = folder.path();
+            scope.spawn(move || {
+                let file = |extension: &str| export(design, folder, &format!("{index}.{extension}"));
+                let (model, json, urdf) = (file("xml"), file("json"), file("urdf"));
+                let python = python(&["mujoco", "numpy"]).expect("it was there");
+                let found: Value =
+                    serde_json::from_str(&script(python, "mujoco_tour.py", &[&model, &json, &urdf])).expect("JSON");
+                let evaluation = &read_json(&json)["evaluation"];
+                let number = |value: &Value| value.as_f64().expect("a number");
+                let radius = number(&evaluation["workspace_radius_m"]);
+                assert!(number(&found["farthest_m"]) < 1e-4, "{design}: {found}");
+                assert!(number(&found["turned_rad"]) < 1e-4, "{design}: {found}");
+                // It did go out to the rim.
+                assert!(number(&found["travelled_m"]) > 0.9 * radius, "{design}: {found}");
+                assert_eq!([&found["closures"], &found["actuators"], &found["warnings"]], [3, 3, 0]);
+                assert_eq!(found["stiffness"], serde_json::json!([stiffness, stiffness, stiffness]));
+                // Sliders weigh a gram each.
+                let mass = number(&evaluation["mass_kg"]);
+                for key in ["mass_kg", "urdf_mass_kg"] {
+                    let more = number(&found[key]) - mass;
+                    assert!((-1e-6..0.003_001).contains(&more), "{design}: {more} kg more");
+                }
+                // Two a leg, and the one that is not cut.
+                assert_eq!(found["urdf_joints"], 7);
+            });
+        }
+    });
+}
+
+#[test]
+fn gltf_passes_the_validator() {
+    let folder = folder();
+    let files: Vec<PathBuf> = DESIGNS
+        .iter()
+        .enumerate()
+        .map(|(index, (design, _))| export(design, folder.path(), &format!("{index}.glb")))
+        .collect();
+    let Some(mut node) = node("gltf-validator") else { return };
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/node/validate_gltf.js");
+    let output = node.arg(script).args(&files).output().expect("Node runs");
+    let found: Vec<Value> = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(found.len(), files.len());
+    for file in &found {
+        assert_eq!(
+            [&file["errors"], &file["warnings"], &file["hints"]],
+            [0, 0, 0],
+            "{file}"
+        );
+        assert_eq!(file["info"]["animationCount"], 1);
+        // Surfaces of three legs and a platform, and lines of base and workspace.
+        assert!(file["info"]["totalTriangleCount"].as_u64().expect("a count") > 1000);
+    }
+}
+
+#[test]
+fn plan_view_and_front_are_read_back() {
+    let folder = folder();
+    let run = folder.path().join("run");
+    optimize(&small_study(folder.path()), &run, &[]);
+    let parquet = folder.path().join("front.parquet");
+    let csv = folder.path().join("front.csv");
+    for out in [&parquet, &csv] {
+        kinefront()
+            .arg("export")
+            .arg(&run)
+            .arg("--out")
+            .arg(out)
+            .assert()
+            .success();
+    }
+    assert_eq!(
+        std::fs::read(&csv).expect("a table"),
+        std::fs::read(run.join("front.csv")).expect("a table")
+    );
+    let drawing = export(DESIGN, folder.path(), "design.dxf");
+    let Some(python) = python(&["ezdxf", "pyarrow"]) else {
+        return;
+    };
+    let found: Value =
+        serde_json::from_str(&script(python, "read_exports.py", &[&drawing, &parquet, &csv])).expect("JSON");
+    assert_eq!(found["errors"], 0);
+    assert_eq!(found["millimetres"], true);
+    // L_b and r_j of design II, three times, and its three sliders.
+    let links: Vec<&Value> = found["legs_mm"].as_array().expect("bars").iter().collect();
+    let near = |value: &Value, wanted: f64| (value.as_f64().expect("a number") - wanted).abs() < 1e-9;
+    let bars = links.iter().filter(|bar| near(&bar[0], 72.0) && near(&bar[1], 1896.0));
+    assert_eq!((bars.count(), links.len()), (3, 6));
+    assert!((found["workspace_mm"][0].as_f64().expect("a circle") - 1221.1).abs() < 0.1);
+    assert_eq!(
+        found["labels"],
+        serde_json::json!(["A1", "A2", "A3", "B1", "B2", "B3", "C1", "C2", "C3", "O", "P"])
+    );
+    assert_eq!(found["differing"], serde_json::json!([]));
+    assert!(found["rows"].as_u64().expect("a count") > 5);
+    let types = &found["types"];
+    assert_eq!(
+        [
+            &types["id"],
+            &types["architecture"],
+            &types["mass_kg"],
+            &types["feasible"]
+        ],
+        ["int64", "string", "double", "bool"]
+    );
+}
+
+/// JSON says what `evaluate` and `pose` say, and where every body is.
+#[test]
+fn json_holds_the_design() {
+    let folder = folder();
+    let json = read_json(&export(DESIGN, folder.path(), "design.json"));
+    let told = |arguments: &[&str]| -> Value {
+        let output = kinefront()
+            .args(arguments)
+            .assert()
+            .success()
+            .get_output()
+            .stdout
+            .clone();
+        serde_json::from_slice(&output).expect("JSON")
+    };
+    assert_eq!(
+        json["evaluation"],
+        told(&["evaluate", "--design", DESIGN, "--grid", "fine", "--json"])
+    );
+    let pose = &json["tour"][40];
+    let text = format!("x={} y={} phi_deg={}", pose["x_m"], pose["y_m"], pose["phi_deg"]);
+    let there = told(&["pose", "--design", DESIGN, "--pose", &text, "--json"]);
+    for leg in 0..3 {
+        let difference = there["actuators"][leg].as_f64().expect("m") - pose["actuators"][leg].as_f64().expect("m");
+        assert!(difference.abs() < 1e-12);
+    }
+    let bodies = json["bodies"].as_array().expect("bodies");
+    let names: Vec<&str> = bodies
+        .iter()
+        .map(|body| body["name"].as_str().expect("a name"))
+        .collect();
+    assert_eq!(names[..2], ["leg1_slider", "leg1_link"]);
+    assert_eq!(names[6..], ["platform"]);
+    let mass: f64 = bodies.iter().map(|body| body["mass_kg"].as_f64().expect("kg")).sum();
+    assert!((mass - json["evaluation"]["mass_kg"].as_f64().expect("kg")).abs() < 1e-9);
+}
+
+/// At a pose of one's own; what is wrong is said, and no file is left or lost.
+#[test]
+fn exports_say_what_is_wrong() {
+    let folder = folder();
+    let out = folder.path().join("design.sdf");
+    let fails = |arguments: &[&str], words: &str| {
+        kinefront()
+            .arg("export")
+            .args(arguments)
+            .arg("--out")
+            .arg(&out)
+            .assert()
+            .code(2)
+            .stderr(contains(words));
+        assert!(!out.exists(), "{words}");
+    };
+    fails(
+        &["--design", DESIGN, "--pose", "x=9 y=0 phi_deg=0"],
+        "above its upper limit",
+    );
+    fails(&["--design", &DESIGN.replace("rj=0.036", "rj=0")], "radius 0");
+    fails(
+        &["--design", DESIGN, "--format", "step"],
+        "expected one of gltf, mjcf, sdf, urdf, dxf, json, csv, parquet",
+    );
+    fails(&["--design", DESIGN, "--format", "parquet"], "name the run's folder");
+    fails(&["nowhere", "--format", "csv"], "cannot read nowhere");
+    let nameless = folder.path().join("design");
+    kinefront()
+        .args(["export", "--design", DESIGN, "--out"])
+        .arg(&nameless)
+        .assert()
+        .code(2)
+        .stderr(contains("give --format"));
+    std::fs::write(&out, "mine").expect("a file");
+    kinefront()
+        .args(["export", "--design", DESIGN, "--out"])
+        .arg(&out)
+        .assert()
+        .code(2)
+        .stderr(contains("exists already"));
+    assert_eq!(std::fs::read_to_string(&out).expect("a file"), "mine");
+    // What a format cannot hold is said, in the file and beside it.
+    kinefront()
+        .args([
+            "export",
+            "--design",
+            DESIGN,
+            "--pose",
+            "x=0.1 y=0 phi_deg=25",
+            "--format",
+            "urdf",
+            "--out",
+        ])
+        .arg(folder.path().join("design.urdf"))
+        .assert()
+        .success()
+        .stderr(contains("the closed loops"));
+    let urdf = std::fs::read_to_string(folder.path().join("design.urdf")).expect("a file");
+    assert!(urdf.contains("Not in this file: the closed loops"));
+    kinefront()
+        .args(["export", "--design", DESIGN, "--format", "json", "--out", "-"])
+        .assert()
+        .success()
+        .stdout(contains("\"leg1_slider\""));
+}

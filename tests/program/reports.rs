@@ -1,0 +1,161 @@
+//! Reports: whole pages that load nothing, with the numbers of the run.
+
+use std::path::Path;
+
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+
+use super::support::{folder, kinefront, optimize, small_study};
+
+/// Every `name="…"` of a page, by the attribute's name.
+fn attributes<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
+    let key = format!(" {name}=\"");
+    page.match_indices(&key)
+        .map(|(at, _)| {
+            let value = &page[at + key.len()..];
+            &value[..value.find('"').expect("a closing quote")]
+        })
+        .collect()
+}
+
+fn report(runs: &[&Path], out: &Path, more: &[&str]) -> assert_cmd::assert::Assert {
+    kinefront()
+        .arg("report")
+        .args(runs)
+        .arg("--out")
+        .arg(out)
+        .args(["--quiet", "--picture-width", "200", "--scale", "0.5"])
+        .args(more)
+        .assert()
+}
+
+#[test]
+fn a_page_holds_everything_and_loads_nothing() {
+    let folder = folder();
+    let (run, out) = (folder.path().join("run"), folder.path().join("page"));
+    optimize(&small_study(folder.path()), &run, &[]);
+    report(&[&run], &out, &["--sensitivity", "120"])
+        .success()
+        .stdout(contains("index.html"));
+    let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
+
+    // Nothing is fetched: pictures are in the page, links lead within it, and there is no script.
+    for source in attributes(&page, "src") {
+        assert!(
+            source.starts_with("data:image/png;base64,iVBOR"),
+            "{}",
+            &source[..40.min(source.len())]
+        );
+    }
+    let anchors = attributes(&page, "id");
+    for link in attributes(&page, "href") {
+        let target = link.strip_prefix('#').unwrap_or_else(|| panic!("{link} leads outside"));
+        assert!(anchors.contains(&target), "{link} leads nowhere");
+    }
+    for word in ["<script", "<link", "<iframe", "@import", "url(", "<base"] {
+        assert!(!page.contains(word), "{word}");
+    }
+
+    // Three architectures: a front each and two of all, two charts of variables, active constraints, and sensitivity.
+    let names = |name: &str, extension: &str| -> Vec<String> {
+        let mut found: Vec<String> = std::fs::read_dir(out.join(name))
+            .expect("a folder")
+            .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+            .filter_map(|file| file.strip_suffix(extension).map(str::to_owned))
+            .collect();
+        found.sort();
+        found
+    };
+    let figures = names("figures", ".svg");
+    assert_eq!(figures, names("figures", ".png"));
+    assert_eq!(figures.len(), 3 + 2 + 3 * 2 + 3 + 3);
+    for figure in &figures {
+        assert!(
+            page.contains(&format!("id=\"figure-{figure}\"")),
+            "{figure} is not in the page"
+        );
+    }
+    let pictures = names("pictures", ".png");
+    assert_eq!(attributes(&page, "src").len(), pictures.len());
+    assert!(pictures.contains(&"3-prr-knee".to_owned()), "{pictures:?}");
+
+    // Its numbers are the run's: every design of its table is one that the run evaluated.
+    let rows = |path: &Path| -> Vec<csv::StringRecord> {
+        let mut reader = csv::Reader::from_path(path).expect("a table");
+        reader.records().map(|record| record.expect("a row")).collect()
+    };
+    let (shown, designs) = (rows(&out.join("fronts.csv")), rows(&run.join("designs.csv")));
+    assert!(shown.len() > 20);
+    for row in &shown {
+        // Architecture, mode and lengths.
+        let same = |other: &&csv::StringRecord| (2..9).all(|column| row[column] == other[column]);
+        assert!(designs.iter().any(|other| same(&other)), "{row:?}");
+    }
+    assert!(page.contains("kinefront report run --sensitivity 120"));
+    assert!(page.contains("another seed") && page.contains("K_act × 10"));
+    // Nothing of where it was made.
+    assert!(!page.contains(&folder.path().display().to_string()));
+}
+
+/// Several runs that ask for the same make one report; those that do not are told apart.
+#[test]
+fn runs_are_put_together_where_they_ask_for_the_same() {
+    let folder = folder();
+    let study = small_study(folder.path());
+    let run = |name: &str, more: &[&str]| {
+        let path = folder.path().join(name);
+        optimize(&study, &path, more);
+        path
+    };
+    let first = run("first", &["--architectures", "3-PRR"]);
+    let second = run(
+        "second",
+        &["--architectures", "3-RPR", "--algorithm", "nsga2", "--seed", "9"],
+    );
+    let out = folder.path().join("both");
+    report(&[&first, &second], &out, &["--sensitivity", "0"]).success();
+    let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
+    assert!(page.contains("Pareto front of the 3-PRR.") && page.contains("Pareto front of the 3-RPR."));
+    assert!(!page.contains("Pareto front of the 3-RRR.") && !page.contains("If it were read otherwise"));
+
+    let text = std::fs::read_to_string(&study).expect("a study");
+    let softer = folder.path().join("softer.toml");
+    std::fs::write(&softer, format!("{text}[material]\nyoungs_modulus_pa = 70e9\n")).expect("a study");
+    let third = folder.path().join("third");
+    optimize(&softer, &third, &["--evaluations", "60"]);
+    report(&[&first, &third], &folder.path().join("not"), &[])
+        .code(2)
+        .stderr(contains("first and third").and(contains("differ in material")));
+    assert!(!folder.path().join("not").exists());
+}
+
+#[test]
+fn reports_say_what_is_wrong_and_replace_nothing_unasked() {
+    let folder = folder();
+    let out = folder.path().join("page");
+    report(&[folder.path()], &out, &[])
+        .code(2)
+        .stderr(contains("holds no run"));
+    report(&[], &out, &[]).code(2).stderr(contains("--paper"));
+
+    let run = folder.path().join("run");
+    optimize(&small_study(folder.path()), &run, &["--evaluations", "60"]);
+    std::fs::create_dir(&out).expect("a folder");
+    std::fs::write(out.join("index.html"), "mine").expect("a page");
+    report(&[&run], &out, &["--sensitivity", "0"])
+        .code(2)
+        .stderr(contains("already holds a report").and(contains("--replace")));
+    assert_eq!(std::fs::read_to_string(out.join("index.html")).expect("a page"), "mine");
+    report(&[&run], &out, &["--sensitivity", "0", "--replace"]).success();
+    assert!(std::fs::metadata(out.join("index.html")).expect("a page").len() > 10_000);
+
+    // A table with a fault is named with its line.
+    let designs = run.join("designs.csv");
+    let text = std::fs::read_to_string(&designs).expect("a table");
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    lines[3] = lines[3].replacen("3-", "4-", 1);
+    std::fs::write(&designs, lines.join("\n")).expect("a table");
+    report(&[&run], &folder.path().join("other"), &[])
+        .code(2)
+        .stderr(contains("designs.csv").and(contains("line 4")));
+}

@@ -1,0 +1,65 @@
+"""Loads a design's MJCF in MuJoCo, moves its actuators along the tour of the design's JSON, and tells how far the platform
+is from where it should be; loads its URDF, too.
+
+Usage: mujoco_tour.py DESIGN.xml DESIGN.json DESIGN.urdf
+"""
+
+import json
+import sys
+
+import mujoco
+import numpy as np
+
+# Along so many poses, each reached in a ramp and held until what swings has come to rest.
+POSES, RAMP, HOLD = 24, 2000, 10000
+
+
+def main():
+    model_path, design_path, urdf_path = sys.argv[1:]
+    with open(design_path, encoding="utf-8") as file:
+        design = json.load(file)
+    model = mujoco.MjModel.from_xml_path(model_path)
+    data = mujoco.MjData(model)
+    tour = design["tour"][:: len(design["tour"]) // POSES]
+    places = [model.joint(f"platform_{axis}").qposadr[0] for axis in ("x", "y", "phi")]
+    start = data.qpos[places].copy()
+    home = model.key("home").ctrl.copy()
+
+    before = home
+    farthest = turned = travelled = 0.0
+    for pose in tour:
+        target = np.array(pose["actuators"])
+        if design["actuator"]["kind"] == "revolute":
+            target = before + np.remainder(target - before + np.pi, 2 * np.pi) - np.pi
+        for step in range(RAMP + HOLD):
+            share = min((step + 1) / RAMP, 1.0)
+            data.ctrl[:] = before + (target - before) * share * share * (3.0 - 2.0 * share)
+            mujoco.mj_step(model, data)
+        before = target
+        x, y, phi = data.qpos[places]
+        farthest = max(farthest, float(np.hypot(x - pose["x_m"], y - pose["y_m"])))
+        turned = max(turned, abs(float(phi) - np.radians(pose["phi_deg"])))
+        travelled = max(travelled, float(np.hypot(x - start[0], y - start[1])))
+    urdf = mujoco.MjModel.from_xml_path(urdf_path)
+    print(
+        json.dumps(
+            {
+                "poses": len(tour),
+                "farthest_m": farthest,
+                "turned_rad": turned,
+                "travelled_m": travelled,
+                "start": start.tolist(),
+                "mass_kg": float(model.body_mass.sum()),
+                "closures": int(model.neq),
+                "actuators": int(model.nu),
+                "stiffness": model.actuator_gainprm[:, 0].tolist(),
+                "warnings": int(sum(warning.number for warning in data.warning)),
+                "urdf_joints": int(urdf.njnt),
+                "urdf_mass_kg": float(urdf.body_mass.sum()),
+            }
+        )
+    )
+
+
+if __name__ == "__main__":
+    main()
