@@ -17,7 +17,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use kinefront::evaluation::{BarRanges, Demand, Evaluation, GridChoice, Model};
-use kinefront::mechanism::{Architecture, Design, VARIABLES, Variable};
+use kinefront::mechanism::{Architecture, Design, VARIABLES};
 use kinefront::optimize::{
     Archive, Evaluated, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, drive, hypervolume, spread,
 };
@@ -43,15 +43,17 @@ fn main() {
         .skip(1)
         .filter(|argument| argument != "--bench")
         .collect();
-    let [command, rest @ ..] = arguments.as_slice() else {
-        println!("takes half an hour: cargo bench --no-default-features --bench reference_fronts -- make [DIRECTORY]");
-        return;
+    let usage = "takes half an hour: cargo bench --no-default-features --bench reference_fronts -- make [DIRECTORY]";
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let directory = match words[..] {
+        [] => return println!("{usage}"),
+        ["make"] => Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/reference_fronts"),
+        ["make", directory] => PathBuf::from(directory),
+        _ => {
+            eprintln!("{usage}");
+            std::process::exit(2);
+        }
     };
-    assert_eq!(command, "make", "the only command is make");
-    let directory = rest.first().map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/reference_fronts"),
-        PathBuf::from,
-    );
     fs::create_dir_all(&directory).expect("the folder can be made");
     let study = BUILTIN[0].study().expect("the built-in study is sound");
     let mut combined = Front::default();
@@ -77,7 +79,7 @@ impl Front {
                 .position(|known| *known == design.architecture)
                 .unwrap_or(0) as f64,
         ];
-        x.extend(VARIABLES.map(|variable| value(design, variable)));
+        x.extend(design.values());
         let outcome = DesignProblem::outcome(evaluation);
         self.0.insert(0, &Evaluated { x, outcome });
     }
@@ -115,18 +117,15 @@ impl Front {
     /// What a file holds, evaluated anew.
     fn read(path: &Path, study: &Study) -> Self {
         let mut front = Self::default();
-        let Ok(text) = fs::read_to_string(path) else {
+        let Ok(mut reader) = csv::Reader::from_path(path) else {
             return front;
         };
-        let designs: Vec<Design> = text
-            .lines()
-            .skip(1)
-            .map(|line| {
-                let fields: Vec<&str> = line.split(',').collect();
-                let lengths = [1, 2, 3, 4, 5].map(|k| fields[k].parse().expect("a number"));
-                Design::new(fields[0].parse().expect("an architecture"), study.working_mode, lengths).expect("a design")
-            })
-            .collect();
+        let designs = reader.records().map(|record| {
+            let fields = record.expect("a row");
+            let lengths = [1, 2, 3, 4, 5].map(|k| fields[k].parse().expect("a number"));
+            Design::new(fields[0].parse().expect("an architecture"), study.working_mode, lengths).expect("a design")
+        });
+        let designs = designs.collect();
         front.evaluate(&study.model(), designs);
         front
     }
@@ -140,15 +139,25 @@ impl Front {
     }
 
     fn write(&self, path: &Path) {
-        let mut text = String::from("architecture,R,r,Lb,rj,rp,mass_kg,workspace_radius_m\n");
+        let mut table = csv::Writer::from_writer(Vec::new());
+        let mut row = |fields: Vec<String>| table.write_record(fields).expect("a row");
+        let header = ["architecture"]
+            .into_iter()
+            .chain(VARIABLES.map(|variable| variable.key()));
+        let objectives = ["mass_kg", "workspace_radius_m"];
+        row(header.chain(objectives).map(str::to_owned).collect());
         let objectives: Vec<[f64; 2]> = self.0.iter().map(|member| member.objectives).collect();
         for place in spread(&objectives, KEPT) {
             let member = &self.0[place];
-            let lengths: Vec<String> = member.x[1..].iter().map(f64::to_string).collect();
             let [mass, negative_radius] = member.objectives;
+            let numbers = member.x[1..].iter().copied().chain([mass, -negative_radius]);
             let architecture = Architecture::ALL[member.x[0] as usize];
-            text += &format!("{architecture},{},{mass},{}\n", lengths.join(","), -negative_radius);
+            row([architecture.to_string()]
+                .into_iter()
+                .chain(numbers.map(|number| number.to_string()))
+                .collect());
         }
+        let text = table.into_inner().expect("a table in memory");
         fs::write(path, text).expect("the file can be written");
     }
 
@@ -164,20 +173,6 @@ impl Front {
             hypervolume(logarithmic, [2000f64.ln(), 0.0])
         );
     }
-}
-
-fn value(design: &Design, variable: Variable) -> f64 {
-    match variable {
-        Variable::BaseRadius => design.base_radius,
-        Variable::PlatformRadius => design.platform_radius,
-        Variable::LinkLength => design.link_length,
-        Variable::LegBarRadius => design.leg_bar_radius,
-        Variable::PlatformBarRadius => design.platform_bar_radius,
-    }
-}
-
-fn lengths(design: &Design) -> [f64; 5] {
-    VARIABLES.map(|variable| value(design, variable))
 }
 
 struct Search {
@@ -305,9 +300,9 @@ impl Search {
                     .min_by(|&a, &b| members[a].1.total_cmp(&members[b].1))
                     .unwrap_or(k);
                 let [a, b] = [0, 1].map(|_| (uniform(&mut random) * members.len() as f64) as usize);
-                let mut next = lengths(&members[k].0);
+                let mut next = members[k].0.values();
                 for j in 0..3 {
-                    let at = |i: usize| lengths(&members[i].0)[j];
+                    let at = |i: usize| members[i].0.values()[j];
                     let moved = next[j] + 0.5 * (at(best) - next[j]) + 0.7 * (at(a) - at(b));
                     // A little noise, so that members that have met can part again.
                     next[j] = (moved * (1.0 + 2e-3 * (uniform(&mut random) - 0.5)))
@@ -366,7 +361,7 @@ impl Search {
         let mut met = Vec::new();
         let mut width = 0.01;
         for _ in 0..TRIALS {
-            let mut next = lengths(&design);
+            let mut next = design.values();
             for (value, range) in next.iter_mut().zip(self.ranges) {
                 *value = (*value * (1.0 + width * gauss(&mut random))).clamp(range[0], range[1]);
             }

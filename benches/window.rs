@@ -119,7 +119,6 @@ impl Stream {
             history,
             verified: members.len(),
             front: members,
-            knee: None,
             dropped: 0,
             verified_hypervolume: 0.0,
             times: RunTimes::default(),

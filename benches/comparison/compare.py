@@ -23,6 +23,7 @@ import multiprocessing
 import pathlib
 import statistics
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -256,6 +257,8 @@ def table(arguments):
         result = json.loads(file.read_text())
         key = (result["architectures"], result["algorithm"], result["seed"])
         seeds.setdefault(key, result)["hypervolumes"] |= result["hypervolumes"]
+    if not seeds:
+        sys.exit(f"{arguments.out} holds no results; `compare.py run KINEFRONT MODE OUT` makes them")
     cases = {}
     for (architectures, algorithm, _), result in seeds.items():
         cases.setdefault(architectures, {}).setdefault(algorithm, []).append(result)

@@ -149,6 +149,7 @@ pub fn front(summary: &RunSummary) -> String {
     );
     let count = summary.front.len();
     let rows = count.min(MOST_ROWS);
+    let marks = summary.marks();
     for (place, FrontMember { id, evaluation, .. }) in summary.spread(MOST_ROWS) {
         let mut row = vec![
             id.to_string(),
@@ -163,7 +164,7 @@ pub fn front(summary: &RunSummary) -> String {
         }));
         let active: Vec<&str> = evaluation.active().map(|constraint| constraint.id()).collect();
         row.push(active.join(" "));
-        row.push(summary.mark(place).to_owned());
+        row.push(marks[place].to_owned());
         table.add_row(row);
     }
     let left_out = if rows < count {

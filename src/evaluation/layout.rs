@@ -2,8 +2,9 @@
 
 use glam::DVec2;
 
+use crate::mechanism::Leg;
 use crate::spatial::LEGS;
-use crate::workspace::{ArmColumns, Positions};
+use crate::workspace::{ArmColumns, PoseChecker, Positions, ValueColumns};
 
 /// Where a pose lies in the disc.
 #[derive(Clone, Copy)]
@@ -54,5 +55,27 @@ impl Layout {
     pub fn pad(&mut self) {
         self.positions.pad();
         self.arms.pad();
+    }
+
+    /// These of its poses, padded.
+    pub fn chosen(&self, poses: &[usize]) -> Self {
+        let mut chosen = Self {
+            count: poses.len(),
+            positions: self.positions.chosen(poses),
+            arms: self.arms.chosen(poses),
+        };
+        chosen.pad();
+        chosen
+    }
+
+    /// Values of the design in `checker` at the poses.
+    pub fn values<L: Leg>(&self, checker: &PoseChecker<L>, values: &mut ValueColumns) {
+        checker.at_poses(&self.positions, &self.arms, values);
+    }
+
+    /// Its stiffness at the poses as shares of what is asked for: `k_xy`, `k_z`, `k_φz`.
+    pub fn shares<L: Leg>(&self, checker: &PoseChecker<L>, values: &mut ValueColumns) -> [Vec<f64>; 3] {
+        self.values(checker, values);
+        values.rigidity_shares(&checker.thresholds, self.count)
     }
 }

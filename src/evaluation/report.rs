@@ -145,7 +145,7 @@ impl<L: Leg> Reporter<'_, L> {
         }
         disc.pad();
         let indices: Vec<f64> = (0..disc.xs.len()).map(|index| index as f64).collect();
-        for index in found.window(home) {
+        for index in found.turn.window(home) {
             let orientation = &found.orientations[index];
             let oriented = Oriented {
                 arms: &orientation.arms,
@@ -192,10 +192,10 @@ impl<L: Leg> Reporter<'_, L> {
             .map(|index| self.shortfall(&found.centres.get(index)))
             .collect();
         let best = smallest(shortfalls.iter().map(|(shortfall, _)| *shortfall)).unwrap_or(0);
-        let homes = found.homes(&self.model.workspace);
+        let homes = found.turn.homes();
         let mean = |home: usize| {
             let (mut sum, mut count, mut signs) = (0.0, 0.0, [false; 2]);
-            for index in found.window(home) {
+            for index in found.turn.window(home) {
                 let (shortfall, sign) = shortfalls[index];
                 sum += shortfall;
                 count += 1.0;
@@ -211,7 +211,7 @@ impl<L: Leg> Reporter<'_, L> {
         let phi = found.orientations[best].phi_deg.to_radians();
         let pose = || Pose::new(centre.x, centre.y, phi);
         self.visit(&mut reports, &found.centres.get(best), pose, sign_of(best));
-        for index in found.window(best_home) {
+        for index in found.turn.window(best_home) {
             self.mark_failing(&mut reports, &found.centres.get(index), sign_of(best_home));
         }
         if !reports.iter().any(|report| report.active) {

@@ -15,7 +15,7 @@ use super::lightest::{Problem, Shares, lightest};
 use crate::mechanism::{Design, Leg, with_leg};
 use crate::spatial::{LEGS, Rotation, unit};
 use crate::stiffness::StiffnessModel;
-use crate::workspace::{GridError, PoseChecker, ValueColumns};
+use crate::workspace::{GridError, PoseChecker, Turn, ValueColumns};
 
 /// Directions of a ring over a sector of 120°.
 const DIRECTIONS: usize = 16;
@@ -70,9 +70,7 @@ struct Sizer<'a, L> {
     checker: PoseChecker<L>,
     /// Arms orientation by orientation, as the reference grid has them.
     arms: Vec<[DVec2; LEGS]>,
-    half_window: usize,
-    /// Whether windows run on past the last orientation: not where the home is given.
-    turns: bool,
+    turn: Turn,
     sectors: usize,
     laid: Layout,
     places: Vec<Place>,
@@ -84,18 +82,10 @@ struct Sizer<'a, L> {
 
 impl<'a, L: Leg> Sizer<'a, L> {
     fn new(model: &'a Model, design: &Design, ranges: &'a BarRanges) -> Result<Self, GridError> {
-        let grid = &model.reference_grid;
-        let half_window = grid.half_window(model.workspace.rotation_range_deg)?;
-        let (first_deg, count) = match model.workspace.home_phi_deg {
-            Some(home) => (home - half_window as f64 * grid.phi_step_deg, 2 * half_window + 1),
-            None => (0.0, grid.orientations()?),
-        };
+        let turn = Turn::new(&model.reference_grid, &model.workspace)?;
         let checker = model.checker::<L>(design)?;
-        let arms = (0..count)
-            .map(|k| {
-                let phi_deg = first_deg + k as f64 * grid.phi_step_deg;
-                checker.manipulator.arms(&Rotation::new(phi_deg.to_radians()))
-            })
+        let arms = (0..turn.count)
+            .map(|k| checker.manipulator.arms(&Rotation::new(turn.phi_deg(k).to_radians())))
             .collect();
         Ok(Self {
             model,
@@ -103,8 +93,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
             ranges,
             checker,
             arms,
-            half_window,
-            turns: model.workspace.home_phi_deg.is_none(),
+            turn,
             sectors: if model.is_symmetric(design) { 1 } else { LEGS },
             laid: Layout::default(),
             places: Vec::new(),
@@ -128,7 +117,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
             Demand::Largest => self.largest(&candidates)?,
         };
         let home = self.home(radius, &candidates)?;
-        let window: Vec<usize> = self.window(home).collect();
+        let window: Vec<usize> = self.turn.window(home).collect();
         self.lay_disc(radius, &window);
         let bar_mass = self.with_bars([1.0, 1.0]);
         let problem = Problem {
@@ -153,11 +142,6 @@ impl<'a, L: Leg> Sizer<'a, L> {
         self.checker.stiffness = StiffnessModel::new::<L>(&design, &self.model.material, &self.model.actuators);
     }
 
-    fn window(&self, home: usize) -> impl Iterator<Item = usize> + use<L> {
-        let (count, half) = (self.arms.len(), self.half_window);
-        (0..=2 * half).map(move |offset| (home + count - half + offset) % count)
-    }
-
     /// Lays the ring of a radius in the given orientations; returns its number of poses.
     fn lay_ring(&mut self, radius: f64, orientations: &[usize]) -> usize {
         let count = if radius > 0.0 { DIRECTIONS * self.sectors } else { 1 };
@@ -171,8 +155,8 @@ impl<'a, L: Leg> Sizer<'a, L> {
         count
     }
 
-    /// Lays the disc of a radius, its centre too. A ring is turned by half a step against the one before, so that together they see more
-    /// directions.
+    /// Lays the disc of a radius, its centre too. A ring is turned by half a step against the one before, so that together
+    /// they see more directions.
     fn lay_disc(&mut self, radius: f64, orientations: &[usize]) {
         let step = TAU / (LEGS * DIRECTIONS) as f64;
         let spacing = [radius / RINGS.len() as f64, step];
@@ -238,8 +222,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
     /// For each orientation, where it is among the given ones and the whole ring is good: the sign of `det A` there.
     fn ring(&mut self, radius: f64, orientations: &[usize]) -> Vec<Option<f64>> {
         let count = self.lay_ring(radius, orientations);
-        self.checker
-            .at_poses(&self.laid.positions, &self.laid.arms, &mut self.values);
+        self.laid.values(&self.checker, &mut self.values);
         let mut signs = vec![None; self.arms.len()];
         for (&orientation, first) in orientations.iter().zip((0..).step_by(count)) {
             let mut sign = None;
@@ -258,24 +241,14 @@ impl<'a, L: Leg> Sizer<'a, L> {
 
     /// Homes whose window has one sign throughout.
     fn homes(&self, signs: &[Option<f64>]) -> Vec<usize> {
-        let homes = if self.turns {
-            0..self.arms.len()
-        } else {
-            self.half_window..self.half_window + 1
-        };
-        homes
-            .filter(|&home| {
-                let first = signs[home];
-                first.is_some() && self.window(home).all(|k| signs[k] == first)
-            })
-            .collect()
+        self.turn.homes_of_one_sign(|place| signs[place]).collect()
     }
 
     /// The orientations of the windows of all homes.
     fn windows(&self, signs: &[Option<f64>]) -> Vec<usize> {
         let mut inside = vec![false; self.arms.len()];
         for home in self.homes(signs) {
-            for k in self.window(home) {
+            for k in self.turn.window(home) {
                 inside[k] = true;
             }
         }
@@ -305,14 +278,6 @@ impl<'a, L: Leg> Sizer<'a, L> {
         (good > 0.0).then_some(good)
     }
 
-    /// Stiffness with the given bars at the poses laid.
-    fn of_laid(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3] {
-        self.set_bars(bars);
-        self.checker
-            .at_poses(&self.laid.positions, &self.laid.arms, &mut self.values);
-        self.values.rigidity_shares(&self.checker.thresholds, self.laid.count)
-    }
-
     /// The home in whose window the rim is stiffest with the design's own bars.
     fn home(&mut self, radius: f64, candidates: &[usize]) -> Option<usize> {
         let signs = self.ring(radius, candidates);
@@ -322,7 +287,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
             return homes.first().copied();
         }
         let count = self.lay_ring(radius, &orientations);
-        let shares = self.of_laid([self.design.leg_bar_radius, self.design.platform_bar_radius]);
+        let shares = self.of_all([self.design.leg_bar_radius, self.design.platform_bar_radius]);
         let mut weakest = vec![f64::INFINITY; self.arms.len()];
         for (&orientation, first) in orientations.iter().zip((0..).step_by(count)) {
             for index in first..first + count {
@@ -331,7 +296,11 @@ impl<'a, L: Leg> Sizer<'a, L> {
                     .fold(weakest[orientation], |least, column| least.min(column[index]));
             }
         }
-        let of_window = |home: usize| self.window(home).fold(f64::INFINITY, |least, k| least.min(weakest[k]));
+        let of_window = |home: usize| {
+            self.turn
+                .window(home)
+                .fold(f64::INFINITY, |least, k| least.min(weakest[k]))
+        };
         homes
             .into_iter()
             .map(|home| (home, of_window(home)))
@@ -342,7 +311,8 @@ impl<'a, L: Leg> Sizer<'a, L> {
 
 impl<L: Leg> Shares for Sizer<'_, L> {
     fn of_all(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3] {
-        self.of_laid(bars)
+        self.set_bars(bars);
+        self.laid.shares(&self.checker, &mut self.values)
     }
 
     fn choose(&mut self, poses: &[usize], weakest: &[usize]) {
@@ -363,16 +333,11 @@ impl<L: Leg> Shares for Sizer<'_, L> {
         }
         let poses: Vec<usize> = poses.iter().copied().chain(before..self.places.len()).collect();
         self.laid.pad();
-        self.chosen.count = poses.len();
-        self.chosen.positions = self.laid.positions.chosen(&poses);
-        self.chosen.arms = self.laid.arms.chosen(&poses);
-        self.chosen.pad();
+        self.chosen = self.laid.chosen(&poses);
     }
 
     fn of_chosen(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3] {
         self.set_bars(bars);
-        self.checker
-            .at_poses(&self.chosen.positions, &self.chosen.arms, &mut self.values);
-        self.values.rigidity_shares(&self.checker.thresholds, self.chosen.count)
+        self.chosen.shares(&self.checker, &mut self.values)
     }
 }

@@ -156,6 +156,21 @@ pub struct LegBody {
     pub parts: Vec<LegPart>,
 }
 
+impl LegBody {
+    /// The link `B_iC_i` between two passive joints.
+    pub(super) fn link(posture: &LegPosture) -> Self {
+        let (b, c) = (posture.b, posture.b + posture.u * posture.length);
+        let joint = |at: DVec2| LegPart::Joint { at, actuated: false };
+        Self {
+            name: "link",
+            origin: b,
+            axis: posture.u,
+            joint: LegJoint::Passive,
+            parts: vec![LegPart::Link { from: b, to: c }, joint(b), joint(c)],
+        }
+    }
+}
+
 /// One leg at a pose it reaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LegPosture {

@@ -122,7 +122,6 @@ impl Leg for PrrLeg {
     }
 
     fn bodies(&self, posture: &LegPosture) -> Vec<LegBody> {
-        let c = posture.b + posture.u * posture.length;
         vec![
             LegBody {
                 name: "slider",
@@ -137,20 +136,7 @@ impl Leg for PrrLeg {
                     axis: self.axis,
                 }],
             },
-            LegBody {
-                name: "link",
-                origin: posture.b,
-                axis: posture.u,
-                joint: LegJoint::Passive,
-                parts: vec![
-                    LegPart::Link { from: posture.b, to: c },
-                    LegPart::Joint {
-                        at: posture.b,
-                        actuated: false,
-                    },
-                    LegPart::Joint { at: c, actuated: false },
-                ],
-            },
+            LegBody::link(posture),
         ]
     }
 

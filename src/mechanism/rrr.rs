@@ -106,7 +106,6 @@ impl Leg for RrrLeg {
     }
 
     fn bodies(&self, posture: &LegPosture) -> Vec<LegBody> {
-        let c = posture.b + posture.u * posture.length;
         vec![
             LegBody {
                 name: "crank",
@@ -127,20 +126,7 @@ impl Leg for RrrLeg {
                     },
                 ],
             },
-            LegBody {
-                name: "link",
-                origin: posture.b,
-                axis: posture.u,
-                joint: LegJoint::Passive,
-                parts: vec![
-                    LegPart::Link { from: posture.b, to: c },
-                    LegPart::Joint {
-                        at: posture.b,
-                        actuated: false,
-                    },
-                    LegPart::Joint { at: c, actuated: false },
-                ],
-            },
+            LegBody::link(posture),
         ]
     }
 

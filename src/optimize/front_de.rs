@@ -146,12 +146,12 @@ impl FrontDe {
     }
 
     /// One of several by their success, each with its least share.
-    fn draw(&mut self, successes: impl Iterator<Item = Success> + Clone) -> usize {
-        let sum: f64 = successes.clone().map(|success| success.0).sum();
-        let count = successes.clone().count();
+    fn draw(&mut self, successes: &[Success]) -> usize {
+        let sum: f64 = successes.iter().map(|success| success.0).sum();
+        let count = successes.len();
         let least = LEAST_SHARE.min(1.0 / count as f64);
         let mut draw = self.random.uniform();
-        for (index, success) in successes.enumerate() {
+        for (index, success) in successes.iter().enumerate() {
             let share = if sum > 0.0 { success.0 / sum } else { 1.0 / count as f64 };
             draw -= least + (1.0 - count as f64 * least) * share;
             if draw < 0.0 {
@@ -163,12 +163,13 @@ impl FrontDe {
 
     fn child(&mut self) -> Candidate {
         let successes: Vec<Success> = self.niches.iter().map(|niche| niche.success).collect();
-        let niche = self.draw(successes.into_iter());
+        let niche = self.draw(&successes);
         if self.niches[niche].population.len() < 4 {
             self.asked.push((niche, None));
             return self.anywhere(niche);
         }
-        let way = self.draw(self.ways.into_iter());
+        let ways = self.ways;
+        let way = self.draw(&ways);
         self.asked.push((niche, Some(way)));
         let size = self.niches[niche].population.len();
         let place = self.random.below(size);

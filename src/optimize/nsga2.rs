@@ -1,8 +1,9 @@
 //! NSGA-II (Deb, Pratap, Agarwal, Meyarivan 2002) with constraint domination, for mixed variables.
 //!
 //! Real variables: simulated binary crossover and polynomial mutation. Categorical variables: taken from either parent,
-//! redrawn with the mutation's probability. The first generation is a Sobol sample and counts as a generation. Copies of candidates that are in the population or already among the
-//! offspring are not evaluated again: another pair of parents is drawn instead.
+//! redrawn with the mutation's probability. The first generation is a Sobol sample and counts as a generation. Copies of
+//! candidates that are in the population or already among the offspring are not evaluated again: another pair of parents is
+//! drawn instead.
 
 use super::population::{Member, ranked, tournament};
 use super::random::Random;
@@ -90,7 +91,8 @@ impl Algorithm for Nsga2 {
     fn ask(&mut self) -> Vec<Candidate> {
         let size = self.settings.population.max(2);
         if self.population.is_empty() {
-            return candidates(doe::sobol(&self.variables, size, self.seed));
+            let sample = doe::sobol(&self.variables, size, self.seed);
+            return sample.into_iter().map(Candidate::from).collect();
         }
         let mut offspring: Vec<Vec<f64>> = Vec::with_capacity(size);
         let mut draws = 0;
@@ -104,7 +106,7 @@ impl Algorithm for Nsga2 {
             }
             draws += 1;
         }
-        candidates(offspring)
+        offspring.into_iter().map(Candidate::from).collect()
     }
 
     fn tell(&mut self, evaluated: Vec<Evaluated>) {
@@ -116,10 +118,6 @@ impl Algorithm for Nsga2 {
             .collect();
         self.population = survive(pool, self.settings.population.max(2));
     }
-}
-
-fn candidates(values: Vec<Vec<f64>>) -> Vec<Candidate> {
-    values.into_iter().map(Candidate::from).collect()
 }
 
 /// Best `size` of `pool` by rank, the last rank thinned by crowding.

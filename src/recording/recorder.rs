@@ -11,8 +11,7 @@ use super::writer::{ALWAYS, Moment, RecordingError, Writer};
 use super::{blueprint, colors, columns, design, paths, timelines};
 use crate::evaluation::{Evaluation, Model};
 use crate::mechanism::Architecture;
-use crate::optimize;
-use crate::study::{Batch, DesignProblem, Event, FrontMember, GenerationSummary, RunSummary, Study};
+use crate::study::{Batch, Event, GenerationSummary, RunSummary, Study};
 
 /// Rows of `/designs` written at a time: enough that the file's index stays small.
 const ROWS: usize = 300;
@@ -201,7 +200,7 @@ impl Recorder {
         }
         // The run's own timelines end with the knee of the front, and the front begins with the scatter.
         let last = summary.history.last();
-        if let Some((knee, last)) = knee(&summary.front).zip(last) {
+        if let Some((knee, last)) = summary.knee().zip(last) {
             self.step(&moment(last.evaluations, last.generation), knee, summary)?;
             self.scatter_on_front()?;
             // The curves of the run end where the front begins: a line at their last value.
@@ -271,15 +270,6 @@ impl Recorder {
         self.write_pending()?;
         self.writer.close()
     }
-}
-
-/// The knee of a front.
-fn knee(front: &[FrontMember]) -> Option<usize> {
-    let objectives: Vec<[f64; 2]> = front
-        .iter()
-        .map(|member| DesignProblem::outcome(&member.evaluation).objectives)
-        .collect();
-    optimize::knee(&objectives)
 }
 
 /// Entity of an architecture's feasible designs.

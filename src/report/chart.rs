@@ -220,44 +220,24 @@ impl Chart {
                     .legend(move |(x, y)| PathElement::new([(x, y), (x + 18 * step, y)], color.stroke_width(width)));
             }
         }
-        let legend = !series.name.is_empty();
+        // The library's marks are of another type on the chart than in its legend.
+        macro_rules! marks {
+            ($mark:ident, $size:expr, $style:expr) => {{
+                let (size, style) = ($size * step, $style);
+                let drawn = chart.draw_series(points.iter().map(|&at| $mark::new(at, size, style)))?;
+                if !series.name.is_empty() && series.mark != Mark::DottedLine {
+                    drawn
+                        .label(&series.name)
+                        .legend(move |(x, y)| $mark::new((x + 9 * step, y), size, style));
+                }
+            }};
+        }
         match series.mark {
             Mark::Line | Mark::ThinLine => {}
-            Mark::DottedLine => {
-                chart.draw_series(points.iter().map(|&at| Circle::new(at, 2 * step, color.filled())))?;
-            }
-            Mark::Dots => {
-                let drawn = chart.draw_series(points.iter().map(|&at| Circle::new(at, 3 * step, color.filled())))?;
-                if legend {
-                    drawn
-                        .label(&series.name)
-                        .legend(move |(x, y)| Circle::new((x + 9 * step, y), 3 * step, color.filled()));
-                }
-            }
-            Mark::Rings => {
-                let drawn = chart.draw_series(
-                    points
-                        .iter()
-                        .map(|&at| Circle::new(at, 6 * step, color.stroke_width(2 * FINE))),
-                )?;
-                if legend {
-                    drawn
-                        .label(&series.name)
-                        .legend(move |(x, y)| Circle::new((x + 9 * step, y), 5 * step, color.stroke_width(2 * FINE)));
-                }
-            }
-            Mark::Crosses => {
-                let drawn = chart.draw_series(
-                    points
-                        .iter()
-                        .map(|&at| Cross::new(at, 5 * step, color.stroke_width(2 * FINE))),
-                )?;
-                if legend {
-                    drawn
-                        .label(&series.name)
-                        .legend(move |(x, y)| Cross::new((x + 9 * step, y), 4 * step, color.stroke_width(2 * FINE)));
-                }
-            }
+            Mark::DottedLine => marks!(Circle, 2, color.filled()),
+            Mark::Dots => marks!(Circle, 3, color.filled()),
+            Mark::Rings => marks!(Circle, 6, color.stroke_width(2 * FINE)),
+            Mark::Crosses => marks!(Cross, 5, color.stroke_width(2 * FINE)),
         }
         Ok(())
     }

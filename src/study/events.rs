@@ -5,7 +5,7 @@ use std::sync::mpsc::SyncSender;
 
 use super::{DesignProblem, Study};
 use crate::evaluation::Evaluation;
-use crate::optimize::spread;
+use crate::optimize::{knee, spread};
 
 /// Where a listener receives events.
 pub type Subscriber = SyncSender<Arc<Event>>;
@@ -82,6 +82,13 @@ pub struct FrontMember {
     pub reference_radius: f64,
 }
 
+impl FrontMember {
+    /// Both objectives, minimised.
+    pub fn objectives(&self) -> [f64; 2] {
+        DesignProblem::outcome(&self.evaluation).objectives
+    }
+}
+
 /// Why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -124,8 +131,6 @@ pub struct RunSummary {
     pub front: Vec<FrontMember>,
     /// Designs of the verified front before it was thinned.
     pub verified: usize,
-    /// Place of the knee in `front`.
-    pub knee: Option<usize>,
     /// Non-dominated designs of the reference grid that verification dropped: infeasible or dominated on the fine one.
     pub dropped: usize,
     /// Hypervolume of the verified front before it was thinned \[kg·m\].
@@ -138,24 +143,32 @@ impl RunSummary {
     /// At most `most` designs of the front with their places, evenly spread with its ends and its knee: what fits
     /// a table.
     pub fn spread(&self, most: usize) -> impl Iterator<Item = (usize, &FrontMember)> {
-        let objectives: Vec<[f64; 2]> = self
-            .front
-            .iter()
-            .map(|member| DesignProblem::outcome(&member.evaluation).objectives)
-            .collect();
-        spread(&objectives, most)
+        spread(&self.objectives(), most)
             .into_iter()
             .map(|place| (place, &self.front[place]))
     }
 
-    /// What a member of the front stands out by.
-    pub fn mark(&self, place: usize) -> &'static str {
-        let last = self.front.len().saturating_sub(1);
-        match place {
-            _ if self.knee == Some(place) => "knee",
-            0 => "lightest",
-            _ if place == last => "largest",
-            _ => "",
+    fn objectives(&self) -> Vec<[f64; 2]> {
+        self.front.iter().map(FrontMember::objectives).collect()
+    }
+
+    /// Place of the knee in `front`.
+    pub fn knee(&self) -> Option<usize> {
+        knee(&self.objectives())
+    }
+
+    /// What each member of the front stands out by; empty for most.
+    pub fn marks(&self) -> Vec<&'static str> {
+        let mut marks = vec![""; self.front.len()];
+        if let Some(last) = marks.last_mut() {
+            *last = "largest";
         }
+        if let Some(first) = marks.first_mut() {
+            *first = "lightest";
+        }
+        if let Some(knee) = self.knee() {
+            marks[knee] = "knee";
+        }
+        marks
     }
 }

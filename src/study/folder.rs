@@ -196,9 +196,9 @@ impl RunFolder {
         let table = || -> Result<Vec<u8>, csv::Error> {
             let mut table = csv::Writer::from_writer(Vec::new());
             table.write_record(header().chain(["workspace_radius_reference_m", "mark"].map(str::to_owned)))?;
-            for (place, member) in summary.front.iter().enumerate() {
+            for (member, mark) in summary.front.iter().zip(summary.marks()) {
                 let record = row(member.id, member.generation, &member.evaluation);
-                let more = [member.reference_radius.to_string(), summary.mark(place).to_owned()];
+                let more = [member.reference_radius.to_string(), mark.to_owned()];
                 table.write_record(record.into_iter().chain(more))?;
             }
             table

@@ -19,15 +19,20 @@ pub enum AlgorithmName {
 impl AlgorithmName {
     /// All of them.
     pub const ALL: [AlgorithmName; 3] = [AlgorithmName::FrontDe, AlgorithmName::Moga2, AlgorithmName::Nsga2];
+
+    /// Its name, as in study files and arguments.
+    pub fn name(self) -> &'static str {
+        match self {
+            AlgorithmName::FrontDe => "front-de",
+            AlgorithmName::Moga2 => "moga2",
+            AlgorithmName::Nsga2 => "nsga2",
+        }
+    }
 }
 
 impl std::fmt::Display for AlgorithmName {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(match self {
-            AlgorithmName::FrontDe => "front-de",
-            AlgorithmName::Moga2 => "moga2",
-            AlgorithmName::Nsga2 => "nsga2",
-        })
+        f.pad(self.name())
     }
 }
 

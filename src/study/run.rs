@@ -28,7 +28,7 @@ use super::{
     RunTimes, Started, Study, Subscriber,
 };
 use crate::evaluation::{Evaluation, GridChoice};
-use crate::optimize::{Algorithm, Archive, Evaluated, FrontDe, Moga2, Nsga2, Problem, hypervolume, knee, spread};
+use crate::optimize::{Algorithm, Archive, Evaluated, FrontDe, Moga2, Nsga2, Problem, hypervolume, spread};
 
 /// Starts the run of a study on a thread of its own.
 ///
@@ -189,12 +189,8 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
     };
     times.verification_s = verifying.elapsed().as_secs_f64();
     times.publish_s = publisher.spent.as_secs_f64();
-    let objectives: Vec<[f64; 2]> = verified
-        .iter()
-        .map(|member| DesignProblem::outcome(&member.evaluation).objectives)
-        .collect();
+    let objectives: Vec<[f64; 2]> = verified.iter().map(FrontMember::objectives).collect();
     let shown = spread(&objectives, front_designs);
-    let knee = knee(&objectives).and_then(|knee| shown.iter().position(|&place| place == knee));
     publisher.send(Event::Finished(RunSummary {
         outcome,
         threads,
@@ -203,7 +199,6 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
         verified_hypervolume: hypervolume(objectives, reference),
         verified: verified.len(),
         front: shown.into_iter().map(|place| verified[place].clone()).collect(),
-        knee,
         times,
     }));
     Ok(())

@@ -11,6 +11,7 @@ mod grid;
 pub mod plain;
 mod regular;
 mod rings;
+mod turn;
 
 pub(crate) use batch::Oriented;
 pub use checker::{PoseChecker, PoseLanes, PoseValues, Thresholds};
@@ -18,3 +19,4 @@ pub use columns::ValueColumns;
 pub(crate) use columns::{ArmColumns, Positions};
 pub use grid::{Grid, GridError};
 pub use regular::{RegularWorkspace, WorkspaceSpec, search};
+pub use turn::Turn;

@@ -10,7 +10,7 @@ use glam::DVec2;
 
 use super::batch::Oriented;
 use super::rings::{Reach, Rings};
-use super::{ArmColumns, Grid, GridError, PoseChecker, ValueColumns};
+use super::{ArmColumns, Grid, GridError, PoseChecker, Turn, ValueColumns};
 use crate::mechanism::Leg;
 use crate::spatial::{LEGS, Rotation, unit};
 
@@ -45,8 +45,8 @@ pub struct RegularWorkspace {
     pub home: Option<usize>,
     /// The grid's orientations.
     pub orientations: Vec<Orientation>,
-    /// Steps from a home orientation to either end of its window.
-    pub half_window: usize,
+    /// How they are spaced, and the windows over them.
+    pub turn: Turn,
     /// The orientations of the home window that `radius` is the `R(φ)` of, and for each a radius just beyond, at which
     /// a pose fails in some direction \[m\]. Without a home, one such of a window that came out empty, if there was one.
     pub limits: Vec<(usize, f64)>,
@@ -56,43 +56,15 @@ pub struct RegularWorkspace {
     pub directions: Vec<DVec2>,
 }
 
-impl RegularWorkspace {
-    /// Indices of the orientations in the window about orientation `home`.
-    pub fn window(&self, home: usize) -> impl Iterator<Item = usize> + use<> {
-        window(home, self.half_window, self.orientations.len())
-    }
-
-    /// Indices at which a window can have its centre.
-    pub fn homes(&self, spec: &WorkspaceSpec) -> std::ops::Range<usize> {
-        homes(spec, self.half_window, self.orientations.len())
-    }
-}
-
-fn window(home: usize, half: usize, count: usize) -> impl Iterator<Item = usize> + use<> {
-    (0..=2 * half).map(move |offset| (home + count - half + offset) % count)
-}
-
-fn homes(spec: &WorkspaceSpec, half: usize, count: usize) -> std::ops::Range<usize> {
-    match spec.home_phi_deg {
-        Some(_) => half..half + 1,
-        None => 0..count,
-    }
-}
-
-/// The orientations that a search looks at: the full turn, or the one window of a given home.
+/// The orientations that a search looks at, with what is known of their centres.
 fn orientations<L: Leg>(
     checker: &PoseChecker<L>,
     spec: &WorkspaceSpec,
-    grid: &Grid,
-) -> Result<(Vec<Orientation>, ValueColumns), GridError> {
-    let half = grid.half_window(spec.rotation_range_deg)?;
-    let (first_deg, count) = match spec.home_phi_deg {
-        Some(home) => (home - half as f64 * grid.phi_step_deg, 2 * half + 1),
-        None => (0.0, grid.orientations()?),
-    };
-    let mut orientations: Vec<Orientation> = (0..count)
+    turn: &Turn,
+) -> (Vec<Orientation>, ValueColumns) {
+    let mut orientations: Vec<Orientation> = (0..turn.count)
         .map(|k| {
-            let phi_deg = first_deg + k as f64 * grid.phi_step_deg;
+            let phi_deg = turn.phi_deg(k);
             Orientation {
                 phi_deg: libm::fmod(libm::fmod(phi_deg, 360.0) + 360.0, 360.0),
                 arms: checker.manipulator.arms(&Rotation::new(phi_deg.to_radians())),
@@ -109,7 +81,7 @@ fn orientations<L: Leg>(
             .filter(|values| values.determinant != 0.0 && checker.thresholds.hold(values))
             .map(|values| values.determinant.signum());
     }
-    Ok((orientations, centres))
+    (orientations, centres)
 }
 
 /// Finds the regular workspace of the design in `checker`.
@@ -126,8 +98,8 @@ pub fn search<L: Leg>(
     step_base: f64,
     symmetric: bool,
 ) -> Result<RegularWorkspace, GridError> {
-    let half_window = grid.half_window(spec.rotation_range_deg)?;
-    let (orientations, centres) = orientations(checker, spec, grid)?;
+    let turn = Turn::new(grid, spec)?;
+    let (orientations, centres) = orientations(checker, spec, &turn);
     let sector = if symmetric && grid.directions.is_multiple_of(LEGS) {
         grid.directions / LEGS
     } else {
@@ -140,7 +112,7 @@ pub fn search<L: Leg>(
         radius: 0.0,
         home: None,
         orientations,
-        half_window,
+        turn,
         limits: Vec::new(),
         centres,
         directions: Vec::new(),
@@ -152,10 +124,10 @@ pub fn search<L: Leg>(
         rings: Rings::new(spec.centre, directions, step),
         reaches: vec![Reach::UNKNOWN; result.orientations.len()],
         hint: grid.ray_steps / 4,
-        order: spread(2 * half_window + 1),
+        order: spread(2 * turn.half_window + 1),
         found: &mut result,
     };
-    search.run(spec);
+    search.run();
     result.directions = search.rings.directions;
     Ok(result)
 }
@@ -174,19 +146,15 @@ struct Search<'a, L> {
 }
 
 impl<L: Leg> Search<'_, L> {
-    fn run(&mut self, spec: &WorkspaceSpec) {
-        let count = self.found.orientations.len();
+    fn run(&mut self) {
+        let turn = self.found.turn;
         // Upper bound of each window: infinite until a ring of one of its orientations is known to fail.
-        let mut bounds: Vec<f64> = vec![0.0; count];
-        for home in self.found.homes(spec) {
-            let mut signs = self.found.window(home).map(|k| self.found.orientations[k].centre_sign);
-            let first = signs.next().flatten();
-            if first.is_some() && signs.all(|sign| sign == first) {
-                bounds[home] = f64::INFINITY;
-            }
+        let mut bounds: Vec<f64> = vec![0.0; turn.count];
+        for home in turn.homes_of_one_sign(|place| self.found.orientations[place].centre_sign) {
+            bounds[home] = f64::INFINITY;
         }
         while let Some((home, rival)) = leader(&bounds) {
-            let window: Vec<usize> = self.found.window(home).collect();
+            let window: Vec<usize> = turn.window(home).collect();
             while bounds[home] > 0.0 {
                 let Some(changed) = self.lower(&window) else {
                     self.found.radius = bounds[home];
@@ -201,7 +169,7 @@ impl<L: Leg> Search<'_, L> {
                 };
                 // The windows that hold an orientation are those about the orientations of the window about it.
                 let bound = self.rings.bound(&self.reaches[changed]);
-                for affected in self::window(changed, self.found.half_window, count) {
+                for affected in turn.window(changed) {
                     bounds[affected] = bounds[affected].min(bound);
                 }
                 if bounds[home] == 0.0 && self.found.limits.is_empty() {

@@ -125,7 +125,7 @@ fn runs_are_put_together_where_they_ask_for_the_same() {
     optimize(&softer, &third, &["--evaluations", "60"]);
     report(&[&first, &third], &folder.path().join("not"), &[])
         .code(2)
-        .stderr(contains("first and third").and(contains("differ in material")));
+        .stderr(contains("first and third cannot be put in one report").and(contains("material")));
     assert!(!folder.path().join("not").exists());
 }
 
@@ -136,7 +136,7 @@ fn reports_say_what_is_wrong_and_replace_nothing_unasked() {
     report(&[folder.path()], &out, &[])
         .code(2)
         .stderr(contains("holds no run"));
-    report(&[], &out, &[]).code(2).stderr(contains("--paper"));
+    report(&[], &out, &[]).code(2).stderr(contains("<RUN>"));
 
     let run = folder.path().join("run");
     optimize(&small_study(folder.path()), &run, &["--evaluations", "60"]);

@@ -4,7 +4,7 @@ use egui::{CollapsingHeader, DragValue, ScrollArea, TextEdit, Ui};
 use toml::{Table, Value};
 
 use crate::explorer::{Session, theme};
-use crate::study::{Fault, Study};
+use crate::study::{AlgorithmName, Fault, Study};
 
 /// The panel of the study.
 #[derive(Default)]
@@ -106,11 +106,12 @@ fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
             Value::String(text) => {
                 ui.horizontal(|ui| {
                     let label = ui.label(key.as_str());
+                    let algorithms = AlgorithmName::ALL.map(AlgorithmName::name);
                     let choices: &[&str] = match key.as_str() {
                         "stiffness_definition" => &["stiffness", "compliance"],
                         "characteristic_length" => &["platform_radius", "isotropic"],
                         "telescopic_bar" => &["current", "longest"],
-                        "algorithm" => &["front-de", "moga2", "nsga2"],
+                        "algorithm" => &algorithms,
                         _ => &[],
                     };
                     if choices.is_empty() {

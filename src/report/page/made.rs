@@ -5,7 +5,6 @@ use maud::{Markup, html};
 use super::optional;
 use crate::mechanism::{Architecture, VARIABLES};
 use crate::report::Report;
-use crate::text::number;
 
 /// Where a reader of the paper finds what.
 pub(super) fn guide() -> Markup {
@@ -46,10 +45,9 @@ pub(super) fn guide() -> Markup {
 
 pub(super) fn made(report: &Report) -> Markup {
     let study = &report.study;
-    let taken = report.taken.as_secs_f64();
     html! {
         p {
-            "Kinefront " (env!("CARGO_PKG_VERSION")) ", " (number(taken)) " s on "
+            "Made by Kinefront " (env!("CARGO_PKG_VERSION")) " in " (report.taken.as_secs()) " s on "
             (rayon::current_num_threads()) " threads. One seed gives one result, whatever the number of threads."
         }
         pre { code { (report.options.command) } }
@@ -71,6 +69,7 @@ pub(super) fn made(report: &Report) -> Markup {
                 td { (name) } @for variable in VARIABLES { td.number { (study.bounds.range(variable)[end]) } }
             } } }
         } }
+        @if report.rivals.is_some() { (parameters(report)) }
         div.scroll { table {
             caption { "The flexible model of each leg: springs from the base to the platform's centre, joined by rigid bodies; two passive revolutes." }
             thead { tr { th { "architecture" } th { "actuator" } th { "leg" } th { "platform" } } }
@@ -84,6 +83,35 @@ pub(super) fn made(report: &Report) -> Markup {
             pre { code { (toml::to_string(study).unwrap_or_default()) } }
         }
     }
+}
+
+/// The parameters that the paper tabulates for its own algorithm, as its stand-in has them here.
+fn parameters(report: &Report) -> Markup {
+    let settings = &report.study.optimizer.moga2;
+    let generations = report.study.optimizer.evaluations / settings.population.max(1);
+    let rows: [(&str, String); 8] = [
+        ("scheduler", "after MOGA-II".to_owned()),
+        ("number of iterations", generations.to_string()),
+        (
+            "directional cross-over probability",
+            settings.directional_crossover.to_string(),
+        ),
+        ("selection probability", settings.selection.to_string()),
+        ("mutation probability", settings.mutation.to_string()),
+        ("DNA string mutation ratio", settings.mutation_ratio.to_string()),
+        (
+            "DOE algorithm, number of designs",
+            format!("Sobol, {}", settings.population),
+        ),
+        (
+            "total number of iterations",
+            report.study.optimizer.evaluations.to_string(),
+        ),
+    ];
+    html! { div.scroll { table {
+        caption { "Parameters of the paper's algorithm, as its stand-in has them; those of the others are in the study below." }
+        tbody { @for (name, value) in rows { tr { td { (name) } td.number { (value) } } } }
+    } } }
 }
 
 fn actuator(architecture: Architecture) -> String {

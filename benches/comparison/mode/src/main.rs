@@ -18,7 +18,8 @@ const UPPER: [f64; 5] = [4.0, 4.0, 4.0, 0.1, 0.1];
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [program, architectures, evaluations, seed, population] = arguments.as_slice() else {
-        panic!("mode KINEFRONT ARCHITECTURES EVALUATIONS SEED POPULATION");
+        eprintln!("usage: mode KINEFRONT ARCHITECTURES EVALUATIONS SEED POPULATION");
+        std::process::exit(2);
     };
     let architectures: Vec<&str> = architectures.split(',').collect();
     let evaluations: usize = evaluations.parse().expect("a number");
