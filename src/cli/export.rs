@@ -14,8 +14,10 @@ use super::{Ending, Failure};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Formats of a design: gltf (.glb), mjcf (.xml), sdf, urdf, dxf, json. Formats of a front: csv, parquet.
+Formats of a design: gltf (.glb), mjcf (.xml), sdf, urdf, dxf, json.
+Formats of a front: csv, parquet; name the run's folder instead of a design.
 
+Examples:
   kinefront export --design \"3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056\" --out design.glb
   kinefront export run/front.csv#12 --format mjcf --out design.xml
   kinefront export run --out front.parquet")]

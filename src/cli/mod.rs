@@ -125,8 +125,9 @@ fn load_study(argument: Option<&str>) -> Result<Study> {
     };
     let path = Path::new(argument);
     match Builtin::find(argument) {
-        Some(builtin) if !path.exists() => Ok(builtin.study()?),
-        None if !path.exists() => Err(miette!(
+        // A folder of that name is no study.
+        Some(builtin) if !path.is_file() => Ok(builtin.study()?),
+        None if !path.is_file() => Err(miette!(
             help = format!("studies that come with the program: {}", builtin_names()),
             "there is no study file `{argument}`, and no study of that name"
         )),

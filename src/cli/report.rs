@@ -11,6 +11,7 @@ use super::{Ending, Failure};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
+Examples:
   kinefront report run                          the run's page in run/report
   kinefront report prr rpr rrr --out compared   several runs that ask for the same
   kinefront report --paper --out paper          the 2010 comparison from nothing")]

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 
-use super::Session;
 use super::running::Writing;
+use super::{Phase, Session};
 use crate::evaluation::GridChoice;
 use crate::export::{ExportError, Format, Subject, export, front_to_parquet};
 use crate::recording::{record_design, save_copy};
+use crate::report::{Options, Report, Source};
 
 /// Writes a file; what stood there is replaced whole or not at all.
 ///
@@ -30,6 +31,8 @@ pub enum Purpose {
     SaveRecording,
     /// Where the run's folder goes.
     SaveRun,
+    /// Where the run's report goes.
+    Report,
     /// Where the front's table goes.
     ExportFront,
     /// Where the recording of the design in the light goes.
@@ -63,6 +66,7 @@ impl Purpose {
             Purpose::SaveStudy => ("Save the study", "study.toml", &[("study", &["toml"])]),
             Purpose::SaveRecording => ("Save the recording", "session.rrd", &[("recording", &["rrd"])]),
             Purpose::SaveRun => ("Save the run's folder", "run", &[]),
+            Purpose::Report => ("Report on the run: a folder", "report", &[]),
             Purpose::ExportFront => (
                 "Export the front",
                 "front.csv",
@@ -169,6 +173,7 @@ pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job
         Purpose::RecordDesign => return record(session, path),
         Purpose::ExportDesign(format) => return export_design(session, format, path),
         Purpose::SaveRun => return save_run(session, path),
+        Purpose::Report => return report(session, path),
         // The window takes the picture itself.
         Purpose::SavePicture => {}
     }
@@ -274,6 +279,35 @@ fn save_run(session: &mut Session, path: PathBuf) -> Option<Job> {
             }
         }
         Ok(format!("saved the run to {}", path.display()))
+    }))
+}
+
+/// The page of the run in the window, without searches of its own: these would take minutes.
+fn report(session: &mut Session, path: PathBuf) -> Option<Job> {
+    let opened = match session.phase() {
+        Phase::Opened(path) if path.is_dir() => Some(path.clone()),
+        _ => None,
+    };
+    let Some(folder) = session.run_folder().or(opened) else {
+        session.tell_error("there is no run to report on: expected one of this window, or an opened folder".to_owned());
+        return None;
+    };
+    let writing = session.writing();
+    session.tell("making the report, which takes some seconds".to_owned());
+    Some(Box::new(move || {
+        writing.iter().for_each(Writing::wait);
+        let options = Options {
+            command: "File › Report on the run, in the window".to_owned(),
+            ..Options::default()
+        };
+        let make = || {
+            let mut source = Source::read(&folder)?;
+            // Its folder is one of the window's own, whose name says nothing.
+            source.name.clone_from(&source.study.name);
+            Report::make(&[source], options, &mut |_| {})?.write(&path, false)
+        };
+        make().map_err(|error| error.to_string())?;
+        Ok(format!("wrote {}", path.join("index.html").display()))
     }))
 }
 

@@ -94,6 +94,17 @@ pub struct Options {
     pub command: String,
 }
 
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            sensitivity: None,
+            picture: [800, 600],
+            scale: 2.0,
+            command: String::new(),
+        }
+    }
+}
+
 /// A figure or picture by name.
 #[derive(Debug, Clone, PartialEq)]
 struct Figure {

@@ -210,6 +210,17 @@ fn the_design_is_exported_for_other_programs() {
         let bytes = std::fs::read(&path).expect("an export");
         assert!(bytes.starts_with(begins(format).as_bytes()), "{format:?}");
     }
+    let report = folder.path().join("report");
+    window.state_mut().act(&ctx, Purpose::Report, report.clone());
+    for _ in 0..6000 {
+        window.step();
+        if !window.state().is_busy() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let page = std::fs::read_to_string(report.join("index.html")).expect("a page");
+    assert!(page.contains("What the comparison says"));
     let front = folder.path().join("front.parquet");
     window.state_mut().act(&ctx, Purpose::ExportFront, front.clone());
     let bytes = std::fs::read(&front).expect("a table");

@@ -21,6 +21,7 @@ impl Explorer {
                     ("Save recording… (Ctrl+S)", Purpose::SaveRecording),
                     ("Save run folder…", Purpose::SaveRun),
                     ("Save study…", Purpose::SaveStudy),
+                    ("Report on the run…", Purpose::Report),
                     ("Export front…", Purpose::ExportFront),
                     ("Record design…", Purpose::RecordDesign),
                     ("Save picture…", Purpose::SavePicture),
