@@ -110,12 +110,23 @@ fn plan_view_and_front_are_read_back() {
         std::fs::read(&csv).expect("a table"),
         std::fs::read(run.join("front.csv")).expect("a table")
     );
-    let drawing = export(DESIGN, folder.path(), "design.dxf");
+    let files = ["dxf", "glb", "json"].map(|extension| format!("design.{extension}"));
+    let [drawing, glb, json] = files.map(|name| export(DESIGN, folder.path(), &name));
     let Some(python) = python(&["ezdxf", "pyarrow"]) else {
         return;
     };
-    let found: Value =
-        serde_json::from_str(&script(python, "read_exports.py", &[&drawing, &parquet, &csv])).expect("JSON");
+    let found: Value = serde_json::from_str(&script(
+        python,
+        "read_exports.py",
+        &[&drawing, &parquet, &csv, &glb, &json],
+    ))
+    .expect("JSON");
+    // Single precision over some metres; no joint opens at any step of the animation.
+    let animation = &found["animation"];
+    assert_eq!([&animation["bodies"], &animation["steps"]], [7, 235]);
+    for key in ["from_tour_m", "gap_m"] {
+        assert!(animation[key].as_f64().expect("m") < 2e-6, "{animation}");
+    }
     assert_eq!(found["errors"], 0);
     assert_eq!(found["millimetres"], true);
     // L_b and r_j of design II, three times, and its three sliders.

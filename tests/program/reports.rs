@@ -91,6 +91,22 @@ fn a_page_holds_everything_and_loads_nothing() {
         let same = |other: &&csv::StringRecord| (2..9).all(|column| row[column] == other[column]);
         assert!(designs.iter().any(|other| same(&other)), "{row:?}");
     }
+    // The lightest and the largest of each architecture stand in the page with their masses.
+    for architecture in ["3-PRR", "3-RPR", "3-RRR"] {
+        let masses: Vec<f64> = shown
+            .iter()
+            .filter(|row| &row[2] == architecture)
+            .map(|row| row[9].parse().expect("a mass"))
+            .collect();
+        let ends = [f64::min as fn(f64, f64) -> f64, f64::max].map(|pick| masses.iter().copied().reduce(pick));
+        for mass in ends.into_iter().flatten() {
+            let text = kinefront::text::number(mass);
+            assert!(
+                page.contains(&format!("mass <b>{text}</b> kg")),
+                "{architecture}: no {text} kg"
+            );
+        }
+    }
     assert!(page.contains("kinefront report run --sensitivity 120"));
     assert!(page.contains("another seed") && page.contains("K_act × 10"));
     // Nothing of where it was made.

@@ -84,12 +84,22 @@ fn figures(report: &Report, prefix: &str) -> Markup {
         div.figures {
             @for figure in found {
                 figure id={ "figure-" (figure.name) } {
-                    (PreEscaped(&figure.svg))
+                    (drawing(figure))
                     figcaption { (figure.caption) }
                 }
             }
         }
     }
+}
+
+/// The figure's SVG, which says what it is to those who cannot see it.
+fn drawing(figure: &Figure) -> PreEscaped<String> {
+    let label = html! { (figure.caption) }.into_string().replace('"', "&quot;");
+    PreEscaped(
+        figure
+            .svg
+            .replacen("<svg ", &format!("<svg role=\"img\" aria-label=\"{label}\" "), 1),
+    )
 }
 
 fn image(picture: &Picture) -> Markup {
