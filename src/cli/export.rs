@@ -59,7 +59,12 @@ impl Arguments {
         if let Some(target) = self.format {
             return Ok(target);
         }
-        let extension = self.out.extension().unwrap_or_default().to_string_lossy();
+        let extension = self
+            .out
+            .extension()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_lowercase();
         let design = || Format::ALL.into_iter().find(|format| format.extension() == extension);
         match extension.as_ref() {
             "csv" => Ok(Target::Csv),
@@ -74,10 +79,30 @@ impl Arguments {
             }),
         }
     }
+
+    /// What fits no target: settings that would be ignored, and a name that promises another form.
+    fn check(&self, target: Target) -> Result<()> {
+        let is_gltf = self
+            .out
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("gltf"));
+        match target {
+            Target::Design(Format::Gltf) if is_gltf => Err(miette!(
+                help = "name the file .glb",
+                "glTF is written in its binary form, which {} would not say",
+                self.out.display()
+            )),
+            Target::Csv | Target::Parquet if self.pose.is_some() || self.subject.study.is_some() => Err(miette!(
+                "a table is copied as the run wrote it: --pose and --study have no meaning for it"
+            )),
+            _ => Ok(()),
+        }
+    }
 }
 
 pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
     let target = arguments.target().map_err(Failure::Input)?;
+    arguments.check(target).map_err(Failure::Input)?;
     let to_stdout = arguments.out == Path::new("-");
     if !to_stdout && arguments.out.exists() {
         return Err(Failure::Input(miette!(
@@ -91,13 +116,16 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
     };
     if to_stdout {
         std::io::stdout().write_all(&bytes)?;
-        return Ok(Ending::Done);
+    } else {
+        write_whole(&arguments.out, &bytes).map_err(Failure::runtime)?;
     }
-    write_whole(&arguments.out, &bytes).map_err(Failure::runtime)?;
     if let Target::Design(format) = target
         && let Some(lost) = format.lost()
     {
-        eprintln!("not in {}: {lost}", format.key().to_uppercase());
+        eprintln!("not in {}: {lost}", format.name());
+    }
+    if to_stdout {
+        return Ok(Ending::Done);
     }
     writeln!(std::io::stdout(), "wrote {}", arguments.out.display())?;
     Ok(Ending::Done)
@@ -122,7 +150,7 @@ fn design(arguments: &Arguments, format: Format) -> Result<Vec<u8>, Failure> {
 
 /// The front of the run that the row argument names: its folder, or one of its tables.
 fn front(arguments: &Arguments, target: Target) -> Result<Vec<u8>> {
-    let Some(run) = &arguments.subject.row else {
+    let Some(run) = arguments.subject.row.as_ref().filter(|run| !run.contains('#')) else {
         return Err(miette!(
             help = "kinefront export run --out front.parquet",
             "a table is made of a run's front: name the run's folder, not a design"

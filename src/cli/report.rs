@@ -9,6 +9,10 @@ use miette::Report as Words;
 
 use super::{Ending, Failure};
 
+const SENSITIVITY: u32 = 2000;
+const PICTURE_WIDTH: u32 = 800;
+const SCALE: f32 = 2.0;
+
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -29,13 +33,13 @@ pub struct Arguments {
     #[arg(long)]
     replace: bool,
     /// Evaluations for each search under another reading of an assumption; 0: none are made.
-    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(0..=10_000_000))]
+    #[arg(long, value_name = "N", default_value_t = SENSITIVITY, value_parser = clap::value_parser!(u32).range(0..=10_000_000))]
     sensitivity: u32,
     /// Width of the pictures of designs in pixels.
-    #[arg(long, value_name = "PIXELS", default_value_t = 800, value_parser = clap::value_parser!(u32).range(160..=8000))]
+    #[arg(long, value_name = "PIXELS", default_value_t = PICTURE_WIDTH, value_parser = clap::value_parser!(u32).range(160..=8000))]
     picture_width: u32,
     /// Pixels of a figure's PNG per unit; a figure is 640 units wide.
-    #[arg(long, value_name = "SCALE", default_value_t = 2.0, value_parser = scale)]
+    #[arg(long, value_name = "SCALE", default_value_t = SCALE, value_parser = scale)]
     scale: f32,
     /// No progress.
     #[arg(long, short)]
@@ -67,8 +71,14 @@ impl Arguments {
         for run in &self.runs {
             command += &format!(" {}", run.file_name().unwrap_or(run.as_os_str()).to_string_lossy());
         }
-        if self.sensitivity != 2000 {
+        if self.sensitivity != SENSITIVITY {
             command += &format!(" --sensitivity {}", self.sensitivity);
+        }
+        if self.picture_width != PICTURE_WIDTH {
+            command += &format!(" --picture-width {}", self.picture_width);
+        }
+        if self.scale != SCALE {
+            command += &format!(" --scale {}", self.scale);
         }
         command
     }

@@ -88,6 +88,9 @@ fn design_text(table: &Path, id: &str) -> Result<String> {
         }
         known.push(record[ids].to_owned());
     }
+    if known.is_empty() {
+        return Err(miette!("{} has no designs", table.display()));
+    }
     let some: Vec<&str> = known.iter().take(8).map(String::as_str).collect();
     let more = if known.len() > some.len() { ", …" } else { "" };
     Err(miette!(

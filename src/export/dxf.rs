@@ -1,13 +1,14 @@
-//! The plan view for CAD, in millimetres: a layer for each kind of thing.
+//! The plan view for CAD, in millimetres: a layer for each kind of thing. As of release 12, which every CAD reads: in later
+//! ones the library leaves out handles of tables that some insist on.
 
-use ::dxf::entities::{Circle, Entity, EntityType, Line, LwPolyline, Text};
-use ::dxf::enums::{AcadVersion, Units};
+use ::dxf::entities::{Circle, Entity, EntityType, Line, Polyline, Text, Vertex};
+use ::dxf::enums::AcadVersion;
 use ::dxf::tables::Layer;
-use ::dxf::{Color, Drawing, LwPolylineVertex, Point};
+use ::dxf::{Color, Drawing, Point};
 use glam::{DVec2, DVec3};
 
 use super::Prepared;
-use crate::scene::{Part, Scene, SolidShape, manipulator};
+use crate::scene::{Part, Scene, SolidShape};
 use crate::text::number;
 
 /// Millimetres per metre.
@@ -27,9 +28,9 @@ const LAYERS: [(&str, u8); 8] = [
 
 pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
     let design = &subject.evaluation.design;
-    let scene = manipulator(&subject.model, design, &subject.pose).map_err(|error| error.to_string())?;
+    let scene = &subject.scene;
     let mut sheet = Sheet::new();
-    sheet.manipulator(&scene);
+    sheet.manipulator(scene);
     if let Some(cylinder) = subject.cylinder {
         sheet.circle("WORKSPACE", cylinder.centre, cylinder.radius);
     }
@@ -44,13 +45,32 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
     }
     let mut bytes = Vec::new();
     sheet.drawing.save(&mut bytes).map_err(|error| error.to_string())?;
-    Ok(bytes)
+    String::from_utf8(bytes)
+        .map(|text| release_12(&text).into_bytes())
+        .map_err(|error| error.to_string())
+}
+
+/// The file without what release 12 does not know: the library writes subclass marks and handles in tables and entities all
+/// the same. A file is pairs of lines, a code and its value.
+fn release_12(text: &str) -> String {
+    const SUBCLASS: &str = "100";
+    const HANDLE: &str = "5";
+    let mut lines = text.lines();
+    let (mut kept, mut in_header) = (String::with_capacity(text.len()), true);
+    while let (Some(code), Some(value)) = (lines.next(), lines.next()) {
+        in_header &= value != "TABLES";
+        if in_header || !matches!(code.trim(), SUBCLASS | HANDLE) {
+            kept += &format!("{code}\r\n{value}\r\n");
+        }
+    }
+    kept
 }
 
 fn facts(subject: &Prepared) -> Vec<String> {
     let (evaluation, pose) = (subject.evaluation, &subject.pose);
     let mut facts = vec![
         subject.title(),
+        "lengths in mm".to_owned(),
         format!("mass in motion {} kg", number(evaluation.mass)),
     ];
     if let Some(cylinder) = subject.cylinder {
@@ -78,8 +98,7 @@ struct Sheet {
 impl Sheet {
     fn new() -> Self {
         let mut drawing = Drawing::new();
-        drawing.header.version = AcadVersion::R2000;
-        drawing.header.default_drawing_units = Units::Millimeters;
+        drawing.header.version = AcadVersion::R12;
         for (name, color) in LAYERS {
             drawing.add_layer(Layer {
                 name: name.to_owned(),
@@ -108,13 +127,14 @@ impl Sheet {
                 self.add(layer, EntityType::Line(line));
             }
         }
-        for solid in &scene.solids {
+        for solid in scene.solids.iter().filter(|solid| solid.shape.has_volume()) {
             let layer = match solid.part {
                 Part::PlatformBar => "PLATFORM",
                 Part::ActuatedJoint | Part::PassiveJoint => "JOINTS",
                 _ => "LEGS",
             };
             match solid.shape {
+                // Seen from above, a pin is a circle.
                 SolidShape::Bar { from, to, radius } if from.truncate() == to.truncate() => {
                     self.circle(layer, from.truncate(), radius);
                 }
@@ -140,13 +160,16 @@ impl Sheet {
     fn bar(&mut self, layer: &str, from: DVec3, to: DVec3, radius: f64) {
         let (from, to) = (from.truncate(), to.truncate());
         let side = (to - from).normalize_or(DVec2::X).perp() * radius;
-        let corners = [from + side, from - side, to - side, to + side];
-        let mut outline = LwPolyline {
-            vertices: corners.map(vertex).to_vec(),
-            ..LwPolyline::default()
-        };
+        let mut outline = Polyline::default();
+        for corner in [from + side, from - side, to - side, to + side] {
+            let vertex = Vertex {
+                location: point(corner),
+                ..Vertex::default()
+            };
+            outline.add_vertex(&mut self.drawing, vertex);
+        }
         outline.set_is_closed(true);
-        self.add(layer, EntityType::LwPolyline(outline));
+        self.add(layer, EntityType::Polyline(outline));
     }
 
     fn circle(&mut self, layer: &str, centre: DVec2, radius: f64) {
@@ -166,12 +189,4 @@ impl Sheet {
 
 fn point(at: DVec2) -> Point {
     Point::new(MM * at.x, MM * at.y, 0.0)
-}
-
-fn vertex(at: DVec2) -> LwPolylineVertex {
-    LwPolylineVertex {
-        x: MM * at.x,
-        y: MM * at.y,
-        ..LwPolylineVertex::default()
-    }
 }

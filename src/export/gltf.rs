@@ -13,7 +13,7 @@ use json::{Accessor, Index, Node};
 
 use super::Prepared;
 use crate::palette;
-use crate::scene::{Frame, Mesh, Part, linkage, manipulator};
+use crate::scene::{Frame, Mesh, Part, Solid, linkage};
 use crate::spatial::unit;
 
 /// Seconds that the tour takes.
@@ -26,13 +26,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
     let mut nodes = Vec::new();
     let mut bodies = Vec::new();
     for body in &subject.linkage.bodies {
-        // One surface for each kind of part, so that each has its colour.
-        let mut surfaces: BTreeMap<Part, Mesh> = BTreeMap::new();
-        for solid in body.solids.iter().filter(|solid| solid.shape.has_volume()) {
-            surfaces.entry(solid.part).or_default().append(&solid.shape.mesh());
-        }
-        let primitives = surfaces.iter().map(|(part, mesh)| file.surface(mesh, *part)).collect();
-        let mesh = file.mesh(&body.name, primitives);
+        let mesh = file.solids(&body.name, &body.solids);
         let node = file.root.push(Node {
             name: Some(body.name.clone()),
             mesh,
@@ -43,14 +37,8 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
         bodies.push(node);
         nodes.push(node);
     }
-    let design = &subject.evaluation.design;
-    let scene = manipulator(&subject.model, design, &subject.pose).map_err(|error| error.to_string())?;
-    for (name, part) in [("base", Part::Base), ("rails", Part::Rail)] {
-        let lines = scene.lines.iter().filter(|line| line.part == part);
-        let primitives: Vec<_> = lines.map(|line| file.line(&line.points, part)).collect();
-        if let Some(mesh) = file.mesh(name, primitives) {
-            nodes.push(file.node(name, mesh));
-        }
+    if let Some(mesh) = file.solids("base", &subject.base) {
+        nodes.push(file.node("base", mesh));
     }
     if let Some(cylinder) = subject.cylinder {
         let around = (0..=CIRCLE).map(|k| unit(2.0 * std::f64::consts::PI * k as f64 / CIRCLE as f64));
@@ -63,6 +51,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
         }
     }
     if let Some(tour) = &subject.tour {
+        let design = &subject.evaluation.design;
         let frames: Vec<Vec<Frame>> = tour
             .poses
             .iter()
@@ -182,6 +171,16 @@ impl File {
     fn points(&mut self, points: &[DVec3]) -> Index<Accessor> {
         let values: Vec<[f32; 3]> = points.iter().map(|point| point.as_vec3().to_array()).collect();
         self.floats(&values, Type::Vec3, Use::Vertices, true)
+    }
+
+    /// Solids as a mesh, a surface for each kind of part, so that each has its colour.
+    fn solids(&mut self, name: &str, solids: &[Solid]) -> Option<Index<json::Mesh>> {
+        let mut surfaces: BTreeMap<Part, Mesh> = BTreeMap::new();
+        for solid in solids.iter().filter(|solid| solid.shape.has_volume()) {
+            surfaces.entry(solid.part).or_default().append(&solid.shape.mesh());
+        }
+        let primitives = surfaces.iter().map(|(part, mesh)| self.surface(mesh, *part)).collect();
+        self.mesh(name, primitives)
     }
 
     fn surface(&mut self, mesh: &Mesh, part: Part) -> json::mesh::Primitive {

@@ -219,6 +219,7 @@ struct BarJson {
     mass_kg: f64,
 }
 
+/// Elements of the tensor about the centre of mass, in the body's axes: `xy` is `−∫xy dm`.
 #[derive(Debug, Serialize)]
 struct InertiaJson {
     xx: f64,

@@ -2,10 +2,9 @@
 //! servos whose gain is the study's actuator stiffness.
 
 use super::xml::Element;
-use super::{Format, Prepared, inertial};
+use super::{Format, Prepared, inertial, joint_axis, joint_name, rgba};
 use crate::mechanism::Actuator;
-use crate::palette;
-use crate::scene::{Body, Part, Solid, SolidShape};
+use crate::scene::{Body, Solid, SolidShape};
 
 pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
     let linkage = &subject.linkage;
@@ -15,6 +14,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
             .with("pos", "0 0 10")
             .with("dir", "0.3 0.4 -1"),
     );
+    world = world.children(subject.base.iter().map(geom));
     if let Some(cylinder) = subject.cylinder {
         // Shown, and nothing else.
         let [x, y] = cylinder.centre.to_array();
@@ -73,7 +73,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
             None => servo,
         }
     });
-    let home: Vec<f64> = driven().map(|(_, joint)| joint.value).collect();
+    let start: Vec<f64> = driven().map(|(_, joint)| joint.value).collect();
     let root = Element::new("mujoco")
         .with("model", subject.identifier())
         .child(
@@ -105,12 +105,8 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
                 .with("name", format!("platform_{axis}_value"))
                 .with("joint", format!("platform_{axis}"))
         })))
-        .child(Element::new("keyframe").child(Element::new("key").with("name", "home").with_numbers("ctrl", &home)));
+        .child(Element::new("keyframe").child(Element::new("key").with("name", "start").with_numbers("ctrl", &start)));
     root.document(&subject.preamble(Format::Mjcf))
-}
-
-fn joint_name(body: &Body) -> String {
-    format!("{}_joint", body.name)
 }
 
 fn element(subject: &Prepared, body: &Body) -> Element {
@@ -122,10 +118,11 @@ fn element(subject: &Prepared, body: &Body) -> Element {
     match body.joint {
         Some(joint) => {
             let mut hinge = Element::new("joint").with("name", joint_name(body));
-            hinge = match joint.kind {
-                Actuator::Prismatic => hinge.with("type", "slide").with("axis", "1 0 0"),
-                Actuator::Revolute => hinge.with("type", "hinge").with("axis", "0 0 1"),
+            let kind = match joint.kind {
+                Actuator::Prismatic => "slide",
+                Actuator::Revolute => "hinge",
             };
+            hinge = hinge.with("type", kind).with("axis", joint_axis(joint.kind));
             hinge = hinge.with_numbers("ref", &[joint.value]);
             if let Some(limits) = joint.limits {
                 hinge = hinge.with_numbers("range", &limits);
@@ -154,8 +151,8 @@ fn element(subject: &Prepared, body: &Body) -> Element {
     element.push(
         Element::new("inertial")
             .with_numbers("pos", &[centre.x, centre.y, 0.0])
-            .with_numbers("mass", &[mass])
-            .with_numbers("fullinertia", &[xx, yy, zz, xy, 0.0, 0.0]),
+            .with("mass", mass.to_string())
+            .with("fullinertia", format!("{xx} {yy} {zz} {xy} 0 0")),
     );
     let solids = body.solids.iter().filter(|solid| solid.shape.has_volume());
     element.children(solids.map(geom)).child(
@@ -182,10 +179,4 @@ fn geom(solid: &Solid) -> Element {
             .with_numbers("euler", &[0.0, 0.0, angle]),
     };
     geom.with_numbers("rgba", &rgba(solid.part))
-}
-
-/// A part's colour, 0 to 1.
-pub(super) fn rgba(part: Part) -> [f64; 4] {
-    let [r, g, b] = palette::part(part).map(|value| (f64::from(value) / 255.0 * 1e3).round() / 1e3);
-    [r, g, b, 1.0]
 }

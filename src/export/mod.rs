@@ -9,7 +9,7 @@
 //! | [`Format::Dxf`] | the plan view in layers, in millimetres |
 //! | [`Format::Json`] | evaluation, bodies, joints, and a tour with its actuator values |
 //!
-//! Every format takes the bodies from [`crate::scene::linkage()`], so all agree.
+//! Every format but the plan view takes its bodies from [`crate::scene::linkage()`], so all agree.
 
 mod dxf;
 mod gltf;
@@ -20,9 +20,15 @@ mod table;
 mod urdf;
 mod xml;
 
+use glam::DVec2;
+
 use crate::evaluation::{Evaluation, Model, Unreachable};
-use crate::scene::{Linkage, RegularCylinder, Tour, linkage, regular_workspace, tour};
-use crate::spatial::Pose;
+use crate::mechanism::Actuator;
+use crate::palette;
+use crate::scene::{
+    Body, Linkage, Part, RegularCylinder, Scene, Solid, SolidShape, Tour, linkage, manipulator, regular_workspace, tour,
+};
+use crate::spatial::{LEGS, Pose};
 use crate::study::Study;
 
 pub use json::{DesignJson, EvaluationJson, PoseReportJson};
@@ -73,16 +79,36 @@ impl Format {
         }
     }
 
-    /// Extension of its files.
-    pub fn extension(self) -> &'static str {
+    /// A name for a file.
+    pub fn file(self) -> &'static str {
         match self {
-            Format::Gltf => "glb",
-            Format::Mjcf => "xml",
-            Format::Sdf | Format::Urdf | Format::Dxf | Format::Json => self.key(),
+            Format::Gltf => "design.glb",
+            Format::Mjcf => "design.xml",
+            Format::Sdf => "design.sdf",
+            Format::Urdf => "design.urdf",
+            Format::Dxf => "design.dxf",
+            Format::Json => "design.json",
         }
     }
 
-    /// Name for people.
+    /// Extension of its files.
+    pub fn extension(self) -> &'static str {
+        self.file().rsplit('.').next().unwrap_or_default()
+    }
+
+    /// Its name alone.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Gltf => "glTF",
+            Format::Mjcf => "MJCF",
+            Format::Sdf => "SDF",
+            Format::Urdf => "URDF",
+            Format::Dxf => "DXF",
+            Format::Json => "JSON",
+        }
+    }
+
+    /// Its name and what it is for.
     pub fn title(self) -> &'static str {
         match self {
             Format::Gltf => "glTF, for viewers and CAD",
@@ -94,14 +120,19 @@ impl Format {
         }
     }
 
-    /// What the format cannot hold of a design, in words; `None` where it holds all that the model knows of its motion.
+    /// What of a design's mechanics the format does not hold, in words; `None` where it holds all.
     pub fn lost(self) -> Option<&'static str> {
         match self {
-            Format::Mjcf | Format::Json | Format::Gltf | Format::Dxf => None,
-            Format::Sdf => Some("the actuators' stiffness; joint values count from the pose that is written"),
+            Format::Mjcf | Format::Json => None,
+            Format::Gltf => Some("joints, masses and actuators: it is a picture that moves"),
+            Format::Dxf => Some("joints, masses, actuators and heights: it is a plan"),
+            Format::Sdf => Some(
+                "the actuators' stiffness, and which joints are driven; Gazebo's default engine does not close loops, that of \
+                 Gazebo Classic does",
+            ),
             Format::Urdf => Some(
                 "the closed loops: URDF holds trees, so the platform hangs on leg 1 and legs 2 and 3 end free at C2 and C3; \
-                 the actuators' stiffness; joint values count from the pose that is written",
+                 the actuators' stiffness, and which joints are driven; its limits of effort and speed are placeholders",
             ),
         }
     }
@@ -147,6 +178,9 @@ struct Prepared<'a> {
     model: Model,
     pose: Pose,
     linkage: Linkage,
+    scene: Scene,
+    /// What stands still, as solids.
+    base: Vec<Solid>,
     cylinder: Option<RegularCylinder>,
     tour: Option<Tour>,
 }
@@ -167,11 +201,19 @@ impl Prepared<'_> {
     fn preamble(&self, format: Format) -> String {
         let mut words = format!(
             "{}\nWritten by Kinefront {}. Lengths in m, angles in rad, masses in kg; base frame, z out of the plane of motion.\n\
-             Bars are solid cylinders of density {} kg/m^3; sliders have no mass in the model and {MASSLESS} kg here.",
+             Bars are solid cylinders of density {} kg/m^3; bodies without mass in the model have {MASSLESS} kg here.",
             self.title(),
             env!("CARGO_PKG_VERSION"),
             self.model.material.density,
         );
+        let counted = self.model.platform_bars;
+        if counted as usize != LEGS {
+            words +=
+                &format!(" The study counts {counted} of the platform's three bars: each has that share of its mass.");
+        }
+        if matches!(format, Format::Sdf | Format::Urdf) {
+            words += "\nJoint values count from the pose that is written.";
+        }
         if let Some(lost) = format.lost() {
             words += "\nNot in this file: ";
             words += lost;
@@ -185,23 +227,61 @@ impl Prepared<'_> {
 const MASSLESS: f64 = 1e-3;
 
 /// Mass, centre and moments of inertia `[xx, yy, zz, xy]` of a body for a simulator.
-fn inertial(body: &crate::scene::Body) -> (f64, glam::DVec2, [f64; 4]) {
+fn inertial(body: &Body) -> (f64, DVec2, [f64; 4]) {
     let mass = body.mass();
     if mass > 0.0 {
         return (mass, body.centre_of_mass(), body.inertia());
     }
     // Of a ball with a radius of a centimetre.
     let moment = 0.4 * MASSLESS * 1e-4;
-    (MASSLESS, glam::DVec2::ZERO, [moment, moment, moment, 0.0])
+    (MASSLESS, DVec2::ZERO, [moment, moment, moment, 0.0])
 }
 
-/// A number as text: the shortest that reads back to the same bits. What turning frames leaves of a zero is a zero.
+/// A length, angle or direction as text: the shortest that reads back to the same bits. What turning frames leaves of a zero
+/// is a zero.
 fn text(value: f64) -> String {
     const NOTHING: f64 = 1e-14;
     if value.abs() < NOTHING {
         "0".to_owned()
     } else {
         value.to_string()
+    }
+}
+
+/// A part's colour, 0 to 1.
+fn rgba(part: Part) -> [f64; 4] {
+    let [r, g, b] = palette::part(part).map(|value| (f64::from(value) / 255.0 * 1e3).round() / 1e3);
+    [r, g, b, 1.0]
+}
+
+/// Name of the joint by which a body hangs on its parent.
+fn joint_name(body: &Body) -> String {
+    format!("{}_joint", body.name)
+}
+
+/// Axis of a joint in its body's frame.
+fn joint_axis(kind: Actuator) -> &'static str {
+    match kind {
+        Actuator::Prismatic => "1 0 0",
+        Actuator::Revolute => "0 0 1",
+    }
+}
+
+/// Where SDF and URDF put a shape that they centre, with cylinders along z: position and roll, pitch, yaw.
+fn place(shape: &SolidShape) -> [f64; 6] {
+    match *shape {
+        SolidShape::Block { centre, angle, .. } => [centre.x, centre.y, centre.z, 0.0, 0.0, angle],
+        SolidShape::Bar { from, to, .. } => {
+            let middle = 0.5 * (from + to);
+            let way = (to - from).truncate();
+            // Bars lie in the plane; pins stand upright.
+            let (pitch, yaw) = if way.length() > 0.0 {
+                (std::f64::consts::FRAC_PI_2, libm::atan2(way.y, way.x))
+            } else {
+                (0.0, 0.0)
+            };
+            [middle.x, middle.y, middle.z, 0.0, pitch, yaw]
+        }
     }
 }
 
@@ -219,6 +299,7 @@ pub fn export(subject: &Subject, format: Format) -> Result<Vec<u8>, ExportError>
     let design = &evaluation.design;
     let pose = pose.unwrap_or_else(|| model.home(evaluation));
     let linkage = linkage(&model, design, &pose)?;
+    let scene = manipulator(&model, design, &pose)?;
     let solid = design.leg_bar_radius > 0.0 && design.platform_bar_radius > 0.0;
     if !solid && matches!(format, Format::Mjcf | Format::Sdf | Format::Urdf) {
         return Err(ExportError::NoBar(format.key()));
@@ -231,6 +312,8 @@ pub fn export(subject: &Subject, format: Format) -> Result<Vec<u8>, ExportError>
         model,
         pose,
         linkage,
+        base: scene.base_bars(design.base_radius),
+        scene,
         cylinder,
         tour,
     };

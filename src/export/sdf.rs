@@ -1,7 +1,7 @@
 //! SDF: a link for every body, a joint for every joint, those that close the loops among them.
 
 use super::xml::{Element, numbers};
-use super::{Format, Prepared, inertial, text};
+use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, text};
 use crate::mechanism::Actuator;
 use crate::scene::{Body, Frame, Joint, Solid, SolidShape};
 
@@ -11,10 +11,17 @@ const UNLIMITED: f64 = 1e16;
 pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
     let linkage = &subject.linkage;
     let mut model = Element::new("model").with("name", subject.identifier()).child(
-        Element::new("link").with("name", "base").child(
+        Element::new("link")
+            .with("name", "base")
             // The ground that the legs stand on.
-            Element::new("inertial").leaf("mass", "1"),
-        ),
+            .child(Element::new("inertial").leaf("mass", "1"))
+            .children(
+                subject
+                    .base
+                    .iter()
+                    .enumerate()
+                    .map(|(index, solid)| visual(index, solid)),
+            ),
     );
     model.push(
         Element::new("joint")
@@ -32,13 +39,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
             let parent = body
                 .parent
                 .map_or("base", |parent| linkage.bodies[parent].name.as_str());
-            model.push(joint_element(
-                &format!("{}_joint", body.name),
-                parent,
-                &body.name,
-                joint,
-                None,
-            ));
+            model.push(joint_element(&joint_name(body), parent, &body.name, joint, None));
         }
     }
     let platform = &linkage.bodies[linkage.platform()];
@@ -55,7 +56,8 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
         model.push(joint_element(&name, parent, &platform.name, passive, Some([x, y])));
     }
     Element::new("sdf")
-        .with("version", "1.9")
+        // The newest that Gazebo Classic reads, which closes loops.
+        .with("version", "1.7")
         .child(model)
         .document(&subject.preamble(Format::Sdf))
 }
@@ -68,12 +70,12 @@ fn link(body: &Body) -> Element {
     let Frame { origin, angle } = body.frame;
     let (mass, centre, [xx, yy, zz, xy]) = inertial(body);
     let inertia = Element::new("inertia")
-        .leaf("ixx", text(xx))
-        .leaf("ixy", text(xy))
+        .leaf("ixx", xx.to_string())
+        .leaf("ixy", xy.to_string())
         .leaf("ixz", "0")
-        .leaf("iyy", text(yy))
+        .leaf("iyy", yy.to_string())
         .leaf("iyz", "0")
-        .leaf("izz", text(zz));
+        .leaf("izz", zz.to_string());
     let solids = body.solids.iter().filter(|solid| solid.shape.has_volume());
     Element::new("link")
         .with("name", body.name.clone())
@@ -81,33 +83,23 @@ fn link(body: &Body) -> Element {
         .child(
             Element::new("inertial")
                 .leaf("pose", pose(centre.x, centre.y, 0.0))
-                .leaf("mass", text(mass))
+                .leaf("mass", mass.to_string())
                 .child(inertia),
         )
         .children(solids.enumerate().map(|(index, solid)| visual(index, solid)))
 }
 
 fn visual(index: usize, solid: &Solid) -> Element {
-    let (place, shape) = match solid.shape {
-        SolidShape::Bar { from, to, radius } => {
-            let shape = Element::new("cylinder")
-                .leaf("radius", text(radius))
-                .leaf("length", text(from.distance(to)));
-            (super::urdf::bar_pose(from, to), shape)
-        }
-        SolidShape::Block {
-            centre,
-            half_size,
-            angle,
-        } => {
-            let shape = Element::new("box").leaf("size", numbers(&(half_size * 2.0).to_array()));
-            ([centre.x, centre.y, centre.z, 0.0, 0.0, angle], shape)
-        }
+    let shape = match solid.shape {
+        SolidShape::Bar { from, to, radius } => Element::new("cylinder")
+            .leaf("radius", text(radius))
+            .leaf("length", text(from.distance(to))),
+        SolidShape::Block { half_size, .. } => Element::new("box").leaf("size", numbers(&(half_size * 2.0).to_array())),
     };
-    let color = numbers(&super::mjcf::rgba(solid.part));
+    let color = numbers(&rgba(solid.part));
     Element::new("visual")
         .with("name", format!("part{index}"))
-        .leaf("pose", numbers(&place))
+        .leaf("pose", numbers(&place(&solid.shape)))
         .child(Element::new("geometry").child(shape))
         .child(
             Element::new("material")
@@ -118,9 +110,9 @@ fn visual(index: usize, solid: &Solid) -> Element {
 
 /// A joint in the child's frame, or at a point of it.
 fn joint_element(name: &str, parent: &str, child: &str, joint: Joint, at: Option<[f64; 2]>) -> Element {
-    let (kind, axis) = match joint.kind {
-        Actuator::Prismatic => ("prismatic", "1 0 0"),
-        Actuator::Revolute => ("revolute", "0 0 1"),
+    let kind = match joint.kind {
+        Actuator::Prismatic => "prismatic",
+        Actuator::Revolute => "revolute",
     };
     let [lower, upper] = joint.limits.map_or([-UNLIMITED, UNLIMITED], |limits| {
         limits.map(|limit| limit - joint.value)
@@ -130,7 +122,7 @@ fn joint_element(name: &str, parent: &str, child: &str, joint: Joint, at: Option
         element = element.leaf("pose", pose(x, y, 0.0));
     }
     element.leaf("parent", parent).leaf("child", child).child(
-        Element::new("axis").leaf("xyz", axis).child(
+        Element::new("axis").leaf("xyz", joint_axis(joint.kind)).child(
             Element::new("limit")
                 .leaf("lower", text(lower))
                 .leaf("upper", text(upper)),

@@ -32,7 +32,7 @@ impl Column {
         }
         match name {
             "id" | "generation" => read(name, texts).map(Self::Int),
-            "feasible" | "verified" | "starred" => read(name, texts).map(Self::Truth),
+            "feasible" | "verified" | "starred" | "on_joint_front" => read(name, texts).map(Self::Truth),
             "architecture" | "working_mode" | "active" | "mark" | "note" => read(name, texts).map(Self::Text),
             _ => read(name, texts)
                 .map(Self::Number)
@@ -57,6 +57,9 @@ impl Column {
 pub fn front_to_parquet(table: &[u8]) -> Result<Vec<u8>, String> {
     let mut reader = csv::Reader::from_reader(table);
     let header = reader.headers().map_err(|error| error.to_string())?.clone();
+    if header.is_empty() {
+        return Err("it has no columns".to_owned());
+    }
     let records: Vec<csv::StringRecord> = reader
         .records()
         .collect::<Result<_, _>>()

@@ -1,9 +1,9 @@
 //! URDF: the tree that is left when the loops are cut at `C_2` and `C_3`.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use super::xml::{Element, numbers};
-use super::{Format, Prepared, inertial, text};
+use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, text};
 use crate::mechanism::Actuator;
 use crate::scene::{Body, Solid, SolidShape};
 
@@ -13,9 +13,11 @@ const SPEED: f64 = 10.0;
 
 pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
     let linkage = &subject.linkage;
-    let mut robot = Element::new("robot")
-        .with("name", subject.identifier())
-        .child(Element::new("link").with("name", "base"));
+    let mut robot = Element::new("robot").with("name", subject.identifier()).child(
+        Element::new("link")
+            .with("name", "base")
+            .children(subject.base.iter().map(visual)),
+    );
     for body in &linkage.bodies {
         // The platform's link has its origin where it hangs: in C_1.
         let shift = match body.joint {
@@ -30,16 +32,10 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
             .parent
             .map_or("base", |parent| linkage.bodies[parent].name.as_str());
         let frame = linkage.local_frame(body);
-        let (kind, axis) = match joint.kind {
-            Actuator::Prismatic => ("prismatic", "1 0 0"),
-            Actuator::Revolute => (
-                if joint.limits.is_some() {
-                    "revolute"
-                } else {
-                    "continuous"
-                },
-                "0 0 1",
-            ),
+        let kind = match joint.kind {
+            Actuator::Prismatic => "prismatic",
+            Actuator::Revolute if joint.limits.is_some() => "revolute",
+            Actuator::Revolute => "continuous",
         };
         let mut limit = Element::new("limit");
         if let Some(limits) = joint.limits {
@@ -50,16 +46,9 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
             .with_numbers("effort", &[EFFORT])
             .with_numbers("velocity", &[SPEED]);
         robot.push(
-            hung(
-                &format!("{}_joint", body.name),
-                kind,
-                parent,
-                &body.name,
-                frame.origin,
-                frame.angle,
-            )
-            .child(Element::new("axis").with("xyz", axis))
-            .child(limit),
+            hung(&joint_name(body), kind, parent, &body.name, frame.origin, frame.angle)
+                .child(Element::new("axis").with("xyz", joint_axis(joint.kind)))
+                .child(limit),
         );
     }
     let platform = &linkage.bodies[linkage.platform()];
@@ -74,7 +63,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
             closure.on_leg,
             platform.frame.angle - leg.frame.angle,
         )
-        .child(Element::new("axis").with("xyz", "0 0 1")),
+        .child(Element::new("axis").with("xyz", joint_axis(Actuator::Revolute))),
     );
     // Frames of what was cut, so that a program can close it again: C_i on the leg and on the platform, and P.
     let mut frames = vec![("P".to_owned(), platform.name.clone(), -closure.on_platform)];
@@ -124,7 +113,7 @@ fn link(body: &Body, shift: DVec2) -> Element {
     ]
     .into_iter()
     .fold(Element::new("inertia"), |element, (key, value)| {
-        element.with(key, text(value))
+        element.with(key, value.to_string())
     });
     let solids = body.solids.iter().filter(|solid| solid.shape.has_volume());
     Element::new("link")
@@ -132,47 +121,26 @@ fn link(body: &Body, shift: DVec2) -> Element {
         .child(
             Element::new("inertial")
                 .child(origin([centre.x - shift.x, centre.y - shift.y, 0.0, 0.0, 0.0, 0.0]))
-                .child(Element::new("mass").with("value", text(mass)))
+                .child(Element::new("mass").with("value", mass.to_string()))
                 .child(inertia),
         )
         .children(solids.map(|solid| visual(&solid.seen_from(shift, 0.0))))
 }
 
 fn visual(solid: &Solid) -> Element {
-    let (place, shape) = match solid.shape {
-        SolidShape::Bar { from, to, radius } => {
-            let shape = Element::new("cylinder")
-                .with("radius", text(radius))
-                .with("length", text(from.distance(to)));
-            (bar_pose(from, to), shape)
-        }
-        SolidShape::Block {
-            centre,
-            half_size,
-            angle,
-        } => {
-            let shape = Element::new("box").with_numbers("size", &(half_size * 2.0).to_array());
-            ([centre.x, centre.y, centre.z, 0.0, 0.0, angle], shape)
-        }
+    let shape = match solid.shape {
+        SolidShape::Bar { from, to, radius } => Element::new("cylinder")
+            .with("radius", text(radius))
+            .with("length", text(from.distance(to))),
+        SolidShape::Block { half_size, .. } => Element::new("box").with_numbers("size", &(half_size * 2.0).to_array()),
     };
-    let color = Element::new("color").with_numbers("rgba", &super::mjcf::rgba(solid.part));
+    let color = Element::new("color").with_numbers("rgba", &rgba(solid.part));
     Element::new("visual")
-        .child(origin(place))
+        .child(origin(place(&solid.shape)))
         .child(Element::new("geometry").child(shape))
         .child(
             Element::new("material")
                 .with("name", format!("{:?}", solid.part).to_lowercase())
                 .child(color),
         )
-}
-
-/// Position and roll, pitch, yaw that lay a cylinder along z between two points, which are in the plane or above each
-/// other.
-pub(super) fn bar_pose(from: DVec3, to: DVec3) -> [f64; 6] {
-    let middle = 0.5 * (from + to);
-    let way = (to - from).truncate();
-    let flat = way.length() > 0.0;
-    let pitch = if flat { std::f64::consts::FRAC_PI_2 } else { 0.0 };
-    let yaw = if flat { libm::atan2(way.y, way.x) } else { 0.0 };
-    [middle.x, middle.y, middle.z, 0.0, pitch, yaw]
 }

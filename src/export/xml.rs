@@ -95,8 +95,8 @@ impl Element {
 }
 
 fn comment(words: &str) -> Event<'static> {
-    // Two hyphens would end it.
-    Event::Comment(BytesText::from_escaped(format!(" {} ", words.replace("--", "–"))))
+    // Two hyphens would end it; the minus sign is read as well.
+    Event::Comment(BytesText::from_escaped(format!(" {} ", words.replace("--", "−−"))))
 }
 
 /// Numbers with spaces between them.

@@ -1,4 +1,4 @@
-//! What the paper leaves open or says twice, and how fronts and the paper's designs move when it is read otherwise.
+//! What a study assumes, and how fronts and reference designs move when an assumption is read otherwise.
 
 use super::fronts::Front;
 use super::source::Source;
@@ -19,11 +19,14 @@ pub struct Reading {
     change: fn(&mut Study),
 }
 
-/// The readings tried. The last changes nothing but the seed: what differs there is chance.
-pub const READINGS: [Reading; 11] = [
+/// What the last readings change: nothing but chance.
+const SEED: &str = "nothing but the search's seed";
+
+/// The readings tried. The last change nothing but the seed: what differs there is chance.
+pub const READINGS: [Reading; 13] = [
     Reading {
         name: "K_act / 10",
-        meaning: "actuators ten times softer; the paper gives no stiffness",
+        meaning: "actuators ten times softer",
         moves_designs: true,
         change: |study| scale_actuators(study, 0.1),
     },
@@ -47,15 +50,15 @@ pub const READINGS: [Reading; 11] = [
     },
     Reading {
         name: "isotropic length",
-        meaning: "the Jacobian made homogeneous by the isotropic length instead of r",
+        meaning: "the Jacobian made homogeneous by the isotropic length",
         moves_designs: true,
         change: |study| study.model.characteristic_length = LengthChoice::Isotropic,
     },
     Reading {
         name: "r ≥ 0.5 m",
-        meaning: "the bounds as the paper prints them, which leave out its own design I",
+        meaning: "a larger least platform, as the 2010 paper prints it, which leaves out its own design I",
         moves_designs: false,
-        change: |study| study.bounds.r_m[0] = 0.5,
+        change: |study| study.bounds.r_m[0] = study.bounds.r_m[0].max(0.5),
     },
     Reading {
         name: "telescopic bar L_b",
@@ -65,38 +68,55 @@ pub const READINGS: [Reading; 11] = [
     },
     Reading {
         name: "φ_c = 0",
-        meaning: "the home orientation fixed with the platform's triangle parallel to the base's, instead of the best",
+        meaning: "the home orientation fixed with the platform's triangle parallel to the base's",
         moves_designs: true,
         change: |study| study.workspace.home_phi_deg = Some(0.0),
     },
     Reading {
         name: "τ_z = 100 N·m",
-        meaning: "the torque of the paper's text instead of that of its inequality",
+        meaning: "another torque to withstand: the 2010 paper has 100 N·m in its text and 10 N·m in its inequality",
         moves_designs: true,
-        change: |study| study.requirements.torque_z_nm = 100.0,
+        change: |study| {
+            // Where the threshold is set outright, no torque matters.
+            if study.requirements.k_phi_z_min_nm_per_rad.is_none() {
+                study.requirements.torque_z_nm = 100.0;
+            }
+        },
     },
     Reading {
         name: "one platform bar",
-        meaning: "the platform's mass as the paper's equation prints it, which its own table contradicts",
+        meaning: "the mass of one of the platform's bars counted, as the 2010 paper's equation has it",
         moves_designs: true,
         change: |study| study.model.platform_bars = 1,
     },
     Reading {
-        name: "G = 75 GPa",
-        meaning: "a softer shear modulus; the paper gives none",
+        name: "G − 7 %",
+        meaning: "a softer shear modulus",
         moves_designs: true,
-        change: |study| study.material.shear_modulus_pa = 75e9,
+        change: |study| study.material.shear_modulus_pa *= 0.93,
     },
     Reading {
-        name: "another seed",
-        meaning: "nothing but the search's seed: the yardstick for all others",
+        name: "seed + 1",
+        meaning: SEED,
         moves_designs: false,
         change: |study| study.optimizer.seed += 1,
+    },
+    Reading {
+        name: "seed + 2",
+        meaning: SEED,
+        moves_designs: false,
+        change: |study| study.optimizer.seed += 2,
+    },
+    Reading {
+        name: "seed + 3",
+        meaning: SEED,
+        moves_designs: false,
+        change: |study| study.optimizer.seed += 3,
     },
 ];
 
 /// Name of the study as it is.
-const AS_STATED: &str = "as stated";
+const AS_STATED: &str = "the study as it is";
 
 fn scale_actuators(study: &mut Study, factor: f64) {
     study.actuators.prismatic_stiffness_n_per_m *= factor;
@@ -125,6 +145,11 @@ impl Variation {
         self.reading.is_none_or(|reading| reading.moves_designs)
     }
 
+    /// Whether it shows nothing but chance.
+    pub fn is_chance(&self) -> bool {
+        self.reading.is_some_and(|reading| reading.meaning == SEED)
+    }
+
     /// The front of an architecture.
     pub fn of(&self, architecture: Architecture) -> Option<&Front> {
         let found = self.alone.iter().find(|(other, _)| *other == architecture);
@@ -143,6 +168,9 @@ pub(super) fn vary(
 ) -> Result<Vec<Variation>, ReportError> {
     let mut base = study.clone();
     base.optimizer.evaluations = evaluations;
+    // Every search shall have as many: no time, and no standstill, ends one sooner.
+    base.optimizer.time_limit_s = None;
+    base.optimizer.stagnation = None;
     let readings = std::iter::once(None).chain(READINGS.into_iter().map(Some));
     let mut variations = Vec::new();
     for reading in readings {

@@ -16,7 +16,7 @@ const MODELLED: [u8; 3] = [20, 20, 20];
 /// The paper's own algorithm.
 const RIVAL: [u8; 3] = [150, 150, 150];
 /// Readings, told apart on white.
-const READINGS: [[u8; 3]; 12] = [
+const READINGS: [[u8; 3]; 14] = [
     [0, 0, 0],
     [213, 94, 0],
     [0, 114, 178],
@@ -28,26 +28,32 @@ const READINGS: [[u8; 3]; 12] = [
     [154, 99, 36],
     [100, 143, 20],
     [70, 90, 110],
-    [180, 180, 180],
+    [190, 190, 190],
+    [190, 190, 190],
+    [190, 190, 190],
 ];
 
 /// Every figure, in the order of the page.
 pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
     let mut figures = Figures(Vec::new());
     for (name, words, logarithmic) in [
-        ("fronts", "Pareto fronts of the architectures.", false),
+        ("fronts", "Pareto fronts of the architectures", false),
         (
             "fronts-log",
-            "The same over the logarithm of the mass, where light designs are told apart.",
+            "The same over the logarithm of the mass, where light designs are told apart",
             true,
         ),
     ] {
-        figures.add(name.to_owned(), words.to_owned(), &together(report, logarithmic))?;
+        figures.add(name.to_owned(), words.to_owned(), together(report, logarithmic))?;
+    }
+    if report.fronts.alone.len() > 1 {
+        let words = "Pareto front of all architectures together, coloured by the architecture of each design";
+        figures.add("front-together".to_owned(), words.to_owned(), joint(report))?;
     }
     for (architecture, front) in &report.fronts.alone {
         let name = format!("front-{}", slug(architecture.name()));
-        let caption = format!("Pareto front of the {architecture}.");
-        figures.add(name, caption, &alone(report, *architecture, front))?;
+        let words = format!("Pareto front of the {architecture}");
+        figures.add(name, words, alone(report, *architecture, front))?;
     }
     for (architecture, trends) in &report.trends {
         let slug = slug(architecture.name());
@@ -65,20 +71,20 @@ pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
             ),
         ] {
             let shown: Vec<&Trend> = of(bars).collect();
-            let caption = format!("{words}; {architecture}.");
-            figures.add(format!("{kind}-{slug}"), caption, &along(&shown))?;
+            let words = format!("{words}; {architecture}");
+            figures.add(format!("{kind}-{slug}"), words, (along(&shown), 0))?;
         }
         let front = report.fronts.of(*architecture);
         if let Some(front) = front {
-            let caption =
-                format!("Constraints that stop the workspace from growing, along the front of the {architecture}.");
-            figures.add(format!("active-{slug}"), caption, &active(*architecture, front))?;
+            let words =
+                format!("Constraints that stop the workspace from growing, along the front of the {architecture}");
+            figures.add(format!("active-{slug}"), words, (active(*architecture, front), 0))?;
         }
     }
     for &(architecture, _) in report.fronts.alone.iter().filter(|_| !report.variations.is_empty()) {
-        let caption = format!("Fronts of the {architecture} where an assumption is read otherwise.");
+        let words = format!("Fronts of the {architecture} where an assumption is read otherwise");
         let name = format!("sensitivity-{}", slug(architecture.name()));
-        figures.add(name, caption, &sensitivity(report, architecture))?;
+        figures.add(name, words, sensitivity(report, architecture))?;
     }
     Ok(figures.0)
 }
@@ -86,11 +92,16 @@ pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
 struct Figures(Vec<Figure>);
 
 impl Figures {
-    fn add(&mut self, name: String, caption: String, chart: &Chart) -> Result<(), ReportError> {
+    /// Draws a chart; `beyond` designs are too heavy for it.
+    fn add(&mut self, name: String, words: String, (chart, beyond): (Chart, usize)) -> Result<(), ReportError> {
         let svg = chart.svg().map_err(|message| ReportError::Figure {
             name: name.clone(),
             message,
         })?;
+        let caption = match beyond {
+            0 => format!("{words}."),
+            _ => format!("{words}. {beyond} designs are heavier than the axis reaches."),
+        };
         self.0.push(Figure { name, caption, svg });
         Ok(())
     }
@@ -136,21 +147,38 @@ fn references(report: &Report, of: Option<Architecture>) -> (Vec<Series>, Vec<([
     (all, notes)
 }
 
-/// A chart of fronts; over the mass itself up to `most`, or over its logarithm.
-fn front_chart(series: Vec<Series>, notes: Vec<([f64; 2], String)>, logarithmic: bool, most: f64) -> Chart {
-    let values = |axis: usize| {
-        let points = series.iter().flat_map(|series| &series.points);
-        points.map(move |point| point[axis]).collect::<Vec<_>>().into_iter()
-    };
-    let x = if logarithmic {
-        Axis::decades(MASS, values(0))
-    } else {
-        // A last millimetre of workspace may cost tons.
-        Axis::from_zero(MASS, values(0).map(|mass| mass.min(most)))
-    };
+/// A chart of fronts over the logarithm of the mass.
+fn decades(series: Vec<Series>, notes: Vec<([f64; 2], String)>) -> (Chart, usize) {
+    let x = Axis::decades(MASS, values(&series, 0));
+    (front_chart(x, series, notes, true), 0)
+}
+
+/// A chart of fronts over the mass, up to that which the hypervolume is measured from where most designs are lighter: a last
+/// millimetre of workspace may cost tons. With the number of the first `own` series' designs that are heavier.
+fn plain(report: &Report, own: usize, series: Vec<Series>, notes: Vec<([f64; 2], String)>) -> (Chart, usize) {
+    let most = report.study.hypervolume.reference_mass_kg;
+    let masses = || values(&series[..own], 0);
+    let heavier = masses().filter(|&mass| mass > most).count();
+    let is_cut = 4 * heavier < masses().count();
+    let x = Axis::from_zero(
+        MASS,
+        values(&series, 0).map(|mass| if is_cut { mass.min(most) } else { mass }),
+    );
+    let beyond = masses().filter(|&mass| mass > x.range[1]).count();
+    (front_chart(x, series, notes, false), beyond)
+}
+
+fn values(series: &[Series], axis: usize) -> impl Iterator<Item = f64> {
+    series
+        .iter()
+        .flat_map(|series| &series.points)
+        .map(move |point| point[axis])
+}
+
+fn front_chart(x: Axis, series: Vec<Series>, notes: Vec<([f64; 2], String)>, logarithmic: bool) -> Chart {
     Chart {
         x,
-        y: Axis::from_zero(RADIUS, values(1)),
+        y: Axis::from_zero(RADIUS, values(&series, 1)),
         names: None,
         series,
         notes,
@@ -159,27 +187,31 @@ fn front_chart(series: Vec<Series>, notes: Vec<([f64; 2], String)>, logarithmic:
     }
 }
 
-fn alone(report: &Report, architecture: Architecture, front: &Front) -> Chart {
+fn alone(report: &Report, architecture: Architecture, front: &Front) -> (Chart, usize) {
     let mut series = vec![Series {
-        name: format!("{architecture}, {}", report.study.optimizer.algorithm),
+        name: architecture.to_string(),
         color: color(architecture),
         mark: Mark::DottedLine,
         points: front.points(),
     }];
     if let Some(rival) = report.rivals.as_ref().and_then(|rivals| rivals.of(architecture)) {
-        series.push(Series {
-            name: "after MOGA-II, as many evaluations".to_owned(),
-            color: RIVAL,
-            mark: Mark::DottedLine,
-            points: rival.points(),
-        });
+        series.push(rival_series("after MOGA-II, alone", rival));
     }
     let (references, notes) = references(report, Some(architecture));
     series.extend(references);
-    front_chart(series, notes, false, report.study.hypervolume.reference_mass_kg)
+    plain(report, 1, series, notes)
 }
 
-fn together(report: &Report, logarithmic: bool) -> Chart {
+fn rival_series(name: &str, front: &Front) -> Series {
+    Series {
+        name: name.to_owned(),
+        color: RIVAL,
+        mark: Mark::DottedLine,
+        points: front.points(),
+    }
+}
+
+fn together(report: &Report, logarithmic: bool) -> (Chart, usize) {
     let mut series: Vec<Series> = report
         .fronts
         .alone
@@ -191,17 +223,43 @@ fn together(report: &Report, logarithmic: bool) -> Chart {
             points: front.points(),
         })
         .collect();
-    if let Some(rivals) = &report.rivals {
-        series.push(Series {
-            name: "after MOGA-II, all together".to_owned(),
-            color: RIVAL,
-            mark: Mark::DottedLine,
-            points: rivals.together.points(),
-        });
+    let own = series.len();
+    let (references, notes) = references(report, None);
+    series.extend(references);
+    if logarithmic {
+        decades(series, notes)
+    } else {
+        plain(report, own, series, notes)
+    }
+}
+
+/// The front of all architectures, and that of the paper's algorithm.
+fn joint(report: &Report) -> (Chart, usize) {
+    let front = &report.fronts.together;
+    let mut series: Vec<Series> = report
+        .fronts
+        .alone
+        .iter()
+        .map(|(architecture, _)| {
+            let of = front
+                .shown()
+                .filter(|member| member.design.architecture == *architecture);
+            Series {
+                name: architecture.to_string(),
+                color: color(*architecture),
+                mark: Mark::Dots,
+                points: of.map(|member| [member.mass, member.workspace_radius]).collect(),
+            }
+        })
+        .filter(|series| !series.points.is_empty())
+        .collect();
+    let own = series.len();
+    if let Some(rival) = report.rivals.as_ref().and_then(|rivals| rivals.joint.as_ref()) {
+        series.push(rival_series("after MOGA-II, all together", rival));
     }
     let (references, notes) = references(report, None);
     series.extend(references);
-    front_chart(series, notes, logarithmic, report.study.hypervolume.reference_mass_kg)
+    plain(report, own, series, notes)
 }
 
 /// Variables along `R_w` with the fits that the paper claims: all straight, but r_p.
@@ -282,15 +340,23 @@ fn active(architecture: Architecture, front: &Front) -> Chart {
 }
 
 /// Fronts of an architecture under every reading.
-fn sensitivity(report: &Report, architecture: Architecture) -> Chart {
+fn sensitivity(report: &Report, architecture: Architecture) -> (Chart, usize) {
+    let mut chance = false;
     let series = report
         .variations
         .iter()
         .zip(READINGS.iter().cycle())
         .filter_map(|(variation, &color)| {
+            // One entry of the legend for all that is chance.
+            let name = match (variation.is_chance(), chance) {
+                (true, true) => String::new(),
+                (true, false) => "other seeds".to_owned(),
+                (false, _) => variation.name().to_owned(),
+            };
+            chance |= variation.is_chance();
             Some(Series {
-                name: variation.name().to_owned(),
-                color,
+                name,
+                color: if variation.is_chance() { RIVAL } else { color },
                 mark: if variation.reading.is_none() {
                     Mark::Line
                 } else {
@@ -299,5 +365,5 @@ fn sensitivity(report: &Report, architecture: Architecture) -> Chart {
                 points: variation.of(architecture)?.points(),
             })
         });
-    front_chart(series.collect(), Vec::new(), true, f64::INFINITY)
+    decades(series.collect(), Vec::new())
 }

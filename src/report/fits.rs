@@ -15,6 +15,14 @@ pub struct Fit {
     pub r_squared: f64,
 }
 
+impl Trend {
+    /// Whether a parabola that opens upwards says clearly more than a line: it leaves at most half of what the line does.
+    pub fn is_quadratic(&self) -> Option<bool> {
+        let (line, parabola) = (self.linear.as_ref()?, self.quadratic.as_ref()?);
+        Some(parabola.coefficients[2] > 0.0 && 1.0 - parabola.r_squared <= 0.5 * (1.0 - line.r_squared))
+    }
+}
+
 impl Fit {
     /// The polynomial of a degree nearest to the points `(x, y)`; `None` where there are too few or too alike.
     pub fn new(points: &[[f64; 2]], degree: usize) -> Option<Self> {
@@ -71,6 +79,9 @@ pub struct Trend {
     pub rank_correlation: Option<f64>,
 }
 
+/// Distance from a bound, as a share of a variable's range, within which the variable stands at it.
+pub const AT_BOUND: f64 = 1e-3;
+
 /// Fewest designs that say how a variable goes.
 const FEWEST: usize = 4;
 
@@ -85,7 +96,7 @@ pub fn trends(front: &Front, bounds: &Bounds) -> Vec<Trend> {
                 .collect();
             // A variable that may not go on growing says nothing of how it would.
             let [lower, upper] = bounds.range(variable);
-            let near = 0.005 * (upper - lower);
+            let near = AT_BOUND * (upper - lower);
             let is_free = |point: &[f64; 2]| point[1] > lower + near && point[1] < upper - near;
             let free: Vec<[f64; 2]> = points.iter().copied().filter(is_free).collect();
             let fit = |degree: usize| Fit::new(&free, degree).filter(|_| free.len() >= FEWEST);

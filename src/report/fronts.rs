@@ -6,7 +6,7 @@ use super::{ReportError, Source};
 use crate::evaluation::{Evaluation, GridChoice, Model};
 use crate::mechanism::{Architecture, Design};
 use crate::optimize::{Archive, Evaluated, Outcome, knee, spread};
-use crate::study::DesignProblem;
+use crate::study::{DesignProblem, Study};
 
 /// A front: evaluations on the fine grid, non-dominated, by mass and so by `R_w`.
 #[derive(Debug, Clone, Default)]
@@ -135,6 +135,65 @@ fn candidates(sources: &[Source], architecture: Architecture) -> Vec<Design> {
         archive.insert(id, &Evaluated { x: Vec::new(), outcome });
     }
     archive.iter().map(|member| rows[member.id].design).collect()
+}
+
+/// Fronts of searches one by one, not pooled: what a single search finds.
+#[derive(Debug, Clone, Default)]
+pub struct Single {
+    /// Of the search over one architecture alone.
+    pub alone: Vec<(Architecture, Front)>,
+    /// Of the search over all architectures together.
+    pub joint: Option<Front>,
+}
+
+impl Single {
+    /// The fronts of the first search of each kind.
+    ///
+    /// # Errors
+    /// A grid that does not fit.
+    pub fn new(sources: &[Source], study: &Study) -> Result<Self, ReportError> {
+        let front = |architectures: &[Architecture]| -> Result<Option<Fronts>, ReportError> {
+            let Some(source) = sources
+                .iter()
+                .find(|source| source.study.architectures == architectures)
+            else {
+                return Ok(None);
+            };
+            let most = study.optimizer.front_designs;
+            match Fronts::new(std::slice::from_ref(source), &study.model(), most) {
+                Ok(fronts) => Ok(Some(fronts)),
+                Err(ReportError::NothingFeasible) => Ok(None),
+                Err(error) => Err(error),
+            }
+        };
+        let mut single = Self::default();
+        for &architecture in &study.architectures {
+            single
+                .alone
+                .extend(front(&[architecture])?.into_iter().flat_map(|fronts| fronts.alone));
+        }
+        if study.architectures.len() > 1 {
+            single.joint = front(&study.architectures)?.map(|fronts| fronts.together);
+        }
+        Ok(single)
+    }
+
+    /// The front of an architecture alone.
+    pub fn of(&self, architecture: Architecture) -> Option<&Front> {
+        let found = self.alone.iter().find(|(other, _)| *other == architecture);
+        found.map(|(_, front)| front)
+    }
+}
+
+impl Front {
+    /// Share of its members that are of an architecture.
+    pub fn share(&self, architecture: Architecture) -> f64 {
+        let of = self
+            .members
+            .iter()
+            .filter(|member| member.design.architecture == architecture);
+        of.count() as f64 / self.members.len().max(1) as f64
+    }
 }
 
 /// Over which radii which architecture is the lightest: stretches of `R_w` \[m\], in order.

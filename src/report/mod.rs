@@ -19,8 +19,8 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 pub use assumptions::{READINGS, Reading, Variation};
-pub use fits::{Fit, Trend, trends};
-pub use fronts::{Front, Fronts, lightest_where};
+pub use fits::{AT_BOUND, Fit, Trend, trends};
+pub use fronts::{Front, Fronts, Single, lightest_where};
 pub use reference::Reference;
 pub use source::Source;
 
@@ -132,8 +132,10 @@ pub struct Report {
     /// What it was made of, without the designs.
     sources: Vec<Made>,
     fronts: Fronts,
+    /// What the search over all architectures together found, where there was one.
+    joint: Option<Front>,
     /// Fronts of the algorithm that the paper used, after what is known of it.
-    rivals: Option<Fronts>,
+    rivals: Option<Single>,
     references: Vec<Reference>,
     trends: Vec<(Architecture, Vec<Trend>)>,
     variations: Vec<Variation>,
@@ -155,6 +157,8 @@ struct Made {
     evaluations: usize,
     feasible: usize,
     search_s: Option<f64>,
+    verification_s: Option<f64>,
+    version: String,
 }
 
 impl Made {
@@ -168,6 +172,8 @@ impl Made {
             evaluations: source.rows.len(),
             feasible: source.rows.iter().filter(|row| row.radius > 0.0).count(),
             search_s: source.times.map(|times| times.search_s),
+            verification_s: source.times.map(|times| times.verification_s),
+            version: source.version.clone(),
         }
     }
 }
@@ -224,9 +230,10 @@ impl Report {
         let most = study.optimizer.front_designs;
         tell("verifying the fronts");
         let fronts = Fronts::new(sources, &model, most)?;
+        let joint = Single::new(sources, &study)?.joint;
         let rivals_found = match rivals {
             [] => None,
-            _ => Some(Fronts::new(rivals, &model, most)?),
+            _ => Some(Single::new(rivals, &study)?),
         };
         let references = reference::all(&study, &fronts)?;
         let trends: Vec<_> = fronts
@@ -245,6 +252,7 @@ impl Report {
             options,
             sources: sources.iter().chain(rivals).map(Made::new).collect(),
             fronts,
+            joint,
             rivals: rivals_found,
             references,
             trends,
@@ -268,8 +276,9 @@ impl Report {
                 (name, format!("{architecture}, {mark}"), evaluation)
             })
         });
-        let referred = self.references.iter().map(|reference| {
-            let name = format!("reference-{}", slug(&reference.name));
+        let referred = self.references.iter().enumerate().map(|(index, reference)| {
+            // Two names may be alike as names of files.
+            let name = format!("reference-{}-{}", index + 1, slug(&reference.name));
             (name, reference.name.clone(), &reference.fine)
         });
         marked
@@ -309,6 +318,7 @@ impl Report {
             })
         };
         let (figures, pictures) = (folder.join("figures"), folder.join("pictures"));
+        clear(folder, &[&figures, &pictures])?;
         make(&figures)?;
         make(&pictures)?;
         for figure in &self.figures {
@@ -323,10 +333,12 @@ impl Report {
             write_whole(&pictures.join(format!("{}.png", picture.name)), &picture.png)?;
         }
         let members = self.fronts.alone.iter().flat_map(|(_, front)| front.shown());
-        let table = front_table(members.enumerate()).map_err(|message| ReportError::Figure {
-            name: "fronts.csv".to_owned(),
-            message,
-        })?;
+        let joint = |member: &Evaluation| self.fronts.together.members.contains(member);
+        let table =
+            front_table(members.map(|member| (member, joint(member)))).map_err(|message| ReportError::Figure {
+                name: "fronts.csv".to_owned(),
+                message,
+            })?;
         write_whole(&folder.join("fronts.csv"), &table)?;
         // Last: where it stands, the rest is there.
         write_whole(&folder.join("index.html"), page::html(self).as_bytes())?;
@@ -341,6 +353,30 @@ impl Report {
 pub fn free(folder: &Path, replace: bool) -> Result<(), ReportError> {
     if folder.join("index.html").exists() && !replace {
         return Err(ReportError::Occupied(folder.to_owned()));
+    }
+    Ok(())
+}
+
+/// Takes a report that is there away: the page first, so that none stands without its figures.
+fn clear(folder: &Path, kinds: &[&Path]) -> Result<(), FolderError> {
+    let failed = |path: &Path, source: std::io::Error| FolderError::Write {
+        path: path.to_owned(),
+        source,
+    };
+    let page = folder.join("index.html");
+    if page.exists() {
+        std::fs::remove_file(&page).map_err(|error| failed(&page, error))?;
+    }
+    for kind in kinds.iter().filter(|kind| kind.is_dir()) {
+        let entries = std::fs::read_dir(kind).map_err(|error| failed(kind, error))?;
+        // What a report does not write is not a report's to take away.
+        let ours = |path: &PathBuf| {
+            path.extension()
+                .is_some_and(|extension| extension == "svg" || extension == "png")
+        };
+        for path in entries.flatten().map(|entry| entry.path()).filter(ours) {
+            std::fs::remove_file(&path).map_err(|error| failed(&path, error))?;
+        }
     }
     Ok(())
 }
@@ -362,6 +398,7 @@ fn common(sources: &[Source]) -> Result<Study, ReportError> {
             ("bounds", study.bounds == theirs.bounds),
             ("grid.fine", study.grid.fine == theirs.grid.fine),
             ("working_mode", study.working_mode == theirs.working_mode),
+            ("references", study.references == theirs.references),
         ];
         if let Some((key, _)) = same.into_iter().find(|(_, same)| !same) {
             return Err(ReportError::Differing {
@@ -377,10 +414,17 @@ fn common(sources: &[Source]) -> Result<Study, ReportError> {
     Ok(study)
 }
 
-/// Whether a study refers to the paper's designs.
+/// Whether a study asks what the paper's does: then the report may speak of the paper.
 fn is_paper(study: &Study) -> bool {
-    let paper = BUILTIN[0].study();
-    !study.references.is_empty() && paper.is_ok_and(|paper| paper.references == study.references)
+    BUILTIN[0].study().is_ok_and(|paper| {
+        study.references == paper.references
+            && study.material == paper.material
+            && study.actuators == paper.actuators
+            && study.requirements == paper.requirements
+            && study.workspace == paper.workspace
+            && study.model == paper.model
+            && study.bounds == paper.bounds
+    })
 }
 
 /// A name for a file.

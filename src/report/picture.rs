@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::evaluation::{Evaluation, Model};
 use crate::palette;
-use crate::scene::{Part, SolidShape, manipulator, regular_workspace};
+use crate::scene::{SolidShape, manipulator, regular_workspace};
 use crate::spatial::unit;
 
 /// The ground, and what the workspace is tinted with.
@@ -203,25 +203,13 @@ impl Stage {
         let design = &evaluation.design;
         let home = model.home(evaluation);
         let scene = manipulator(model, design, &home).map_err(|error| error.to_string())?;
-        let solids = scene.solids.iter().map(|solid| (solid.part, solid.shape));
-        let bars = scene.lines.iter().flat_map(|line| {
-            let thickness = match line.part {
-                Part::Rail => 0.006,
-                Part::Base => 0.003,
-                _ => 0.0,
-            };
-            let bar = move |ends: &[DVec3]| SolidShape::Bar {
-                from: ends[0],
-                to: ends[1],
-                radius: thickness * design.base_radius,
-            };
-            line.points.windows(2).map(move |ends| (line.part, bar(ends)))
-        });
+        let base = scene.base_bars(design.base_radius);
         let (mut bodies, mut corners) = (Vec::new(), Vec::new());
-        for (part, shape) in solids.chain(bars).filter(|(_, shape)| shape.has_volume()) {
-            corners.extend(shape.mesh().positions);
-            let color = palette::part(part).map(|value| f64::from(value) / 255.0);
-            bodies.push(Body::new(&shape, DVec3::from_array(color)));
+        let solids = scene.solids.iter().chain(&base);
+        for solid in solids.filter(|solid| solid.shape.has_volume()) {
+            corners.extend(solid.shape.mesh().positions);
+            let color = palette::part(solid.part).map(|value| f64::from(value) / 255.0);
+            bodies.push(Body::new(&solid.shape, DVec3::from_array(color)));
         }
         let thickness = corners.iter().fold(0.0f64, |most, corner| most.max(corner.z.abs()));
         let heights = [-1.02 * thickness, -1.3 * thickness];

@@ -18,7 +18,7 @@ pub struct Reference {
     pub coarse: Evaluation,
     /// On the fine grid.
     pub fine: Evaluation,
-    /// Mass at the two ends of what rounds to the bar radii printed to a millimetre \[kg\].
+    /// Mass at the two ends of what rounds to its bar radii, were they printed to a millimetre \[kg\].
     pub mass_range: [f64; 2],
     /// The lightest design found with at least its `R_w` on the fine grid.
     pub beaten_by: Option<Evaluation>,
@@ -44,7 +44,9 @@ pub(super) fn all(study: &Study, fronts: &Fronts) -> Result<Vec<Reference>, Repo
                 stated_radius: reference.workspace_radius_m,
                 coarse: model.evaluate(&design, GridChoice::Reference)?,
                 mass_range: [-1.0, 1.0].map(|side| mass_of(&model, &design, side * 0.0005)),
-                beaten_by: beaten_by.filter(|found| found.mass < fine.mass).cloned(),
+                beaten_by: beaten_by
+                    .filter(|found| fine.is_feasible() && found.mass < fine.mass)
+                    .cloned(),
                 fine,
             })
         })

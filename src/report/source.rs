@@ -19,6 +19,8 @@ pub struct Source {
     pub rows: Vec<Row>,
     /// Where its time went, if it is known \[s\].
     pub times: Option<RunTimes>,
+    /// Version of the program that made it, if it is known.
+    pub version: String,
 }
 
 impl Source {
@@ -43,9 +45,11 @@ impl Source {
             .unwrap_or(folder)
             .file_name()
             .unwrap_or(folder.as_os_str());
+        let told = told(&folder.join("run.json"));
         Ok(Self {
             name: name.to_string_lossy().into_owned(),
-            times: times(&folder.join("run.json")),
+            times: told.as_ref().map(|told| told.times),
+            version: told.map(|told| told.kinefront_version).unwrap_or_default(),
             study,
             rows,
         })
@@ -85,17 +89,20 @@ impl Source {
                 study,
                 rows,
                 times,
+                version: env!("CARGO_PKG_VERSION").to_owned(),
             }),
         }
     }
 }
 
-/// A report does without times: a run that was stopped in haste has none.
-fn times(path: &Path) -> Option<RunTimes> {
-    #[derive(serde::Deserialize)]
-    struct Report {
-        times: RunTimes,
-    }
-    let bytes = std::fs::read(path).ok()?;
-    serde_json::from_slice::<Report>(&bytes).ok().map(|report| report.times)
+/// What a report takes of `run.json`.
+#[derive(serde::Deserialize)]
+struct Told {
+    times: RunTimes,
+    kinefront_version: String,
+}
+
+/// A report does without: a run that was killed has none.
+fn told(path: &Path) -> Option<Told> {
+    serde_json::from_slice(&std::fs::read(path).ok()?).ok()
 }

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
+use super::Solid;
 use super::manipulator::Sizes;
-use super::{Solid, SolidShape};
 use crate::evaluation::{Model, Unreachable};
 use crate::mechanism::{Actuator, Design, Leg, LegJoint, LegPart, Manipulator, with_leg};
 use crate::spatial::{LEGS, Pose, Rotation};
@@ -63,7 +63,7 @@ pub struct Body {
 impl Body {
     /// Mass \[kg\].
     pub fn mass(&self) -> f64 {
-        self.bars.iter().map(|bar| bar.mass).sum()
+        self.bars.iter().fold(0.0, |sum, bar| sum + bar.mass)
     }
 
     /// Centre of mass in the body's frame \[m\]; its origin where it has no mass.
@@ -73,7 +73,8 @@ impl Body {
         if mass > 0.0 { weighted / mass } else { DVec2::ZERO }
     }
 
-    /// Moments of inertia `[xx, yy, zz, xy]` about the centre of mass in the body's axes \[kg·m²\]: solid cylinders.
+    /// Elements `xx, yy, zz, xy` of the tensor of inertia about the centre of mass in the body's axes \[kg·m²\], of solid
+    /// cylinders; `xy` is `−∫xy dm`.
     pub fn inertia(&self) -> [f64; 4] {
         let centre = self.centre_of_mass();
         let mut inertia = [0.0; 4];
@@ -232,15 +233,5 @@ fn mass_bar(model: &Model, frame: &Frame, [from, to]: [DVec2; 2], radius: f64, s
         to: back.apply(to - frame.origin),
         radius,
         mass: share * model.bar_mass(radius, from.distance(to)),
-    }
-}
-
-impl SolidShape {
-    /// Whether the shape has a volume: a bar of radius 0 has none.
-    pub fn has_volume(&self) -> bool {
-        match *self {
-            SolidShape::Bar { radius, from, to } => radius > 0.0 && from != to,
-            SolidShape::Block { half_size, .. } => half_size.min_element() > 0.0,
-        }
     }
 }

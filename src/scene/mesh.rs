@@ -40,6 +40,14 @@ impl Mesh {
 }
 
 impl SolidShape {
+    /// Whether the shape has a volume: a bar of radius 0 has none.
+    pub fn has_volume(&self) -> bool {
+        match *self {
+            SolidShape::Bar { radius, from, to } => radius > 0.0 && from != to,
+            SolidShape::Block { half_size, .. } => half_size.min_element() > 0.0,
+        }
+    }
+
     /// Its surface; a bar has 32 sides.
     pub fn mesh(&self) -> Mesh {
         match *self {

@@ -103,4 +103,25 @@ impl Scene {
     pub fn solids_of(&self, part: Part) -> impl Iterator<Item = &Solid> {
         self.solids.iter().filter(move |solid| solid.part == part)
     }
+
+    /// Base triangle and rails as thin bars on a manipulator of base radius `R` \[m\], for what shows no lines.
+    pub fn base_bars(&self, base_radius: f64) -> Vec<Solid> {
+        let bars = self.lines.iter().flat_map(|line| {
+            let thickness = match line.part {
+                Part::Rail => 0.006,
+                Part::Base => 0.003,
+                _ => 0.0,
+            };
+            line.points.windows(2).map(move |ends| Solid {
+                part: line.part,
+                leg: None,
+                shape: SolidShape::Bar {
+                    from: ends[0],
+                    to: ends[1],
+                    radius: thickness * base_radius,
+                },
+            })
+        });
+        bars.filter(|bar| bar.shape.has_volume()).collect()
+    }
 }

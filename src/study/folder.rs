@@ -255,16 +255,16 @@ fn row(id: usize, generation: usize, evaluation: &Evaluation) -> Vec<String> {
     row
 }
 
-/// A table of evaluated designs with their ids, with the columns of `designs.csv`.
+/// A table of designs of several fronts, numbered, with the columns of `designs.csv` and whether each is on the joint front.
 ///
 /// # Errors
 /// What went wrong, in words.
-pub fn front_table<'a>(members: impl Iterator<Item = (usize, &'a Evaluation)>) -> Result<Vec<u8>, String> {
+pub fn front_table<'a>(members: impl Iterator<Item = (&'a Evaluation, bool)>) -> Result<Vec<u8>, String> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let mut write = |record: Vec<String>| table.write_record(record).map_err(|error| error.to_string());
-    write(header().collect())?;
-    for (id, evaluation) in members {
-        write(row(id, 0, evaluation))?;
+    write(header().chain(["on_joint_front".to_owned()]).collect())?;
+    for (id, (evaluation, joint)) in members.enumerate() {
+        write(row(id, 0, evaluation).into_iter().chain([joint.to_string()]).collect())?;
     }
     table.into_inner().map_err(|error| error.to_string())
 }

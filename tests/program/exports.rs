@@ -85,7 +85,7 @@ fn gltf_passes_the_validator() {
             "{file}"
         );
         assert_eq!(file["info"]["animationCount"], 1);
-        // Surfaces of three legs and a platform, and lines of base and workspace.
+        // Three legs, a platform and the base.
         assert!(file["info"]["totalTriangleCount"].as_u64().expect("a count") > 1000);
     }
 }
@@ -127,8 +127,10 @@ fn plan_view_and_front_are_read_back() {
     for key in ["from_tour_m", "gap_m"] {
         assert!(animation[key].as_f64().expect("m") < 2e-6, "{animation}");
     }
-    assert_eq!(found["errors"], 0);
-    assert_eq!(found["millimetres"], true);
+    assert_eq!(found["faults"], 0);
+    assert_eq!(found["release"], "R12");
+    let notes = found["notes"].as_array().expect("notes");
+    assert!(notes.iter().any(|note| note == "lengths in mm"), "{notes:?}");
     // L_b and r_j of design II, three times, and its three sliders.
     let links: Vec<&Value> = found["legs_mm"].as_array().expect("bars").iter().collect();
     let near = |value: &Value, wanted: f64| (value.as_f64().expect("a number") - wanted).abs() < 1e-9;
@@ -151,6 +153,28 @@ fn plan_view_and_front_are_read_back() {
         ],
         ["int64", "string", "double", "bool"]
     );
+}
+
+/// Thin bars of a small mechanism, and a working mode with two minuses in a row, which would end a comment of XML.
+#[test]
+fn small_mechanisms_and_other_working_modes_are_exported() {
+    let folder = folder();
+    let small = "3-RRR R=0.02 r=0.006 Lb=0.016 rj=0.00005 rp=0.00005 mode=---";
+    let text = std::fs::read_to_string(export(small, folder.path(), "small.xml")).expect("a model");
+    let title = text
+        .split("<!-- ")
+        .nth(1)
+        .and_then(|rest| rest.lines().next())
+        .expect("a title");
+    let same = kinefront::mechanism::Design::parse(title, kinefront::mechanism::WorkingMode::ALL_PLUS);
+    assert_eq!(same, small.parse());
+    for inertia in text.split("fullinertia=\"").skip(1) {
+        let moments: Vec<f64> = inertia[..inertia.find('"').expect("an end")]
+            .split(' ')
+            .map(|number| number.parse().expect("a number"))
+            .collect();
+        assert!(moments[..3].iter().all(|moment| *moment > 0.0), "{moments:?}");
+    }
 }
 
 /// JSON says what `evaluate` and `pose` say, and where every body is.
@@ -216,7 +240,18 @@ fn exports_say_what_is_wrong() {
         "expected one of gltf, mjcf, sdf, urdf, dxf, json, csv, parquet",
     );
     fails(&["--design", DESIGN, "--format", "parquet"], "name the run's folder");
+    fails(&["run/front.csv#1", "--format", "csv"], "name the run's folder");
+    fails(
+        &["run", "--format", "csv", "--pose", "x=0 y=0 phi_deg=0"],
+        "have no meaning",
+    );
     fails(&["nowhere", "--format", "csv"], "cannot read nowhere");
+    kinefront()
+        .args(["export", "--design", DESIGN, "--format", "gltf", "--out"])
+        .arg(folder.path().join("design.gltf"))
+        .assert()
+        .code(2)
+        .stderr(contains(".glb"));
     let nameless = folder.path().join("design");
     kinefront()
         .args(["export", "--design", DESIGN, "--out"])

@@ -10,7 +10,7 @@ import sys
 import mujoco
 import numpy as np
 
-# Along so many poses, each reached in a ramp and held until what swings has come to rest.
+# Along about so many poses, each reached in a ramp and held until what swings has come to rest.
 POSES, RAMP, HOLD = 24, 2000, 10000
 
 
@@ -23,9 +23,9 @@ def main():
     tour = design["tour"][:: len(design["tour"]) // POSES]
     places = [model.joint(f"platform_{axis}").qposadr[0] for axis in ("x", "y", "phi")]
     start = data.qpos[places].copy()
-    home = model.key("home").ctrl.copy()
+    start_values = model.key("start").ctrl.copy()
 
-    before = home
+    before = start_values
     farthest = turned = travelled = 0.0
     for pose in tour:
         target = np.array(pose["actuators"])

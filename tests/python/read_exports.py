@@ -56,10 +56,12 @@ def animation(glb_path, design_path):
 def main():
     drawing_path, parquet_path, csv_path, glb_path, design_path = sys.argv[1:]
     drawing = ezdxf.readfile(drawing_path)
+    audit = drawing.audit()
     space = drawing.modelspace()
     bars = []
-    for outline in space.query('LWPOLYLINE[layer=="LEGS"]'):
-        a, b, c, _ = [point[:2] for point in outline.get_points()]
+    for outline in space.query('POLYLINE[layer=="LEGS"]'):
+        assert outline.is_closed
+        a, b, c, _ = [(point.x, point.y) for point in outline.points()]
         bars.append([((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2) ** 0.5, ((c[0] - b[0]) ** 2 + (c[1] - b[1]) ** 2) ** 0.5])
     table = pyarrow.parquet.read_table(parquet_path)
     text = pyarrow.csv.read_csv(csv_path).select(table.column_names)
@@ -73,8 +75,9 @@ def main():
     print(
         json.dumps(
             {
-                "errors": len(drawing.audit().errors),
-                "millimetres": drawing.units == ezdxf.units.MM,
+                "faults": len(audit.errors) + len(audit.fixes),
+                "release": drawing.acad_release,
+                "notes": [text.dxf.text for text in space.query("TEXT") if len(text.dxf.text) > 2],
                 "layers": sorted(layer.dxf.name for layer in drawing.layers),
                 "legs_mm": bars,
                 "workspace_mm": [circle.dxf.radius for circle in space.query('CIRCLE[layer=="WORKSPACE"]')],

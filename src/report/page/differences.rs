@@ -2,11 +2,11 @@
 
 use maud::{Markup, html};
 
-use super::results::{levels, verdict};
+use super::results::{levels, unknown, verdict};
 use super::{cell, change, figures, optional, percent};
-use crate::mechanism::{VARIABLES, Variable};
+use crate::mechanism::{Architecture, VARIABLES, Variable};
 use crate::optimize::hypervolume;
-use crate::report::{Fronts, Reference, Report, Variation};
+use crate::report::{Front, READINGS, Reading, Reference, Report, Variation};
 use crate::text::{number, short};
 
 pub(super) fn references(report: &Report) -> Markup {
@@ -16,7 +16,7 @@ pub(super) fn references(report: &Report) -> Markup {
             td { (reference.name) } td { (design.architecture) }
             @for value in design.values() { (cell(value)) }
             (optional(reference.stated_mass)) (cell(reference.fine.mass))
-            td.number { (number(reference.mass_range[0])) " … " (number(reference.mass_range[1])) }
+            @if report.of_paper { td.number { (number(reference.mass_range[0])) " … " (number(reference.mass_range[1])) } }
             (optional(reference.stated_radius)) (cell(reference.coarse.workspace_radius)) (cell(reference.fine.workspace_radius))
             td { (active(reference)) }
         } }
@@ -28,7 +28,8 @@ pub(super) fn references(report: &Report) -> Markup {
                 tr {
                     th { "design" } th { "architecture" }
                     @for variable in VARIABLES { th.number { (variable.symbol()) } }
-                    th.number { "mass, stated" } th.number { "mass" } th.number { "within rounding of the bars" }
+                    th.number { "mass, stated" } th.number { "mass" }
+                    @if report.of_paper { th.number { "within rounding of the bars" } }
                     th.number { "R_w, stated" } th.number { "R_w, reference grid" } th.number { "R_w, fine grid" } th { "active" }
                 }
             }
@@ -51,7 +52,7 @@ pub(super) fn references(report: &Report) -> Markup {
                         (cell(found.mass)) (cell(found.workspace_radius))
                         td.number { (percent(found.mass / reference.fine.mass)) }
                     }
-                    None => { td colspan="9" { "nothing lighter" } }
+                    None => { td colspan="9" { @if reference.fine.is_feasible() { "nothing lighter" } @else { "not feasible here" } } }
                 }
             } } }
         } }
@@ -63,21 +64,26 @@ fn active(reference: &Reference) -> String {
     active.join(", ")
 }
 
-/// Hypervolume of the fronts together, from the study's reference \[kg·m\].
-fn volume(report: &Report, fronts: &Fronts) -> f64 {
-    let members = fronts.together.members.iter();
+/// Hypervolume of a front, from the study's reference \[kg·m\].
+fn volume(report: &Report, front: &Front) -> f64 {
+    let members = front.members.iter();
     let objectives = members.map(|member| [member.mass, -member.workspace_radius]);
     hypervolume(objectives, [report.study.hypervolume.reference_mass_kg, 0.0])
 }
 
-/// The reading under which a reference design comes nearest to the `R_w` that is stated, and what it has there \[m\].
+/// The reading under which a reference design comes nearest, by the ratio, to the `R_w` that is stated, and what it has
+/// there \[m\].
 fn nearest(report: &Report, place: usize, stated: f64) -> Option<(&Variation, f64)> {
+    let off = |radius: f64| libm::log(radius.max(f64::MIN_POSITIVE) / stated).abs();
     let radii = report
         .variations
         .iter()
         .filter_map(|variation| Some((variation, *variation.references.get(place)?)));
-    radii.min_by(|(_, a), (_, b)| (a - stated).abs().total_cmp(&(b - stated).abs()))
+    radii.min_by(|(_, a), (_, b)| off(*a).total_cmp(&off(*b)))
 }
+
+/// How far an `R_w` may be from the printed one without calling for an explanation.
+const NEAR: f64 = 0.05;
 
 pub(super) fn explained(report: &Report) -> Markup {
     let masses_agree = report.references.iter().all(|reference| {
@@ -99,13 +105,15 @@ pub(super) fn explained(report: &Report) -> Markup {
                         @let ratio = reference.fine.workspace_radius / stated;
                         "Printed " (number(stated)) " m, here " (number(reference.fine.workspace_radius)) " m (" (change(ratio)) "); "
                         (active(reference)) " stops it. "
-                        @if let Some((variation, radius)) = nearest(report, place, stated) {
-                            @if variation.reading.is_none() { "No other reading tried below comes nearer. " }
-                            @else {
-                                "Of all readings tried below “" (variation.name()) "” comes nearest, with " (number(radius)) " m ("
-                                (change(radius / stated)) "). "
+                        @if (ratio - 1.0).abs() > NEAR {
+                            @if let Some((variation, radius)) = nearest(report, place, stated) {
+                                @if variation.reading.is_none() { "No other reading tried below comes nearer. " }
+                                @else {
+                                    "Of the readings tried below, “" (variation.name()) "” comes nearest by the ratio, with "
+                                    (number(radius)) " m (" (change(radius / stated)) "). "
+                                }
                             }
-                            @if (radius / stated - 1.0).abs() > 0.05 { "So the cause is not known; no constant was bent for it. " }
+                            "Its cause is not known, and no constant was bent for it. "
                         }
                     }
                 }
@@ -118,14 +126,15 @@ pub(super) fn explained(report: &Report) -> Markup {
                         (number(reference.fine.mass)) " kg. "
                     }
                 }
-                @if let Some(rivals) = &report.rivals {
-                    "So does an algorithm after what is publicly known of MOGA-II with the paper's settings and as many evaluations (grey in the figures): "
+                @if let Some(rival) = report.rivals.as_ref().and_then(|rivals| rivals.joint.as_ref()) {
+                    "So does an algorithm after what is publicly known of MOGA-II, with the paper's settings, all architectures together and as many "
+                    "evaluations (grey in the figures): "
                     @for reference in &report.references {
-                        @if let Some(found) = rivals.together.lightest(reference.fine.workspace_radius) {
+                        @if let Some(found) = rival.lightest(reference.fine.workspace_radius) {
                             (number(found.mass)) " kg for " (reference.name) ", "
                         }
                     }
-                    "and " (percent(volume(report, rivals) / volume(report, &report.fronts))) " of the hypervolume found here. "
+                    "and " (percent(volume(report, rival) / volume(report, &report.fronts.together))) " of the hypervolume found here. "
                     "Under this model, then, the paper's search had not converged; or the paper's model asked for more than the paper says."
                 }
             }
@@ -138,82 +147,136 @@ pub(super) fn explained(report: &Report) -> Markup {
 }
 
 fn claims(report: &Report) -> Markup {
-    let best = report
-        .references
-        .first()
-        .map(|reference| reference.fine.design.architecture);
-    let together = &report.fronts.together;
-    let share = best.map(|best| {
-        let of = together
-            .members
-            .iter()
-            .filter(|member| member.design.architecture == best);
-        of.count() as f64 / together.members.len() as f64
-    });
     let trends = || {
         report
             .trends
             .iter()
             .flat_map(|(architecture, trends)| trends.iter().map(move |trend| (architecture, trend)))
     };
-    let word = |class: &'static str, words: String| html! { td { span class=(class) { (words) } } };
     html! { div.scroll { table {
         thead { tr { th { "the paper" } th { "here" } } }
         tbody {
-            @if let (Some(best), Some(share)) = (best, share) {
-                tr {
-                    td { "All Pareto-optimal designs of the three together are " (best) "." }
-                    @let class = if share == 1.0 { "holds" } else if share > 0.5 { "partly" } else { "fails" };
-                    (word(class, format!("{} of the front are", percent(share))))
+            (comparisons(report))
+            tr {
+                td { "The larger R_w, the larger every design variable." }
+                @let ranked: Vec<_> = trends().filter_map(|(architecture, trend)| Some((architecture, trend, trend.rank_correlation?))).collect();
+                @match ranked.iter().min_by(|a, b| a.2.total_cmp(&b.2)) {
+                    Some((architecture, trend, least)) => {
+                        @let class = if *least > 0.95 { "holds" } else if *least > 0.6 { "partly" } else { "fails" };
+                        (judged(class, format!(
+                            "rank correlation at least {least:.2} ({} of the {architecture}); {} of {} above 0.95, variables at a bound left out",
+                            trend.variable.symbol(), ranked.iter().filter(|(.., value)| *value > 0.95).count(), ranked.len(),
+                        )))
+                    }
+                    None => td { "too few designs to say" }
                 }
-                @for (architecture, front) in report.fronts.alone.iter().filter(|(architecture, _)| *architecture != best) {
-                    @let ratios: Vec<f64> = levels(together.largest()).into_iter().filter_map(|level| {
-                        Some(front.lightest(level)?.mass / report.fronts.of(best)?.lightest(level)?.mass)
-                    }).collect();
-                    @let low = ratios.iter().copied().fold(f64::INFINITY, f64::min);
-                    @let high = ratios.iter().copied().fold(0.0, f64::max);
-                    tr {
-                        td { "The " (best) " is better than the " (architecture) "." }
-                        @let class = if low > 1.0 { "holds" } else if high > 1.0 { "partly" } else { "fails" };
-                        (word(class, format!("the {architecture} weighs {low:.2} to {high:.2} times as much at the radii of the first table")))
+            }
+            tr {
+                td { "R, r, L_b and r_j are almost linear in R_w." }
+                td {
+                    "R² of straight lines: "
+                    @for (index, (architecture, trend)) in trends()
+                        .filter(|(_, trend)| trend.variable != Variable::PlatformBarRadius)
+                        .enumerate()
+                    {
+                        @if index > 0 { "; " }
+                        (trend.variable.symbol()) " of the " (architecture) " "
+                        @match &trend.linear {
+                            Some(fit) => {
+                                @let (word, class) = verdict(fit.r_squared);
+                                span class=(class) { (format!("{:.2}, {word}", fit.r_squared)) }
+                            }
+                            None => (unknown(trend))
+                        }
                     }
                 }
             }
             tr {
-                td { "The larger R_w, the larger every design variable." }
-                @let ranked: Vec<_> = trends().filter_map(|(architecture, trend)| Some((architecture, trend, trend.rank_correlation?))).collect();
-                @if let Some((architecture, trend, least)) = ranked.iter().min_by(|a, b| a.2.total_cmp(&b.2)) {
-                    @let class = if *least > 0.95 { "holds" } else if *least > 0.6 { "partly" } else { "fails" };
-                    (word(class, format!(
-                        "rank correlation at least {least:.2} ({} of the {architecture}); {} of {} above 0.95, variables at a bound left out",
-                        trend.variable.symbol(), ranked.iter().filter(|(.., value)| *value > 0.95).count(), ranked.len(),
-                    )))
-                }
-            }
-            @for (quadratic, words) in [(false, "R, r, L_b and r_j are almost linear in R_w."), (true, "r_p is rather quadratic in R_w.")] {
-                tr {
-                    td { (words) }
-                    td {
-                        @for (index, (architecture, trend)) in trends()
-                            .filter(|(_, trend)| (trend.variable == Variable::PlatformBarRadius) == quadratic)
-                            .filter(|(_, trend)| trend.linear.is_some() && trend.quadratic.is_some())
-                            .enumerate()
-                        {
-                            @if index > 0 { "; " }
-                            @let fit = if quadratic { &trend.quadratic } else { &trend.linear };
-                            @if let Some(fit) = fit {
-                                @let (_, class) = verdict(fit.r_squared);
-                                (trend.variable.symbol()) " of the " (architecture) " "
-                                span class=(class) { (format!("{:.2}", fit.r_squared)) }
-                                @if let (true, Some(line)) = (quadratic, &trend.linear) { (format!(" (a line {:.2})", line.r_squared)) }
+                td { "r_p is rather quadratic in R_w." }
+                td {
+                    "R² of parabola and line: "
+                    @for (index, (architecture, trend)) in trends()
+                        .filter(|(_, trend)| trend.variable == Variable::PlatformBarRadius)
+                        .enumerate()
+                    {
+                        @if index > 0 { "; " }
+                        (architecture) " "
+                        @match (&trend.quadratic, &trend.linear, trend.is_quadratic()) {
+                            (Some(parabola), Some(line), Some(holds)) => {
+                                @let (class, word) = if holds { ("holds", "holds") } else { ("fails", "a line does as well") };
+                                span class=(class) { (format!("{:.3} and {:.3}, {word}", parabola.r_squared, line.r_squared)) }
                             }
+                            _ => (unknown(trend))
                         }
-                        " (R²)"
                     }
                 }
             }
         }
     } } }
+}
+
+/// A cell with a verdict in words and colour.
+fn judged(class: &'static str, words: String) -> Markup {
+    let verdict = match class {
+        "holds" => "holds: ",
+        "partly" => "partly: ",
+        _ => "does not hold: ",
+    };
+    html! { td { span class=(class) { (verdict) } (words) } }
+}
+
+/// What the paper says of the architectures against each other.
+fn comparisons(report: &Report) -> Markup {
+    let fronts = &report.fronts;
+    let Some(best) = report
+        .references
+        .first()
+        .map(|reference| reference.fine.design.architecture)
+    else {
+        return html! {};
+    };
+    let class = |share: f64| {
+        if share == 1.0 {
+            "holds"
+        } else if share > 0.5 {
+            "partly"
+        } else {
+            "fails"
+        }
+    };
+    let others = fronts.alone.iter().filter(|(architecture, _)| *architecture != best);
+    html! {
+        tr {
+            td { "All Pareto-optimal designs of the three together are " (best) "." }
+            @if fronts.alone.len() < Architecture::ALL.len() {
+                td { "not compared: not all architectures were searched" }
+            } @else {
+                @let share = fronts.together.share(best);
+                @let rival = report.rivals.as_ref().and_then(|rivals| rivals.joint.as_ref());
+                (judged(class(share), format!(
+                    "{} of all that is non-dominated here are{}{}", percent(share),
+                    report.joint.as_ref().map(|joint| format!(", {} of the one search over all", percent(joint.share(best)))).unwrap_or_default(),
+                    rival.map(|rival| format!(", {} of that after MOGA-II", percent(rival.share(best)))).unwrap_or_default(),
+                )))
+            }
+        }
+        @for (architecture, front) in others {
+            @let ratios: Vec<f64> = levels(fronts.together.largest()).into_iter().filter_map(|level| {
+                Some(front.lightest(level)?.mass / fronts.of(best)?.lightest(level)?.mass)
+            }).collect();
+            @let low = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+            @let high = ratios.iter().copied().fold(0.0, f64::max);
+            tr {
+                td { "The " (best) " is better than the " (architecture) "." }
+                @if ratios.is_empty() {
+                    td { "not compared: there is no " (best) " here" }
+                } @else {
+                    @let class = if low > 1.0 { "holds" } else if high > 1.0 { "partly" } else { "fails" };
+                    (judged(class, format!("the {architecture} weighs {low:.2} to {high:.2} times as much at the radii of the first table")))
+                }
+            }
+        }
+    }
 }
 
 /// What is open in the paper, and what was chosen.
@@ -270,31 +333,20 @@ pub(super) fn sensitivity(report: &Report) -> Markup {
         return html! {};
     };
     let evaluations = report.options.sensitivity.unwrap_or_default();
+    let tried = |reading: &&Reading| others.iter().any(|other| other.name() == reading.name);
+    let left_out: Vec<&str> = READINGS
+        .iter()
+        .filter(|reading| !tried(reading))
+        .map(|reading| reading.name)
+        .collect();
     html! {
         p {
             "Every architecture searched anew, alone, with " (evaluations) " evaluations under each reading, and its front verified on the fine grid. "
-            "The reading “another seed” shows how much of a difference is chance."
+            "Other seeds show how much of a difference is chance: changes within their range are grey."
+            @if !left_out.is_empty() { " Not tried, since the study has it so, or rules it out: " (left_out.join(", ")) "." }
         }
         (figures(report, "sensitivity"))
-        @for (architecture, front) in &base.alone {
-            @let levels: Vec<f64> = levels(front.largest()).into_iter().skip(1).step_by(2).collect();
-            h3 { (architecture) }
-            div.scroll { table {
-                caption { "Mass of the lightest design with at least this R_w, and the largest R_w found, against the study as stated." }
-                thead { tr {
-                    th { "reading" } @for level in &levels { th.number { "R_w ≥ " (short(*level)) " m" } } th.number { "largest R_w" } th { "what it means" }
-                } }
-                tbody {
-                    tr {
-                        td { (base.name()) }
-                        @for level in &levels { td.number { (front.lightest(*level).map(|found| number(found.mass)).unwrap_or_default()) " kg" } }
-                        td.number { (number(front.largest())) " m" }
-                        td { "the study" }
-                    }
-                    @for variation in others { (varied(variation, *architecture, front, &levels)) }
-                }
-            } }
-        }
+        @for (architecture, front) in &base.alone { (varied(others, *architecture, front)) }
         @if !report.references.is_empty() {
             h3 { "Reference designs" }
             div.scroll { table {
@@ -302,7 +354,7 @@ pub(super) fn sensitivity(report: &Report) -> Markup {
                 thead { tr { th { "reading" } @for reference in &report.references { th.number { (reference.name) } } } }
                 tbody {
                     @if report.references.iter().any(|reference| reference.stated_radius.is_some()) {
-                        tr { td { "as printed" } @for reference in &report.references { (optional(reference.stated_radius)) } }
+                        tr { td { "what its source states" } @for reference in &report.references { (optional(reference.stated_radius)) } }
                     }
                     @for variation in report.variations.iter().filter(|variation| variation.moves_designs()) {
                         tr { td { (variation.name()) } @for radius in &variation.references { (cell(*radius)) } }
@@ -313,27 +365,72 @@ pub(super) fn sensitivity(report: &Report) -> Markup {
     }
 }
 
-fn varied(
-    variation: &Variation,
-    architecture: crate::mechanism::Architecture,
-    base: &crate::report::Front,
-    levels: &[f64],
-) -> Markup {
-    let front = variation.of(architecture);
-    html! { tr {
-        td { (variation.name()) }
-        @match front {
-            Some(front) => {
-                @for &level in levels {
-                    td.number { @match front.lightest(level).zip(base.lightest(level)) {
-                        Some((found, base)) => (change(found.mass / base.mass)),
-                        None => "not reached",
-                    } }
+/// How the front of an architecture moves.
+fn varied(variations: &[Variation], architecture: Architecture, base: &Front) -> Markup {
+    let levels: Vec<f64> = levels(base.largest()).into_iter().skip(1).step_by(2).collect();
+    // Ratios to the base: of the mass at each level, then of the largest radius.
+    let ratios = |variation: &Variation| -> Option<Vec<Option<f64>>> {
+        let front = variation.of(architecture)?;
+        let mass = |&level: &f64| Some(front.lightest(level)?.mass / base.lightest(level)?.mass);
+        let largest = Some(front.largest() / base.largest());
+        Some(levels.iter().map(mass).chain([largest]).collect())
+    };
+    let seeds: Vec<Vec<Option<f64>>> = variations
+        .iter()
+        .filter(|other| other.is_chance())
+        .filter_map(ratios)
+        .collect();
+    // What the base itself has is within the range of chance.
+    let chance: Vec<[f64; 2]> = (0..=levels.len())
+        .map(|column| {
+            let found = seeds.iter().filter_map(|ratios| ratios[column]);
+            found.fold([1.0, 1.0], |[low, high]: [f64; 2], ratio| {
+                [low.min(ratio), high.max(ratio)]
+            })
+        })
+        .collect();
+    html! {
+        h3 { (architecture) }
+        div.scroll { table {
+            caption { "Mass of the lightest design with at least this R_w, and the largest R_w found, against the study as it is." }
+            thead { tr {
+                th { "reading" }
+                @for level in &levels { th.number { "R_w ≥ " (short(*level)) " m" } }
+                th.number { "largest R_w" } th { "what it means" }
+            } }
+            tbody {
+                tr {
+                    td { "the study as it is" }
+                    @for level in &levels { td.number { (base.lightest(*level).map(|found| number(found.mass)).unwrap_or_default()) " kg" } }
+                    td.number { (number(base.largest())) " m" }
+                    td { }
                 }
-                td.number { (change(front.largest() / base.largest())) }
+                @if !seeds.is_empty() {
+                    tr.chance {
+                        td { (seeds.len()) " other seeds" }
+                        @for [low, high] in &chance { td.number { (change(*low)) " … " (change(*high)) } }
+                        td { "chance, the yardstick for all others" }
+                    }
+                }
+                @for variation in variations.iter().filter(|variation| !variation.is_chance()) {
+                    tr {
+                        td { (variation.name()) }
+                        @match ratios(variation) {
+                            Some(ratios) => @for (ratio, [low, high]) in ratios.iter().zip(&chance) {
+                                @match ratio {
+                                    Some(ratio) => {
+                                        @let class = if (*low..=*high).contains(ratio) { "number chance" } else { "number" };
+                                        td class=(class) { (change(*ratio)) }
+                                    }
+                                    None => td.number { "not reached" }
+                                }
+                            },
+                            None => td colspan=(levels.len() + 1) { "nothing feasible" }
+                        }
+                        td { (variation.reading.map(|reading| reading.meaning).unwrap_or_default()) }
+                    }
+                }
             }
-            None => { td colspan=(levels.len() + 1) { "nothing feasible" } }
-        }
-        td { (variation.reading.map(|reading| reading.meaning).unwrap_or_default()) }
-    } }
+        } }
+    }
 }

@@ -7,36 +7,33 @@ use crate::mechanism::{Architecture, VARIABLES};
 use crate::report::Report;
 
 /// Where a reader of the paper finds what.
-pub(super) fn guide() -> Markup {
-    let places: [(&str, &str, &str); 11] = [
+pub(super) fn guide(report: &Report) -> Markup {
+    let whole = report.rivals.is_some();
+    let mut places = vec![
         ("Fig. 1, the manipulators", "pictures", "Designs"),
         ("Fig. 2 to 4, flexible models of the legs", "made", "How this was made"),
         ("Fig. 5, a regular workspace", "pictures", "Designs (green)"),
-        ("Fig. 6, Pareto front", "figure-fronts", "Pareto fronts, all together"),
-        (
-            "Fig. 7, fronts of the three architectures",
-            "figure-fronts",
-            "Pareto fronts",
-        ),
-        (
-            "Fig. 8, CAD designs",
-            "picture-reference-id-i",
-            "Designs, ID-I to ID-III",
-        ),
+        ("Fig. 6, Pareto front", "fronts", "Pareto fronts, all together"),
+        ("Fig. 7, fronts of the three architectures", "fronts", "Pareto fronts"),
+        ("Fig. 8, CAD designs", "pictures", "Designs, ID-I to ID-III"),
         ("Fig. 9, R, r, L_b along R_w", "variables", "Design variables"),
         ("Fig. 10, r_j, r_p along R_w", "variables", "Design variables"),
         ("Tab. 1, bounds", "made", "How this was made"),
-        ("Tab. 2, the algorithm's parameters", "made", "How this was made"),
         ("Tab. 3, three Pareto-optimal designs", "designs", "Reference designs"),
     ];
+    if whole {
+        places.insert(9, ("Tab. 2, the algorithm's parameters", "made", "How this was made"));
+    }
     html! {
         p {
             "Damien Chablat, Stéphane Caro, Raza Ur-Rehman and Philippe Wenger: "
             em { "Comparison of Planar Parallel Manipulator Architectures based on a Multi-objective Design Optimization Approach" }
-            ", ASME IDETC/CIE 2010, DETC2010-28650. Its study was run again from nothing; here is each of its figures and tables, and "
+            ", ASME IDETC/CIE 2010, DETC2010-28650. "
+            @if whole { "Its study was run again from nothing; here is each of its figures and tables, and " }
+            @else { "This run asks what its study does; below is " }
             a href="#differences" { "where and why the numbers differ" } "."
         }
-        details {
+        details open {
             summary { "Where each figure and table of the paper is" }
             table { tbody { @for (paper, id, here) in places { tr { td { (paper) } td { a href={ "#" (id) } { (here) } } } } } }
         }
@@ -48,18 +45,21 @@ pub(super) fn made(report: &Report) -> Markup {
     html! {
         p {
             "Made by Kinefront " (env!("CARGO_PKG_VERSION")) " in " (report.taken.as_secs()) " s on "
-            (rayon::current_num_threads()) " threads. One seed gives one result, whatever the number of threads."
+            (rayon::current_num_threads()) " threads. "
+            @if study.optimizer.time_limit_s.is_some() { "Searches may have ended by time: their results depend on the machine." }
+            @else { "One seed gives one result, whatever the number of threads." }
+            " A search is repeated by " code { "kinefront optimize" } " on the study below with its algorithm, seed and architectures."
         }
         pre { code { (report.options.command) } }
         div.scroll { table {
             caption { "Searches." }
             thead { tr {
                 th { "search" } th { "architectures" } th { "algorithm" } th.number { "seed" }
-                th.number { "evaluations" } th.number { "feasible" } th.number { "time [s]" }
+                th.number { "evaluations" } th.number { "feasible" } th.number { "search [s]" } th.number { "verification [s]" } th { "version" }
             } }
             tbody { @for source in &report.sources { tr {
                 td { (source.name) } td { (source.architectures) } td { (source.algorithm) } td.number { (source.seed) }
-                td.number { (source.evaluations) } td.number { (source.feasible) } (optional(source.search_s))
+                td.number { (source.evaluations) } td.number { (source.feasible) } (optional(source.search_s)) (optional(source.verification_s)) td { (source.version) }
             } } }
         } }
         div.scroll { table {
@@ -79,7 +79,7 @@ pub(super) fn made(report: &Report) -> Markup {
             } } }
         } }
         details {
-            summary { "The study as run" }
+            summary { "The study" @if report.sources.len() > 1 { ", of the first search but for the architectures" } }
             pre { code { (toml::to_string(study).unwrap_or_default()) } }
         }
     }

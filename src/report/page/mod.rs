@@ -15,7 +15,7 @@ const STYLE: &str = include_str!("style.css");
 
 /// The page as text.
 pub(super) fn html(report: &Report) -> String {
-    let title = if report.of_paper {
+    let title = if report.of_paper && report.rivals.is_some() {
         "Planar parallel manipulators compared: the 2010 paper, reproduced".to_owned()
     } else {
         format!("Kinefront report: {}", report.study.name)
@@ -62,7 +62,7 @@ pub(super) fn html(report: &Report) -> String {
                     nav { @for (id, name, _) in &sections { a href={ "#" (id) } { (name) } } }
                 }
                 main {
-                    @if report.of_paper { (made::guide()) }
+                    @if report.of_paper { (made::guide(report)) }
                     @for (id, name, section) in &sections {
                         section id=(id) { h2 { (name) } (section) }
                     }

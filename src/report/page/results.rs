@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::{cell, figures, image, percent};
 use crate::evaluation::{Constraint, Evaluation};
 use crate::mechanism::{VARIABLES, Variable};
-use crate::report::{Fit, Front, Report, lightest_where};
+use crate::report::{AT_BOUND, Fit, Front, Report, Trend, lightest_where};
 use crate::text::{number, short};
 
 /// Workspace radii at which architectures are compared, as shares of the largest.
@@ -88,7 +88,9 @@ pub(super) fn fronts(report: &Report) -> Markup {
         p {
             "Every design drawn is non-dominated and verified on the fine grid ("
             (report.study.grid.fine.phi_step_deg) "° in φ, " (report.study.grid.fine.directions)
-            " directions). Of each front at most " (report.study.optimizer.front_designs)
+            " directions)"
+            @if report.sources.len() > 1 { ", and found by any of the searches with the program's own algorithm" }
+            ". Of each front at most " (report.study.optimizer.front_designs)
             " evenly spread designs are drawn; they are in " code { "fronts.csv" } "."
         }
         (figures(report, "front"))
@@ -132,11 +134,40 @@ pub(super) fn verdict(r_squared: f64) -> (&'static str, &'static str) {
     }
 }
 
+/// What the paper says of a variable, and how that holds.
+fn said(trend: &Trend) -> Markup {
+    let (what, word, class) = if trend.variable == Variable::PlatformBarRadius {
+        match trend.is_quadratic() {
+            Some(true) => ("quadratic", "holds", "holds"),
+            Some(false) => ("quadratic", "a line does as well", "fails"),
+            None => ("quadratic", unknown(trend), "partly"),
+        }
+    } else {
+        match &trend.linear {
+            Some(fit) => {
+                let (word, class) = verdict(fit.r_squared);
+                ("linear", word, class)
+            }
+            None => ("linear", unknown(trend), "partly"),
+        }
+    };
+    html! { (what) ": " span class=(class) { (word) } }
+}
+
+/// Why there is no fit.
+pub(super) fn unknown(trend: &Trend) -> &'static str {
+    if trend.free.len() < trend.points.len() {
+        "it stands at a bound"
+    } else {
+        "too few designs"
+    }
+}
+
 pub(super) fn variables(report: &Report) -> Markup {
     html! {
         p {
             "Lengths and bar radii of the designs drawn above, over their workspace radius, with least-squares fits: straight lines, and for r_p "
-            "a parabola. Designs at which a variable stands at one of its bounds are left out of its fits: it may not go on there. "
+            "a parabola. Designs at which a variable is within " (percent(AT_BOUND)) " of its range from one of its bounds are left out of its fits: it may not go on there. "
             "R² is the share of the variance that a fit explains; the rank correlation is 1 where a variable only grows with R_w."
         }
         (figures(report, "lengths"))
@@ -148,8 +179,6 @@ pub(super) fn variables(report: &Report) -> Markup {
                 th.number { "rank correlation" } th { "said to be" }
             } }
             tbody { @for (architecture, trends) in &report.trends { @for trend in trends {
-                @let quadratic = trend.variable == Variable::PlatformBarRadius;
-                @let claimed = if quadratic { &trend.quadratic } else { &trend.linear };
                 tr {
                     td { (architecture) } td { (trend.variable.symbol()) }
                     td.number { (trend.free.len()) " of " (trend.points.len()) }
@@ -160,16 +189,7 @@ pub(super) fn variables(report: &Report) -> Markup {
                         }
                     }
                     td.number { (trend.rank_correlation.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}"))) }
-                    td {
-                        @if quadratic { "quadratic" } @else { "linear" } ": "
-                        @match claimed {
-                            Some(fit) => {
-                                @let (word, class) = verdict(fit.r_squared);
-                                span class=(class) { (word) }
-                            }
-                            None => "it stands at a bound",
-                        }
-                    }
+                    td { (said(trend)) }
                 }
             } } }
         } }
