@@ -3,6 +3,7 @@
 mod differences;
 mod made;
 mod results;
+mod sensitivity;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -41,7 +42,7 @@ pub(super) fn html(report: &Report) -> String {
         sections.push((
             "sensitivity",
             "If it were read otherwise",
-            differences::sensitivity(report),
+            sensitivity::sensitivity(report),
         ));
     }
     sections.push(("made", "How this was made", made::made(report)));

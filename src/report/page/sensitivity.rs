@@ -1,0 +1,116 @@
+//! How fronts and reference designs move when an assumption is read otherwise.
+
+use maud::{Markup, html};
+
+use super::results::levels;
+use super::{cell, change, figures, optional};
+use crate::mechanism::Architecture;
+use crate::report::{Front, READINGS, Reading, Report, Variation};
+use crate::text::{number, short};
+
+pub(super) fn sensitivity(report: &Report) -> Markup {
+    let Some((base, others)) = report.variations.split_first() else {
+        return html! {};
+    };
+    let evaluations = report.options.sensitivity.unwrap_or_default();
+    let tried = |reading: &&Reading| others.iter().any(|other| other.name() == reading.name);
+    let left_out: Vec<&str> = READINGS
+        .iter()
+        .filter(|reading| !tried(reading))
+        .map(|reading| reading.name)
+        .collect();
+    html! {
+        p {
+            "Every architecture searched anew, alone, with " (evaluations) " evaluations under each reading, and its front verified on the fine grid. "
+            "Other seeds show how much of a difference is chance: changes within their range are grey."
+            @if !left_out.is_empty() { " Not tried, since the study has it so, or rules it out: " (left_out.join(", ")) "." }
+        }
+        (figures(report, "sensitivity"))
+        @for (architecture, front) in &base.alone { (varied(others, *architecture, front)) }
+        @if !report.references.is_empty() {
+            h3 { "Reference designs" }
+            div.scroll { table {
+                caption { "R_w of the reference designs on the fine grid [m]." }
+                thead { tr { th { "reading" } @for reference in &report.references { th.number { (reference.name) } } } }
+                tbody {
+                    @if report.references.iter().any(|reference| reference.stated_radius.is_some()) {
+                        tr { td { "what its source states" } @for reference in &report.references { (optional(reference.stated_radius)) } }
+                    }
+                    @for variation in report.variations.iter().filter(|variation| variation.moves_designs()) {
+                        tr { td { (variation.name()) } @for radius in &variation.references { (cell(*radius)) } }
+                    }
+                }
+            } }
+        }
+    }
+}
+
+/// How the front of an architecture moves.
+fn varied(variations: &[Variation], architecture: Architecture, base: &Front) -> Markup {
+    let levels: Vec<f64> = levels(base.largest()).into_iter().skip(1).step_by(2).collect();
+    // Ratios to the base: of the mass at each level, then of the largest radius.
+    let ratios = |variation: &Variation| -> Option<Vec<Option<f64>>> {
+        let front = variation.of(architecture)?;
+        let mass = |&level: &f64| Some(front.lightest(level)?.mass / base.lightest(level)?.mass);
+        let largest = Some(front.largest() / base.largest());
+        Some(levels.iter().map(mass).chain([largest]).collect())
+    };
+    let seeds: Vec<Vec<Option<f64>>> = variations
+        .iter()
+        .filter(|other| other.is_chance())
+        .filter_map(ratios)
+        .collect();
+    // What the base itself has is within the range of chance.
+    let chance: Vec<[f64; 2]> = (0..=levels.len())
+        .map(|column| {
+            let found = seeds.iter().filter_map(|ratios| ratios[column]);
+            found.fold([1.0, 1.0], |[low, high]: [f64; 2], ratio| {
+                [low.min(ratio), high.max(ratio)]
+            })
+        })
+        .collect();
+    html! {
+        h3 { (architecture) }
+        div.scroll { table {
+            caption { "Mass of the lightest design with at least this R_w, and the largest R_w found, against the study as it is." }
+            thead { tr {
+                th { "reading" }
+                @for level in &levels { th.number { "R_w ≥ " (short(*level)) " m" } }
+                th.number { "largest R_w" } th { "what it means" }
+            } }
+            tbody {
+                tr {
+                    td { "the study as it is" }
+                    @for level in &levels { td.number { (base.lightest(*level).map(|found| number(found.mass)).unwrap_or_default()) " kg" } }
+                    td.number { (number(base.largest())) " m" }
+                    td { }
+                }
+                @if !seeds.is_empty() {
+                    tr.chance {
+                        td { (seeds.len()) " other seeds" }
+                        @for [low, high] in &chance { td.number { (change(*low)) " … " (change(*high)) } }
+                        td { "chance, the yardstick for all others" }
+                    }
+                }
+                @for variation in variations.iter().filter(|variation| !variation.is_chance()) {
+                    tr {
+                        td { (variation.name()) }
+                        @match ratios(variation) {
+                            Some(ratios) => @for (ratio, [low, high]) in ratios.iter().zip(&chance) {
+                                @match ratio {
+                                    Some(ratio) => {
+                                        @let class = if (*low..=*high).contains(ratio) { "number chance" } else { "number" };
+                                        td class=(class) { (change(*ratio)) }
+                                    }
+                                    None => td.number { "not reached" }
+                                }
+                            },
+                            None => td colspan=(levels.len() + 1) { "nothing feasible" }
+                        }
+                        td { (variation.reading.map(|reading| reading.meaning).unwrap_or_default()) }
+                    }
+                }
+            }
+        } }
+    }
+}

@@ -1,0 +1,84 @@
+//! The folder that a report leaves.
+
+use std::path::{Path, PathBuf};
+
+use super::{Report, ReportError, chart, page};
+use crate::evaluation::Evaluation;
+use crate::study::{FolderError, front_table, write_whole};
+
+impl Report {
+    /// Writes the report to a folder; `replace` overwrites the files of one that is there.
+    ///
+    /// # Errors
+    /// [`ReportError::Occupied`] when there is a report and it is not to be replaced, [`ReportError::Write`].
+    pub fn write(&self, folder: &Path, replace: bool) -> Result<(), ReportError> {
+        free(folder, replace)?;
+        let make = |path: &Path| {
+            std::fs::create_dir_all(path).map_err(|source| FolderError::Write {
+                path: path.to_owned(),
+                source,
+            })
+        };
+        let (figures, pictures) = (folder.join("figures"), folder.join("pictures"));
+        clear(folder, &[&figures, &pictures])?;
+        make(&figures)?;
+        make(&pictures)?;
+        for figure in &self.figures {
+            write_whole(&figures.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
+            let png = chart::png(&figure.svg, self.options.scale).map_err(|message| ReportError::Figure {
+                name: figure.name.clone(),
+                message,
+            })?;
+            write_whole(&figures.join(format!("{}.png", figure.name)), &png)?;
+        }
+        for picture in &self.pictures {
+            write_whole(&pictures.join(format!("{}.png", picture.name)), &picture.png)?;
+        }
+        let members = self.fronts.alone.iter().flat_map(|(_, front)| front.shown());
+        let joint = |member: &Evaluation| self.fronts.together.members.contains(member);
+        let table =
+            front_table(members.map(|member| (member, joint(member)))).map_err(|message| ReportError::Figure {
+                name: "fronts.csv".to_owned(),
+                message,
+            })?;
+        write_whole(&folder.join("fronts.csv"), &table)?;
+        // Last: where it stands, the rest is there.
+        write_whole(&folder.join("index.html"), page::html(self).as_bytes())?;
+        Ok(())
+    }
+}
+
+/// Whether a report may be written to the folder.
+///
+/// # Errors
+/// [`ReportError::Occupied`].
+pub fn free(folder: &Path, replace: bool) -> Result<(), ReportError> {
+    if folder.join("index.html").exists() && !replace {
+        return Err(ReportError::Occupied(folder.to_owned()));
+    }
+    Ok(())
+}
+
+/// Takes a report that is there away: the page first, so that none stands without its figures.
+fn clear(folder: &Path, kinds: &[&Path]) -> Result<(), FolderError> {
+    let failed = |path: &Path, source: std::io::Error| FolderError::Write {
+        path: path.to_owned(),
+        source,
+    };
+    let page = folder.join("index.html");
+    if page.exists() {
+        std::fs::remove_file(&page).map_err(|error| failed(&page, error))?;
+    }
+    for kind in kinds.iter().filter(|kind| kind.is_dir()) {
+        let entries = std::fs::read_dir(kind).map_err(|error| failed(kind, error))?;
+        // What a report does not write is not a report's to take away.
+        let ours = |path: &PathBuf| {
+            path.extension()
+                .is_some_and(|extension| extension == "svg" || extension == "png")
+        };
+        for path in entries.flatten().map(|entry| entry.path()).filter(ours) {
+            std::fs::remove_file(&path).map_err(|error| failed(&path, error))?;
+        }
+    }
+    Ok(())
+}
