@@ -30,7 +30,7 @@ impl FrontEntry {
 
     /// Both objectives, minimised.
     pub fn objectives(&self) -> [f64; 2] {
-        [self.row.mass, -self.row.radius]
+        self.row.objectives()
     }
 }
 

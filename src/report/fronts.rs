@@ -146,36 +146,48 @@ pub struct Single {
     pub joint: Option<Front>,
 }
 
+/// The fronts of the first search over just these architectures; `None` without one, or without a feasible design.
+fn of_search(sources: &[Source], architectures: &[Architecture], study: &Study) -> Result<Option<Fronts>, ReportError> {
+    let Some(source) = sources
+        .iter()
+        .find(|source| source.study.architectures == architectures)
+    else {
+        return Ok(None);
+    };
+    let most = study.optimizer.front_designs;
+    match Fronts::new(std::slice::from_ref(source), &study.model(), most) {
+        Ok(fronts) => Ok(Some(fronts)),
+        Err(ReportError::NothingFeasible) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+/// The front of the search over all architectures of the study together, where there is one.
+///
+/// # Errors
+/// A grid that does not fit.
+pub(super) fn joint(sources: &[Source], study: &Study) -> Result<Option<Front>, ReportError> {
+    match study.architectures[..] {
+        [_] => Ok(None),
+        _ => Ok(of_search(sources, &study.architectures, study)?.map(|fronts| fronts.together)),
+    }
+}
+
 impl Single {
     /// The fronts of the first search of each kind.
     ///
     /// # Errors
     /// A grid that does not fit.
     pub fn new(sources: &[Source], study: &Study) -> Result<Self, ReportError> {
-        let front = |architectures: &[Architecture]| -> Result<Option<Fronts>, ReportError> {
-            let Some(source) = sources
-                .iter()
-                .find(|source| source.study.architectures == architectures)
-            else {
-                return Ok(None);
-            };
-            let most = study.optimizer.front_designs;
-            match Fronts::new(std::slice::from_ref(source), &study.model(), most) {
-                Ok(fronts) => Ok(Some(fronts)),
-                Err(ReportError::NothingFeasible) => Ok(None),
-                Err(error) => Err(error),
-            }
-        };
-        let mut single = Self::default();
+        let mut alone = Vec::new();
         for &architecture in &study.architectures {
-            single
-                .alone
-                .extend(front(&[architecture])?.into_iter().flat_map(|fronts| fronts.alone));
+            let fronts = of_search(sources, &[architecture], study)?;
+            alone.extend(fronts.into_iter().flat_map(|fronts| fronts.alone));
         }
-        if study.architectures.len() > 1 {
-            single.joint = front(&study.architectures)?.map(|fronts| fronts.together);
-        }
-        Ok(single)
+        Ok(Self {
+            alone,
+            joint: joint(sources, study)?,
+        })
     }
 
     /// The front of an architecture alone.

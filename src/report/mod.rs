@@ -180,7 +180,11 @@ impl Report {
         let most = study.optimizer.front_designs;
         tell("verifying the fronts");
         let fronts = Fronts::new(sources, &model, most)?;
-        let joint = Single::new(sources, &study)?.joint;
+        let joint = match sources {
+            // It is what was just verified.
+            [_] => Some(fronts.together.clone()),
+            _ => fronts::joint(sources, &study)?,
+        };
         let rivals_found = match rivals {
             [] => None,
             _ => Some(Single::new(rivals, &study)?),

@@ -38,9 +38,7 @@ impl Row {
             phi: evaluation.home_phi_deg,
             violation: evaluation.violation,
             margins: evaluation.constraints.map(|report| report.margin),
-            active: evaluation
-                .active()
-                .fold(0, |bits, constraint| bits | 1 << constraint as u8),
+            active: bits(evaluation.active()),
         }
     }
 
@@ -73,10 +71,7 @@ impl Row {
             *margin = wanted(&format!("margin_{}", constraint.id()))?;
         }
         let active = text("active").unwrap_or_default();
-        let active = Constraint::ALL
-            .into_iter()
-            .filter(|constraint| active.split('+').any(|id| id == constraint.id()))
-            .fold(0, |bits, constraint| bits | 1 << constraint as u8);
+        let named = |constraint: &Constraint| active.split('+').any(|id| id == constraint.id());
         Ok(Self {
             generation: generation.try_into().unwrap_or(u32::MAX),
             design,
@@ -85,7 +80,7 @@ impl Row {
             phi: number("phi_deg"),
             violation: wanted("violation")?,
             margins,
-            active,
+            active: bits(Constraint::ALL.into_iter().filter(named)),
         })
     }
 
@@ -96,11 +91,18 @@ impl Row {
 
     /// The active constraints.
     pub fn active_constraints(&self) -> impl Iterator<Item = Constraint> {
-        let bits = self.active;
+        let active = self.active;
         Constraint::ALL
             .into_iter()
-            .filter(move |&constraint| bits & (1 << constraint as u8) != 0)
+            .filter(move |&constraint| active & bits([constraint]) != 0)
     }
+}
+
+/// A bit for each of the constraints.
+fn bits(constraints: impl IntoIterator<Item = Constraint>) -> u8 {
+    constraints
+        .into_iter()
+        .fold(0, |bits, constraint| bits | 1 << constraint as u8)
 }
 
 /// A row of `designs.csv` or `front.csv`.

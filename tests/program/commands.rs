@@ -4,18 +4,7 @@ use predicates::prelude::*;
 use predicates::str::contains;
 use serde_json::Value;
 
-use super::support::{DESIGN, folder, kinefront, small_study};
-
-fn json(arguments: &[&str]) -> Value {
-    let output = kinefront()
-        .args(arguments)
-        .assert()
-        .success()
-        .get_output()
-        .stdout
-        .clone();
-    serde_json::from_slice(&output).expect("one JSON object")
-}
+use super::support::{DESIGN, folder, json, kinefront, small_study};
 
 fn keys(value: &Value) -> Vec<&str> {
     value
@@ -28,7 +17,7 @@ fn keys(value: &Value) -> Vec<&str> {
 
 #[test]
 fn evaluate_has_the_keys_others_rely_on() {
-    let found = json(&["evaluate", "--design", DESIGN, "--json"]);
+    let found = json(["evaluate", "--design", DESIGN, "--json"]);
     for key in [
         "architecture",
         "design",
@@ -64,9 +53,9 @@ fn evaluate_has_the_keys_others_rely_on() {
 
 #[test]
 fn evaluate_on_the_fine_grid_and_under_another_study() {
-    let fine = json(&["evaluate", "--design", DESIGN, "--grid", "fine", "--json"]);
+    let fine = json(["evaluate", "--design", DESIGN, "--grid", "fine", "--json"]);
     assert!((fine["workspace_radius_m"].as_f64().expect("a number") - 1.221138).abs() < 1e-5);
-    let light = json(&[
+    let light = json([
         "evaluate",
         "--design",
         DESIGN,
@@ -80,7 +69,7 @@ fn evaluate_on_the_fine_grid_and_under_another_study() {
 
 #[test]
 fn an_infeasible_design_is_data() {
-    let found = json(&["evaluate", "--design", "3-RRR R=4 r=0.1 Lb=0.5 rj=0 rp=0", "--json"]);
+    let found = json(["evaluate", "--design", "3-RRR R=4 r=0.1 Lb=0.5 rj=0 rp=0", "--json"]);
     assert_eq!(found["feasible"], false);
     assert_eq!(found["home"], Value::Null);
     assert_eq!(found["workspace_radius_m"], 0.0);
@@ -119,7 +108,7 @@ fn a_stream_answers_line_by_line_and_survives_bad_lines() {
 
 #[test]
 fn pose_tells_joints_and_stiffness() {
-    let found = json(&["pose", "--design", DESIGN, "--pose", "x=0.1 y=0.2 phi_deg=30", "--json"]);
+    let found = json(["pose", "--design", DESIGN, "--pose", "x=0.1 y=0.2 phi_deg=30", "--json"]);
     assert_eq!(found["reachable"], true);
     assert_eq!(found["reason"], Value::Null);
     assert_eq!(found["actuators"].as_array().expect("a list").len(), 3);
@@ -131,7 +120,7 @@ fn pose_tells_joints_and_stiffness() {
     assert_eq!(k(0, 5), k(5, 0));
     assert_eq!(k(0, 2), 0.0);
 
-    let far = json(&["pose", "--design", DESIGN, "--pose", "x=0 y=9 phi_deg=0", "--json"]);
+    let far = json(["pose", "--design", DESIGN, "--pose", "x=0 y=9 phi_deg=0", "--json"]);
     assert_eq!(far["reachable"], false);
     assert!(far["reason"].as_str().expect("a reason").contains("out of reach"));
     for key in [
@@ -149,9 +138,9 @@ fn pose_tells_joints_and_stiffness() {
 
     // B of a 3-RPR is A, and its stroke limits are told.
     let telescopic = "3-RPR R=1.5 r=0.3 Lb=2 rj=0.03 rp=0.03";
-    let near = json(&["pose", "--design", telescopic, "--pose", "x=0 y=0 phi_deg=0", "--json"]);
+    let near = json(["pose", "--design", telescopic, "--pose", "x=0 y=0 phi_deg=0", "--json"]);
     assert!((near["B"][2][1].as_f64().expect("a number") - 1.5).abs() < 1e-12);
-    let beyond = json(&[
+    let beyond = json([
         "pose",
         "--design",
         telescopic,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use predicates::str::contains;
 use serde_json::Value;
 
-use super::support::{DESIGN, folder, kinefront, node, optimize, python, script, small_study};
+use super::support::{DESIGN, folder, json, kinefront, node, optimize, python, script, small_study};
 
 /// A design of each architecture with its actuators' stiffness, another one each.
 const DESIGNS: [(&str, f64); 3] = [
@@ -181,29 +181,19 @@ fn small_mechanisms_and_other_working_modes_are_exported() {
 #[test]
 fn json_holds_the_design() {
     let folder = folder();
-    let json = read_json(&export(DESIGN, folder.path(), "design.json"));
-    let told = |arguments: &[&str]| -> Value {
-        let output = kinefront()
-            .args(arguments)
-            .assert()
-            .success()
-            .get_output()
-            .stdout
-            .clone();
-        serde_json::from_slice(&output).expect("JSON")
-    };
+    let file = read_json(&export(DESIGN, folder.path(), "design.json"));
     assert_eq!(
-        json["evaluation"],
-        told(&["evaluate", "--design", DESIGN, "--grid", "fine", "--json"])
+        file["evaluation"],
+        json(["evaluate", "--design", DESIGN, "--grid", "fine", "--json"])
     );
-    let pose = &json["tour"][40];
+    let pose = &file["tour"][40];
     let text = format!("x={} y={} phi_deg={}", pose["x_m"], pose["y_m"], pose["phi_deg"]);
-    let there = told(&["pose", "--design", DESIGN, "--pose", &text, "--json"]);
+    let there = json(["pose", "--design", DESIGN, "--pose", &text, "--json"]);
     for leg in 0..3 {
         let difference = there["actuators"][leg].as_f64().expect("m") - pose["actuators"][leg].as_f64().expect("m");
         assert!(difference.abs() < 1e-12);
     }
-    let bodies = json["bodies"].as_array().expect("bodies");
+    let bodies = file["bodies"].as_array().expect("bodies");
     let names: Vec<&str> = bodies
         .iter()
         .map(|body| body["name"].as_str().expect("a name"))
@@ -211,7 +201,7 @@ fn json_holds_the_design() {
     assert_eq!(names[..2], ["leg1_slider", "leg1_link"]);
     assert_eq!(names[6..], ["platform"]);
     let mass: f64 = bodies.iter().map(|body| body["mass_kg"].as_f64().expect("kg")).sum();
-    assert!((mass - json["evaluation"]["mass_kg"].as_f64().expect("kg")).abs() < 1e-9);
+    assert!((mass - file["evaluation"]["mass_kg"].as_f64().expect("kg")).abs() < 1e-9);
 }
 
 /// At a pose of one's own; what is wrong is said, and no file is left or lost.

@@ -1,5 +1,6 @@
 //! The binary, folders to work in, and a Python to read our files with.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -31,21 +32,27 @@ pub fn small_study(folder: &Path) -> PathBuf {
     path
 }
 
+/// What a command that succeeds tells in JSON.
+pub fn json<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Value {
+    let told = kinefront().args(arguments).assert().success();
+    serde_json::from_slice(&told.get_output().stdout).expect("one JSON object")
+}
+
 /// Runs a study into `out` and returns `run.json`.
 pub fn optimize(study: &Path, out: &Path, more: &[&str]) -> Value {
-    let output = kinefront()
-        .arg("optimize")
-        .arg(study)
-        .arg("--out")
-        .arg(out)
-        .args(["--json", "--quiet"])
-        .args(more)
-        .assert()
-        .success()
-        .get_output()
-        .stdout
-        .clone();
-    serde_json::from_slice(&output).expect("JSON")
+    let files = [
+        OsStr::new("optimize"),
+        study.as_os_str(),
+        OsStr::new("--out"),
+        out.as_os_str(),
+    ];
+    let more = more.iter().map(OsStr::new);
+    json(
+        files
+            .into_iter()
+            .chain(["--json", "--quiet"].map(OsStr::new))
+            .chain(more),
+    )
 }
 
 /// A Python that has `modules`, or `None` with a word on what is missing.

@@ -217,10 +217,6 @@ fn cell(entry: &FrontEntry, key: Key) -> String {
 }
 
 fn active(entry: &FrontEntry) -> String {
-    let ids: Vec<&str> = Constraint::ALL
-        .into_iter()
-        .filter(|&constraint| entry.row.active >> constraint as u8 & 1 == 1)
-        .map(Constraint::id)
-        .collect();
+    let ids: Vec<&str> = entry.row.active_constraints().map(Constraint::id).collect();
     ids.join(" ")
 }
