@@ -30,6 +30,8 @@ pub trait Real:
     fn exceeds(self, other: Self) -> Self::Mask;
     /// `self` where the mask is set, `other` elsewhere.
     fn where_set(self, mask: Self::Mask, other: Self) -> Self;
+    /// Whether the mask is set in any lane.
+    fn any(mask: Self::Mask) -> bool;
 
     /// The smaller of two numbers; `other` where either is no number.
     #[inline(always)]
@@ -75,6 +77,11 @@ impl Real for f64 {
     #[inline(always)]
     fn where_set(self, mask: bool, other: Self) -> Self {
         if mask { self } else { other }
+    }
+
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
     }
 }
 
@@ -207,10 +214,16 @@ impl<S: Simd> Lanes<S> {
 
 impl<S: Simd> LaneMask<S> {
     /// The lanes before the first that is not set.
+    #[inline(always)]
+    pub(crate) fn leading(self) -> usize {
+        self.bits().trailing_ones() as usize
+    }
+
+    /// A bit for each lane, the first the lowest.
     ///
     /// Read from the mask's bytes: `first_true_m64s` of pulp 0.22 counts from the wrong end where masks are bits.
     #[inline(always)]
-    pub(crate) fn leading(self) -> usize {
+    fn bits(self) -> u32 {
         let mut bits = 0u32;
         for (register, mask) in self.registers.iter().enumerate() {
             let bytes = pulp::bytemuck::bytes_of(mask);
@@ -223,7 +236,7 @@ impl<S: Simd> LaneMask<S> {
                 }
             }
         }
-        bits.trailing_ones() as usize
+        bits
     }
 }
 
@@ -326,6 +339,11 @@ impl<S: Simd> Real for Lanes<S> {
                 simd.select_f64s(mask[1], a[1], b[1]),
             ],
         }
+    }
+
+    #[inline(always)]
+    fn any(mask: LaneMask<S>) -> bool {
+        mask.bits() != 0
     }
 }
 

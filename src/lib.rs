@@ -21,6 +21,7 @@
 //! | [`mechanism`] | architectures, designs, inverse kinematics |
 //! | [`kinematics`] | Jacobian, dexterity, forward kinematics |
 //! | [`stiffness`] | bars, legs and platform: closed form, and the 6×6 form as its oracle |
+//! | [`clearance`] | bodies that must not collide |
 //! | [`workspace`] | the regular workspace of a design |
 //! | [`evaluation`] | design → objectives, constraints, margins |
 //! | [`optimize`] | problems, algorithms, archive; knows nothing of robots |
@@ -33,6 +34,7 @@
 //! | [`text`] | numbers for people |
 //! | `explorer` | the window (feature `explorer`) |
 
+pub mod clearance;
 pub mod evaluation;
 #[cfg(feature = "explorer")]
 pub mod explorer;

@@ -138,6 +138,10 @@ impl Neg for Counted {
 impl Real for Counted {
     type Mask = bool;
 
+    fn any(mask: bool) -> bool {
+        mask
+    }
+
     fn splat(self, value: f64) -> Self {
         Self { value, id: None }
     }

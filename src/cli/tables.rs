@@ -2,6 +2,7 @@
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{CellAlignment, Table};
+use kinefront::clearance::Clearance;
 use kinefront::evaluation::{Evaluation, Model, PoseReport, Unreachable};
 use kinefront::mechanism::Design;
 use kinefront::spatial::Pose;
@@ -26,6 +27,12 @@ fn pose_text(pose: &Pose) -> String {
         pose.position.y,
         pose.phi.to_degrees()
     )
+}
+
+/// The nearest pair of bodies, in words.
+fn nearest_text(nearest: &Clearance) -> String {
+    let [member, neighbour] = nearest.pair();
+    format!("{} m, {member} to {neighbour}", number(nearest.distance))
 }
 
 /// One evaluated design.
@@ -57,6 +64,17 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             facts.add_row(["regular workspace", "none: infeasible"]);
         }
     }
+    if let Some(nearest) = model.nearest(evaluation) {
+        let where_least = if evaluation.is_feasible() {
+            "over the workspace"
+        } else {
+            "at the best centre"
+        };
+        facts.add_row([
+            "clearance".to_owned(),
+            format!("{} {where_least}", nearest_text(&nearest)),
+        ]);
+    }
     let mut constraints = table(
         [
             "",
@@ -70,7 +88,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         ],
         &[2, 3, 5],
     );
-    for report in &evaluation.constraints {
+    for report in evaluation.constraints.iter().filter(|report| report.asked) {
         constraints.add_row([
             report.constraint.id().to_owned(),
             report.constraint.name().to_owned(),
@@ -118,6 +136,7 @@ pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseReport, Unreachab
         "k_φz".to_owned(),
         format!("{} N·m/rad", number(report.rigidity.k_phi_z)),
     ]);
+    facts.add_row(["clearance".to_owned(), nearest_text(&report.clearance)]);
     let mut stiffness = table(["K", "x", "y", "z", "φx", "φy", "φz"], &[1, 2, 3, 4, 5, 6]);
     for (i, name) in ["fx", "fy", "fz", "mx", "my", "mz"].into_iter().enumerate() {
         let mut row = vec![name.to_owned()];

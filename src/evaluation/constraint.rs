@@ -1,4 +1,4 @@
-//! The constraints g1 … g6, the sign rule, and their margins (SPEC section 5).
+//! The constraints g1 … g6 and the sign rule, their margins (SPEC section 5), and g7, which a study may ask for.
 
 use crate::mechanism::Design;
 use crate::spatial::Pose;
@@ -21,11 +21,13 @@ pub enum Constraint {
     StiffnessPhiZ,
     /// One sign of `det A` over the workspace.
     DeterminantSign,
+    /// g7: least clearance of bodies that are not joined, where the study asks for one.
+    Clearance,
 }
 
 impl Constraint {
-    /// All constraints, g1 first.
-    pub const ALL: [Constraint; 7] = [
+    /// All constraints: those of the paper, g1 first, then what a study may ask for besides.
+    pub const ALL: [Constraint; 8] = [
         Constraint::Assembly,
         Constraint::Reach,
         Constraint::Dexterity,
@@ -33,6 +35,7 @@ impl Constraint {
         Constraint::StiffnessZ,
         Constraint::StiffnessPhiZ,
         Constraint::DeterminantSign,
+        Constraint::Clearance,
     ];
 
     /// Short id, as in JSON and CSV.
@@ -45,6 +48,7 @@ impl Constraint {
             Constraint::StiffnessZ => "g5",
             Constraint::StiffnessPhiZ => "g6",
             Constraint::DeterminantSign => "det_sign",
+            Constraint::Clearance => "g7",
         }
     }
 
@@ -58,20 +62,26 @@ impl Constraint {
             Constraint::StiffnessZ => "stiffness_z",
             Constraint::StiffnessPhiZ => "stiffness_phi_z",
             Constraint::DeterminantSign => "determinant_sign",
+            Constraint::Clearance => "clearance",
         }
     }
 
     /// Unit of its value and threshold; empty for a number without one.
     pub fn unit(self) -> &'static str {
         match self {
-            Constraint::Assembly | Constraint::Reach => "m",
+            Constraint::Assembly | Constraint::Reach | Constraint::Clearance => "m",
             Constraint::Dexterity | Constraint::DeterminantSign => "",
             Constraint::StiffnessXy | Constraint::StiffnessZ => "N/m",
             Constraint::StiffnessPhiZ => "N·m/rad",
         }
     }
 
-    /// The least value allowed.
+    /// Whether it is asked for: g7 is by a study that states a clearance, all others are always.
+    pub fn is_asked(self, thresholds: &Thresholds) -> bool {
+        self != Constraint::Clearance || thresholds.clearance.is_some()
+    }
+
+    /// The least value allowed; where g7 is not asked for, the 0 at which bodies touch.
     pub fn threshold(self, design: &Design, thresholds: &Thresholds) -> f64 {
         match self {
             Constraint::Assembly => 0.5 * design.base_radius,
@@ -80,22 +90,24 @@ impl Constraint {
             Constraint::StiffnessXy => thresholds.k_xy,
             Constraint::StiffnessZ => thresholds.k_z,
             Constraint::StiffnessPhiZ => thresholds.k_phi_z,
+            Constraint::Clearance => thresholds.clearance.unwrap_or(0.0),
         }
     }
 
-    /// Relative margin of a value: `(value − threshold)/threshold`; where the threshold is 0, the distance of g2 as a
-    /// share of `R`, and `det A / ℓ` as it is. Negative where the constraint is broken.
+    /// Relative margin of a value: `(value − threshold)/threshold`; where the threshold is 0, `det A / ℓ` as it is; the
+    /// distances of g2 and g7 beyond their thresholds as a share of `R`. Negative where the constraint is broken.
     pub fn margin(self, value: f64, threshold: f64, design: &Design) -> f64 {
         match self {
-            Constraint::Reach => value / design.base_radius,
+            Constraint::Reach | Constraint::Clearance => (value - threshold) / design.base_radius,
             _ if threshold > 0.0 => (value - threshold) / threshold,
             _ => value - threshold,
         }
     }
 
-    /// The value at a reachable pose, with `det A` counted positive in the sign of the home pose.
-    pub fn value(self, design: &Design, values: &PoseValues, sign: f64) -> f64 {
-        match self {
+    /// The value at a reachable pose, with `det A` counted positive in the sign of the home pose; `None` where nobody
+    /// asked for it.
+    pub fn value(self, design: &Design, values: &PoseValues, sign: f64) -> Option<f64> {
+        let value = match self {
             Constraint::Assembly => design.link_length + design.platform_radius,
             Constraint::Reach => values.slack,
             Constraint::Dexterity => values.inverse_condition,
@@ -103,7 +115,9 @@ impl Constraint {
             Constraint::StiffnessZ => values.rigidity.k_z,
             Constraint::StiffnessPhiZ => values.rigidity.k_phi_z,
             Constraint::DeterminantSign => sign * values.determinant,
-        }
+            Constraint::Clearance => return values.clearance,
+        };
+        Some(value)
     }
 
     /// Whether a value satisfies the constraint: `det A` must not vanish, every other value may equal its threshold.
@@ -124,6 +138,8 @@ pub struct ConstraintReport {
     pub value: Option<f64>,
     /// Least value allowed.
     pub threshold: f64,
+    /// Whether the study asks for it. What is not asked for is never broken and never active.
+    pub asked: bool,
     /// Relative margin ([`Constraint::margin`]); −1 where there is no value.
     pub margin: f64,
     /// Whether it is among those that fail first just beyond `R_w` in the home window; for an infeasible design, those
@@ -131,4 +147,11 @@ pub struct ConstraintReport {
     pub active: bool,
     /// Where the value was found; `None` for g1, which holds for the design as a whole.
     pub pose: Option<Pose>,
+}
+
+impl ConstraintReport {
+    /// The margin, where the study asks for the constraint.
+    pub fn asked_margin(&self) -> Option<f64> {
+        self.asked.then_some(self.margin)
+    }
 }

@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use super::{Evaluation, report};
+use super::{Constraint, Evaluation, Unreachable, report};
+use crate::clearance::{Bodies, BodySettings, Clearance};
 use crate::kinematics::{CharacteristicLength, Jacobian};
 use crate::lanes::InstructionSet;
 use crate::mechanism::with_leg;
@@ -21,13 +22,15 @@ pub struct Model {
     pub actuators: ActuatorStiffness,
     /// Choices about legs.
     pub legs: LegSettings,
+    /// Sizes of sliders and layers of members.
+    pub bodies: BodySettings,
     /// How many bars of length `r` count in the platform's mass (SPEC section 8, no. 1).
     pub platform_bars: u32,
     /// Definition of `k_xy`, `k_z`, `k_φz`.
     pub stiffness_definition: StiffnessDefinition,
     /// Characteristic length.
     pub characteristic_length: CharacteristicLength,
-    /// Thresholds of g3 … g6.
+    /// Thresholds of g3 … g7.
     pub thresholds: Thresholds,
     /// Force in the plane that the study asks for \[N\], for displacements; the thresholds already hold it.
     pub in_plane_force: f64,
@@ -57,6 +60,7 @@ impl Default for Model {
                 revolute: 1e7,
             },
             legs: LegSettings::default(),
+            bodies: BodySettings::default(),
             platform_bars: 3,
             stiffness_definition: StiffnessDefinition::Stiffness,
             characteristic_length: CharacteristicLength::PlatformRadius,
@@ -65,6 +69,7 @@ impl Default for Model {
                 k_xy: 1e6,
                 k_z: 1e5,
                 k_phi_z: 10.0 / 1f64.to_radians(),
+                clearance: None,
             },
             in_plane_force: 100.0,
             workspace: WorkspaceSpec {
@@ -144,6 +149,7 @@ impl Model {
             stiffness: StiffnessModel::new::<L>(design, &self.material, &self.actuators),
             definition: self.stiffness_definition,
             length: self.length(design, &manipulator)?,
+            bodies: Bodies::new::<L>(design, &self.bodies),
             thresholds: self.thresholds,
             instructions: InstructionSet::best(),
         })
@@ -186,6 +192,27 @@ impl Model {
         evaluation.home.or_else(reported).unwrap_or(Pose {
             position: self.workspace.centre,
             phi: 0.0,
+        })
+    }
+
+    /// The nearest pair of bodies of an evaluated design, at the pose where its clearance was found to be least; `None`
+    /// where it has none.
+    pub fn nearest(&self, evaluation: &Evaluation) -> Option<Clearance> {
+        let pose = evaluation.constraint(Constraint::Clearance).pose?;
+        self.nearest_at(&evaluation.design, &pose).ok()
+    }
+
+    /// The nearest pair of bodies of a design at a pose.
+    ///
+    /// # Errors
+    /// The leg that does not get there.
+    pub fn nearest_at(&self, design: &Design, pose: &Pose) -> Result<Clearance, Unreachable> {
+        with_leg!(design.architecture, L => {
+            let manipulator = Manipulator::<L>::new(design, &self.legs);
+            let posture = manipulator
+                .posture(pose)
+                .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+            Ok(Bodies::new::<L>(design, &self.bodies).nearest(&manipulator, pose.position, &posture))
         })
     }
 

@@ -3,6 +3,7 @@
 use nalgebra::Matrix6;
 
 use super::Model;
+use crate::clearance::Clearance;
 use crate::kinematics::Jacobian;
 use crate::mechanism::with_leg;
 use crate::mechanism::{Design, Leg, ReachReason, Shortfall};
@@ -27,6 +28,8 @@ pub struct PoseReport {
     pub determinant: f64,
     /// `k_xy`, `k_z`, `k_φz`.
     pub rigidity: Rigidity,
+    /// The nearest pair of bodies that are not joined.
+    pub clearance: Clearance,
     /// `K` at `P`, linear first, base axes.
     pub stiffness: Matrix6<f64>,
 }
@@ -76,6 +79,7 @@ impl Model {
             inverse_condition: jacobian.inverse_condition(checker.length),
             determinant: jacobian.determinant() / checker.length,
             rigidity: stiffness.rigidity(self.stiffness_definition),
+            clearance: checker.nearest(pose.position, &posture),
             stiffness: stiffness.matrix(),
         }))
     }

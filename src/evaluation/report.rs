@@ -74,6 +74,7 @@ impl<L: Leg> Reporter<'_, L> {
                 constraint,
                 value,
                 threshold,
+                asked: constraint.is_asked(&self.checker.thresholds),
                 margin: value.map_or(-1.0, |value| constraint.margin(value, threshold, self.design)),
                 active: value.is_some_and(|value| !constraint.holds(value, threshold)),
                 pose: None,
@@ -104,7 +105,7 @@ impl<L: Leg> Reporter<'_, L> {
     fn value(&self, constraint: Constraint, values: &Result<PoseValues, f64>, sign: f64) -> Option<f64> {
         match (constraint, values) {
             (Constraint::Assembly, _) => None,
-            (_, Ok(values)) => Some(constraint.value(self.design, values, sign)),
+            (_, Ok(values)) => constraint.value(self.design, values, sign),
             (Constraint::Reach, Err(slack)) => Some(*slack),
             (_, Err(_)) => None,
         }
@@ -115,10 +116,9 @@ impl<L: Leg> Reporter<'_, L> {
         for report in reports {
             // Out of reach by nothing at all (a leg at its very end, or without length) is out of reach.
             let unreached = report.constraint == Constraint::Reach && values.is_err();
-            report.active |= unreached
-                || self
-                    .value(report.constraint, values, sign)
-                    .is_some_and(|value| !report.constraint.holds(value, report.threshold));
+            let broken = |value: f64| !report.constraint.holds(value, report.threshold);
+            let value = self.value(report.constraint, values, sign);
+            report.active |= unreached || report.asked && value.is_some_and(broken);
         }
     }
 
@@ -211,6 +211,15 @@ impl<L: Leg> Reporter<'_, L> {
         let phi = found.orientations[best].phi_deg.to_radians();
         let pose = || Pose::new(centre.x, centre.y, phi);
         self.visit(&mut reports, &found.centres.get(best), pose, sign_of(best));
+        // A search that does not ask for the clearance has not looked at it.
+        if let Ok(posture) = self
+            .checker
+            .manipulator
+            .posture_at(centre, &found.orientations[best].arms)
+        {
+            let clearance = self.checker.nearest(centre, &posture).distance;
+            self.lower(&mut reports[Constraint::Clearance as usize], clearance, pose);
+        }
         for index in found.turn.window(best_home) {
             self.mark_failing(&mut reports, &found.centres.get(index), sign_of(best_home));
         }
@@ -221,22 +230,24 @@ impl<L: Leg> Reporter<'_, L> {
         (reports, (mean(best_home) + assembly).max(LEAST_VIOLATION))
     }
 
-    /// Sum of the relative shortfalls of g2 … g6 at a pose, and the sign of `det A` (0 where unreachable).
+    /// Sum of the relative shortfalls of g2 … g7 at a pose, and the sign of `det A` (0 where unreachable).
     fn shortfall(&self, values: &Result<PoseValues, f64>) -> (f64, f64) {
-        const AT_POSES: [Constraint; 4] = [
+        const AT_POSES: [Constraint; 5] = [
             Constraint::Dexterity,
             Constraint::StiffnessXy,
             Constraint::StiffnessZ,
             Constraint::StiffnessPhiZ,
+            Constraint::Clearance,
         ];
+        let thresholds = &self.checker.thresholds;
+        let asked = || AT_POSES.iter().filter(|constraint| constraint.is_asked(thresholds));
         match values {
             Ok(values) => {
-                let sum = AT_POSES
-                    .iter()
-                    .map(|constraint| {
-                        let threshold = constraint.threshold(self.design, &self.checker.thresholds);
-                        let value = constraint.value(self.design, values, 1.0);
-                        (-constraint.margin(value, threshold, self.design)).max(0.0)
+                let sum = asked()
+                    .filter_map(|constraint| {
+                        let threshold = constraint.threshold(self.design, thresholds);
+                        let value = constraint.value(self.design, values, 1.0)?;
+                        Some((-constraint.margin(value, threshold, self.design)).max(0.0))
                     })
                     .sum();
                 (
@@ -251,7 +262,7 @@ impl<L: Leg> Reporter<'_, L> {
             // Out of reach nothing else has a value: every one counts as wholly missed.
             Err(slack) => {
                 let missed = Constraint::Reach.margin(*slack, 0.0, self.design);
-                (AT_POSES.len() as f64 - missed, 0.0)
+                (asked().count() as f64 - missed, 0.0)
             }
         }
     }

@@ -17,6 +17,8 @@ pub enum Quantity {
     Phi,
     /// Relative margin of a constraint.
     Margin(Constraint),
+    /// Least clearance of bodies that are not joined, whether the study asks for it or not.
+    Clearance,
     /// How far from feasible.
     Violation,
 }
@@ -36,7 +38,7 @@ impl Quantity {
         let mut all = vec![Quantity::Mass, Quantity::Radius];
         all.extend(VARIABLES.map(Quantity::Variable));
         all.extend(Constraint::ALL.map(Quantity::Margin));
-        all.extend([Quantity::Phi, Quantity::Violation]);
+        all.extend([Quantity::Clearance, Quantity::Phi, Quantity::Violation]);
         all
     }
 
@@ -48,6 +50,7 @@ impl Quantity {
             Quantity::Variable(variable) => variable.key().to_owned(),
             Quantity::Phi => "phi_deg".to_owned(),
             Quantity::Margin(constraint) => format!("margin_{}", constraint.id()),
+            Quantity::Clearance => format!("value_{}", Constraint::Clearance.id()),
             Quantity::Violation => "violation".to_owned(),
         }
     }
@@ -65,6 +68,7 @@ impl Quantity {
             Quantity::Variable(variable) => format!("{} [m]", variable.symbol()),
             Quantity::Phi => "φ_c [°]".to_owned(),
             Quantity::Margin(constraint) => format!("margin {}", constraint.id()),
+            Quantity::Clearance => "clearance [m]".to_owned(),
             Quantity::Violation => "violation".to_owned(),
         }
     }
@@ -78,6 +82,7 @@ impl Quantity {
             Quantity::Phi => "φ_c".to_owned(),
             Quantity::Margin(Constraint::DeterminantSign) => "det A".to_owned(),
             Quantity::Margin(constraint) => constraint.id().to_owned(),
+            Quantity::Clearance => "clearance".to_owned(),
             Quantity::Violation => "violation".to_owned(),
         }
     }
@@ -86,7 +91,7 @@ impl Quantity {
     pub fn better(self) -> Option<Better> {
         match self {
             Quantity::Mass | Quantity::Violation => Some(Better::Lower),
-            Quantity::Radius | Quantity::Margin(_) => Some(Better::Higher),
+            Quantity::Radius | Quantity::Margin(_) | Quantity::Clearance => Some(Better::Higher),
             Quantity::Variable(_) | Quantity::Phi => None,
         }
     }
@@ -103,7 +108,8 @@ impl Quantity {
             Quantity::Radius => row.radius,
             Quantity::Variable(variable) => row.design.values()[variable as usize],
             Quantity::Phi => row.phi.unwrap_or(f64::NAN),
-            Quantity::Margin(constraint) => row.margins[constraint as usize],
+            Quantity::Margin(constraint) => row.margins[constraint as usize].unwrap_or(f64::NAN),
+            Quantity::Clearance => row.clearance.unwrap_or(f64::NAN),
             Quantity::Violation => row.violation,
         }
     }

@@ -17,7 +17,10 @@ pub struct Store {
     /// `φ_c` \[deg\]; not a number for an infeasible design.
     phi: Vec<f64>,
     violation: Vec<f64>,
+    /// Not a number where the study does not ask for the constraint.
     margins: [Vec<f64>; Constraint::ALL.len()],
+    /// Not a number where there is none.
+    clearance: Vec<f64>,
     /// A bit for each active constraint.
     active: Vec<u8>,
 }
@@ -50,8 +53,9 @@ impl Store {
         self.phi.push(row.phi.unwrap_or(f64::NAN));
         self.violation.push(row.violation);
         for (column, margin) in self.margins.iter_mut().zip(row.margins) {
-            column.push(margin);
+            column.push(margin.unwrap_or(f64::NAN));
         }
+        self.clearance.push(row.clearance.unwrap_or(f64::NAN));
         self.active.push(row.active);
     }
 
@@ -70,6 +74,7 @@ impl Store {
         for (column, more) in self.margins.iter_mut().zip(&mut other.margins) {
             column.append(more);
         }
+        self.clearance.append(&mut other.clearance);
         self.active.append(&mut other.active);
     }
 
@@ -82,8 +87,9 @@ impl Store {
             mass: self.mass[id],
             radius: self.radius[id],
             phi: Some(self.phi[id]).filter(|phi| phi.is_finite()),
+            clearance: Some(self.clearance[id]).filter(|clearance| clearance.is_finite()),
             violation: self.violation[id],
-            margins: std::array::from_fn(|k| self.margins[k][id]),
+            margins: std::array::from_fn(|k| Some(self.margins[k][id]).filter(|margin| margin.is_finite())),
             active: self.active[id],
         })
     }
@@ -116,13 +122,14 @@ impl Store {
             Q::Variable(variable) => &self.values[variable as usize],
             Q::Phi => &self.phi,
             Q::Violation => &self.violation,
+            Q::Clearance => &self.clearance,
             Q::Margin(constraint) => &self.margins[constraint as usize],
         }
     }
 
     /// Memory in use \[bytes\].
     pub fn bytes(&self) -> usize {
-        let per_row = 1 + size_of::<WorkingMode>() + 4 + 1 + 8 * (VARIABLES.len() + 4 + Constraint::ALL.len());
+        let per_row = 1 + size_of::<WorkingMode>() + 4 + 1 + 8 * (VARIABLES.len() + 5 + Constraint::ALL.len());
         self.mass.capacity() * per_row
     }
 }

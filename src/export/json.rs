@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::Prepared;
-use crate::evaluation::{Evaluation, PoseReport, Unreachable};
+use crate::evaluation::{Constraint, Evaluation, Model, PoseReport, Unreachable};
 use crate::mechanism::{Actuator, Design};
 use crate::scene::{Body, Frame, Linkage};
 use crate::spatial::Pose;
@@ -75,11 +75,17 @@ pub struct EvaluationJson {
     home: Option<PoseJson>,
     feasible: bool,
     violation: f64,
+    /// Least clearance of bodies that are not joined, over the workspace; negative where they overlap.
+    clearance_m: Option<f64>,
+    /// The two that are nearest there.
+    clearance_pair: Option<[String; 2]>,
+    /// Those that the study asks for.
     constraints: Vec<ConstraintJson>,
 }
 
-impl From<&Evaluation> for EvaluationJson {
-    fn from(evaluation: &Evaluation) -> Self {
+impl EvaluationJson {
+    /// What is told of a design that `model` evaluated.
+    pub fn new(model: &Model, evaluation: &Evaluation) -> Self {
         let design = &evaluation.design;
         Self {
             architecture: design.architecture.name(),
@@ -93,9 +99,12 @@ impl From<&Evaluation> for EvaluationJson {
                 .map(|(pose, phi_deg)| PoseJson::new(&pose, phi_deg)),
             feasible: evaluation.is_feasible(),
             violation: evaluation.violation,
+            clearance_m: evaluation.constraint(Constraint::Clearance).value,
+            clearance_pair: model.nearest(evaluation).map(|nearest| nearest.pair()),
             constraints: evaluation
                 .constraints
                 .iter()
+                .filter(|report| report.asked)
                 .map(|report| ConstraintJson {
                     id: report.constraint.id(),
                     name: report.constraint.name(),
@@ -124,6 +133,8 @@ pub struct PoseReportJson {
     k_xy: Option<f64>,
     k_z: Option<f64>,
     k_phi_z: Option<f64>,
+    clearance_m: Option<f64>,
+    clearance_pair: Option<[String; 2]>,
     stiffness: Option<[[f64; 6]; 6]>,
 }
 
@@ -140,6 +151,8 @@ impl From<&Result<PoseReport, Unreachable>> for PoseReportJson {
             k_xy: report.map(|report| report.rigidity.k_xy),
             k_z: report.map(|report| report.rigidity.k_z),
             k_phi_z: report.map(|report| report.rigidity.k_phi_z),
+            clearance_m: report.map(|report| report.clearance.distance),
+            clearance_pair: report.map(|report| report.clearance.pair()),
             stiffness: report.map(|report| std::array::from_fn(|i| std::array::from_fn(|j| report.stiffness[(i, j)]))),
         }
     }
@@ -314,7 +327,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
         kinefront_version: env!("CARGO_PKG_VERSION"),
         study: &study.name,
         design: subject.title(),
-        evaluation: (*evaluation).into(),
+        evaluation: EvaluationJson::new(model, evaluation),
         pose: PoseJson::new(pose, pose.phi.to_degrees()),
         at_pose: (&at(pose)?).into(),
         material: (&model.material).into(),

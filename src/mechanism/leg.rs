@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::Design;
+use super::{Design, MemberKind, Members};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, LEGS, Pose, Rotation};
 
@@ -239,6 +239,10 @@ pub trait Leg: Copy + Send + Sync {
     const HAS_WORKING_MODES: bool;
     /// Number of moving bars.
     const BARS: usize;
+    /// The member before the last, for legs that have one.
+    const PROXIMAL: Option<MemberKind>;
+    /// The member up to the platform.
+    const DISTAL: MemberKind;
 
     /// Leg `index` (0, 1, 2) of `design`.
     fn new(design: &Design, settings: &LegSettings, index: usize) -> Self;
@@ -253,6 +257,9 @@ pub trait Leg: Copy + Send + Sync {
     ///
     /// Written for speed, in the leg's own axes; it rounds differently from [`Leg::inverse`] and says no reasons.
     fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> LegLanes<V>;
+
+    /// The axes of its members where the leg's end is at `c` and its last link points along `u`, at several poses at once.
+    fn members<V: Real>(&self, c: Planar<V>, u: Planar<V>) -> Members<V>;
 
     /// Actuator value: `ρ_i` \[m\], or the crank's angle to `Ox` in (−π, π] \[rad\].
     fn actuator(&self, posture: &LegPosture) -> f64;

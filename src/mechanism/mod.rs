@@ -6,6 +6,7 @@
 
 mod design;
 mod leg;
+mod member;
 mod prr;
 mod rpr;
 mod rrr;
@@ -16,6 +17,7 @@ pub use leg::{
     Actuator, BarLength, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, Manipulator,
     Posture, ReachReason, Segment, Shortfall,
 };
+pub use member::{Axis, MemberKind, Members};
 pub use prr::PrrLeg;
 pub use rpr::RprLeg;
 pub use rrr::RrrLeg;

@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::{
-    Actuator, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, ReachReason, Segment,
-    Shortfall,
+    Actuator, Axis, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, MemberKind,
+    Members, ReachReason, Segment, Shortfall,
 };
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, HALF_SQRT_3, LEGS, cross};
@@ -26,6 +26,8 @@ impl Leg for PrrLeg {
     const ACTUATOR: Actuator = Actuator::Prismatic;
     const HAS_WORKING_MODES: bool = true;
     const BARS: usize = 1;
+    const PROXIMAL: Option<MemberKind> = Some(MemberKind::Slider);
+    const DISTAL: MemberKind = MemberKind::Link;
 
     fn new(design: &Design, _: &LegSettings, index: usize) -> Self {
         let side = ANCHOR_DIRECTIONS[(index + 1) % LEGS] - ANCHOR_DIRECTIONS[index];
@@ -106,6 +108,23 @@ impl Leg for PrrLeg {
             proximal: None,
             slack,
             reachable: slack.at_least(zero),
+        }
+    }
+
+    #[inline(always)]
+    fn members<V: Real>(&self, c: Planar<V>, u: Planar<V>) -> Members<V> {
+        let like = c.x;
+        let link = Axis::back_from(c, u, like.splat(self.link));
+        let axis = Planar::splat(like, self.axis);
+        let along = link.from.minus(Planar::splat(like, self.anchor)).dot(axis);
+        Members {
+            proximal: Some(Axis {
+                from: link.from,
+                direction: axis,
+                length: like.splat(0.0),
+            }),
+            distal: link,
+            rail: Some([along, like.splat(self.travel) - along]),
         }
     }
 

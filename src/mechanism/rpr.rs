@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::{
-    Actuator, BarLength, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings,
-    ReachReason, Segment, Shortfall,
+    Actuator, Axis, BarLength, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings,
+    MemberKind, Members, ReachReason, Segment, Shortfall,
 };
 use crate::lanes::{Planar, Real};
 use crate::spatial::ANCHOR_DIRECTIONS;
@@ -18,11 +18,21 @@ pub struct RprLeg {
     bar: BarLength,
 }
 
+impl RprLeg {
+    /// Length of the tube: half of the longest leg, so that a leg may halve its length; one that gets shorter still has a
+    /// shorter tube, out of which the rod sticks behind.
+    fn tube(&self) -> f64 {
+        (0.5 * self.longest).min(self.shortest)
+    }
+}
+
 impl Leg for RprLeg {
     const NAME: &'static str = "3-RPR";
     const ACTUATOR: Actuator = Actuator::Prismatic;
     const HAS_WORKING_MODES: bool = false;
     const BARS: usize = 1;
+    const PROXIMAL: Option<MemberKind> = None;
+    const DISTAL: MemberKind = MemberKind::TelescopicLeg;
 
     fn new(design: &Design, settings: &LegSettings, index: usize) -> Self {
         Self {
@@ -87,6 +97,34 @@ impl Leg for RprLeg {
         }
     }
 
+    #[inline(always)]
+    fn members<V: Real>(&self, c: Planar<V>, u: Planar<V>) -> Members<V> {
+        let like = c.x;
+        let anchor = Planar::splat(like, self.anchor);
+        let length = c.minus(anchor).dot(u);
+        let rod = self.longest - self.tube();
+        let distal = if rod > self.shortest {
+            // What of the rod is behind the joint at the base.
+            let behind = (like.splat(rod) - length).larger(like.splat(0.0));
+            Axis {
+                from: anchor.minus(u.scaled(behind)),
+                direction: u,
+                length: length + behind,
+            }
+        } else {
+            Axis {
+                from: anchor,
+                direction: u,
+                length,
+            }
+        };
+        Members {
+            proximal: None,
+            distal,
+            rail: None,
+        }
+    }
+
     fn actuator(&self, posture: &LegPosture) -> f64 {
         posture.length
     }
@@ -101,9 +139,7 @@ impl Leg for RprLeg {
 
     fn bodies(&self, posture: &LegPosture) -> Vec<LegBody> {
         let along = |length: f64| self.anchor + posture.u * length;
-        // Half of the longest leg is in the tube, so that a leg may halve its length; one that gets shorter still has a
-        // shorter tube, out of which the rod sticks behind.
-        let tube = (0.5 * self.longest).min(self.shortest);
+        let tube = self.tube();
         let (mouth, c) = (along(tube), along(posture.length));
         vec![
             LegBody {

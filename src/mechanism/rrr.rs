@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::{
-    Actuator, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, ReachReason, Segment,
-    Shortfall,
+    Actuator, Axis, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, MemberKind,
+    Members, ReachReason, Segment, Shortfall,
 };
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, cross};
@@ -22,6 +22,8 @@ impl Leg for RrrLeg {
     const ACTUATOR: Actuator = Actuator::Revolute;
     const HAS_WORKING_MODES: bool = true;
     const BARS: usize = 2;
+    const PROXIMAL: Option<MemberKind> = Some(MemberKind::Crank);
+    const DISTAL: MemberKind = MemberKind::Link;
 
     fn new(design: &Design, _: &LegSettings, index: usize) -> Self {
         Self {
@@ -89,6 +91,23 @@ impl Leg for RrrLeg {
             proximal: Some(Planar::new((quarter - ratio) * square * to_unit, -drive)),
             slack: slack.larger(zero).where_set(reachable, slack.smaller(zero)),
             reachable,
+        }
+    }
+
+    #[inline(always)]
+    fn members<V: Real>(&self, c: Planar<V>, u: Planar<V>) -> Members<V> {
+        let like = c.x;
+        let length = like.splat(self.link);
+        let link = Axis::back_from(c, u, length);
+        let anchor = Planar::splat(like, self.anchor);
+        Members {
+            proximal: Some(Axis {
+                from: anchor,
+                direction: link.from.minus(anchor).scaled(like.splat(1.0 / self.link)),
+                length,
+            }),
+            distal: link,
+            rail: None,
         }
     }
 

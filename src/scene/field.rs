@@ -18,8 +18,10 @@ pub enum Field {
     StiffnessPhiZ,
     /// Displacement under the study's in-plane force in its worst direction \[m\].
     Displacement,
-    /// Smallest relative margin of g2 … g6.
+    /// Smallest relative margin of g2 … g6, and of g7 where the study asks for it.
     WorstMargin,
+    /// Least clearance of bodies that are not joined \[m\]; negative where they overlap.
+    Clearance,
     /// `det A / ℓ`, whose zeros are the parallel singularities.
     Determinant,
 }
@@ -35,13 +37,14 @@ pub enum Scale {
 
 impl Field {
     /// The fields to choose from.
-    pub const ALL: [Field; 6] = [
+    pub const ALL: [Field; 7] = [
         Field::InverseCondition,
         Field::StiffnessXy,
         Field::StiffnessZ,
         Field::StiffnessPhiZ,
         Field::Displacement,
         Field::WorstMargin,
+        Field::Clearance,
     ];
 
     /// The field of a short name.
@@ -58,6 +61,7 @@ impl Field {
             Field::StiffnessPhiZ => "k_phi_z",
             Field::Displacement => "displacement",
             Field::WorstMargin => "worst_margin",
+            Field::Clearance => "clearance",
             Field::Determinant => "determinant",
         }
     }
@@ -70,7 +74,8 @@ impl Field {
             Field::StiffnessZ => "stiffness k_z [N/m]",
             Field::StiffnessPhiZ => "stiffness k_φz [N·m/rad]",
             Field::Displacement => "displacement under the in-plane force [mm]",
-            Field::WorstMargin => "smallest relative margin of g2 … g6",
+            Field::WorstMargin => "smallest relative margin of g2 … g7",
+            Field::Clearance => "clearance of the bodies [mm]",
             Field::Determinant => "det A / ℓ",
         }
     }
@@ -78,7 +83,7 @@ impl Field {
     /// Factor from SI to the unit of [`Field::title`].
     pub fn display_factor(self) -> f64 {
         match self {
-            Field::Displacement => 1e3,
+            Field::Displacement | Field::Clearance => 1e3,
             _ => 1.0,
         }
     }
@@ -86,7 +91,7 @@ impl Field {
     /// How its colours are spread.
     pub fn scale(self) -> Scale {
         match self {
-            Field::InverseCondition | Field::WorstMargin | Field::Determinant => Scale::Linear,
+            Field::InverseCondition | Field::WorstMargin | Field::Clearance | Field::Determinant => Scale::Linear,
             Field::StiffnessXy | Field::StiffnessZ | Field::StiffnessPhiZ | Field::Displacement => Scale::Logarithmic,
         }
     }
@@ -100,7 +105,17 @@ impl Field {
             Field::StiffnessZ => thresholds.k_z,
             Field::StiffnessPhiZ => thresholds.k_phi_z,
             Field::Displacement => model.in_plane_force / thresholds.k_xy,
+            Field::Clearance => thresholds.clearance.unwrap_or(0.0),
             Field::WorstMargin | Field::Determinant => 0.0,
+        }
+    }
+
+    /// The least clearance that poses are looked at for; `None` where the field is not about it.
+    pub(super) fn clearance(self, model: &Model) -> Option<f64> {
+        match self {
+            Field::Clearance => Some(self.threshold(model)),
+            Field::WorstMargin => model.thresholds.clearance,
+            _ => None,
         }
     }
 
@@ -119,6 +134,7 @@ impl Field {
         match self {
             Field::InverseCondition => values.inverse_condition,
             Field::Determinant => values.determinant,
+            Field::Clearance => values.clearance.unwrap_or(0.0),
             Field::StiffnessXy => values.rigidity.k_xy,
             Field::StiffnessPhiZ => values.rigidity.k_phi_z,
             Field::StiffnessZ => values.rigidity.k_z,
@@ -133,7 +149,8 @@ impl Field {
             Field::WorstMargin => {
                 let margin = |constraint: Constraint| {
                     let threshold = constraint.threshold(design, &model.thresholds);
-                    constraint.margin(constraint.value(design, values, 1.0), threshold, design)
+                    let value = constraint.value(design, values, 1.0)?;
+                    Some(constraint.margin(value, threshold, design))
                 };
                 [
                     Constraint::Reach,
@@ -141,9 +158,10 @@ impl Field {
                     Constraint::StiffnessXy,
                     Constraint::StiffnessZ,
                     Constraint::StiffnessPhiZ,
+                    Constraint::Clearance,
                 ]
                 .into_iter()
-                .map(margin)
+                .filter_map(margin)
                 .fold(f64::INFINITY, f64::min)
             }
         }

@@ -11,6 +11,7 @@ use super::sections::{
     ActuatorSection, Bounds, Grids, LengthChoice, MaterialSection, ModelSection, ReferenceDesign, RequirementSection,
     StiffnessChoice, TelescopicBar, WorkspaceSection,
 };
+use crate::clearance::BodySettings;
 use crate::evaluation::Model;
 use crate::kinematics::CharacteristicLength;
 use crate::mechanism::{Architecture, BarLength, LegSettings, WorkingMode};
@@ -39,6 +40,8 @@ pub struct Study {
     pub workspace: WorkspaceSection,
     /// `[model]`.
     pub model: ModelSection,
+    /// `[bodies]`.
+    pub bodies: BodySettings,
     /// `[bounds]`.
     pub bounds: Bounds,
     /// `[grid]`.
@@ -64,6 +67,7 @@ impl Default for Study {
             requirements: RequirementSection::default(),
             workspace: WorkspaceSection::default(),
             model: ModelSection::default(),
+            bodies: BodySettings::default(),
             bounds: Bounds::default(),
             grid: Grids::default(),
             optimizer: OptimizerSection::default(),
@@ -95,6 +99,7 @@ impl Study {
                 },
                 telescopic_shortest: model.telescopic_shortest,
             },
+            bodies: self.bodies,
             platform_bars: model.platform_bars,
             stiffness_definition: match model.stiffness_definition {
                 StiffnessChoice::Stiffness => StiffnessDefinition::Stiffness,
@@ -117,6 +122,7 @@ impl Study {
                 k_phi_z: requirements
                     .k_phi_z_min_nm_per_rad
                     .unwrap_or(requirements.torque_z_nm / requirements.rotation_z_deg.to_radians()),
+                clearance: requirements.clearance_min_m,
             },
             in_plane_force: requirements.in_plane_force_n,
             workspace: WorkspaceSpec {

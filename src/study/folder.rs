@@ -247,7 +247,12 @@ fn row(id: usize, generation: usize, evaluation: &Evaluation) -> Vec<String> {
     row.push(evaluation.workspace_radius.to_string());
     row.push(optional(evaluation.home_phi_deg));
     row.push(evaluation.is_feasible().to_string());
-    row.extend(evaluation.constraints.iter().map(|report| report.margin.to_string()));
+    row.extend(
+        evaluation
+            .constraints
+            .iter()
+            .map(|report| optional(report.asked_margin())),
+    );
     row.extend(evaluation.constraints.iter().map(|report| optional(report.value)));
     let active: Vec<&str> = evaluation.active().map(Constraint::id).collect();
     row.push(active.join("+"));

@@ -4,6 +4,7 @@ mod builtin;
 mod control;
 mod error;
 mod events;
+mod faults;
 mod file;
 mod folder;
 mod optimizer;
@@ -15,8 +16,9 @@ mod table;
 
 pub use builtin::{BUILTIN, Builtin};
 pub use control::RunControl;
-pub use error::{Fault, StudyError};
+pub use error::StudyError;
 pub use events::{Batch, Event, FrontMember, GenerationSummary, Outcome, RunSummary, RunTimes, Started, Subscriber};
+pub use faults::Fault;
 pub use file::Study;
 pub use folder::{FolderError, RunFolder, RunReport, TABLE_HEADER, front_table, write_whole};
 pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnation};

@@ -76,6 +76,9 @@ pub struct RequirementSection {
     /// Threshold of g6 outright.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k_phi_z_min_nm_per_rad: Option<f64>,
+    /// Threshold of g7: least clearance of bodies that are not joined; they may collide where it is left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clearance_min_m: Option<f64>,
 }
 
 impl Default for RequirementSection {
@@ -91,6 +94,7 @@ impl Default for RequirementSection {
             k_xy_min_n_per_m: None,
             k_z_min_n_per_m: None,
             k_phi_z_min_nm_per_rad: None,
+            clearance_min_m: None,
         }
     }
 }

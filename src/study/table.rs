@@ -21,8 +21,11 @@ pub struct Row {
     pub phi: Option<f64>,
     /// Violation, 0 for a feasible design.
     pub violation: f64,
-    /// Relative margins in the order of [`Constraint::ALL`].
-    pub margins: [f64; Constraint::ALL.len()],
+    /// Relative margins in the order of [`Constraint::ALL`], of those that the study asks for.
+    pub margins: [Option<f64>; Constraint::ALL.len()],
+    /// Least clearance of bodies that are not joined \[m\], asked for or not; `None` where no pose has one, and in tables
+    /// of earlier versions.
+    pub clearance: Option<f64>,
     /// A bit for each active constraint, the first the lowest.
     pub active: u8,
 }
@@ -37,7 +40,8 @@ impl Row {
             radius: evaluation.workspace_radius,
             phi: evaluation.home_phi_deg,
             violation: evaluation.violation,
-            margins: evaluation.constraints.map(|report| report.margin),
+            margins: evaluation.constraints.map(|report| report.asked_margin()),
+            clearance: evaluation.constraint(Constraint::Clearance).value,
             active: bits(evaluation.active()),
         }
     }
@@ -66,9 +70,12 @@ impl Row {
             *value = wanted(variable.key())?;
         }
         let design = Design::new(architecture, mode, values).map_err(|error| error.to_string())?;
-        let mut margins = [0.0; Constraint::ALL.len()];
+        let asked = study.model().thresholds;
+        let mut margins = [None; Constraint::ALL.len()];
         for (margin, constraint) in margins.iter_mut().zip(Constraint::ALL) {
-            *margin = wanted(&format!("margin_{}", constraint.id()))?;
+            if constraint.is_asked(&asked) {
+                *margin = Some(wanted(&format!("margin_{}", constraint.id()))?);
+            }
         }
         let active = text("active").unwrap_or_default();
         let named = |constraint: &Constraint| active.split('+').any(|id| id == constraint.id());
@@ -80,6 +87,7 @@ impl Row {
             phi: number("phi_deg"),
             violation: wanted("violation")?,
             margins,
+            clearance: number(&format!("value_{}", Constraint::Clearance.id())),
             active: bits(Constraint::ALL.into_iter().filter(named)),
         })
     }

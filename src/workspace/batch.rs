@@ -101,8 +101,12 @@ pub(crate) struct Minimum {
     pub index: usize,
 }
 
-/// Smallest slack, `κ_F⁻¹`, `k_xy`, `k_z`, `k_φz` and `det A / ℓ` (counted positive in the given sign).
-pub(crate) type Minima = [Minimum; 6];
+/// Quantities of which the smallest value is looked for.
+const QUANTITIES: usize = 7;
+
+/// Smallest slack, `κ_F⁻¹`, `k_xy`, `k_z`, `k_φz`, `det A / ℓ` (counted positive in the given sign) and clearance, which
+/// is looked for whether g7 is asked or not.
+pub(crate) type Minima = [Minimum; QUANTITIES];
 
 struct Smallest<'a, L> {
     checker: &'a PoseChecker<L>,
@@ -120,14 +124,17 @@ impl<L: Leg> WithSimd for Smallest<'_, L> {
     fn with_simd<S: Simd>(self, simd: S) -> Minima {
         let (arms, sign) = self.oriented.lanes(simd);
         let infinite = sign.splat(f64::INFINITY);
-        let mut values = [infinite; 6];
-        let mut indices = [sign.splat(0.0); 6];
+        let mut values = [infinite; QUANTITIES];
+        let mut indices = [sign.splat(0.0); QUANTITIES];
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         for ((x, y), index) in xs.iter().zip(ys).zip(Lanes::<S>::column(self.indices)) {
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
             let index = Lanes::load(simd, index);
-            let found = self.checker.lanes(position, &arms);
+            let (found, directions) = self.checker.lanes_without_clearance(position, &arms);
             let reachable = found.reachable;
+            // Only what is below the smallest so far is of interest; of a pose that is not reached, nothing.
+            let limit = values[6].where_set(reachable, sign.splat(f64::NEG_INFINITY));
+            let clearance = self.checker.clearance_below(position, &arms, &directions, limit);
             macro_rules! lower {
                 ($($k:literal: $value:expr,)+) => {$({
                     let smaller = values[$k].exceeds($value);
@@ -142,12 +149,13 @@ impl<L: Leg> WithSimd for Smallest<'_, L> {
                 3: found.k_z.where_set(reachable, infinite),
                 4: found.k_phi_z.where_set(reachable, infinite),
                 5: (found.determinant * sign).where_set(reachable, infinite),
+                6: clearance.where_set(reachable, infinite),
             }
         }
         let mut minima = [Minimum {
             value: f64::INFINITY,
             index: 0,
-        }; 6];
+        }; QUANTITIES];
         let mut lanes = [[0.0; MOST_LANES]; 2];
         for (minimum, (value, index)) in minima.iter_mut().zip(values.into_iter().zip(indices)) {
             value.store(&mut Lanes::<S>::column_mut(&mut lanes[0])[0]);

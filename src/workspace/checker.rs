@@ -1,14 +1,15 @@
-//! Is this pose good? Reach, joint limits, sign of `det A`, dexterity and stiffness (g2 … g6).
+//! Is this pose good? Reach, joint limits, sign of `det A`, dexterity, stiffness and clearance (g2 … g7).
 
 use glam::DVec2;
 
+use crate::clearance::{Bodies, Clearance};
 use crate::kinematics::Jacobian;
 use crate::lanes::{InstructionSet, Planar, Real};
 use crate::mechanism::{Leg, Manipulator, Posture};
 use crate::spatial::LEGS;
 use crate::stiffness::{PlanarStiffness, Rigidity, StiffnessDefinition, StiffnessModel};
 
-/// Least values that a good pose must have (g3 … g6).
+/// Least values that a good pose must have (g3 … g7).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thresholds {
     /// `κ_F⁻¹` ≥ this (g3).
@@ -19,6 +20,8 @@ pub struct Thresholds {
     pub k_z: f64,
     /// `k_φz` ≥ this \[N·m/rad\] (g6).
     pub k_phi_z: f64,
+    /// Clearance ≥ this \[m\] (g7); `None` where bodies may collide.
+    pub clearance: Option<f64>,
 }
 
 impl Thresholds {
@@ -28,6 +31,9 @@ impl Thresholds {
             && values.rigidity.k_xy >= self.k_xy
             && values.rigidity.k_phi_z >= self.k_phi_z
             && values.rigidity.k_z >= self.k_z
+            && self
+                .clearance
+                .is_none_or(|least| values.clearance.is_some_and(|clearance| clearance >= least))
     }
 }
 
@@ -42,7 +48,12 @@ pub struct PoseValues {
     pub inverse_condition: f64,
     /// `k_xy`, `k_z`, `k_φz`.
     pub rigidity: Rigidity,
+    /// Least clearance of bodies that are not joined \[m\]; `None` where nobody asks for it.
+    pub clearance: Option<f64>,
 }
+
+/// Longest distance that is told \[m\].
+pub(super) const FARTHEST: f64 = 1e100;
 
 impl PoseValues {
     /// The same, with 0 for what has left the number range: nothing that is no number leaves the model.
@@ -59,6 +70,8 @@ impl PoseValues {
                 *value = 0.0;
             }
         }
+        // What is that far off, or has left the number range with all its neighbours, collides with nothing.
+        self.clearance = self.clearance.map(|clearance| clearance.min(FARTHEST));
         self
     }
 }
@@ -80,6 +93,8 @@ pub struct PoseLanes<V: Real> {
     pub k_z: V,
     /// `k_φz` \[N·m/rad\].
     pub k_phi_z: V,
+    /// Least clearance of bodies that are not joined \[m\]; `None` where nobody asks for it.
+    pub clearance: Option<V>,
 }
 
 impl PoseLanes<f64> {
@@ -94,6 +109,7 @@ impl PoseLanes<f64> {
                 k_z: self.k_z,
                 k_phi_z: self.k_phi_z,
             },
+            clearance: self.clearance,
         };
         self.reachable.then(|| values.finite())
     }
@@ -110,6 +126,8 @@ pub struct PoseChecker<L> {
     pub definition: StiffnessDefinition,
     /// Characteristic length `ℓ` \[m\].
     pub length: f64,
+    /// What may collide.
+    pub bodies: Bodies,
     /// What a good pose must have.
     pub thresholds: Thresholds,
     /// What poses are taken several at a time with. Changes no bit of a result.
@@ -132,12 +150,42 @@ impl<L: Leg> PoseChecker<L> {
             return None;
         }
         let k_z = self.vertical_rigidity(&posture, &jacobian);
-        (k_z >= self.thresholds.k_z).then(|| determinant.signum())
+        let clear = |least: f64| self.nearest(position, &posture).distance >= least;
+        (k_z >= self.thresholds.k_z && self.thresholds.clearance.is_none_or(clear)).then(|| determinant.signum())
     }
 
-    /// All values at several poses at once, `arms` as in [`Manipulator::arms`].
+    /// All values at several poses at once, `arms` as in [`Manipulator::arms`]; the clearance only where g7 asks for it.
     #[inline(always)]
     pub fn lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS]) -> PoseLanes<V> {
+        let (mut values, directions) = self.lanes_without_clearance(position, arms);
+        if self.thresholds.clearance.is_some() {
+            let limit = position.x.splat(f64::INFINITY);
+            values.clearance = Some(self.clearance_below(position, arms, &directions, limit));
+        }
+        values
+    }
+
+    /// The least clearance at several poses at once where it is below `limit`, else `limit`, with the legs' directions as
+    /// [`PoseChecker::lanes_without_clearance`] gives them. Of no meaning where a leg does not reach.
+    #[inline(always)]
+    pub(super) fn clearance_below<V: Real>(
+        &self,
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
+        directions: &[Planar<V>; LEGS],
+        limit: V,
+    ) -> V {
+        self.bodies
+            .below(&self.manipulator.legs, position, arms, directions, limit)
+    }
+
+    /// All values but the clearance at several poses at once, and the legs' `u_i`.
+    #[inline(always)]
+    pub(super) fn lanes_without_clearance<V: Real>(
+        &self,
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
+    ) -> (PoseLanes<V>, [Planar<V>; LEGS]) {
         let like = position.x;
         let legs = &self.manipulator.legs;
         let legs = [
@@ -155,7 +203,7 @@ impl<L: Leg> PoseChecker<L> {
             Some(model) => model.rigidity_lanes(self.definition, &legs, arms, &jacobian),
             None => [like.splat(0.0); 3],
         };
-        PoseLanes {
+        let values = PoseLanes {
             reachable: legs[0].reachable & legs[1].reachable & legs[2].reachable,
             slack: legs[0].slack.smaller(legs[1].slack.smaller(legs[2].slack)),
             determinant: jacobian.determinant() * like.splat(1.0 / self.length),
@@ -163,23 +211,39 @@ impl<L: Leg> PoseChecker<L> {
             k_xy,
             k_z,
             k_phi_z,
-        }
+            clearance: None,
+        };
+        (values, [legs[0].u, legs[1].u, legs[2].u])
     }
 
     /// Where the pose is good, with `det A` of the given sign (±1).
     #[inline(always)]
     pub(super) fn good_lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS], sign: V) -> V::Mask {
-        let values = self.lanes(position, arms);
+        let (values, directions) = self.lanes_without_clearance(position, arms);
         let least = &self.thresholds;
-        values.reachable
+        let good = values.reachable
             & (values.determinant * sign).exceeds(sign.splat(0.0))
             & values.inverse_condition.at_least(sign.splat(least.inverse_condition))
             & values.k_xy.at_least(sign.splat(least.k_xy))
             & values.k_phi_z.at_least(sign.splat(least.k_phi_z))
-            & values.k_z.at_least(sign.splat(least.k_z))
+            & values.k_z.at_least(sign.splat(least.k_z));
+        match least.clearance {
+            // Where the pose has failed already, nothing is below the limit, and no pair is looked at for its sake.
+            Some(least) if V::any(good) => {
+                let least = sign.splat(least);
+                let limit = least.where_set(good, sign.splat(f64::NEG_INFINITY));
+                good & self.clearance_below(position, arms, &directions, limit).at_least(least)
+            }
+            _ => good,
+        }
     }
 
-    /// All values at a posture.
+    /// The nearest pair of bodies that are not joined, at a posture with `P` at `position`.
+    pub fn nearest(&self, position: DVec2, posture: &Posture) -> Clearance {
+        self.bodies.nearest(&self.manipulator, position, posture)
+    }
+
+    /// All values at a posture, the clearance left out.
     pub fn values_at(&self, posture: &Posture, jacobian: &Jacobian) -> PoseValues {
         let (k_xy, k_phi_z) = self.in_plane_rigidity(&self.in_plane(posture, jacobian));
         PoseValues {
@@ -191,6 +255,7 @@ impl<L: Leg> PoseChecker<L> {
                 k_z: self.vertical_rigidity(posture, jacobian),
                 k_phi_z,
             },
+            clearance: None,
         }
     }
 

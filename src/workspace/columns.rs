@@ -4,6 +4,7 @@ use glam::DVec2;
 use pulp::{Simd, WithSimd};
 
 use super::batch::Oriented;
+use super::checker::FARTHEST;
 use super::{PoseChecker, PoseLanes, PoseValues, Thresholds};
 use crate::lanes::{Lanes, MOST_LANES, Planar, Real, padded};
 use crate::mechanism::Leg;
@@ -53,9 +54,6 @@ impl Positions {
     }
 }
 
-/// Longest distance that is told \[m\].
-const FARTHEST: f64 = 1e100;
-
 /// Values at many poses, a column each, padded.
 #[derive(Debug, Clone, Default)]
 pub struct ValueColumns {
@@ -67,10 +65,13 @@ pub struct ValueColumns {
     k_xy: Vec<f64>,
     k_z: Vec<f64>,
     k_phi_z: Vec<f64>,
+    /// Empty where nobody asks for it.
+    clearance: Vec<f64>,
 }
 
 impl ValueColumns {
-    fn resize(&mut self, length: usize) {
+    fn resize(&mut self, length: usize, clearance: bool) {
+        self.clearance.resize(if clearance { length } else { 0 }, 0.0);
         for column in [
             &mut self.reachable,
             &mut self.slack,
@@ -103,6 +104,7 @@ impl ValueColumns {
                 k_z: self.k_z[index],
                 k_phi_z: self.k_phi_z[index],
             },
+            clearance: self.clearance.get(index).copied(),
         }
         .finite())
     }
@@ -143,6 +145,7 @@ impl ValueColumns {
             k_xy: Lanes::<S>::column_mut(&mut self.k_xy),
             k_z: Lanes::<S>::column_mut(&mut self.k_z),
             k_phi_z: Lanes::<S>::column_mut(&mut self.k_phi_z),
+            clearance: Lanes::<S>::column_mut(&mut self.clearance),
         }
     }
 }
@@ -158,6 +161,7 @@ struct Writer<'a, S: Simd> {
     k_xy: &'a mut [Group<S>],
     k_z: &'a mut [Group<S>],
     k_phi_z: &'a mut [Group<S>],
+    clearance: &'a mut [Group<S>],
 }
 
 impl<S: Simd> Writer<'_, S> {
@@ -171,6 +175,9 @@ impl<S: Simd> Writer<'_, S> {
         values.k_xy.store(&mut self.k_xy[group]);
         values.k_z.store(&mut self.k_z[group]);
         values.k_phi_z.store(&mut self.k_phi_z[group]);
+        if let Some(clearance) = values.clearance {
+            clearance.store(&mut self.clearance[group]);
+        }
     }
 }
 
@@ -292,7 +299,7 @@ impl<L: Leg> PoseChecker<L> {
     /// [`MOST_LANES`].
     pub fn at_positions(&self, arms: &[DVec2; LEGS], xs: &[f64], ys: &[f64], values: &mut ValueColumns) {
         assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MOST_LANES));
-        values.resize(xs.len());
+        values.resize(xs.len(), self.thresholds.clearance.is_some());
         self.instructions.run(AtPositions {
             checker: self,
             oriented: Oriented { arms, sign: 1.0 },
@@ -305,7 +312,7 @@ impl<L: Leg> PoseChecker<L> {
     /// Values at many poses, one for each of `positions` and of `arms`, both padded.
     pub(crate) fn at_poses(&self, positions: &Positions, arms: &ArmColumns, values: &mut ValueColumns) {
         assert!(arms.0.iter().all(|column| column.len() == positions.xs.len()));
-        values.resize(positions.xs.len());
+        values.resize(positions.xs.len(), self.thresholds.clearance.is_some());
         self.instructions.run(AtPoses {
             checker: self,
             xs: &positions.xs,

@@ -43,12 +43,13 @@ fn absent(modules: &[&str], words: &[&str]) {
     }
 }
 
-const MODEL: [&str; 7] = [
+const MODEL: [&str; 8] = [
     "lanes",
     "spatial",
     "mechanism",
     "kinematics",
     "stiffness",
+    "clearance",
     "workspace",
     "evaluation",
 ];

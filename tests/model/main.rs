@@ -1,5 +1,6 @@
 //! The model: joints, Jacobians, stiffness, workspace and optimizers against identities and independent values.
 
+mod clearance;
 mod forms;
 mod invariants;
 mod joints;

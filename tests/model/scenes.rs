@@ -162,6 +162,7 @@ fn field_value(model: &Model, design: &Design, field: Field, report: &PoseReport
         Field::StiffnessZ => report.rigidity.k_z,
         Field::StiffnessPhiZ => report.rigidity.k_phi_z,
         Field::Determinant => report.determinant,
+        Field::Clearance => report.clearance.distance,
         Field::Displacement => {
             let inverse = report.stiffness.try_inverse().expect("a stiffness");
             let block = nalgebra::Matrix2::new(inverse[(0, 0)], inverse[(0, 1)], inverse[(1, 0)], inverse[(1, 1)]);

@@ -12,7 +12,7 @@ use kinefront::workspace::{Grid, PoseChecker};
 use proptest::prelude::*;
 use rayon::prelude::*;
 
-use super::strategies::design;
+use super::strategies::{bodies, clearance, design};
 
 /// Which form says what poses are good.
 #[derive(Clone, Copy)]
@@ -158,6 +158,13 @@ proptest! {
         same(&model, &design).map_err(TestCaseError::fail)?;
     }
 
+    #[test]
+    fn also_where_bodies_must_not_collide(design in design(0.01), bodies in bodies(), clearance in 0.0..0.05) {
+        let mut model = Model { bodies, ..Model::default() };
+        model.thresholds.clearance = Some(clearance);
+        same(&model, &design).map_err(TestCaseError::fail)?;
+    }
+
     /// Ties, and grids of any shape: one direction marched, rings of a few poses, hardly a step, no halving.
     #[test]
     fn the_search_is_the_definition_to_the_bit(
@@ -168,11 +175,15 @@ proptest! {
         phi_step_deg in prop::sample::select(&[2.5, 5.0, 10.0][..]),
         half_window in 0..5u32,
         off_centre: bool,
+        bodies in bodies(),
+        clearance in clearance(),
     ) {
         let mut model = Model {
             reference_grid: Grid { phi_step_deg, directions, ray_steps, halvings },
+            bodies,
             ..Model::default()
         };
+        model.thresholds.clearance = clearance;
         model.workspace.rotation_range_deg = 2.0 * f64::from(half_window) * phi_step_deg;
         if off_centre {
             model.workspace.centre = DVec2::new(0.1, -0.05);
@@ -193,19 +204,27 @@ proptest! {
 
     /// A report speaks of the workspace it reports.
     #[test]
-    fn reports_are_consistent(design in design(0.0)) {
-        let found = Model::default().evaluate(&design, GridChoice::Reference).expect("a whole grid");
+    fn reports_are_consistent(design in design(0.0), bodies in bodies(), clearance in clearance()) {
+        let mut model = Model { bodies, ..Model::default() };
+        model.thresholds.clearance = clearance;
+        let found = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
         prop_assert_eq!(found.is_feasible(), found.violation == 0.0);
         prop_assert_eq!(found.is_feasible(), found.home.is_some());
         prop_assert!(found.violation.is_finite() && found.mass.is_finite());
         for report in &found.constraints {
             prop_assert!(report.margin.is_finite() && report.value.is_none_or(f64::is_finite));
             if found.is_feasible() {
-                prop_assert!(report.margin >= 0.0, "{report:?}");
+                prop_assert!(report.margin >= 0.0 || !report.asked, "{report:?}");
                 prop_assert_eq!(report.pose.is_none(), report.constraint == Constraint::Assembly);
             }
         }
         prop_assert!(found.active().next().is_some(), "nothing is active");
+        // What is told of the nearest pair is what was found over the workspace.
+        let told = found.constraint(Constraint::Clearance);
+        prop_assert_eq!(told.asked, clearance.is_some());
+        let nearest = model.nearest(&found).map(|nearest| nearest.distance);
+        let close = |nearest: f64| told.value.is_some_and(|value| (nearest - value).abs() < 1e-7);
+        prop_assert!(nearest.map_or(told.value.is_none(), close), "{:?} for {:?}", nearest, told);
     }
 }
 

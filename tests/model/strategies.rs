@@ -1,5 +1,6 @@
 //! Random designs and poses over the whole design space of the paper.
 
+use kinefront::clearance::{BodySettings, Layers};
 use kinefront::mechanism::{Architecture, Design, WorkingMode};
 use kinefront::spatial::Pose;
 use proptest::prelude::*;
@@ -22,4 +23,35 @@ pub fn design(thinnest: f64) -> impl Strategy<Value = Design> {
 
 pub fn pose() -> impl Strategy<Value = Pose> {
     (-2.0..2.0, -2.0..2.0, -3.2..3.2).prop_map(|(x, y, phi)| Pose::new(x, y, phi))
+}
+
+/// Sliders and layers, in one plane, as they are built, or as they come.
+pub fn bodies() -> impl Strategy<Value = BodySettings> {
+    let layer = || -2.0..2.0;
+    let any = (layer(), layer(), layer(), layer(), layer());
+    let any = any.prop_map(|(platform, link, telescopic_leg, crank, slider)| Layers {
+        platform,
+        link,
+        telescopic_leg,
+        crank,
+        slider,
+    });
+    let plane = Layers {
+        platform: 0.0,
+        link: 0.0,
+        telescopic_leg: 0.0,
+        crank: 0.0,
+        slider: 0.0,
+    };
+    let layers = prop_oneof![Just(Layers::default()), Just(plane), any];
+    (layers, 0.5..3.0, 2.0..6.0).prop_map(|(layers, half_width, length)| BodySettings {
+        slider_length: length * half_width,
+        slider_half_width: half_width,
+        layers,
+    })
+}
+
+/// A clearance that a study may ask for.
+pub fn clearance() -> impl Strategy<Value = Option<f64>> {
+    prop::option::weighted(0.8, 0.0..0.05)
 }

@@ -73,6 +73,7 @@ impl Heatmap {
         with_leg!(design.architecture, L => {
             let mut checker = model.checker::<L>(design)?;
             checker.definition = field.definition(model);
+            checker.thresholds.clearance = field.clearance(model);
             let sampler = Sampler { model, design, checker: &checker, arms: checker.manipulator.arms(&Rotation::new(phi)), field };
             Ok(sampler.heatmap(phi, settings))
         })

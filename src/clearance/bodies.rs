@@ -1,0 +1,305 @@
+//! The bodies of one design, made ready for many poses.
+
+use glam::{DVec2, DVec3};
+
+use super::capsule::{Capsule, Clearance, Member, Neighbour};
+use super::distance::{may_be_nearer, squared};
+use super::layers::BodySettings;
+use crate::lanes::{Planar, Real};
+use crate::mechanism::{Axis, Design, Leg, Manipulator, MemberKind, Posture};
+use crate::spatial::LEGS;
+
+/// Rows of members: those before the last of each leg, the last ones, and the platform's bars.
+const ROWS: usize = 3;
+const PROXIMAL: usize = 0;
+const DISTAL: usize = 1;
+const PLATFORM: usize = 2;
+
+/// Most pairs of members that are not joined: 3 + 3 + 6 among legs, 9 + 6 with the platform's bars.
+const MOST_PAIRS: usize = 27;
+
+/// Two members that are not joined.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Pair {
+    /// Places of both: `LEGS · row + leg`.
+    places: [usize; 2],
+    /// Sum of their radii \[m\].
+    radii: f64,
+    /// Distance of their layers, squared \[m²\].
+    layers_squared: f64,
+    /// What their clearance is at least, by their layers alone \[m\].
+    least: f64,
+}
+
+/// The bodies of a design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bodies {
+    kinds: [Option<MemberKind>; ROWS],
+    radii: [f64; ROWS],
+    heights: [f64; ROWS],
+    platform_radius: f64,
+    /// Half of a slider's length, and of its axis \[m\].
+    slider: [f64; 2],
+    /// Those that can come nearest first.
+    pairs: [Pair; MOST_PAIRS],
+    count: usize,
+}
+
+/// A pose of which the axes are laid out.
+type Axes<V> = [Axis<V>; ROWS * LEGS];
+
+impl Bodies {
+    /// The bodies of `design`, whose legs are of type `L`.
+    pub fn new<L: Leg>(design: &Design, settings: &BodySettings) -> Self {
+        let kinds = [L::PROXIMAL, Some(L::DISTAL), Some(MemberKind::PlatformBar)];
+        let radii = kinds.map(|kind| kind.map_or(0.0, |kind| settings.radius(kind, design)));
+        let heights = kinds.map(|kind| kind.map_or(0.0, |kind| settings.height(kind, design)));
+        let half_length = settings.slider_half_length(design);
+        let none = Pair {
+            places: [0; 2],
+            radii: 0.0,
+            layers_squared: 0.0,
+            least: f64::INFINITY,
+        };
+        let mut bodies = Self {
+            kinds,
+            radii,
+            heights,
+            platform_radius: design.platform_radius,
+            slider: [half_length, (half_length - radii[PROXIMAL]).max(0.0)],
+            pairs: [none; MOST_PAIRS],
+            count: 0,
+        };
+        bodies.pair_up();
+        bodies
+    }
+
+    /// Fills in the pairs that are not joined.
+    fn pair_up(&mut self) {
+        for first in 0..ROWS * LEGS {
+            for second in first + 1..ROWS * LEGS {
+                let rows = [first / LEGS, second / LEGS];
+                if rows.iter().any(|&row| self.kinds[row].is_none()) {
+                    continue;
+                }
+                let of_one_leg = first % LEGS == second % LEGS;
+                let joined = match rows {
+                    [PLATFORM, PLATFORM] => true,
+                    [PROXIMAL, DISTAL] | [DISTAL, PLATFORM] => of_one_leg,
+                    _ => false,
+                };
+                if joined {
+                    continue;
+                }
+                let gap = (self.heights[rows[0]] - self.heights[rows[1]]).abs();
+                let radii = self.radii[rows[0]] + self.radii[rows[1]];
+                self.pairs[self.count] = Pair {
+                    places: [first, second],
+                    radii,
+                    layers_squared: gap * gap,
+                    least: gap - radii,
+                };
+                self.count += 1;
+            }
+        }
+        self.pairs[..self.count].sort_by(|a, b| a.least.total_cmp(&b.least));
+    }
+
+    /// The axes of all members, and the distances of sliders from the ends of their rails.
+    #[inline(always)]
+    #[allow(clippy::type_complexity)]
+    fn axes<V: Real, L: Leg>(
+        &self,
+        legs: &[L; LEGS],
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
+        directions: &[Planar<V>; LEGS],
+    ) -> (Axes<V>, [Option<[V; 2]>; LEGS]) {
+        let like = position.x;
+        let members = |leg: usize| legs[leg].members(position.plus(arms[leg]), directions[leg]);
+        let members = [members(0), members(1), members(2)];
+        let proximal = |leg: usize| match (members[leg].proximal, L::PROXIMAL) {
+            (Some(axis), Some(MemberKind::Slider)) => axis.extended(like.splat(self.slider[1])),
+            (Some(axis), _) => axis,
+            // Not looked at: no pair has it.
+            (None, _) => members[leg].distal,
+        };
+        let bar = |leg: usize| Axis {
+            from: position.plus(arms[leg]),
+            direction: arms[leg].scaled(like.splat(-1.0 / self.platform_radius)),
+            length: like.splat(self.platform_radius),
+        };
+        let axes = [
+            proximal(0),
+            proximal(1),
+            proximal(2),
+            members[0].distal,
+            members[1].distal,
+            members[2].distal,
+            bar(0),
+            bar(1),
+            bar(2),
+        ];
+        (axes, [members[0].rail, members[1].rail, members[2].rail])
+    }
+
+    #[inline(always)]
+    fn gap<V: Real>(pair: &Pair, axes: &Axes<V>) -> V {
+        let [a, b] = pair.places.map(|place| &axes[place]);
+        let distance = squared(a, b);
+        (distance + distance.splat(pair.layers_squared)).sqrt() - distance.splat(pair.radii)
+    }
+
+    /// The least clearance at several poses at once where it is below `limit`, else `limit`: \[m\].
+    ///
+    /// `directions` are the legs' `u_i`, `arms` as in [`Manipulator::arms`]. Pairs that cannot come below what is found
+    /// already, by their layers or by the circles about them, are passed over.
+    #[inline(always)]
+    pub fn below<V: Real, L: Leg>(
+        &self,
+        legs: &[L; LEGS],
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
+        directions: &[Planar<V>; LEGS],
+        limit: V,
+    ) -> V {
+        let (axes, rails) = self.axes(legs, position, arms, directions);
+        let mut least = limit;
+        for rail in rails.into_iter().flatten() {
+            let [lower, upper] = rail;
+            least = (lower.smaller(upper) - limit.splat(self.slider[0])).smaller(least);
+        }
+        for pair in &self.pairs[..self.count] {
+            if !V::any(least.exceeds(limit.splat(pair.least))) {
+                break;
+            }
+            let [a, b] = pair.places.map(|place| &axes[place]);
+            if V::any(may_be_nearer(a, b, least + limit.splat(pair.radii))) {
+                least = Self::gap(pair, &axes).smaller(least);
+            }
+        }
+        least
+    }
+
+    /// The nearest pair at a posture with `P` at `position`.
+    pub fn nearest<L: Leg>(&self, manipulator: &Manipulator<L>, position: DVec2, posture: &Posture) -> Clearance {
+        enum Found<'a> {
+            RailEnd { leg: usize, end: usize, distance: f64 },
+            Pair(&'a Pair),
+        }
+        let (axes, rails) = self.axes(
+            &manipulator.legs,
+            position.into(),
+            &posture.arms.map(Planar::from),
+            &posture.legs.map(|leg| leg.u.into()),
+        );
+        let ends = rails.iter().enumerate().flat_map(|(leg, rail)| {
+            let of_rail = rail.iter().flatten().enumerate();
+            of_rail.map(move |(end, &distance)| (distance - self.slider[0], Found::RailEnd { leg, end, distance }))
+        });
+        let pairs = self.pairs[..self.count].iter();
+        let (distance, found) = ends
+            .chain(pairs.map(|pair| (Self::gap(pair, &axes), Found::Pair(pair))))
+            // What has left the number range collides with nothing that is there.
+            .map(|(distance, found)| (if distance.is_finite() { distance } else { f64::MAX }, found))
+            .reduce(|least, next| if next.0 < least.0 { next } else { least })
+            .expect("a manipulator has bodies");
+        match found {
+            Found::RailEnd {
+                leg,
+                end,
+                distance: way,
+            } => {
+                let slider = &axes[leg];
+                let outwards = if end == 0 { -1.0 } else { 1.0 };
+                let middle = slider.from.plus(slider.direction.scaled(0.5 * slider.length));
+                let at = |along: f64| self.lift(middle.plus(slider.direction.scaled(outwards * along)), PROXIMAL);
+                Clearance {
+                    distance,
+                    member: self.member(leg),
+                    neighbour: Neighbour::RailEnd {
+                        leg,
+                        anchor: (leg + end) % LEGS,
+                    },
+                    between: [at(self.slider[0]), at(way)],
+                }
+            }
+            Found::Pair(pair) => {
+                let [a, b] = pair.places.map(|place| self.capsule(&axes, place));
+                Clearance {
+                    distance,
+                    member: a.member,
+                    neighbour: Neighbour::Member(b.member),
+                    between: nearest_points(&a, &b),
+                }
+            }
+        }
+    }
+
+    /// The members at a posture with `P` at `position`.
+    pub fn capsules<L: Leg>(&self, manipulator: &Manipulator<L>, position: DVec2, posture: &Posture) -> Vec<Capsule> {
+        let (axes, _) = self.axes(
+            &manipulator.legs,
+            position.into(),
+            &posture.arms.map(Planar::from),
+            &posture.legs.map(|leg| leg.u.into()),
+        );
+        (0..ROWS * LEGS)
+            .filter(|place| self.kinds[place / LEGS].is_some())
+            .map(|place| self.capsule(&axes, place))
+            .collect()
+    }
+
+    fn capsule(&self, axes: &Axes<f64>, place: usize) -> Capsule {
+        let row = place / LEGS;
+        Capsule {
+            member: self.member(place),
+            from: self.lift(axes[place].from, row),
+            to: self.lift(axes[place].to(), row),
+            radius: self.radii[row],
+        }
+    }
+
+    fn member(&self, place: usize) -> Member {
+        Member {
+            leg: place % LEGS,
+            kind: self.kinds[place / LEGS].expect("asked for a member that is there"),
+        }
+    }
+
+    fn lift(&self, at: Planar<f64>, row: usize) -> DVec3 {
+        DVec3::new(at.x, at.y, self.heights[row])
+    }
+}
+
+/// The points of two axes that are nearest to each other.
+fn nearest_points(a: &Capsule, b: &Capsule) -> [DVec3; 2] {
+    let flat = |at: DVec3| at.truncate();
+    let (way_a, way_b) = (flat(a.to - a.from), flat(b.to - b.from));
+    let between = flat(b.from - a.from);
+    let turn = way_a.perp_dot(way_b);
+    if turn != 0.0 {
+        let (on_a, on_b) = (between.perp_dot(way_b) / turn, between.perp_dot(way_a) / turn);
+        if (0.0..=1.0).contains(&on_a) && (0.0..=1.0).contains(&on_b) {
+            return [a.from.lerp(a.to, on_a), b.from.lerp(b.to, on_b)];
+        }
+    }
+    let foot = |at: DVec3, of: &Capsule| {
+        let way = flat(of.to - of.from);
+        let share = flat(at - of.from).dot(way) / way.length_squared();
+        of.from
+            .lerp(of.to, if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 })
+    };
+    [
+        [a.from, foot(a.from, b)],
+        [a.to, foot(a.to, b)],
+        [foot(b.from, a), b.from],
+        [foot(b.to, a), b.to],
+    ]
+    .into_iter()
+    .reduce(|best, next| {
+        let length = |[from, to]: [DVec3; 2]| flat(to - from).length_squared();
+        if length(next) < length(best) { next } else { best }
+    })
+    .expect("there are four")
+}

@@ -1,0 +1,85 @@
+//! What a study says of bodies beyond the design vector: sizes of sliders, and the layers in which members lie.
+
+use serde::{Deserialize, Serialize};
+
+use crate::mechanism::{Design, MemberKind};
+
+/// Layers of the members along z, as multiples of the thicker bar's diameter `2·max(r_j, r_p)`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Layers {
+    /// The platform's bars.
+    pub platform: f64,
+    /// Links up to the platform.
+    pub link: f64,
+    /// Telescopic legs.
+    pub telescopic_leg: f64,
+    /// Cranks.
+    pub crank: f64,
+    /// Sliders.
+    pub slider: f64,
+}
+
+/// Sizes and places of bodies that the design vector does not state.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BodySettings {
+    /// Length of a slider along its rail, rounded ends included, as a multiple of `r_j`.
+    pub slider_length: f64,
+    /// Half of a slider's width, and of its height, as a multiple of `r_j`; at most half of its length.
+    pub slider_half_width: f64,
+    /// Layers.
+    pub layers: Layers,
+}
+
+impl Default for Layers {
+    /// What can be built for every architecture: the members of a leg are stacked on each other, the platform at the
+    /// bottom, so that a joint's pin runs between neighbouring layers and hits nothing in between.
+    fn default() -> Self {
+        Self {
+            platform: 0.0,
+            link: 1.25,
+            telescopic_leg: 1.25,
+            crank: 2.5,
+            slider: 2.75,
+        }
+    }
+}
+
+impl Default for BodySettings {
+    fn default() -> Self {
+        Self {
+            slider_length: 6.0,
+            slider_half_width: 1.5,
+            layers: Layers::default(),
+        }
+    }
+}
+
+impl BodySettings {
+    /// Height of a kind of member above `z = 0` \[m\].
+    pub fn height(&self, kind: MemberKind, design: &Design) -> f64 {
+        let layer = match kind {
+            MemberKind::Slider => self.layers.slider,
+            MemberKind::TelescopicLeg => self.layers.telescopic_leg,
+            MemberKind::Crank => self.layers.crank,
+            MemberKind::Link => self.layers.link,
+            MemberKind::PlatformBar => self.layers.platform,
+        };
+        layer * 2.0 * design.leg_bar_radius.max(design.platform_bar_radius)
+    }
+
+    /// Radius of a kind of member \[m\].
+    pub fn radius(&self, kind: MemberKind, design: &Design) -> f64 {
+        match kind {
+            MemberKind::Slider => self.slider_half_width * design.leg_bar_radius,
+            MemberKind::TelescopicLeg | MemberKind::Crank | MemberKind::Link => design.leg_bar_radius,
+            MemberKind::PlatformBar => design.platform_bar_radius,
+        }
+    }
+
+    /// Half of a slider's length \[m\].
+    pub fn slider_half_length(&self, design: &Design) -> f64 {
+        0.5 * self.slider_length * design.leg_bar_radius
+    }
+}
