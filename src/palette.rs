@@ -30,3 +30,8 @@ pub fn part(part: Part) -> [u8; 3] {
         Part::Workspace => [255, 255, 255],
     }
 }
+
+/// The nearest pair of bodies: green while they are far enough apart.
+pub fn nearest(too_near: bool) -> [u8; 3] {
+    if too_near { [255, 60, 60] } else { [90, 225, 130] }
+}

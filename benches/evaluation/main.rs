@@ -5,6 +5,7 @@
 //! - `design`: one evaluation on the reference grid, of a Sobol sample of the paper's bounds and of designs of a converged
 //!   front: the definition ray after ray in either form, and the search; its fine grid last.
 //! - `threads`: the front's designs on one thread and on two.
+//! - `clearance`: searches where bodies may collide, and where they must not.
 //!
 //! A pose's operations are counted, and `pose/limit` is the time that the machine takes for as many of each kind of which
 //! none waits for another.
@@ -16,11 +17,12 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec2;
+use kinefront::clearance::Layers;
 use kinefront::evaluation::{GridChoice, Model};
 use kinefront::kinematics::Jacobian;
 use kinefront::lanes::{InstructionSet, Planar};
 use kinefront::mechanism::{Architecture, Design, Leg, PrrLeg, RprLeg, RrrLeg};
-use kinefront::optimize::sobol;
+use kinefront::optimize::{FrontDe, FrontDeSettings, drive, sobol};
 use kinefront::spatial::{LEGS, Rotation, smaller_eigenvalue};
 use kinefront::stiffness::joint_model;
 use kinefront::study::{DesignProblem, Study};
@@ -246,5 +248,43 @@ fn threads(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, poses, designs, threads);
+/// Searches of the paper's study where bodies may collide, where they keep 5 mm, and where they keep it with all members in
+/// one plane.
+fn clearance(criterion: &mut Criterion) {
+    const EVALUATIONS: usize = 600;
+    let mut group = criterion.benchmark_group("clearance");
+    group.sample_size(10);
+    group.throughput(Throughput::Elements(EVALUATIONS as u64));
+    let plane = Layers {
+        platform: 0.0,
+        link: 0.0,
+        telescopic_leg: 0.0,
+        crank: 0.0,
+        slider: 0.0,
+    };
+    for &architecture in Architecture::ALL {
+        for (name, least, layers) in [
+            ("may collide", None, Layers::default()),
+            ("5 mm", Some(0.005), Layers::default()),
+            ("5 mm, in one plane", Some(0.005), plane),
+        ] {
+            let mut study = Study {
+                architectures: vec![architecture],
+                ..Study::default()
+            };
+            study.requirements.clearance_min_m = least;
+            study.bodies.layers = layers;
+            let problem = DesignProblem::new(&study);
+            group.bench_function(BenchmarkId::new(name, architecture), |bencher| {
+                bencher.iter(|| {
+                    let mut algorithm = FrontDe::new(problem.variables(), FrontDeSettings::default(), 1);
+                    drive(&problem, &mut algorithm, EVALUATIONS).iter().count()
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, poses, designs, threads, clearance);
 criterion_main!(benches);

@@ -6,7 +6,7 @@ use super::capsule::{Capsule, Clearance, Member, Neighbour};
 use super::distance::{may_be_nearer, squared};
 use super::layers::BodySettings;
 use crate::lanes::{Planar, Real};
-use crate::mechanism::{Axis, Design, Leg, Manipulator, MemberKind, Posture};
+use crate::mechanism::{Axis, Design, Leg, Manipulator, MemberKind, Members, Posture};
 use crate::spatial::LEGS;
 
 /// Rows of members: those before the last of each leg, the last ones, and the platform's bars.
@@ -105,48 +105,50 @@ impl Bodies {
         self.pairs[..self.count].sort_by(|a, b| a.least.total_cmp(&b.least));
     }
 
-    /// The axes of all members, and the distances of sliders from the ends of their rails.
+    /// The axes of all members, those of the legs given.
     #[inline(always)]
-    #[allow(clippy::type_complexity)]
     fn axes<V: Real, L: Leg>(
         &self,
-        legs: &[L; LEGS],
+        members: &[Members<V>; LEGS],
         position: Planar<V>,
         arms: &[Planar<V>; LEGS],
-        directions: &[Planar<V>; LEGS],
-    ) -> (Axes<V>, [Option<[V; 2]>; LEGS]) {
-        let like = position.x;
-        let members = |leg: usize| legs[leg].members(position.plus(arms[leg]), directions[leg]);
-        let members = [members(0), members(1), members(2)];
-        let proximal = |leg: usize| match (members[leg].proximal, L::PROXIMAL) {
-            (Some(axis), Some(MemberKind::Slider)) => axis.extended(like.splat(self.slider[1])),
-            (Some(axis), _) => axis,
-            // Not looked at: no pair has it.
-            (None, _) => members[leg].distal,
-        };
-        let bar = |leg: usize| Axis {
-            from: position.plus(arms[leg]),
-            direction: arms[leg].scaled(like.splat(-1.0 / self.platform_radius)),
-            length: like.splat(self.platform_radius),
-        };
-        let axes = [
-            proximal(0),
-            proximal(1),
-            proximal(2),
+    ) -> Axes<V> {
+        [
+            self.proximal::<V, L>(&members[0]),
+            self.proximal::<V, L>(&members[1]),
+            self.proximal::<V, L>(&members[2]),
             members[0].distal,
             members[1].distal,
             members[2].distal,
-            bar(0),
-            bar(1),
-            bar(2),
-        ];
-        (axes, [members[0].rail, members[1].rail, members[2].rail])
+            self.platform_bar(position, arms[0]),
+            self.platform_bar(position, arms[1]),
+            self.platform_bar(position, arms[2]),
+        ]
+    }
+
+    /// The axis of the member before the last; of a leg without one the last, which no pair asks for.
+    #[inline(always)]
+    fn proximal<V: Real, L: Leg>(&self, members: &Members<V>) -> Axis<V> {
+        match (&members.proximal, L::PROXIMAL) {
+            (Some(axis), Some(MemberKind::Slider)) => axis.extended(axis.length.splat(self.slider[1])),
+            (Some(axis), _) => *axis,
+            (None, _) => members.distal,
+        }
+    }
+
+    #[inline(always)]
+    fn platform_bar<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> Axis<V> {
+        let like = arm.x;
+        Axis {
+            from: position.plus(arm),
+            direction: arm.scaled(like.splat(-1.0 / self.platform_radius)),
+            length: like.splat(self.platform_radius),
+        }
     }
 
     #[inline(always)]
     fn gap<V: Real>(pair: &Pair, axes: &Axes<V>) -> V {
-        let [a, b] = pair.places.map(|place| &axes[place]);
-        let distance = squared(a, b);
+        let distance = squared(&axes[pair.places[0]], &axes[pair.places[1]]);
         (distance + distance.splat(pair.layers_squared)).sqrt() - distance.splat(pair.radii)
     }
 
@@ -163,17 +165,23 @@ impl Bodies {
         directions: &[Planar<V>; LEGS],
         limit: V,
     ) -> V {
-        let (axes, rails) = self.axes(legs, position, arms, directions);
+        let members = members(legs, position, arms, directions);
         let mut least = limit;
-        for rail in rails.into_iter().flatten() {
-            let [lower, upper] = rail;
+        // Loops over lanes do without closures and adapters: what is not inlined is compiled for the baseline processor.
+        if let [Some(first), Some(second), Some(third)] = [members[0].rail, members[1].rail, members[2].rail] {
+            let lower = first[0].smaller(second[0].smaller(third[0]));
+            let upper = first[1].smaller(second[1].smaller(third[1]));
             least = (lower.smaller(upper) - limit.splat(self.slider[0])).smaller(least);
         }
+        if !V::any(least.exceeds(limit.splat(self.pairs[0].least))) {
+            return least;
+        }
+        let axes = self.axes::<V, L>(&members, position, arms);
         for pair in &self.pairs[..self.count] {
             if !V::any(least.exceeds(limit.splat(pair.least))) {
                 break;
             }
-            let [a, b] = pair.places.map(|place| &axes[place]);
+            let (a, b) = (&axes[pair.places[0]], &axes[pair.places[1]]);
             if V::any(may_be_nearer(a, b, least + limit.splat(pair.radii))) {
                 least = Self::gap(pair, &axes).smaller(least);
             }
@@ -187,14 +195,9 @@ impl Bodies {
             RailEnd { leg: usize, end: usize, distance: f64 },
             Pair(&'a Pair),
         }
-        let (axes, rails) = self.axes(
-            &manipulator.legs,
-            position.into(),
-            &posture.arms.map(Planar::from),
-            &posture.legs.map(|leg| leg.u.into()),
-        );
-        let ends = rails.iter().enumerate().flat_map(|(leg, rail)| {
-            let of_rail = rail.iter().flatten().enumerate();
+        let (members, axes) = self.laid_out(manipulator, position, posture);
+        let ends = members.iter().enumerate().flat_map(|(leg, members)| {
+            let of_rail = members.rail.iter().flatten().enumerate();
             of_rail.map(move |(end, &distance)| (distance - self.slider[0], Found::RailEnd { leg, end, distance }))
         });
         let pairs = self.pairs[..self.count].iter();
@@ -238,16 +241,24 @@ impl Bodies {
 
     /// The members at a posture with `P` at `position`.
     pub fn capsules<L: Leg>(&self, manipulator: &Manipulator<L>, position: DVec2, posture: &Posture) -> Vec<Capsule> {
-        let (axes, _) = self.axes(
-            &manipulator.legs,
-            position.into(),
-            &posture.arms.map(Planar::from),
-            &posture.legs.map(|leg| leg.u.into()),
-        );
+        let (_, axes) = self.laid_out(manipulator, position, posture);
         (0..ROWS * LEGS)
             .filter(|place| self.kinds[place / LEGS].is_some())
             .map(|place| self.capsule(&axes, place))
             .collect()
+    }
+
+    fn laid_out<L: Leg>(
+        &self,
+        manipulator: &Manipulator<L>,
+        position: DVec2,
+        posture: &Posture,
+    ) -> ([Members<f64>; LEGS], Axes<f64>) {
+        let arms = posture.arms.map(Planar::from);
+        let directions = posture.legs.map(|leg| leg.u.into());
+        let members = members(&manipulator.legs, position.into(), &arms, &directions);
+        let axes = self.axes::<f64, L>(&members, position.into(), &arms);
+        (members, axes)
     }
 
     fn capsule(&self, axes: &Axes<f64>, place: usize) -> Capsule {
@@ -270,6 +281,21 @@ impl Bodies {
     fn lift(&self, at: Planar<f64>, row: usize) -> DVec3 {
         DVec3::new(at.x, at.y, self.heights[row])
     }
+}
+
+/// The members of all legs.
+#[inline(always)]
+fn members<V: Real, L: Leg>(
+    legs: &[L; LEGS],
+    position: Planar<V>,
+    arms: &[Planar<V>; LEGS],
+    directions: &[Planar<V>; LEGS],
+) -> [Members<V>; LEGS] {
+    [
+        legs[0].members(position.plus(arms[0]), directions[0]),
+        legs[1].members(position.plus(arms[1]), directions[1]),
+        legs[2].members(position.plus(arms[2]), directions[2]),
+    ]
 }
 
 /// The points of two axes that are nearest to each other.

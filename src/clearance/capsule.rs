@@ -5,6 +5,7 @@ use std::fmt;
 use glam::DVec3;
 
 use crate::mechanism::MemberKind;
+use crate::text::number;
 
 /// A member of a manipulator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -80,5 +81,18 @@ impl Clearance {
     /// Both names, as in `["leg1_link", "leg2_link"]`.
     pub fn pair(&self) -> [String; 2] {
         [self.member.to_string(), self.neighbour.to_string()]
+    }
+}
+
+impl fmt::Display for Clearance {
+    /// As in `12.3 mm from leg1_link to leg2_link`, or `overlap of 12.3 mm of leg1_link and leg2_link`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [member, neighbour] = self.pair();
+        let size = number(1e3 * self.distance.abs());
+        if self.distance < 0.0 {
+            write!(f, "overlap of {size} mm of {member} and {neighbour}")
+        } else {
+            write!(f, "{size} mm from {member} to {neighbour}")
+        }
     }
 }

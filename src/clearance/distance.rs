@@ -19,15 +19,18 @@ pub(super) fn squared<V: Real>(a: &Axis<V>, b: &Axis<V>) -> V {
     let far_b = [near_b[0] + cos * b.length, near_b[1] + sin * b.length];
     let near_a = [-way.dot(b.direction), -b.direction.cross(way)];
     let far_a = [near_a[0] + cos * a.length, near_a[1] - sin * a.length];
-    let to_segment = |[along, across]: [V; 2], length: V| {
-        let beyond = (-along).larger((along - length).larger(zero));
-        beyond * beyond + across * across
-    };
     let of_ends = to_segment(near_b, a.length)
         .smaller(to_segment(far_b, a.length))
         .smaller(to_segment(near_a, b.length).smaller(to_segment(far_a, b.length)));
     let cross = zero.exceeds(near_b[1] * far_b[1]) & zero.exceeds(near_a[1] * far_a[1]);
     zero.where_set(cross, of_ends)
+}
+
+/// Squared distance of a point from a segment of a length, the point given along and to the left of it.
+#[inline(always)]
+fn to_segment<V: Real>([along, across]: [V; 2], length: V) -> V {
+    let beyond = (-along).larger((along - length).larger(length.splat(0.0)));
+    beyond * beyond + across * across
 }
 
 /// Whether two axes could be nearer than `distance` anywhere: by the circles about them, which costs a fifth of

@@ -2,7 +2,6 @@
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{CellAlignment, Table};
-use kinefront::clearance::Clearance;
 use kinefront::evaluation::{Evaluation, Model, PoseReport, Unreachable};
 use kinefront::mechanism::Design;
 use kinefront::spatial::Pose;
@@ -27,12 +26,6 @@ fn pose_text(pose: &Pose) -> String {
         pose.position.y,
         pose.phi.to_degrees()
     )
-}
-
-/// The nearest pair of bodies, in words.
-fn nearest_text(nearest: &Clearance) -> String {
-    let [member, neighbour] = nearest.pair();
-    format!("{} m, {member} to {neighbour}", number(nearest.distance))
 }
 
 /// One evaluated design.
@@ -70,10 +63,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         } else {
             "at the best centre"
         };
-        facts.add_row([
-            "clearance".to_owned(),
-            format!("{} {where_least}", nearest_text(&nearest)),
-        ]);
+        facts.add_row(["clearance".to_owned(), format!("{nearest}, least {where_least}")]);
     }
     let mut constraints = table(
         [
@@ -136,7 +126,7 @@ pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseReport, Unreachab
         "k_φz".to_owned(),
         format!("{} N·m/rad", number(report.rigidity.k_phi_z)),
     ]);
-    facts.add_row(["clearance".to_owned(), nearest_text(&report.clearance)]);
+    facts.add_row(["clearance".to_owned(), report.clearance.to_string()]);
     let mut stiffness = table(["K", "x", "y", "z", "φx", "φy", "φz"], &[1, 2, 3, 4, 5, 6]);
     for (i, name) in ["fx", "fy", "fz", "mx", "my", "mz"].into_iter().enumerate() {
         let mut row = vec![name.to_owned()];

@@ -81,6 +81,13 @@ impl Constraint {
         self != Constraint::Clearance || thresholds.clearance.is_some()
     }
 
+    /// Those that are asked for.
+    pub fn asked(thresholds: &Thresholds) -> impl Iterator<Item = Constraint> {
+        Self::ALL
+            .into_iter()
+            .filter(|constraint| constraint.is_asked(thresholds))
+    }
+
     /// The least value allowed; where g7 is not asked for, the 0 at which bodies touch.
     pub fn threshold(self, design: &Design, thresholds: &Thresholds) -> f64 {
         match self {

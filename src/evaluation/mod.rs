@@ -13,12 +13,15 @@
 mod constraint;
 mod layout;
 mod lightest;
+mod members;
 mod model;
 mod pose;
 mod report;
 mod sizing;
 
+pub use crate::stiffness::Share;
 pub use constraint::{Constraint, ConstraintReport};
+pub use members::MemberReport;
 pub use model::{GridChoice, Model};
 pub use pose::{PoseReport, Unreachable};
 pub use sizing::{BarRanges, Demand};

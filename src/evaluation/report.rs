@@ -151,7 +151,8 @@ impl<L: Leg> Reporter<'_, L> {
                 arms: &orientation.arms,
                 sign,
             };
-            let minima = self.checker.smallest(oriented, &disc.xs, &disc.ys, &indices);
+            let clearance = reports[Constraint::Clearance as usize].value.unwrap_or(f64::INFINITY);
+            let minima = self.checker.smallest(oriented, &disc.xs, &disc.ys, &indices, clearance);
             for (report, minimum) in reports[Constraint::Reach as usize..].iter_mut().zip(minima) {
                 if minimum.value.is_finite() {
                     let (x, y) = (disc.xs[minimum.index], disc.ys[minimum.index]);

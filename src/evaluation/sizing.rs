@@ -49,7 +49,7 @@ impl Model {
     /// demanded; its own bars are where the search starts. `None` where the geometry or the ranges do not allow it.
     ///
     /// Disc and orientations are sampled, the latter as on the reference grid; that the poses are good in other respects
-    /// is looked at on the centre and the rim. The home orientation is the one in which the design is stiffest before it
+    /// is looked at on the centre and the rim, and for clearance with bodies as thick as the design's own bars. The home orientation is the one in which the design is stiffest before it
     /// is sized.
     ///
     /// # Errors
@@ -135,6 +135,14 @@ impl<'a, L: Leg> Sizer<'a, L> {
             platform_bar_radius: platform,
             ..self.design
         }
+    }
+
+    /// What is asked of the stiffness alone needs no look at the bodies.
+    fn without_clearance<T>(&mut self, look: impl FnOnce(&mut Self) -> T) -> T {
+        let clearance = self.checker.thresholds.clearance.take();
+        let found = look(self);
+        self.checker.thresholds.clearance = clearance;
+        found
     }
 
     fn set_bars(&mut self, bars: [f64; 2]) {
@@ -312,7 +320,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
 impl<L: Leg> Shares for Sizer<'_, L> {
     fn of_all(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3] {
         self.set_bars(bars);
-        self.laid.shares(&self.checker, &mut self.values)
+        self.without_clearance(|sizer| sizer.laid.shares(&sizer.checker, &mut sizer.values))
     }
 
     fn choose(&mut self, poses: &[usize], weakest: &[usize]) {
@@ -338,6 +346,6 @@ impl<L: Leg> Shares for Sizer<'_, L> {
 
     fn of_chosen(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3] {
         self.set_bars(bars);
-        self.chosen.shares(&self.checker, &mut self.values)
+        self.without_clearance(|sizer| sizer.chosen.shares(&sizer.checker, &mut sizer.values))
     }
 }

@@ -34,6 +34,11 @@ pub fn part(part: Part, dark: bool) -> Color32 {
     readable(palette::part(part), dark)
 }
 
+/// Colour of the nearest pair of bodies.
+pub fn nearest(too_near: bool, dark: bool) -> Color32 {
+    readable(palette::nearest(too_near), dark)
+}
+
 fn readable([r, g, b]: [u8; 3], dark: bool) -> Color32 {
     if dark {
         Color32::from_rgb(r, g, b)

@@ -248,6 +248,8 @@ struct BodyJson<'a> {
     parent: Option<&'a str>,
     /// In the base frame.
     frame: FrameJson,
+    /// Of its bars, above the plane of the frames.
+    height_m: f64,
     joint: Option<JointJson>,
     mass_kg: f64,
     centre_of_mass_m: [f64; 2],
@@ -265,6 +267,7 @@ impl<'a> BodyJson<'a> {
                 None => body.joint.map(|_| "base"),
             },
             frame: (&body.frame).into(),
+            height_m: body.height,
             joint: body.joint.map(|joint| JointJson {
                 kind: kind(joint.kind),
                 actuated: joint.actuated,

@@ -150,7 +150,7 @@ fn element(subject: &Prepared, body: &Body) -> Element {
     let (mass, centre, [xx, yy, zz, xy]) = inertial(body);
     element.push(
         Element::new("inertial")
-            .with_numbers("pos", &[centre.x, centre.y, 0.0])
+            .with_numbers("pos", &centre.to_array())
             .with("mass", mass.to_string())
             .with("fullinertia", format!("{xx} {yy} {zz} {xy} 0 0")),
     );

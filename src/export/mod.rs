@@ -20,7 +20,7 @@ mod table;
 mod urdf;
 mod xml;
 
-use glam::DVec2;
+use glam::DVec3;
 
 use crate::evaluation::{Evaluation, Model, Unreachable};
 use crate::mechanism::Actuator;
@@ -227,14 +227,14 @@ impl Prepared<'_> {
 const MASSLESS: f64 = 1e-3;
 
 /// Mass, centre and moments of inertia `[xx, yy, zz, xy]` of a body for a simulator.
-fn inertial(body: &Body) -> (f64, DVec2, [f64; 4]) {
+fn inertial(body: &Body) -> (f64, DVec3, [f64; 4]) {
     let mass = body.mass();
     if mass > 0.0 {
-        return (mass, body.centre_of_mass(), body.inertia());
+        return (mass, body.centre_of_mass().extend(body.height), body.inertia());
     }
     // Of a ball with a radius of a centimetre.
     let moment = 0.4 * MASSLESS * 1e-4;
-    (MASSLESS, DVec2::ZERO, [moment, moment, moment, 0.0])
+    (MASSLESS, DVec3::Z * body.height, [moment, moment, moment, 0.0])
 }
 
 /// A length, angle or direction as text: the shortest that reads back to the same bits. What turning frames leaves of a zero

@@ -82,7 +82,7 @@ fn link(body: &Body) -> Element {
         .leaf("pose", pose(origin.x, origin.y, angle))
         .child(
             Element::new("inertial")
-                .leaf("pose", pose(centre.x, centre.y, 0.0))
+                .leaf("pose", numbers(&[centre.x, centre.y, centre.z, 0.0, 0.0, 0.0]))
                 .leaf("mass", mass.to_string())
                 .child(inertia),
         )

@@ -120,7 +120,14 @@ fn link(body: &Body, shift: DVec2) -> Element {
         .with("name", body.name.clone())
         .child(
             Element::new("inertial")
-                .child(origin([centre.x - shift.x, centre.y - shift.y, 0.0, 0.0, 0.0, 0.0]))
+                .child(origin([
+                    centre.x - shift.x,
+                    centre.y - shift.y,
+                    centre.z,
+                    0.0,
+                    0.0,
+                    0.0,
+                ]))
                 .child(Element::new("mass").with("value", mass.to_string()))
                 .child(inertia),
         )

@@ -124,6 +124,8 @@ pub enum LegPart {
         at: DVec2,
         /// Whether it is driven.
         actuated: bool,
+        /// What it joins; one of them alone where the other is the base.
+        joins: [MemberKind; 2],
     },
 }
 
@@ -157,16 +159,24 @@ pub struct LegBody {
 }
 
 impl LegBody {
-    /// The link `B_iC_i` between two passive joints.
-    pub(super) fn link(posture: &LegPosture) -> Self {
+    /// The link `B_iC_i` between two passive joints, the first to a `proximal` member.
+    pub(super) fn link(posture: &LegPosture, proximal: MemberKind) -> Self {
         let (b, c) = (posture.b, posture.b + posture.u * posture.length);
-        let joint = |at: DVec2| LegPart::Joint { at, actuated: false };
+        let joint = |at: DVec2, other: MemberKind| LegPart::Joint {
+            at,
+            actuated: false,
+            joins: [MemberKind::Link, other],
+        };
         Self {
             name: "link",
             origin: b,
             axis: posture.u,
             joint: LegJoint::Passive,
-            parts: vec![LegPart::Link { from: b, to: c }, joint(b), joint(c)],
+            parts: vec![
+                LegPart::Link { from: b, to: c },
+                joint(b, proximal),
+                joint(c, MemberKind::PlatformBar),
+            ],
         }
     }
 }

@@ -155,7 +155,7 @@ impl Leg for PrrLeg {
                     axis: self.axis,
                 }],
             },
-            LegBody::link(posture),
+            LegBody::link(posture, MemberKind::Slider),
         ]
     }
 

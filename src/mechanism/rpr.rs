@@ -155,10 +155,12 @@ impl Leg for RprLeg {
                     LegPart::Joint {
                         at: self.anchor,
                         actuated: false,
+                        joins: [MemberKind::TelescopicLeg; 2],
                     },
                     LegPart::Joint {
                         at: mouth,
                         actuated: true,
+                        joins: [MemberKind::TelescopicLeg; 2],
                     },
                 ],
             },
@@ -175,7 +177,11 @@ impl Leg for RprLeg {
                         from: along(posture.length - (self.longest - tube)),
                         to: c,
                     },
-                    LegPart::Joint { at: c, actuated: false },
+                    LegPart::Joint {
+                        at: c,
+                        actuated: false,
+                        joins: [MemberKind::TelescopicLeg, MemberKind::PlatformBar],
+                    },
                 ],
             },
         ]

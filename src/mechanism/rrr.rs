@@ -142,10 +142,11 @@ impl Leg for RrrLeg {
                     LegPart::Joint {
                         at: self.anchor,
                         actuated: true,
+                        joins: [MemberKind::Crank; 2],
                     },
                 ],
             },
-            LegBody::link(posture),
+            LegBody::link(posture, MemberKind::Crank),
         ]
     }
 

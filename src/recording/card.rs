@@ -41,7 +41,7 @@ pub(super) fn card(
         };
     }
     card += "\n\n| | constraint | least value | threshold | margin | |\n|---|---|---|---|---|---|\n";
-    for report in &evaluation.constraints {
+    for report in evaluation.constraints.iter().filter(|report| report.asked) {
         card += &format!(
             "| {} | {} | {} {} | {} | {:+.1} % | {} |\n",
             report.constraint.id(),
@@ -54,6 +54,9 @@ pub(super) fn card(
         );
     }
     card.push('\n');
+    if let Some(nearest) = model.nearest(evaluation) {
+        card += &format!("- clearance of the bodies: {nearest}\n");
+    }
     for set in ellipsoids {
         card += &format!("- {}\n", set.scale_text());
     }

@@ -13,7 +13,10 @@ use super::colors::{self, ColorMap, rgb};
 use super::stage::Rows;
 use super::writer::{Moment, RecordingError, Writer};
 use crate::evaluation::{ConstraintReport, Evaluation};
-use crate::scene::{ConfigurationSpace, EllipsoidSet, Field, Heatmap, Part, RegularCylinder, Scene, Solid, SolidShape};
+use crate::palette;
+use crate::scene::{
+    ConfigurationSpace, EllipsoidSet, Field, Heatmap, Nearest, Part, RegularCylinder, Scene, Solid, SolidShape,
+};
 use crate::spatial::unit;
 use crate::text::short;
 
@@ -104,7 +107,21 @@ impl<'a> Canvas<'a> {
             self.row(&format!("{root}/{name}"), &strips)?;
         }
         let labels = scene.labels.iter().map(|label| (label.at, label.text.clone()));
-        self.labels(&format!("{root}/labels"), labels.collect(), rgb(colors::TEXT))
+        self.labels(&format!("{root}/labels"), labels.collect(), rgb(colors::TEXT))?;
+        self.nearest(&format!("{root}/clearance"), scene.nearest.as_ref())
+    }
+
+    /// The nearest pair of bodies as a line with its number, below `root`.
+    fn nearest(&self, root: &str, nearest: Option<&Nearest>) -> Outcome {
+        let color = nearest.map(|nearest| rgb(palette::nearest(nearest.too_near)));
+        let strips = nearest.iter().map(|nearest| nearest.line.map(point));
+        let line = LineStrips3D::new(strips)
+            .with_colors(color)
+            .with_radii(color.map(|_| Radius::new_ui_points(2.6)));
+        self.row(&format!("{root}/line"), &line)?;
+        let label = nearest.map(|nearest| (nearest.line[1], nearest.text.clone()));
+        let color = color.unwrap_or_else(|| rgb(colors::TEXT));
+        self.labels(&format!("{root}/distance"), label.into_iter().collect(), color)
     }
 
     fn bars(&self, entity: &str, solids: &[&Solid]) -> Outcome {

@@ -39,6 +39,8 @@ pub struct Layers {
     pub platform: bool,
     /// Names of joints and frames.
     pub labels: bool,
+    /// The nearest pair of bodies, with its distance.
+    pub clearance: bool,
     /// The regular workspace, and the poses that stop it from growing.
     pub workspace: bool,
     /// Parallel singularities and the edge of reach.
@@ -57,6 +59,7 @@ impl Default for Layers {
             legs: true,
             platform: true,
             labels: true,
+            clearance: true,
             workspace: true,
             singularities: true,
             ellipsoids: None,
@@ -356,5 +359,8 @@ fn keep(scene: &mut Scene, layers: &Layers) {
     });
     if !layers.labels {
         scene.labels.clear();
+    }
+    if !layers.clearance {
+        scene.nearest = None;
     }
 }

@@ -45,8 +45,12 @@ impl Subject<'_> {
                 .iter()
                 .map(|solid| match solid.shape {
                     SolidShape::Bar { from, to, radius } => {
-                        // A pin ends at its faces, a bar in the plane at its radius.
-                        if from.z == to.z { -radius } else { from.z.min(to.z) }
+                        // A pin ends at its faces, a bar along the plane at its radius.
+                        if from.z == to.z {
+                            from.z - radius
+                        } else {
+                            from.z.min(to.z)
+                        }
                     }
                     SolidShape::Block { centre, half_size, .. } => centre.z - half_size.z,
                 })

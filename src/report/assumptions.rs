@@ -22,8 +22,15 @@ pub struct Reading {
 /// What the last readings change: nothing but chance.
 const SEED: &str = "nothing but the search's seed";
 
+/// Names of the readings in which bodies must not collide, or may.
+const CLEAR: &str = "5 mm clearance";
+const COLLIDING: &str = "bodies may collide";
+
+/// Clearance that is tried for a study that asks for none \[m\].
+const CLEARANCE: f64 = 5e-3;
+
 /// The readings tried. The last change nothing but the seed: what differs there is chance.
-pub const READINGS: [Reading; 13] = [
+pub const READINGS: [Reading; 15] = [
     Reading {
         name: "K_act / 10",
         meaning: "actuators ten times softer",
@@ -96,6 +103,20 @@ pub const READINGS: [Reading; 13] = [
         change: |study| study.material.shear_modulus_pa *= 0.93,
     },
     Reading {
+        name: CLEAR,
+        meaning: "bodies that are not joined keep 5 mm from each other, which the study does not ask",
+        moves_designs: true,
+        change: |study| {
+            study.requirements.clearance_min_m.get_or_insert(CLEARANCE);
+        },
+    },
+    Reading {
+        name: COLLIDING,
+        meaning: "bodies may collide",
+        moves_designs: true,
+        change: |study| study.requirements.clearance_min_m = None,
+    },
+    Reading {
         name: "seed + 1",
         meaning: SEED,
         moves_designs: false,
@@ -154,6 +175,37 @@ impl Variation {
     pub fn of(&self, architecture: Architecture) -> Option<&Front> {
         let found = self.alone.iter().find(|(other, _)| *other == architecture);
         found.map(|(_, front)| front).filter(|front| !front.members.is_empty())
+    }
+}
+
+/// What a clearance costs: the searches with and without one.
+#[derive(Debug, Clone, Copy)]
+pub struct ClearanceCost<'a> {
+    /// The clearance \[m\].
+    pub clearance: f64,
+    /// Where bodies keep it.
+    pub with: &'a Variation,
+    /// Where they may collide.
+    pub without: &'a Variation,
+}
+
+impl<'a> ClearanceCost<'a> {
+    /// The two of the searches under other readings, where they were made.
+    pub fn of(study: &Study, variations: &'a [Variation]) -> Option<Self> {
+        let base = variations.iter().find(|variation| variation.reading.is_none())?;
+        let named = |name: &str| variations.iter().find(|variation| variation.name() == name);
+        Some(match study.requirements.clearance_min_m {
+            Some(clearance) => Self {
+                clearance,
+                with: base,
+                without: named(COLLIDING)?,
+            },
+            None => Self {
+                clearance: CLEARANCE,
+                with: named(CLEAR)?,
+                without: base,
+            },
+        })
     }
 }
 

@@ -3,10 +3,12 @@
 use super::chart::{Axis, Chart, Mark, Series};
 use super::fits::Trend;
 use super::fronts::Front;
-use super::{Figure, Report, ReportError, slug};
+use super::{ClearanceCost, Figure, Report, ReportError, slug};
 use crate::evaluation::Constraint;
 use crate::mechanism::{Architecture, Variable};
 use crate::palette;
+use crate::text::short;
+use crate::workspace::Thresholds;
 
 const MASS: &str = "mass in motion [kg]";
 const RADIUS: &str = "workspace radius R_w [m]";
@@ -78,7 +80,19 @@ pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
         if let Some(front) = front {
             let words =
                 format!("Constraints that stop the workspace from growing, along the front of the {architecture}");
-            figures.add(format!("active-{slug}"), words, (active(*architecture, front), 0))?;
+            figures.add(
+                format!("active-{slug}"),
+                words,
+                (active(*architecture, front, &report.study.model().thresholds), 0),
+            )?;
+        }
+    }
+    if let Some(cost) = ClearanceCost::of(&report.study, &report.variations) {
+        for &(architecture, _) in &report.fronts.alone {
+            let words =
+                format!("Fronts of the {architecture} where bodies may collide, and where they keep a clearance");
+            let name = format!("clearance-{}", slug(architecture.name()));
+            figures.add(name, words, clearance(&cost, architecture))?;
         }
     }
     for &(architecture, _) in report.fronts.alone.iter().filter(|_| !report.variations.is_empty()) {
@@ -309,7 +323,7 @@ fn along(trends: &[&Trend]) -> Chart {
 }
 
 /// Which constraints are active at which `R_w`.
-fn active(architecture: Architecture, front: &Front) -> Chart {
+fn active(architecture: Architecture, front: &Front, thresholds: &Thresholds) -> Chart {
     let points: Vec<[f64; 2]> = front
         .shown()
         .flat_map(|member| {
@@ -318,8 +332,10 @@ fn active(architecture: Architecture, front: &Front) -> Chart {
                 .map(|constraint| [member.workspace_radius, constraint as u8 as f64])
         })
         .collect();
-    let names =
-        Constraint::ALL.map(|constraint| format!("{} {}", constraint.id(), constraint.name().replace('_', " ")));
+    // The place of a constraint is that among all: what may not be asked stands last.
+    let names: Vec<String> = Constraint::asked(thresholds)
+        .map(|constraint| format!("{} {}", constraint.id(), constraint.name().replace('_', " ")))
+        .collect();
     Chart {
         x: Axis::from_zero(RADIUS, front.shown().map(|member| member.workspace_radius)),
         y: Axis {
@@ -327,7 +343,7 @@ fn active(architecture: Architecture, front: &Front) -> Chart {
             range: [-0.5, names.len() as f64 - 0.5],
             logarithmic: false,
         },
-        names: Some(names.to_vec()),
+        names: Some(names),
         series: vec![Series {
             name: String::new(),
             color: color(architecture),
@@ -337,6 +353,28 @@ fn active(architecture: Architecture, front: &Front) -> Chart {
         notes: Vec::new(),
         legend_above: false,
     }
+}
+
+/// Fronts of an architecture with and without a clearance.
+fn clearance(cost: &ClearanceCost<'_>, architecture: Architecture) -> (Chart, usize) {
+    let names = [
+        (cost.without, "may collide".to_owned(), RIVAL, Mark::ThinLine),
+        (
+            cost.with,
+            format!("{} mm clearance", short(1e3 * cost.clearance)),
+            color(architecture),
+            Mark::Line,
+        ),
+    ];
+    let series = names.into_iter().filter_map(|(variation, name, color, mark)| {
+        Some(Series {
+            name,
+            color,
+            mark,
+            points: variation.of(architecture)?.points(),
+        })
+    });
+    decades(series.collect(), Vec::new())
 }
 
 /// Fronts of an architecture under every reading.

@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-pub use assumptions::{READINGS, Reading, Variation};
+pub use assumptions::{ClearanceCost, READINGS, Reading, Variation};
 pub use error::ReportError;
 pub use fits::{AT_BOUND, Fit, Trend, trends};
 pub use fronts::{Front, Fronts, Single, lightest_where};
@@ -274,6 +274,7 @@ fn common(sources: &[Source]) -> Result<Study, ReportError> {
             ("requirements", study.requirements == theirs.requirements),
             ("workspace", study.workspace == theirs.workspace),
             ("model", study.model == theirs.model),
+            ("bodies", study.bodies == theirs.bodies),
             ("bounds", study.bounds == theirs.bounds),
             ("grid.fine", study.grid.fine == theirs.grid.fine),
             ("working_mode", study.working_mode == theirs.working_mode),
@@ -302,6 +303,7 @@ fn is_paper(study: &Study) -> bool {
             && study.requirements == paper.requirements
             && study.workspace == paper.workspace
             && study.model == paper.model
+            && study.bodies == paper.bodies
             && study.bounds == paper.bounds
     })
 }

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::Solid;
 use super::manipulator::Sizes;
 use crate::evaluation::{Model, Unreachable};
-use crate::mechanism::{Actuator, Design, Leg, LegJoint, LegPart, Manipulator, with_leg};
+use crate::mechanism::{Actuator, Design, Leg, LegJoint, LegPart, Manipulator, MemberKind, with_leg};
 use crate::spatial::{LEGS, Pose, Rotation};
 
 /// A planar frame in the base frame.
@@ -52,6 +52,8 @@ pub struct Body {
     pub parent: Option<usize>,
     /// Its frame.
     pub frame: Frame,
+    /// Height of its bars above the plane of the frames \[m\].
+    pub height: f64,
     /// The joint to its parent; `None` for the platform, which nothing but the closures holds in the plane.
     pub joint: Option<Joint>,
     /// Its mass, bar by bar. A slider has none in this model, as in the paper.
@@ -147,11 +149,13 @@ fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage,
     let posture = manipulator
         .posture(pose)
         .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
-    let sizes = Sizes::new(design);
+    let sizes = Sizes::new(model, design);
     let mut bodies: Vec<Body> = Vec::new();
     let mut last = [0; LEGS];
     for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
-        for (depth, body) in leg.bodies(state).into_iter().enumerate() {
+        let of_leg = leg.bodies(state);
+        let count = of_leg.len();
+        for (depth, body) in of_leg.into_iter().enumerate() {
             let frame = Frame {
                 origin: body.origin,
                 angle: libm::atan2(body.axis.y, body.axis.x),
@@ -187,6 +191,11 @@ fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage,
                 name: format!("leg{}_{}", index + 1, body.name),
                 parent: (depth > 0).then(|| bodies.len() - 1),
                 frame,
+                height: sizes.height(if depth + 1 == count {
+                    L::DISTAL
+                } else {
+                    L::PROXIMAL.unwrap_or(L::DISTAL)
+                }),
                 joint: Some(joint),
                 bars,
                 solids,
@@ -204,6 +213,7 @@ fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage,
         name: "platform".to_owned(),
         parent: None,
         frame,
+        height: sizes.height(MemberKind::PlatformBar),
         joint: None,
         bars: ends
             .map(|c| mass_bar(model, &frame, [c, pose.position], design.platform_bar_radius, share))

@@ -2,17 +2,17 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Label, Line, Part, Scene, Solid, SolidShape};
+use super::{Label, Line, Nearest, Part, Scene, Solid, SolidShape};
+use crate::clearance::{Bodies, BodySettings, Clearance, Neighbour};
 use crate::evaluation::{Model, Unreachable};
-use crate::mechanism::{Design, Guide, Leg, LegPart, Manipulator, with_leg};
+use crate::mechanism::{Design, Guide, Leg, LegPart, Manipulator, MemberKind, with_leg};
 use crate::spatial::{ANCHOR_DIRECTIONS, Pose, unit};
+use crate::text::number;
 
-/// Radius of a pin as a multiple of the thickest bar's.
-const PIN_RADIUS: f64 = 1.3;
-/// Height of a pin beyond its bars, as a multiple of the thickest bar's radius.
-const PIN_HEIGHT: f64 = 1.7;
-/// Half length and half width of a slider block as multiples of a pin's radius.
-const SLIDER: (f64, f64) = (2.0, 1.25);
+/// How far a pin sticks out of its members, as a multiple of their radius.
+const PIN: f64 = 1.2;
+/// Thickness of a telescopic leg's rod as a share of its tube's.
+const ROD: f64 = 0.75;
 /// Least size of joints and frames as a share of `R`, so that a thin-barred design can be read.
 const LEAST: f64 = 0.008;
 
@@ -28,59 +28,77 @@ fn flat(point: DVec2) -> DVec3 {
     point.extend(0.0)
 }
 
-/// Sizes of what the design does not state: joints and sliders, after its thickest bar \[m\].
+/// Sizes and layers of what a design is made of \[m\].
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sizes {
-    leg_bar: f64,
-    platform_bar: f64,
-    pin: f64,
-    height: f64,
+pub(super) struct Sizes<'a> {
+    bodies: &'a BodySettings,
+    design: &'a Design,
 }
 
-impl Sizes {
-    pub(super) fn new(design: &Design) -> Self {
-        let thickest = design.leg_bar_radius.max(design.platform_bar_radius);
+impl<'a> Sizes<'a> {
+    pub(super) fn new(model: &'a Model, design: &'a Design) -> Self {
         Self {
-            leg_bar: design.leg_bar_radius,
-            platform_bar: design.platform_bar_radius,
-            pin: (PIN_RADIUS * thickest).max(LEAST * design.base_radius),
-            height: (PIN_HEIGHT * thickest).max(1.4 * LEAST * design.base_radius),
+            bodies: &model.bodies,
+            design,
+        }
+    }
+
+    /// Height of a kind of member.
+    pub(super) fn height(&self, kind: MemberKind) -> f64 {
+        self.bodies.height(kind, self.design)
+    }
+
+    fn bar(&self, kind: MemberKind, from: DVec2, to: DVec2, share: f64) -> SolidShape {
+        let z = self.height(kind);
+        SolidShape::Bar {
+            from: from.extend(z),
+            to: to.extend(z),
+            radius: share * self.bodies.radius(kind, self.design),
+        }
+    }
+
+    /// A pin through the members that it joins, no thicker than they are.
+    fn pin(&self, at: DVec2, joins: [MemberKind; 2]) -> SolidShape {
+        let least = LEAST * self.design.base_radius;
+        let ends = joins.map(|kind| {
+            let out = (PIN * self.bodies.radius(kind, self.design)).max(1.4 * least);
+            [self.height(kind) - out, self.height(kind) + out]
+        });
+        let bars = joins.into_iter().filter(|&kind| kind != MemberKind::Slider);
+        let radius = bars.fold(f64::INFINITY, |least, kind| {
+            least.min(self.bodies.radius(kind, self.design))
+        });
+        SolidShape::Bar {
+            from: at.extend(ends[0][0].min(ends[1][0])),
+            to: at.extend(ends[0][1].max(ends[1][1])),
+            radius: radius.max(least),
         }
     }
 
     /// A member of a leg as a solid.
     pub(super) fn solid(&self, leg: usize, part: &LegPart) -> Solid {
-        let bar = |from: DVec2, to: DVec2, radius: f64| SolidShape::Bar {
-            from: flat(from),
-            to: flat(to),
-            radius,
-        };
         let (part, shape) = match *part {
             LegPart::Slider { at, axis } => {
+                let half_width = self.bodies.radius(MemberKind::Slider, self.design);
                 let shape = SolidShape::Block {
-                    centre: flat(at),
-                    half_size: DVec3::new(SLIDER.0 * self.pin, SLIDER.1 * self.pin, 0.7 * self.height),
+                    centre: at.extend(self.height(MemberKind::Slider)),
+                    half_size: DVec3::new(self.bodies.slider_half_length(self.design), half_width, half_width),
                     angle: libm::atan2(axis.y, axis.x),
                 };
                 (Part::Slider, shape)
             }
-            // The tube holds the rod: it is drawn a third wider than the bar of radius r_j.
-            LegPart::Tube { from, to } => (Part::Tube, bar(from, to, 4.0 / 3.0 * self.leg_bar)),
-            LegPart::Rod { from, to } => (Part::Rod, bar(from, to, self.leg_bar)),
-            LegPart::Crank { from, to } => (Part::Crank, bar(from, to, self.leg_bar)),
-            LegPart::Link { from, to } => (Part::Link, bar(from, to, self.leg_bar)),
-            LegPart::Joint { at, actuated } => {
-                let shape = SolidShape::Bar {
-                    from: at.extend(-self.height),
-                    to: at.extend(self.height),
-                    radius: self.pin,
-                };
+            LegPart::Tube { from, to } => (Part::Tube, self.bar(MemberKind::TelescopicLeg, from, to, 1.0)),
+            // It goes into the tube.
+            LegPart::Rod { from, to } => (Part::Rod, self.bar(MemberKind::TelescopicLeg, from, to, ROD)),
+            LegPart::Crank { from, to } => (Part::Crank, self.bar(MemberKind::Crank, from, to, 1.0)),
+            LegPart::Link { from, to } => (Part::Link, self.bar(MemberKind::Link, from, to, 1.0)),
+            LegPart::Joint { at, actuated, joins } => {
                 let part = if actuated {
                     Part::ActuatedJoint
                 } else {
                     Part::PassiveJoint
                 };
-                (part, shape)
+                (part, self.pin(at, joins))
             }
         };
         Solid {
@@ -95,12 +113,36 @@ impl Sizes {
         Solid {
             part: Part::PlatformBar,
             leg: Some(leg),
-            shape: SolidShape::Bar {
-                from: flat(c),
-                to: flat(p),
-                radius: self.platform_bar,
-            },
+            shape: self.bar(MemberKind::PlatformBar, c, p, 1.0),
         }
+    }
+}
+
+/// The nearest pair as a line from surface to surface.
+fn nearest(model: &Model, design: &Design, clearance: &Clearance) -> Nearest {
+    let thickest = design.leg_bar_radius.max(design.platform_bar_radius);
+    let [from, to] = clearance.between;
+    let way = to - from;
+    let member = model.bodies.radius(clearance.member.kind, design);
+    let line = match clearance.neighbour {
+        _ if clearance.distance <= 0.0 || way == DVec3::ZERO => {
+            let out = DVec3::Z * (4.0 * thickest).max(5.0 * LEAST * design.base_radius);
+            let middle = 0.5 * (from + to);
+            [middle - out, middle + out]
+        }
+        Neighbour::Member(other) => {
+            let along = way.normalize_or_zero();
+            [
+                from + along * member,
+                to - along * model.bodies.radius(other.kind, design),
+            ]
+        }
+        Neighbour::RailEnd { .. } => [from, to],
+    };
+    Nearest {
+        line,
+        text: format!("{} mm", number(1e3 * clearance.distance)),
+        too_near: clearance.distance < model.thresholds.clearance.unwrap_or(0.0),
     }
 }
 
@@ -109,8 +151,13 @@ fn draw<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Scene, Un
     let posture = manipulator
         .posture(pose)
         .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
-    let mut scene = Scene::default();
-    let sizes = Sizes::new(design);
+    let bodies = Bodies::new::<L>(design, &model.bodies);
+    let clearance = bodies.nearest(&manipulator, pose.position, &posture);
+    let mut scene = Scene {
+        nearest: Some(nearest(model, design, &clearance)),
+        ..Scene::default()
+    };
+    let sizes = Sizes::new(model, design);
 
     let anchors = ANCHOR_DIRECTIONS.map(|direction| flat(direction * design.base_radius));
     scene.lines.push(Line {
@@ -120,17 +167,29 @@ fn draw<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Scene, Un
     frame(&mut scene, DVec2::ZERO, 0.0, 0.12 * design.base_radius, "O");
     frame(&mut scene, pose.position, pose.phi, 0.12 * design.base_radius, "P");
 
+    // Above everything that is there.
+    let kinds = [L::PROXIMAL, Some(L::DISTAL), Some(MemberKind::PlatformBar)];
+    let top = kinds
+        .into_iter()
+        .flatten()
+        .fold(0.0, |top, kind| sizes.height(kind).max(top));
+    let lift = top
+        + 3.4
+            * design
+                .leg_bar_radius
+                .max(design.platform_bar_radius)
+                .max(LEAST * design.base_radius);
     for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
         let c = pose.position + posture.arms[index];
         let number = index + 1;
         if let Some(guide) = leg.guide(state) {
-            let (part, from, to) = match guide {
-                Guide::Rail { from, to } => (Part::Rail, from, to),
-                Guide::Stroke { from, to } => (Part::Stroke, from, to),
+            let (part, kind, ends) = match guide {
+                Guide::Rail { from, to } => (Part::Rail, MemberKind::Slider, [from, to]),
+                Guide::Stroke { from, to } => (Part::Stroke, MemberKind::TelescopicLeg, [from, to]),
             };
             scene.lines.push(Line {
                 part,
-                points: vec![flat(from), flat(to)],
+                points: ends.map(|end| end.extend(sizes.height(kind))).to_vec(),
             });
         }
         for body in leg.bodies(state) {
@@ -138,7 +197,6 @@ fn draw<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Scene, Un
             scene.solids.extend(solids);
         }
         scene.solids.push(sizes.platform_bar(index, c, pose.position));
-        let lift = 2.0 * sizes.height;
         let mut label = |at: DVec2, text: String| {
             scene.labels.push(Label {
                 at: at.extend(lift),

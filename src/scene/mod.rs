@@ -28,6 +28,6 @@ pub use heatmap::{Edge, Heatmap, HeatmapSettings};
 pub use linkage::{Body, Closure, Frame, Joint, Linkage, MassBar, linkage};
 pub use manipulator::manipulator;
 pub use mesh::Mesh;
-pub use shape::{Label, Line, Part, Scene, Solid, SolidShape};
+pub use shape::{Label, Line, Nearest, Part, Scene, Solid, SolidShape};
 pub use tour::{Tour, tour};
 pub use workspace::{ConfigurationSpace, RegularCylinder, regular_workspace};

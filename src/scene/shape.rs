@@ -87,6 +87,17 @@ pub struct Label {
     pub text: String,
 }
 
+/// The nearest pair of bodies that are not joined, as a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Nearest {
+    /// From one surface to the other; where the bodies overlap, a needle through the place.
+    pub line: [DVec3; 2],
+    /// The distance, as in `12.3 mm`; negative where they overlap.
+    pub text: String,
+    /// Whether it is less than the study asks for, or than 0.
+    pub too_near: bool,
+}
+
 /// Shapes of one design at one pose.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
@@ -96,6 +107,8 @@ pub struct Scene {
     pub lines: Vec<Line>,
     /// Labels.
     pub labels: Vec<Label>,
+    /// The bodies that are nearest to each other.
+    pub nearest: Option<Nearest>,
 }
 
 impl Scene {

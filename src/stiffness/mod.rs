@@ -8,9 +8,11 @@ mod bar;
 pub mod joint_model;
 mod lanes;
 pub mod planar;
+mod shares;
 
 pub use bar::{BarCompliance, Material};
 pub use planar::{ActuatorStiffness, PlanarStiffness, StiffnessModel};
+pub use shares::{LegShares, Share};
 
 /// Which numbers stand for "the stiffness" along and about an axis (SPEC section 8, no. 5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -54,6 +54,24 @@ pub struct PlanarStiffness {
     pub out_of_plane: [f64; 6],
 }
 
+/// A bar of a leg at a posture.
+pub(super) struct Bar<'a> {
+    section: &'a BarCompliance,
+    /// Unit vector towards its tip.
+    axis: DVec2,
+    length: f64,
+    /// From its tip to `P`.
+    to_p: DVec2,
+}
+
+impl Bar<'_> {
+    /// Adds its out-of-plane compliance at `P`.
+    #[inline]
+    pub(super) fn add_to(&self, s: &mut [f64; 6]) {
+        add_bar(s, self.section, self.axis.into(), self.length, self.to_p.into());
+    }
+}
+
 impl StiffnessModel {
     /// The model of `design`; `None` when a bar is infinitely compliant, which makes every stiffness 0.
     pub fn new<L: Leg>(design: &Design, material: &Material, actuators: &ActuatorStiffness) -> Option<Self> {
@@ -73,14 +91,23 @@ impl StiffnessModel {
     /// line is not along.
     #[inline]
     fn line_compliance<L: Leg>(&self, leg: &L, posture: &LegPosture, arm: DVec2) -> f64 {
+        let [actuator, distal, platform, proximal] = self.line_compliances(leg, posture, arm);
+        actuator + distal + platform + proximal
+    }
+
+    /// Its parts: actuator, last bar, platform's bar, and the bar before the last, 0 where there is none.
+    #[inline]
+    pub(super) fn line_compliances<L: Leg>(&self, leg: &L, posture: &LegPosture, arm: DVec2) -> [f64; 4] {
         let u = posture.u;
-        let mut compliance = posture.drive * posture.drive * self.actuator
-            + leg.distal_length(posture) * self.leg_bar.axial
-            + along_line(&self.platform_bar, u, arm, self.platform_radius);
-        if let Some(bar) = leg.proximal_bar(posture) {
-            compliance += along_line(&self.leg_bar, u, bar.to - bar.from, posture.length);
-        }
-        compliance
+        let proximal = leg.proximal_bar(posture).map_or(0.0, |bar| {
+            along_line(&self.leg_bar, u, bar.to - bar.from, posture.length)
+        });
+        [
+            posture.drive * posture.drive * self.actuator,
+            leg.distal_length(posture) * self.leg_bar.axial,
+            along_line(&self.platform_bar, u, arm, self.platform_radius),
+            proximal,
+        ]
     }
 
     /// The in-plane block at a posture, upper triangle as in [`PlanarStiffness::in_plane`].
@@ -98,23 +125,35 @@ impl StiffnessModel {
     #[inline]
     fn bending_compliance<L: Leg>(&self, leg: &L, posture: &LegPosture, arm: DVec2) -> [f64; 6] {
         let mut s = [0.0; 6];
-        let mut add = |section, axis: DVec2, length, to_p: DVec2| {
-            add_bar(&mut s, section, axis.into(), length, to_p.into());
-        };
-        // The tip of the platform bar is P itself.
-        let platform_axis = -arm / self.platform_radius;
-        add(&self.platform_bar, platform_axis, self.platform_radius, DVec2::ZERO);
-        add(&self.leg_bar, posture.u, leg.distal_length(posture), -arm);
-        if let Some(bar) = leg.proximal_bar(posture) {
-            let to_p = posture.u * posture.length - arm;
-            add(
-                &self.leg_bar,
-                (bar.to - bar.from) / posture.length,
-                posture.length,
-                to_p,
-            );
+        for bar in self.bars(leg, posture, arm).into_iter().flatten() {
+            bar.add_to(&mut s);
         }
         s
+    }
+
+    /// The bars of one leg: the platform's, the last one, and the one before it.
+    #[inline]
+    pub(super) fn bars<L: Leg>(&self, leg: &L, posture: &LegPosture, arm: DVec2) -> [Option<Bar<'_>>; 3] {
+        // The tip of the platform bar is P itself.
+        let platform = Bar {
+            section: &self.platform_bar,
+            axis: -arm / self.platform_radius,
+            length: self.platform_radius,
+            to_p: DVec2::ZERO,
+        };
+        let distal = Bar {
+            section: &self.leg_bar,
+            axis: posture.u,
+            length: leg.distal_length(posture),
+            to_p: -arm,
+        };
+        let proximal = leg.proximal_bar(posture).map(|bar| Bar {
+            section: &self.leg_bar,
+            axis: (bar.to - bar.from) / posture.length,
+            length: posture.length,
+            to_p: posture.u * posture.length - arm,
+        });
+        [Some(platform), Some(distal), proximal]
     }
 
     /// `K_zz` alone \[N/m\]: all that the default definition of `k_z` needs.
@@ -250,7 +289,7 @@ pub(super) fn add_bar<V: Real>(s: &mut [V; 6], section: &BarCompliance, axis: Pl
     s[5] = s[5] + twist * axis.y * axis.y + bend * normal.y * normal.y;
 }
 
-fn symmetric(k: &[f64; 6]) -> Matrix3<f64> {
+pub(super) fn symmetric(k: &[f64; 6]) -> Matrix3<f64> {
     Matrix3::new(k[0], k[1], k[2], k[1], k[3], k[4], k[2], k[4], k[5])
 }
 

@@ -12,7 +12,7 @@ pub struct Builtin {
 }
 
 /// All of them; the first is the default.
-pub const BUILTIN: [Builtin; 3] = [
+pub const BUILTIN: [Builtin; 4] = [
     Builtin {
         name: "paper",
         text: include_str!("../../assets/studies/paper.toml"),
@@ -20,6 +20,10 @@ pub const BUILTIN: [Builtin; 3] = [
     Builtin {
         name: "paper-bounds-as-printed",
         text: include_str!("../../assets/studies/paper-bounds-as-printed.toml"),
+    },
+    Builtin {
+        name: "paper-without-collisions",
+        text: include_str!("../../assets/studies/paper-without-collisions.toml"),
     },
     Builtin {
         name: "aluminium-pick-and-place",

@@ -115,6 +115,8 @@ struct Smallest<'a, L> {
     ys: &'a [f64],
     /// 0, 1, 2, … for each pose.
     indices: &'a [f64],
+    /// Clearances that are not below this need not be told \[m\].
+    clearance: f64,
 }
 
 impl<L: Leg> WithSimd for Smallest<'_, L> {
@@ -125,6 +127,7 @@ impl<L: Leg> WithSimd for Smallest<'_, L> {
         let (arms, sign) = self.oriented.lanes(simd);
         let infinite = sign.splat(f64::INFINITY);
         let mut values = [infinite; QUANTITIES];
+        values[QUANTITIES - 1] = sign.splat(self.clearance);
         let mut indices = [sign.splat(0.0); QUANTITIES];
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         for ((x, y), index) in xs.iter().zip(ys).zip(Lanes::<S>::column(self.indices)) {
@@ -198,8 +201,16 @@ impl<L: Leg> PoseChecker<L> {
     }
 
     /// The smallest values over many positions in one orientation, `indices` counting them from 0. The columns are of
-    /// equal length, a multiple of [`MOST_LANES`].
-    pub(crate) fn smallest(&self, oriented: Oriented<'_>, xs: &[f64], ys: &[f64], indices: &[f64]) -> Minima {
+    /// equal length, a multiple of [`MOST_LANES`]. Of clearances those below `clearance` are of interest; where there is
+    /// none, it is what is returned.
+    pub(crate) fn smallest(
+        &self,
+        oriented: Oriented<'_>,
+        xs: &[f64],
+        ys: &[f64],
+        indices: &[f64],
+        clearance: f64,
+    ) -> Minima {
         assert!(xs.len() == ys.len() && xs.len() == indices.len() && xs.len().is_multiple_of(MOST_LANES));
         self.instructions.run(Smallest {
             checker: self,
@@ -207,6 +218,7 @@ impl<L: Leg> PoseChecker<L> {
             xs,
             ys,
             indices,
+            clearance,
         })
     }
 }

@@ -2,14 +2,17 @@
 //! segments in space.
 
 use kinefront::clearance::{BodySettings, Layers};
-use kinefront::evaluation::{Model, PoseReport};
+use kinefront::evaluation::{Constraint, Evaluation, GridChoice, Model, PoseReport};
 use kinefront::mechanism::{Architecture, Design, Leg, PrrLeg, RprLeg, RrrLeg, WorkingMode};
+use kinefront::report::{Fronts, Source};
 use kinefront::spatial::{Pose, Rotation};
+use kinefront::study::{Builtin, Study};
 use parry3d_f64::math::Vector;
 use parry3d_f64::query::details::closest_points_segment_segment_with_locations_nD;
 use parry3d_f64::shape::Segment;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
 
 /// Poses of each architecture.
 const POSES: usize = 100_000;
@@ -381,5 +384,87 @@ fn touching_is_zero() {
                 }
             }
         }
+    }
+}
+
+/// On the verified front of a study with g7 no pose overlaps, of a million drawn at random from the regular workspaces;
+/// without it most designs of its front collide, and are known to.
+#[test]
+fn a_front_with_clearance_has_no_overlap_on_a_million_poses() {
+    let study = |clearance: bool| {
+        let builtin = Builtin::find("paper-without-collisions").expect("it comes with the program");
+        let mut study = builtin.study().expect("sound");
+        study.optimizer.evaluations = 600;
+        if !clearance {
+            study.requirements.clearance_min_m = None;
+        }
+        study
+    };
+    let front = |study: &Study| {
+        let source = Source::run("a run", study.clone()).expect("a run");
+        let fronts = Fronts::new(&[source], &study.model(), 100).expect("a front");
+        let of_each = fronts.alone.into_iter().flat_map(|(_, front)| front.members);
+        of_each.collect::<Vec<_>>()
+    };
+    let clearance = |evaluation: &Evaluation| evaluation.constraint(Constraint::Clearance).value.expect("a clearance");
+
+    let with = study(true);
+    let model = with.model();
+    let least = with.requirements.clearance_min_m.expect("asked");
+    let members = front(&with);
+    assert!(
+        members
+            .iter()
+            .any(|member| member.active().any(|active| active == Constraint::Clearance))
+    );
+    let each = 1_000_000usize.div_ceil(members.len());
+    let overlaps: usize = members
+        .par_iter()
+        .enumerate()
+        .map(|(index, member)| {
+            assert!(clearance(member) >= least);
+            let mut random = Random(ChaCha8Rng::seed_from_u64(index as u64));
+            let home = member.home.expect("feasible");
+            let half_turn = 0.5 * model.workspace.rotation_range_deg.to_radians();
+            let drawn = (0..each).map(|_| {
+                let radius = member.workspace_radius * random.between(0.0, 1.0).sqrt();
+                let angle = random.between(0.0, std::f64::consts::TAU);
+                let phi = home.phi + random.between(-half_turn, half_turn);
+                Pose::new(radius * angle.cos(), radius * angle.sin(), phi)
+            });
+            drawn
+                .filter(|pose| {
+                    let report = model
+                        .pose(&member.design, pose)
+                        .expect("a whole grid")
+                        .expect("in the workspace");
+                    oracle(&model, &member.design, pose, &report, Fault::None).0 < 0.0
+                })
+                .count()
+        })
+        .sum();
+    assert_eq!(
+        overlaps,
+        0,
+        "of {} poses of {} designs",
+        each * members.len(),
+        members.len()
+    );
+
+    let colliding = front(&study(false));
+    let found: Vec<&Evaluation> = colliding.iter().filter(|member| clearance(member) < 0.0).collect();
+    assert!(
+        2 * found.len() > colliding.len(),
+        "{} of {}",
+        found.len(),
+        colliding.len()
+    );
+    for member in found {
+        let nearest = model.nearest(member).expect("a pose");
+        let report = member.constraint(Constraint::Clearance);
+        assert!(nearest.distance < 0.0 && !report.asked && !report.active);
+        // The same study with g7 has no use for that workspace.
+        let asked = model.evaluate(&member.design, GridChoice::Fine).expect("a whole grid");
+        assert!(asked.workspace_radius < member.workspace_radius);
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use kinefront::evaluation::{Evaluation, GridChoice, Model, PoseReport};
-use kinefront::mechanism::Design;
+use kinefront::mechanism::{Design, MemberKind};
 use kinefront::scene::{
     Body, EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Solid, SolidShape, ellipsoids, linkage, manipulator,
     regular_workspace, tour,
@@ -83,15 +83,17 @@ fn joints_close_along_every_tour() {
                         "{design}: {what} is {value}, not {wanted}"
                     );
                 };
+                // Members are joined by pins, from layer to layer.
+                let apart = |a: DVec3, b: DVec3| a.truncate().distance(b.truncate());
                 let platform = part(Part::PlatformBar).expect("a platform bar");
                 near(platform.0.distance(platform.1), design.platform_radius, "platform bar");
-                near(platform.1.distance(pose.position.extend(0.0)), 0.0, "gap at P");
+                near(apart(platform.1, pose.position.extend(0.0)), 0.0, "gap at P");
                 let last = match (part(Part::Link), part(Part::Tube), part(Part::Rod)) {
                     (Some(link), None, None) => {
                         near(length(Some(link)).expect("a link"), design.link_length, "link");
                         if let Some(crank) = part(Part::Crank) {
                             near(length(Some(crank)).expect("a crank"), design.link_length, "crank");
-                            near(crank.1.distance(link.0), 0.0, "gap at B");
+                            near(apart(crank.1, link.0), 0.0, "gap at B");
                         }
                         link
                     }
@@ -109,7 +111,7 @@ fn joints_close_along_every_tour() {
                     }
                     other => panic!("{design}: a leg of {other:?}"),
                 };
-                near(last.1.distance(platform.0), 0.0, "gap at C");
+                near(apart(last.1, platform.0), 0.0, "gap at C");
             }
         }
     });
@@ -145,13 +147,75 @@ fn the_manipulator_is_complete_and_to_scale() {
         for solid in &scene.solids {
             if let SolidShape::Bar { radius, .. } = solid.shape {
                 match solid.part {
-                    Part::Link | Part::Crank | Part::Rod => assert_eq!(radius, design.leg_bar_radius),
+                    Part::Link | Part::Crank | Part::Tube => assert_eq!(radius, design.leg_bar_radius),
                     Part::PlatformBar => assert_eq!(radius, design.platform_bar_radius),
                     _ => assert!(radius > 0.0),
                 }
             }
         }
     }
+}
+
+/// What is drawn is what is looked at for clearance: each member in its layer, with its radius; the line between the nearest
+/// two is as long as they are apart.
+#[test]
+fn bodies_are_drawn_where_they_are_looked_for() {
+    each(|model, evaluation| {
+        let design = &evaluation.design;
+        let home = evaluation.home.expect("a home");
+        let scene = manipulator(model, design, &home).expect("reachable");
+        let members = model.members(design, &home).expect("reachable");
+        assert_eq!(
+            members.len(),
+            3 * (design.architecture.bars_per_leg() + 1) + scene.solids_of(Part::Slider).count()
+        );
+        for report in &members {
+            let near = |a: DVec3, b: DVec3| a.distance(b) < 1e-12;
+            let drawn = scene.solids.iter().filter(|solid| solid.leg == Some(report.member.leg));
+            let same = |solid: &Solid| match (report.member.kind, solid.part, solid.shape) {
+                (MemberKind::Slider, Part::Slider, SolidShape::Block { centre, half_size, .. }) => {
+                    near(centre, 0.5 * (report.from + report.to))
+                        && (half_size.x - 0.5 * report.length).abs() < 1e-12
+                        && half_size.y == report.radius
+                }
+                (MemberKind::TelescopicLeg, Part::Tube, SolidShape::Bar { from, radius, .. }) => {
+                    near(from, report.from) && radius == report.radius
+                }
+                (MemberKind::Link, Part::Link, SolidShape::Bar { from, to, radius })
+                | (MemberKind::Crank, Part::Crank, SolidShape::Bar { from, to, radius })
+                | (MemberKind::PlatformBar, Part::PlatformBar, SolidShape::Bar { from, to, radius }) => {
+                    near(from, report.from) && near(to, report.to) && radius == report.radius
+                }
+                _ => false,
+            };
+            assert_eq!(drawn.filter(|solid| same(solid)).count(), 1, "{design}: {report:?}");
+        }
+        let mass: f64 = members.iter().map(|report| report.mass).sum();
+        assert!((mass - evaluation.mass).abs() < 1e-9 * mass);
+        let shares = members
+            .iter()
+            .flat_map(|report| [report.share, report.actuator])
+            .flatten();
+        let sum = shares.fold([0.0; 3], |sum: [f64; 3], share| {
+            [
+                sum[0] + share.in_plane,
+                sum[1] + share.vertical,
+                sum[2] + share.rotation,
+            ]
+        });
+        assert!(sum.iter().all(|sum| (sum - 1.0).abs() < 1e-9), "{design}: {sum:?}");
+
+        let clearance = report(model, design, home.position, home.phi).clearance;
+        let nearest = scene.nearest.expect("always drawn");
+        assert_eq!(nearest.too_near, clearance.distance < 0.0);
+        if clearance.distance > 0.0 {
+            let length = nearest.line[0].distance(nearest.line[1]);
+            assert!(
+                (length - clearance.distance).abs() < 1e-9,
+                "{design}: {length} for {clearance}"
+            );
+        }
+    });
 }
 
 /// The field from a pose's own report.

@@ -286,3 +286,54 @@ fn an_occupied_run_folder_is_left_alone() {
     );
     assert_eq!(std::fs::read_dir(&out).expect("a folder").count(), 1);
 }
+
+/// The clearance is told whether g7 is asked or not, and asked only by a study that states one.
+#[test]
+fn evaluate_and_pose_tell_the_nearest_bodies() {
+    let free = json(["evaluate", "--design", DESIGN, "--json"]);
+    let study = ["--study", "paper-without-collisions"];
+    let asked = json([&["evaluate", "--design", DESIGN, "--json"][..], &study].concat());
+    for found in [&free, &asked] {
+        let clearance = found["clearance_m"].as_f64().expect("a number");
+        let pair = found["clearance_pair"].as_array().expect("a pair");
+        assert_eq!(pair.len(), 2);
+        assert!(pair[0].as_str().expect("a name").starts_with("leg"), "{pair:?}");
+        assert_eq!(clearance < 0.0, std::ptr::eq(found, &free), "{clearance}");
+    }
+    let g7 = asked["constraints"].as_array().expect("a list").last().expect("g7");
+    assert_eq!(g7["id"], "g7");
+    assert_eq!(g7["threshold"], 0.005);
+    assert_eq!(g7["value"], asked["clearance_m"]);
+    assert!(g7["margin"].as_f64().expect("a number") >= 0.0);
+    assert!(g7["pose"]["phi_deg"].is_number());
+    assert!(asked["workspace_radius_m"].as_f64() < free["workspace_radius_m"].as_f64());
+
+    // At the pose where it is least, `pose` tells the same.
+    let pose = &g7["pose"];
+    let text = format!("x={} y={} phi_deg={}", pose["x_m"], pose["y_m"], pose["phi_deg"]);
+    let at = json(["pose", "--design", DESIGN, "--pose", &text, "--json"]);
+    assert_eq!(at["clearance_pair"], asked["clearance_pair"]);
+    let difference = at["clearance_m"].as_f64().expect("a number") - g7["value"].as_f64().expect("a number");
+    assert!(difference.abs() < 1e-9, "{difference}");
+    let nowhere = json(["pose", "--design", DESIGN, "--pose", "x=9 y=0 phi_deg=0", "--json"]);
+    assert_eq!(nowhere["clearance_m"], Value::Null);
+    assert_eq!(nowhere["clearance_pair"], Value::Null);
+}
+
+#[test]
+fn bodies_that_cannot_be_are_told_with_their_keys() {
+    let text = "[requirements]\nclearance_min_m = -0.1\n[bodies]\nslider_length = 1.0\n[bodies.layers]\ncrank = inf\n";
+    let folder = folder();
+    let path = folder.path().join("study.toml");
+    std::fs::write(&path, text).expect("a file");
+    let failed = kinefront().args(["study", "check"]).arg(&path).assert().code(2);
+    let words = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
+    for part in [
+        "requirements.clearance_min_m",
+        "bodies.slider_length",
+        "bodies.layers.crank",
+        "study.toml:2",
+    ] {
+        assert!(words.contains(part), "{part} is not in {words}");
+    }
+}

@@ -72,13 +72,17 @@ impl ComparePanel {
                         let values = pins.iter().map(|pin| Some(pin.design.values()[index])).collect();
                         row(ui, &format!("{} [m]", variable.symbol()), values, None);
                     }
-                    for constraint in Constraint::ALL {
+                    for constraint in Constraint::asked(&session.model().thresholds) {
                         let margins = evaluations
                             .iter()
                             .map(|e| e.as_ref().map(|e| e.constraint(constraint).margin))
                             .collect();
                         row(ui, &format!("margin {}", constraint.id()), margins, Some(Best::Largest));
                     }
+                    let clearances = evaluations
+                        .iter()
+                        .map(|e| e.as_ref()?.constraint(Constraint::Clearance).value);
+                    row(ui, "clearance [m]", clearances.collect(), Some(Best::Largest));
                     ui.label("active");
                     for evaluation in &evaluations {
                         let active: Vec<&str> =

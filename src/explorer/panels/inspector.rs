@@ -190,7 +190,10 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
         .show(ui, |ui| {
             for report in &known.evaluation.constraints {
                 let name = report.constraint.name().replace('_', " ");
-                if report.active {
+                if !report.asked {
+                    ui.weak(report.constraint.id());
+                    ui.weak(format!("{name}, not asked"));
+                } else if report.active {
                     ui.colored_label(theme::ACTIVE, report.constraint.id());
                     ui.colored_label(theme::ACTIVE, format!("{name}, active"));
                 } else {
@@ -205,6 +208,14 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
                 ui.end_row();
             }
         });
+    if let Some(nearest) = session.model().nearest(&known.evaluation) {
+        let words = format!("nearest bodies: {nearest}");
+        if nearest.distance < 0.0 {
+            ui.colored_label(theme::BROKEN, words);
+        } else {
+            ui.weak(words);
+        }
+    }
     if let Some(constraint) = worst {
         session.show_worst(constraint);
     }

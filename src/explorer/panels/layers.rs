@@ -17,6 +17,7 @@ impl LayersPanel {
             (&mut layers.legs, "Legs"),
             (&mut layers.platform, "Platform"),
             (&mut layers.labels, "Labels"),
+            (&mut layers.clearance, "Nearest bodies"),
             (&mut layers.workspace, "Regular workspace"),
             (&mut layers.singularities, "Singularities"),
             (&mut layers.configuration, "Configuration space"),

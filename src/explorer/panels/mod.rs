@@ -5,6 +5,7 @@ mod compare;
 mod inspector;
 mod layers;
 mod parallel;
+mod plan;
 mod pose;
 mod run;
 pub mod scatter;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 
-use crate::evaluation::Constraint;
+use crate::evaluation::{Constraint, Model};
 use crate::explorer::{Better, Quantity, Session, theme};
 use crate::mechanism::VARIABLES;
 
@@ -33,12 +33,11 @@ struct Drawn {
     dark: bool,
 }
 
-fn axes() -> Vec<Quantity> {
+fn axes(model: &Model) -> Vec<Quantity> {
     let mut axes: Vec<Quantity> = VARIABLES.map(Quantity::Variable).to_vec();
     axes.extend([Quantity::Mass, Quantity::Radius]);
     axes.extend(
-        Constraint::ALL
-            .into_iter()
+        Constraint::asked(&model.thresholds)
             .filter(|&constraint| constraint != Constraint::DeterminantSign)
             .map(Quantity::Margin),
     );
@@ -57,7 +56,7 @@ impl ParallelPanel {
                 ui.ctx().copy_text(session.document().filter.to_text());
             }
         });
-        let axes = axes();
+        let axes = axes(session.model());
         let (rect, response) = ui.allocate_exact_size(
             ui.available_size().max(Vec2::new(300.0, 120.0)),
             Sense::click_and_drag(),

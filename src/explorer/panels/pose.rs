@@ -1,11 +1,12 @@
 //! The pose: the manipulator from above, its platform dragged and turned by the mouse, and what holds there.
 
-use egui::{Align2, Color32, FontId, Grid, Pos2, Rect, Sense, Slider, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
-use glam::{DVec2, DVec3};
+use egui::{Align2, Color32, FontId, Grid, Sense, Slider, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
+use glam::DVec2;
 
+use super::plan::{Plan, card, paint};
 use crate::explorer::{Session, theme};
 use crate::mechanism::Design;
-use crate::scene::{Part, Scene, SolidShape, Tour, manipulator, regular_workspace, tour};
+use crate::scene::{Tour, manipulator, regular_workspace, tour};
 use crate::spatial::Pose;
 
 /// Poses around each rim of the tour, and how many are passed in a second.
@@ -48,7 +49,7 @@ impl PosePanel {
         self.sliders(ui, session, pose, home, evaluation.design.base_radius);
         match &self.stopped {
             Some(reason) => ui.colored_label(theme::BROKEN, format!("stopped: {reason}")),
-            None => ui.weak("drag the platform to move it, its rim to turn it"),
+            None => ui.weak("drag the platform to move it, its rim to turn it; point at a bar to learn about it"),
         };
         let pose = session.pose().unwrap_or(pose);
         numbers(ui, session, &evaluation.design, &pose);
@@ -167,6 +168,15 @@ impl PosePanel {
             rim,
             Stroke::new(1.0, Color32::from_rgb(90, 150, 235).gamma_multiply(0.6)),
         );
+        let members = session.model().members(design, &pose).unwrap_or_default();
+        let pointed = response
+            .hover_pos()
+            .filter(|_| self.grip.is_none())
+            .and_then(|pointer| plan.pointed_at(&members, pointer));
+        if let Some(member) = pointed {
+            plan.outline(&painter, member, theme::ink(ui));
+            response.on_hover_ui_at_pointer(|ui| card(ui, member));
+        }
     }
 
     fn drag(&mut self, response: &egui::Response, session: &mut Session, plan: &Plan, design: &Design, pose: Pose) {
@@ -207,77 +217,6 @@ impl PosePanel {
     }
 }
 
-/// From metres to the screen.
-struct Plan {
-    centre: Pos2,
-    scale: f64,
-}
-
-impl Plan {
-    fn new(rect: Rect, design: &Design) -> Self {
-        let reach = 1.25
-            * design
-                .base_radius
-                .max(0.5 * (design.platform_radius + design.link_length));
-        Self {
-            centre: rect.center(),
-            scale: 0.5 * f64::from(rect.width().min(rect.height())) / reach,
-        }
-    }
-
-    fn screen(&self, at: DVec2) -> Pos2 {
-        self.centre + Vec2::new((at.x * self.scale) as f32, -(at.y * self.scale) as f32)
-    }
-
-    fn world(&self, at: Pos2) -> DVec2 {
-        let offset = at - self.centre;
-        DVec2::new(f64::from(offset.x), -f64::from(offset.y)) / self.scale
-    }
-}
-
-fn paint(ui: &Ui, painter: &egui::Painter, plan: &Plan, scene: &Scene) {
-    let place = |at: DVec3| plan.screen(at.truncate());
-    let dark = ui.visuals().dark_mode;
-    for line in &scene.lines {
-        let color = theme::part(line.part, dark);
-        let points: Vec<Pos2> = line.points.iter().map(|&at| place(at)).collect();
-        painter.line(points, Stroke::new(1.2, color));
-    }
-    for solid in &scene.solids {
-        let color = theme::part(solid.part, dark);
-        match solid.shape {
-            // A pin stands upright: a disc from above.
-            SolidShape::Bar { from, radius, .. } if matches!(solid.part, Part::ActuatedJoint | Part::PassiveJoint) => {
-                painter.circle_filled(place(from), ((radius * plan.scale) as f32).max(2.5), color);
-            }
-            SolidShape::Bar { from, to, radius } => {
-                let width = ((2.0 * radius * plan.scale) as f32).max(2.0);
-                painter.line_segment([place(from), place(to)], Stroke::new(width, color));
-            }
-            SolidShape::Block {
-                centre,
-                half_size,
-                angle,
-            } => {
-                let axis = DVec2::from_angle(angle);
-                let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(a, b): (f64, f64)| {
-                    plan.screen(centre.truncate() + axis * (a * half_size.x) + axis.perp() * (b * half_size.y))
-                });
-                painter.add(egui::Shape::convex_polygon(corners.to_vec(), color, Stroke::NONE));
-            }
-        }
-    }
-    for label in &scene.labels {
-        painter.text(
-            place(label.at) + Vec2::new(6.0, -6.0),
-            Align2::LEFT_BOTTOM,
-            &label.text,
-            FontId::proportional(11.0),
-            theme::ink(ui),
-        );
-    }
-}
-
 fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
     let Ok(Ok(report)) = session.model().pose(design, pose) else {
         return;
@@ -302,6 +241,13 @@ fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
                 }
             }
         });
+    let least = thresholds.clearance.unwrap_or(0.0);
+    let color = if report.clearance.distance < least {
+        theme::BROKEN
+    } else {
+        theme::SOUND
+    };
+    ui.colored_label(color, format!("clearance: {}", report.clearance));
     let unit = design.architecture.actuator().unit();
     let actuators = report.actuators.map(theme::number).join(", ");
     ui.weak(format!(

@@ -73,7 +73,28 @@ fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault]) {
     }
 }
 
+/// Settings that a study may leave out, with the value that they begin with.
+const OPTIONAL: [(&str, &str, f64); 5] = [
+    ("requirements", "clearance_min_m", 0.005),
+    ("requirements", "k_xy_min_n_per_m", 1e6),
+    ("requirements", "k_z_min_n_per_m", 1e5),
+    ("requirements", "k_phi_z_min_nm_per_rad", 573.0),
+    ("workspace", "home_phi_deg", 0.0),
+];
+
 fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
+    for (section, key, value) in OPTIONAL {
+        if section == path {
+            let mut stated = table.contains_key(key);
+            if ui.checkbox(&mut stated, format!("state {key}")).changed() {
+                if stated {
+                    table.insert(key.to_owned(), Value::Float(value));
+                } else {
+                    table.remove(key);
+                }
+            }
+        }
+    }
     for (key, value) in table.iter_mut() {
         let path = if path.is_empty() {
             key.clone()

@@ -1,5 +1,6 @@
 //! The page: one HTML file that holds everything and loads nothing.
 
+mod clearance;
 mod differences;
 mod made;
 mod results;
@@ -37,6 +38,7 @@ pub(super) fn html(report: &Report) -> String {
     }
     sections.push(("variables", "Design variables along R_w", results::variables(report)));
     sections.push(("constraints", "What stops the workspace", results::constraints(report)));
+    sections.push(("clearance", "Bodies that collide", clearance::clearance(report)));
     sections.push(("pictures", "Designs", results::pictures(report)));
     if !report.variations.is_empty() {
         sections.push((

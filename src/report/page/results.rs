@@ -197,6 +197,7 @@ pub(super) fn variables(report: &Report) -> Markup {
 }
 
 pub(super) fn constraints(report: &Report) -> Markup {
+    let asked: Vec<Constraint> = Constraint::asked(&report.study.model().thresholds).collect();
     html! {
         p {
             "The constraints that fail first just beyond R_w: what would have to be eased for the workspace to grow. Where several dots stand above "
@@ -207,18 +208,18 @@ pub(super) fn constraints(report: &Report) -> Markup {
             caption { "Share of the designs drawn of each front at which a constraint is active." }
             thead { tr {
                 th { "architecture" }
-                @for constraint in Constraint::ALL { th.number { (constraint.id()) } }
+                @for &constraint in &asked { th.number { (constraint.id()) } }
             } }
             tbody { @for (architecture, front) in &report.fronts.alone { tr {
                 td { (architecture) }
-                @for constraint in Constraint::ALL {
+                @for &constraint in &asked {
                     @let count = front.shown().filter(|member| member.active().any(|active| active == constraint)).count();
                     td.number { @if count > 0 { (percent(count as f64 / front.shown.len() as f64)) } @else { "–" } }
                 }
             } } }
         } }
         p {
-            @for (index, constraint) in Constraint::ALL.into_iter().enumerate() {
+            @for (index, constraint) in asked.iter().enumerate() {
                 @if index > 0 { "; " }
                 (constraint.id()) ": " (constraint.name().replace('_', " "))
             }

@@ -1,0 +1,180 @@
+//! The manipulator seen from above: where things are on the screen, and what is under the pointer.
+
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2};
+use glam::{DVec2, DVec3};
+
+use crate::clearance::Member;
+use crate::evaluation::{MemberReport, Share};
+use crate::explorer::theme;
+use crate::mechanism::{Design, MemberKind};
+use crate::scene::{Part, Scene, Solid, SolidShape};
+
+/// How far beside a thin member the pointer may be, in points.
+const CATCH: f32 = 4.0;
+
+/// From metres to the screen.
+pub(super) struct Plan {
+    centre: Pos2,
+    /// Points of the screen per metre.
+    pub scale: f64,
+}
+
+impl Plan {
+    pub fn new(rect: Rect, design: &Design) -> Self {
+        let reach = 1.25
+            * design
+                .base_radius
+                .max(0.5 * (design.platform_radius + design.link_length));
+        Self {
+            centre: rect.center(),
+            scale: 0.5 * f64::from(rect.width().min(rect.height())) / reach,
+        }
+    }
+
+    pub fn screen(&self, at: DVec2) -> Pos2 {
+        self.centre + Vec2::new((at.x * self.scale) as f32, -(at.y * self.scale) as f32)
+    }
+
+    pub fn world(&self, at: Pos2) -> DVec2 {
+        let offset = at - self.centre;
+        DVec2::new(f64::from(offset.x), -f64::from(offset.y)) / self.scale
+    }
+
+    /// The member under the pointer, the topmost where there are several; thin ones can be caught a little beside.
+    pub fn pointed_at<'a>(&self, members: &'a [MemberReport], pointer: Pos2) -> Option<&'a MemberReport> {
+        let at = self.world(pointer);
+        let beside = f64::from(CATCH) / self.scale;
+        members
+            .iter()
+            .filter(|member| distance(at, member) <= member.radius.max(beside))
+            .max_by(|a, b| {
+                // Of those in one layer the one whose axis is nearer.
+                let nearer = || distance(at, b).total_cmp(&distance(at, a));
+                a.from.z.total_cmp(&b.from.z).then_with(nearer)
+            })
+    }
+
+    /// Outlines a member.
+    pub fn outline(&self, painter: &Painter, member: &MemberReport, color: Color32) {
+        let ends = [member.from, member.to].map(|end| self.screen(end.truncate()));
+        let side = (ends[1] - ends[0]).normalized().rot90() * ((member.radius * self.scale) as f32).max(2.0);
+        let corners = vec![ends[0] + side, ends[1] + side, ends[1] - side, ends[0] - side];
+        painter.add(Shape::closed_line(corners, Stroke::new(1.5, color)));
+    }
+}
+
+/// Draws a scene.
+pub(super) fn paint(ui: &Ui, painter: &egui::Painter, plan: &Plan, scene: &Scene) {
+    let place = |at: DVec3| plan.screen(at.truncate());
+    let dark = ui.visuals().dark_mode;
+    for line in &scene.lines {
+        let color = theme::part(line.part, dark);
+        let points: Vec<Pos2> = line.points.iter().map(|&at| place(at)).collect();
+        painter.line(points, Stroke::new(1.2, color));
+    }
+    let mut solids: Vec<&Solid> = scene.solids.iter().collect();
+    solids.sort_by(|a, b| top(&a.shape).total_cmp(&top(&b.shape)));
+    for solid in solids {
+        let color = theme::part(solid.part, dark);
+        match solid.shape {
+            // A pin stands upright: a disc from above.
+            SolidShape::Bar { from, radius, .. } if matches!(solid.part, Part::ActuatedJoint | Part::PassiveJoint) => {
+                painter.circle_filled(place(from), ((radius * plan.scale) as f32).max(2.5), color);
+            }
+            SolidShape::Bar { from, to, radius } => {
+                let width = ((2.0 * radius * plan.scale) as f32).max(2.0);
+                painter.line_segment([place(from), place(to)], Stroke::new(width, color));
+            }
+            SolidShape::Block {
+                centre,
+                half_size,
+                angle,
+            } => {
+                let axis = DVec2::from_angle(angle);
+                let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(a, b): (f64, f64)| {
+                    plan.screen(centre.truncate() + axis * (a * half_size.x) + axis.perp() * (b * half_size.y))
+                });
+                painter.add(egui::Shape::convex_polygon(corners.to_vec(), color, Stroke::NONE));
+            }
+        }
+    }
+    if let Some(nearest) = &scene.nearest {
+        let color = theme::nearest(nearest.too_near, dark);
+        let [from, to] = nearest.line.map(place);
+        painter.line_segment([from, to], Stroke::new(2.5, color));
+        painter.circle_stroke(from.lerp(to, 0.5), 7.0, Stroke::new(1.5, color));
+        let at = from.lerp(to, 0.5) + Vec2::new(9.0, 9.0);
+        painter.text(at, Align2::LEFT_TOP, &nearest.text, FontId::proportional(12.0), color);
+    }
+    for label in &scene.labels {
+        painter.text(
+            place(label.at) + Vec2::new(6.0, -6.0),
+            Align2::LEFT_BOTTOM,
+            &label.text,
+            FontId::proportional(11.0),
+            theme::ink(ui),
+        );
+    }
+}
+
+/// Height of a solid's top.
+fn top(shape: &SolidShape) -> f64 {
+    match *shape {
+        SolidShape::Bar { from, to, radius } if from.z == to.z => from.z + radius,
+        SolidShape::Bar { from, to, .. } => from.z.max(to.z),
+        SolidShape::Block { centre, half_size, .. } => centre.z + half_size.z,
+    }
+}
+
+/// Distance of a point from a member's axis.
+fn distance(at: DVec2, member: &MemberReport) -> f64 {
+    let (from, way) = (member.from.truncate(), (member.to - member.from).truncate());
+    let share = (at - from).dot(way) / way.length_squared();
+    let foot = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
+    at.distance(from + way * foot)
+}
+
+/// What is known of a member.
+pub(super) fn card(ui: &mut Ui, report: &MemberReport) {
+    ui.strong(name(&report.member));
+    ui.label(format!(
+        "length {} m, {} {} mm",
+        theme::number(report.length),
+        if report.member.kind == MemberKind::Slider {
+            "half width"
+        } else {
+            "radius"
+        },
+        theme::number(1e3 * report.radius)
+    ));
+    if report.mass > 0.0 {
+        ui.label(format!("mass {} kg", theme::number(report.mass)));
+    } else {
+        ui.weak("no mass in this model");
+    }
+    let of_all = |what: &str, share: Share| {
+        let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+        format!(
+            "{what} of the compliance here: {} in the plane, {} along z, {} about z",
+            percent(share.in_plane),
+            percent(share.vertical),
+            percent(share.rotation)
+        )
+    };
+    if let Some(share) = report.share.filter(|_| report.member.kind != MemberKind::Slider) {
+        ui.label(of_all("share", share));
+    }
+    if let Some(share) = report.actuator {
+        ui.label(of_all("its actuator's share", share));
+    }
+}
+
+/// A member's name for people.
+fn name(member: &Member) -> String {
+    let kind = member.kind.name().replace('_', " ");
+    let number = member.leg + 1;
+    match member.kind {
+        MemberKind::PlatformBar => format!("{kind} {number}"),
+        _ => format!("{kind} of leg {number}"),
+    }
+}
