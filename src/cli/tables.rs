@@ -2,7 +2,7 @@
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{CellAlignment, Table};
-use kinefront::evaluation::{Evaluation, Model, PoseReport, Unreachable};
+use kinefront::evaluation::{Constraint, Evaluation, Model, PoseReport, Unreachable};
 use kinefront::mechanism::Design;
 use kinefront::spatial::Pose;
 use kinefront::study::{FrontMember, RunSummary};
@@ -151,10 +151,11 @@ pub fn front(summary: &RunSummary) -> String {
             "Lb",
             "rj",
             "rp",
+            "clear. mm",
             "active",
             "",
         ],
-        &[0, 2, 3, 4, 5, 6, 7, 8, 9],
+        &[0, 2, 3, 4, 5, 6, 7, 8, 9, 10],
     );
     let count = summary.front.len();
     let rows = count.min(MOST_ROWS);
@@ -171,6 +172,12 @@ pub fn front(summary: &RunSummary) -> String {
             let digits = if index < 3 { 3 } else { 4 };
             format!("{value:.digits$}")
         }));
+        let clearance = evaluation.constraint(Constraint::Clearance).value;
+        row.push(
+            clearance
+                .map(|clearance| format!("{:.1}", 1e3 * clearance))
+                .unwrap_or_default(),
+        );
         let active: Vec<&str> = evaluation.active().map(|constraint| constraint.id()).collect();
         row.push(active.join(" "));
         row.push(marks[place].to_owned());

@@ -9,7 +9,7 @@ use rerun::{Scalars, SeriesLines, TimeColumn};
 use super::scatter::{Frame, FrontPoint, INFEASIBLE_COLOR, front_points, points, selected, staircase};
 use super::writer::{ALWAYS, Moment, RecordingError, Writer};
 use super::{blueprint, colors, columns, design, paths, timelines};
-use crate::evaluation::{Evaluation, Model};
+use crate::evaluation::{Constraint, Evaluation, Model};
 use crate::mechanism::Architecture;
 use crate::study::{Batch, Event, GenerationSummary, RunSummary, Study};
 
@@ -292,7 +292,7 @@ fn summary_text(summary: &RunSummary) -> String {
     let mut text = format!(
         "# Result\n\n{} evaluations, {} feasible. {} designs stand on the front after verification on the fine grid \
          ({} dropped); hypervolume {:.1} kg·m.\n\n| # | architecture | mass [kg] | R_w [m] | φ_c [°] | R | r | L_b | r_j | \
-         r_p | active |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+         r_p | clearance [mm] | active |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         last.map_or(0, |last| last.evaluations),
         last.map_or(0, |last| last.feasible),
         summary.front.len(),
@@ -303,13 +303,15 @@ fn summary_text(summary: &RunSummary) -> String {
         let e = &member.evaluation;
         let [base, platform, link, leg_bar, platform_bar] = e.design.values();
         let active: Vec<&str> = e.active().map(|constraint| constraint.id()).collect();
+        let clearance = e.constraint(Constraint::Clearance).value;
         text.push_str(&format!(
-            "| {} | {} | {:.2} | {:.4} | {} | {base:.3} | {platform:.3} | {link:.3} | {leg_bar:.4} | {platform_bar:.4} | {} |\n",
+            "| {} | {} | {:.2} | {:.4} | {} | {base:.3} | {platform:.3} | {link:.3} | {leg_bar:.4} | {platform_bar:.4} | {} | {} |\n",
             member.id,
             e.design.architecture,
             e.mass,
             e.workspace_radius,
             e.home_phi_deg.map(|phi| phi.to_string()).unwrap_or_default(),
+            clearance.map(|clearance| format!("{:.1}", 1e3 * clearance)).unwrap_or_default(),
             active.join(" "),
         ));
     }

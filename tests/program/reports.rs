@@ -56,7 +56,8 @@ fn a_page_holds_everything_and_loads_nothing() {
         assert!(!page.contains(word), "{word}");
     }
 
-    // Three architectures: a front each and three of all, two charts of variables, active constraints, and sensitivity.
+    // Three architectures: a front each and three of all, two charts of variables, active constraints, clearance, and
+    // sensitivity.
     let names = |name: &str, extension: &str| -> Vec<String> {
         let mut found: Vec<String> = std::fs::read_dir(out.join(name))
             .expect("a folder")
@@ -68,7 +69,7 @@ fn a_page_holds_everything_and_loads_nothing() {
     };
     let figures = names("figures", ".svg");
     assert_eq!(figures, names("figures", ".png"));
-    assert_eq!(figures.len(), 3 + 3 + 3 * 2 + 3 + 3);
+    assert_eq!(figures.len(), 3 + 3 + 3 * 2 + 3 + 3 + 3);
     for figure in &figures {
         assert!(
             page.contains(&format!("id=\"figure-{figure}\"")),

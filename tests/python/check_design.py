@@ -27,7 +27,7 @@ for chunk in reader.stream():
     entities.setdefault(str(chunk.entity_path), []).append(pa.Table.from_batches([batch.replace_schema_metadata(None)]))
 tables = {entity: pa.concat_tables(parts, promote_options="default") for entity, parts in entities.items()}
 
-fields = ["inverse_condition", "k_xy", "k_z", "k_phi_z", "displacement", "worst_margin"]
+fields = ["inverse_condition", "k_xy", "k_z", "k_phi_z", "displacement", "worst_margin", "clearance"]
 wanted = ["/card", "/configuration/axes/lines", "/configuration/cylinder/outline", "/design/workspace/outline"]
 wanted += ["/design/limits/poses", "/design/ellipsoids/stiffness/bodies", "/design/ellipsoids/displacement/bodies"]
 wanted += [f"/design/heatmap/{field}/field" for field in fields] + [f"/design/legend/{field}/strip" for field in fields]
@@ -39,7 +39,7 @@ assert not missing, missing
 for entity in wanted:
     assert "tour" not in tables[entity].schema.names, entity
 
-moving = ["legs", "platform", "joints/passive", "joints/actuated", "base", "frames", "labels"]
+moving = ["legs", "platform", "joints/passive", "joints/actuated", "base", "frames", "labels", "clearance/line"]
 steps = None
 for name in moving:
     table = tables[f"/design/manipulator/{name}"].sort_by("tour")
@@ -52,6 +52,10 @@ for name in moving:
 legs = tables["/design/manipulator/legs"].sort_by("tour")["Cylinders3D:lengths"].to_pylist()
 platform = np.array(tables["/design/manipulator/platform"]["Cylinders3D:lengths"].to_pylist())
 assert np.allclose(platform, platform[0, 0], rtol=1e-6)
+
+# The nearest bodies, with their distance in words, at each pose.
+words = tables["/design/manipulator/clearance/distance"]["Points3D:labels"].to_pylist()
+assert len(words) == steps and all(len(row) == 1 and row[0].endswith(" mm") for row in words), words[:3]
 
 mesh = tables["/design/heatmap/inverse_condition/field"]
 vertices = np.array(mesh["Mesh3D:vertex_positions"].to_pylist()[0])

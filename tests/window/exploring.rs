@@ -3,8 +3,9 @@
 use egui::accesskit::{Role, Toggled};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use kinefront::evaluation::MemberReport;
 use kinefront::explorer::{Origin, Phase, Quantity};
-use kinefront::mechanism::Variable;
+use kinefront::mechanism::{MemberKind, Variable};
 use kinefront::study::Outcome;
 
 use super::support::{click_at, idle_window, opened_window, set_slider, until};
@@ -208,6 +209,58 @@ fn the_platform_stops_at_its_limits_and_says_which() {
     window.get_by_label("Home").click();
     window.run_steps(3);
     assert_eq!(window.state().session().pose(), window.state().session().home());
+}
+
+/// Pointing at a bar in the top view tells what it is; the numbers are those of the model.
+#[test]
+fn pointing_at_a_bar_tells_what_it_is() {
+    let mut window = opened_window();
+    window.run_steps(3);
+    let session = window.state().session();
+    let known = session.known().expect("a design in the light");
+    let design = known.evaluation.design;
+    let pose = session.pose().expect("a pose");
+    let members = session.model().members(&design, &pose).expect("reachable");
+    // Of what lies on top, the link that is farthest from all else: the first whose middle no other member covers.
+    let bare = |report: &MemberReport| {
+        let at = 0.5 * (report.from + report.to).truncate();
+        members.iter().all(|other| {
+            let (from, way) = (other.from.truncate(), (other.to - other.from).truncate());
+            let share = ((at - from).dot(way) / way.length_squared()).clamp(0.0, 1.0);
+            other.member == report.member || at.distance(from + way * share) > 0.05 * design.base_radius
+        })
+    };
+    let report = members
+        .iter()
+        .find(|report| report.member.kind != MemberKind::PlatformBar && bare(report))
+        .expect("a link that stands alone");
+    let view = window.get_by_label("Top view").rect();
+    let reach = 1.25
+        * design
+            .base_radius
+            .max(0.5 * (design.platform_radius + design.link_length));
+    let scale = 0.5 * view.width().min(view.height()) / reach as f32;
+    let at = 0.5 * (report.from + report.to).truncate();
+    let pointer = view.center() + egui::vec2(at.x as f32, -at.y as f32) * scale;
+    window.hover_at(pointer);
+    window.run_steps(60);
+    let name = format!(
+        "{} of leg {}",
+        report.member.kind.name().replace('_', " "),
+        report.member.leg + 1
+    );
+    window.get_by_label(&name);
+    let mass = format!("mass {} kg", kinefront::text::number(report.mass));
+    window.get_by_label(&mass);
+    let share = report.share.expect("a stiff design");
+    let words = format!(
+        "share of the compliance here: {:.1} % in the plane",
+        100.0 * share.in_plane
+    );
+    assert!(window.query_all_by_label_contains(&words).count() > 0, "{words}");
+    window.hover_at(view.left_top() + egui::vec2(3.0, 3.0));
+    window.run_steps(60);
+    assert!(window.query_by_label(&name).is_none(), "the card stays");
 }
 
 #[test]

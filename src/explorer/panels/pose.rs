@@ -96,6 +96,8 @@ impl PosePanel {
     fn sliders(&mut self, ui: &mut Ui, session: &mut Session, pose: Pose, home: Pose, reach: f64) {
         let mut target = pose;
         let turn = std::f64::consts::PI;
+        // The same orientation on the slider, which is centred on home.
+        target.phi = home.phi - turn + (pose.phi - home.phi + turn).rem_euclid(2.0 * turn);
         let axes: [(&str, &mut f64, std::ops::RangeInclusive<f64>, bool); 3] = [
             ("x", &mut target.position.x, -reach..=reach, false),
             ("y", &mut target.position.y, -reach..=reach, false),

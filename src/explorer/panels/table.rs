@@ -78,6 +78,7 @@ impl TablePanel {
                 Quantity::Variable(variable).title(),
             )
         }))
+        .chain([(Key::Number(Quantity::Clearance), Quantity::Clearance.title())])
         .collect();
         let (mut clicked, mut starred) = (None, None);
         egui::ScrollArea::horizontal()
@@ -146,6 +147,11 @@ impl TablePanel {
                                         Key::Architecture if lit && Some(entry.id) != chosen => text.color(
                                             theme::architecture(entry.row.design.architecture, ui.visuals().dark_mode),
                                         ),
+                                        Key::Number(Quantity::Clearance)
+                                            if Quantity::Clearance.of(&entry.row) < 0.0 =>
+                                        {
+                                            text.color(theme::BROKEN)
+                                        }
                                         _ => text,
                                     };
                                     ui.add(Label::new(text).selectable(false));
