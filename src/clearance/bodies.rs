@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::FARTHEST;
 use super::capsule::{Capsule, Clearance, Member, Neighbour};
 use super::distance::{may_be_nearer, squared};
 use super::layers::BodySettings;
@@ -52,9 +53,11 @@ impl Bodies {
     /// The bodies of `design`, whose legs are of type `L`.
     pub fn new<L: Leg>(design: &Design, settings: &BodySettings) -> Self {
         let kinds = [L::PROXIMAL, Some(L::DISTAL), Some(MemberKind::PlatformBar)];
-        let radii = kinds.map(|kind| kind.map_or(0.0, |kind| settings.radius(kind, design)));
-        let heights = kinds.map(|kind| kind.map_or(0.0, |kind| settings.height(kind, design)));
-        let half_length = settings.slider_half_length(design);
+        // Within the number range, squares and sums too, whatever radii a design has.
+        let radii = kinds.map(|kind| kind.map_or(0.0, |kind| settings.radius(kind, design).min(FARTHEST)));
+        let height = |kind| settings.height(kind, design).clamp(-FARTHEST, FARTHEST);
+        let heights = kinds.map(|kind| kind.map_or(0.0, height));
+        let half_length = settings.slider_half_length(design).min(FARTHEST);
         let none = Pair {
             places: [0; 2],
             radii: 0.0,
@@ -182,8 +185,11 @@ impl Bodies {
                 break;
             }
             let (a, b) = (&axes[pair.places[0]], &axes[pair.places[1]]);
-            if V::any(may_be_nearer(a, b, least + limit.splat(pair.radii))) {
-                least = Self::gap(pair, &axes).smaller(least);
+            // Lane by lane: what one lane has found must not depend on its neighbours.
+            let near = may_be_nearer(a, b, least + limit.splat(pair.radii));
+            if V::any(near) {
+                let found = Self::gap(pair, &axes).smaller(least);
+                least = found.where_set(near, least);
             }
         }
         least
@@ -203,8 +209,7 @@ impl Bodies {
         let pairs = self.pairs[..self.count].iter();
         let (distance, found) = ends
             .chain(pairs.map(|pair| (Self::gap(pair, &axes), Found::Pair(pair))))
-            // What has left the number range collides with nothing that is there.
-            .map(|(distance, found)| (if distance.is_finite() { distance } else { f64::MAX }, found))
+            .map(|(distance, found)| (distance.clamp(-FARTHEST, FARTHEST), found))
             .reduce(|least, next| if next.0 < least.0 { next } else { least })
             .expect("a manipulator has bodies");
         match found {

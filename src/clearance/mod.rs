@@ -17,3 +17,6 @@ mod layers;
 pub use bodies::Bodies;
 pub use capsule::{Capsule, Clearance, Member, Neighbour};
 pub use layers::{BodySettings, Layers};
+
+/// Longest distance that is told, and thickest body \[m\].
+pub(crate) const FARTHEST: f64 = 1e100;

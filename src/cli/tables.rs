@@ -2,7 +2,7 @@
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{CellAlignment, Table};
-use kinefront::evaluation::{Constraint, Evaluation, Model, PoseReport, Unreachable};
+use kinefront::evaluation::{Evaluation, Model, PoseReport, Unreachable};
 use kinefront::mechanism::Design;
 use kinefront::spatial::Pose;
 use kinefront::study::{FrontMember, RunSummary};
@@ -172,7 +172,7 @@ pub fn front(summary: &RunSummary) -> String {
             let digits = if index < 3 { 3 } else { 4 };
             format!("{value:.digits$}")
         }));
-        let clearance = evaluation.constraint(Constraint::Clearance).value;
+        let clearance = evaluation.clearance();
         row.push(
             clearance
                 .map(|clearance| format!("{:.1}", 1e3 * clearance))

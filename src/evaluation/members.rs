@@ -14,13 +14,14 @@ use crate::stiffness::{Share, StiffnessModel};
 pub struct MemberReport {
     /// Which.
     pub member: Member,
-    /// Proximal end of its axis in the base frame \[m\].
+    /// Proximal end of its axis in the base frame \[m\]: of a telescopic leg where its rod ends, if that sticks out behind
+    /// the base joint; of a slider the middle of an end face.
     pub from: DVec3,
     /// Distal end of its axis \[m\].
     pub to: DVec3,
     /// Radius; half the width of a slider \[m\].
     pub radius: f64,
-    /// Length of the bar at the pose, or of the slider \[m\].
+    /// Length of the bar between its joints at the pose, or of the slider \[m\].
     pub length: f64,
     /// Mass \[kg\]; a slider has none in this model.
     pub mass: f64,
@@ -51,16 +52,26 @@ impl Model {
         let capsules = Bodies::new::<L>(design, &self.bodies).capsules(&manipulator, pose.position, &posture);
         let members = capsules.into_iter().map(|capsule| {
             let kind = capsule.member.kind;
-            let of_leg_shares = shares.as_ref().map(|shares| &shares[capsule.member.leg]);
+            let leg = capsule.member.leg;
+            let of_leg_shares = shares.as_ref().map(|shares| &shares[leg]);
+            let ends = match (kind, manipulator.legs[leg].actuator_axis(&posture.legs[leg])) {
+                // The capsule's axis ends before the block does.
+                (MemberKind::Slider, Some(axis)) => {
+                    let middle = 0.5 * (capsule.from + capsule.to);
+                    let half = axis.extend(0.0) * self.bodies.slider_half_length(design);
+                    [middle - half, middle + half]
+                }
+                _ => [capsule.from, capsule.to],
+            };
             let driven = kind == L::PROXIMAL.unwrap_or(L::DISTAL);
             MemberReport {
                 member: capsule.member,
-                from: capsule.from,
-                to: capsule.to,
+                from: ends[0],
+                to: ends[1],
                 radius: capsule.radius,
                 length: match kind {
                     MemberKind::Slider => 2.0 * self.bodies.slider_half_length(design),
-                    MemberKind::TelescopicLeg => posture.legs[capsule.member.leg].length,
+                    MemberKind::TelescopicLeg => posture.legs[leg].length,
                     _ => capsule.from.distance(capsule.to),
                 },
                 mass: match kind {

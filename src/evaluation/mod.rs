@@ -60,6 +60,12 @@ impl Evaluation {
         &self.constraints[constraint as usize]
     }
 
+    /// Least clearance of bodies that are not joined over the regular workspace, asked for or not \[m\]; `None` where no pose
+    /// has one.
+    pub fn clearance(&self) -> Option<f64> {
+        self.constraint(Constraint::Clearance).value
+    }
+
     /// Ids of the active constraints, in order.
     pub fn active(&self) -> impl Iterator<Item = Constraint> + '_ {
         self.constraints

@@ -199,7 +199,14 @@ impl Model {
     /// where it has none.
     pub fn nearest(&self, evaluation: &Evaluation) -> Option<Clearance> {
         let pose = evaluation.constraint(Constraint::Clearance).pose?;
-        self.nearest_at(&evaluation.design, &pose).ok()
+        let design = &evaluation.design;
+        // At the very end of a leg's reach rounding decides whether it gets there; a hair nearer to the centre it does.
+        let inwards = (self.workspace.centre - pose.position).clamp_length_max(1e-9 * design.base_radius);
+        let position = pose.position + inwards;
+        let found = self.nearest_at(design, &pose);
+        found
+            .or_else(|_| self.nearest_at(design, &Pose { position, ..pose }))
+            .ok()
     }
 
     /// The nearest pair of bodies of a design at a pose.

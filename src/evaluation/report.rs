@@ -248,7 +248,8 @@ impl<L: Leg> Reporter<'_, L> {
                     .filter_map(|constraint| {
                         let threshold = constraint.threshold(self.design, thresholds);
                         let value = constraint.value(self.design, values, 1.0)?;
-                        Some((-constraint.margin(value, threshold, self.design)).max(0.0))
+                        // Wholly missed at most, like what is out of reach.
+                        Some((-constraint.margin(value, threshold, self.design)).clamp(0.0, 1.0))
                     })
                     .sum();
                 (

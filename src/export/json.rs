@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::Prepared;
-use crate::evaluation::{Constraint, Evaluation, Model, PoseReport, Unreachable};
+use crate::evaluation::{Evaluation, Model, PoseReport, Unreachable};
 use crate::mechanism::{Actuator, Design};
 use crate::scene::{Body, Frame, Linkage};
 use crate::spatial::Pose;
@@ -99,7 +99,7 @@ impl EvaluationJson {
                 .map(|(pose, phi_deg)| PoseJson::new(&pose, phi_deg)),
             feasible: evaluation.is_feasible(),
             violation: evaluation.violation,
-            clearance_m: evaluation.constraint(Constraint::Clearance).value,
+            clearance_m: evaluation.clearance(),
             clearance_pair: model.nearest(evaluation).map(|nearest| nearest.pair()),
             constraints: evaluation
                 .constraints

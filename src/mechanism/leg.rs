@@ -148,6 +148,8 @@ pub enum LegJoint {
 pub struct LegBody {
     /// What it is, as in `crank`.
     pub name: &'static str,
+    /// Kind of its member.
+    pub kind: MemberKind,
     /// Origin of its frame \[m\].
     pub origin: DVec2,
     /// x axis of its frame, a unit vector. The actuator of a prismatic joint works along it.
@@ -169,6 +171,7 @@ impl LegBody {
         };
         Self {
             name: "link",
+            kind: MemberKind::Link,
             origin: b,
             axis: posture.u,
             joint: LegJoint::Passive,

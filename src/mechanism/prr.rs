@@ -144,6 +144,7 @@ impl Leg for PrrLeg {
         vec![
             LegBody {
                 name: "slider",
+                kind: MemberKind::Slider,
                 origin: posture.b,
                 axis: self.axis,
                 joint: LegJoint::Actuated {

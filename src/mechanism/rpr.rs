@@ -144,6 +144,7 @@ impl Leg for RprLeg {
         vec![
             LegBody {
                 name: "tube",
+                kind: MemberKind::TelescopicLeg,
                 origin: self.anchor,
                 axis: posture.u,
                 joint: LegJoint::Passive,
@@ -166,6 +167,7 @@ impl Leg for RprLeg {
             },
             LegBody {
                 name: "rod",
+                kind: MemberKind::TelescopicLeg,
                 origin: c,
                 axis: posture.u,
                 joint: LegJoint::Actuated {

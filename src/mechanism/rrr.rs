@@ -128,6 +128,7 @@ impl Leg for RrrLeg {
         vec![
             LegBody {
                 name: "crank",
+                kind: MemberKind::Crank,
                 origin: self.anchor,
                 axis: (posture.b - self.anchor) / self.link,
                 joint: LegJoint::Actuated {

@@ -56,11 +56,10 @@ pub(super) fn designs(evaluations: &[&Evaluation]) -> Result<Vec<SerializedCompo
     for constraint in Constraint::ALL {
         let report = |e: &Evaluation| *e.constraint(constraint);
         let id = constraint.id();
-        let margins = each().map(|e| report(e).asked_margin());
-        columns.push(match constraint {
-            Constraint::Clearance => sparse(&format!("margin_{id}"), margins)?,
-            _ => numbers(&format!("margin_{id}"), each().map(|e| report(e).margin))?,
-        });
+        columns.push(sparse(
+            &format!("margin_{id}"),
+            each().map(|e| report(e).asked_margin()),
+        )?);
         columns.push(sparse(&format!("value_{id}"), each().map(|e| report(e).value))?);
     }
     let active = |e: &Evaluation| e.active().map(Constraint::id).collect::<Vec<_>>().join("+");

@@ -9,7 +9,7 @@ use rerun::{Scalars, SeriesLines, TimeColumn};
 use super::scatter::{Frame, FrontPoint, INFEASIBLE_COLOR, front_points, points, selected, staircase};
 use super::writer::{ALWAYS, Moment, RecordingError, Writer};
 use super::{blueprint, colors, columns, design, paths, timelines};
-use crate::evaluation::{Constraint, Evaluation, Model};
+use crate::evaluation::{Evaluation, Model};
 use crate::mechanism::Architecture;
 use crate::study::{Batch, Event, GenerationSummary, RunSummary, Study};
 
@@ -303,7 +303,7 @@ fn summary_text(summary: &RunSummary) -> String {
         let e = &member.evaluation;
         let [base, platform, link, leg_bar, platform_bar] = e.design.values();
         let active: Vec<&str> = e.active().map(|constraint| constraint.id()).collect();
-        let clearance = e.constraint(Constraint::Clearance).value;
+        let clearance = e.clearance();
         text.push_str(&format!(
             "| {} | {} | {:.2} | {:.4} | {} | {base:.3} | {platform:.3} | {link:.3} | {leg_bar:.4} | {platform_bar:.4} | {} | {} |\n",
             member.id,

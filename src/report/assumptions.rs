@@ -112,7 +112,7 @@ pub const READINGS: [Reading; 15] = [
     },
     Reading {
         name: COLLIDING,
-        meaning: "bodies may collide",
+        meaning: "nothing asked of the clearance that the study asks for",
         moves_designs: true,
         change: |study| study.requirements.clearance_min_m = None,
     },

@@ -153,9 +153,7 @@ fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage,
     let mut bodies: Vec<Body> = Vec::new();
     let mut last = [0; LEGS];
     for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
-        let of_leg = leg.bodies(state);
-        let count = of_leg.len();
-        for (depth, body) in of_leg.into_iter().enumerate() {
+        for (depth, body) in leg.bodies(state).into_iter().enumerate() {
             let frame = Frame {
                 origin: body.origin,
                 angle: libm::atan2(body.axis.y, body.axis.x),
@@ -191,11 +189,7 @@ fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage,
                 name: format!("leg{}_{}", index + 1, body.name),
                 parent: (depth > 0).then(|| bodies.len() - 1),
                 frame,
-                height: sizes.height(if depth + 1 == count {
-                    L::DISTAL
-                } else {
-                    L::PROXIMAL.unwrap_or(L::DISTAL)
-                }),
+                height: sizes.height(body.kind),
                 joint: Some(joint),
                 bars,
                 solids,

@@ -57,7 +57,7 @@ impl<'a> Sizes<'a> {
         }
     }
 
-    /// A pin through the members that it joins, no thicker than they are.
+    /// A pin through the members that it joins, no thicker than the thinner one unless that could not be seen.
     fn pin(&self, at: DVec2, joins: [MemberKind; 2]) -> SolidShape {
         let least = LEAST * self.design.base_radius;
         let ends = joins.map(|kind| {

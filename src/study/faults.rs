@@ -77,7 +77,7 @@ impl Study {
             check.that(
                 "requirements.clearance_min_m",
                 sound,
-                format!("is {clearance}; it must be in [0, 1000], or be left out where bars may collide"),
+                format!("is {clearance}; it must be in [0, 1000], or be left out where bodies may collide"),
             );
         }
 

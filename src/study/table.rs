@@ -41,7 +41,7 @@ impl Row {
             phi: evaluation.home_phi_deg,
             violation: evaluation.violation,
             margins: evaluation.constraints.map(|report| report.asked_margin()),
-            clearance: evaluation.constraint(Constraint::Clearance).value,
+            clearance: evaluation.clearance(),
             active: bits(evaluation.active()),
         }
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::clearance::{Bodies, Clearance};
+use crate::clearance::{Bodies, Clearance, FARTHEST};
 use crate::kinematics::Jacobian;
 use crate::lanes::{InstructionSet, Planar, Real};
 use crate::mechanism::{Leg, Manipulator, Posture};
@@ -52,9 +52,6 @@ pub struct PoseValues {
     pub clearance: Option<f64>,
 }
 
-/// Longest distance that is told \[m\].
-pub(super) const FARTHEST: f64 = 1e100;
-
 impl PoseValues {
     /// The same, with 0 for what has left the number range: nothing that is no number leaves the model.
     pub(super) fn finite(mut self) -> Self {
@@ -70,8 +67,7 @@ impl PoseValues {
                 *value = 0.0;
             }
         }
-        // What is that far off, or has left the number range with all its neighbours, collides with nothing.
-        self.clearance = self.clearance.map(|clearance| clearance.min(FARTHEST));
+        self.clearance = self.clearance.map(|clearance| clearance.clamp(-FARTHEST, FARTHEST));
         self
     }
 }

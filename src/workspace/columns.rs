@@ -4,8 +4,8 @@ use glam::DVec2;
 use pulp::{Simd, WithSimd};
 
 use super::batch::Oriented;
-use super::checker::FARTHEST;
 use super::{PoseChecker, PoseLanes, PoseValues, Thresholds};
+use crate::clearance::FARTHEST;
 use crate::lanes::{Lanes, MOST_LANES, Planar, Real, padded};
 use crate::mechanism::Leg;
 use crate::spatial::LEGS;

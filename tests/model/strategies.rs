@@ -44,7 +44,7 @@ pub fn bodies() -> impl Strategy<Value = BodySettings> {
         slider: 0.0,
     };
     let layers = prop_oneof![Just(Layers::default()), Just(plane), any];
-    (layers, 0.5..3.0, 2.0..6.0).prop_map(|(layers, half_width, length)| BodySettings {
+    (layers, 0.5..3.0, prop_oneof![Just(2.0), 2.0..6.0]).prop_map(|(layers, half_width, length)| BodySettings {
         slider_length: length * half_width,
         slider_half_width: half_width,
         layers,

@@ -79,9 +79,7 @@ impl ComparePanel {
                             .collect();
                         row(ui, &format!("margin {}", constraint.id()), margins, Some(Best::Largest));
                     }
-                    let clearances = evaluations
-                        .iter()
-                        .map(|e| e.as_ref()?.constraint(Constraint::Clearance).value);
+                    let clearances = evaluations.iter().map(|e| e.as_ref()?.clearance());
                     row(ui, "clearance [m]", clearances.collect(), Some(Best::Largest));
                     ui.label("active");
                     for evaluation in &evaluations {

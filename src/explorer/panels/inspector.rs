@@ -230,7 +230,9 @@ fn margin_bar(ui: &mut Ui, report: &ConstraintReport) {
     painter.rect_filled(rect, 2.0, Color32::from_gray(128).gamma_multiply(0.25));
     // A margin of 1 is half the room that is left: large ones differ little.
     let share = |margin: f64| (margin.abs() / (1.0 + margin.abs())) as f32;
-    let color = if report.margin < 0.0 {
+    let color = if !report.asked {
+        Color32::from_gray(128)
+    } else if report.margin < 0.0 {
         theme::BROKEN
     } else if report.active {
         theme::ACTIVE

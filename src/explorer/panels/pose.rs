@@ -97,7 +97,8 @@ impl PosePanel {
         let mut target = pose;
         let turn = std::f64::consts::PI;
         // The same orientation on the slider, which is centred on home.
-        target.phi = home.phi - turn + (pose.phi - home.phi + turn).rem_euclid(2.0 * turn);
+        let whole_turns = pose.phi - (home.phi - turn + (pose.phi - home.phi + turn).rem_euclid(2.0 * turn));
+        target.phi -= whole_turns;
         let axes: [(&str, &mut f64, std::ops::RangeInclusive<f64>, bool); 3] = [
             ("x", &mut target.position.x, -reach..=reach, false),
             ("y", &mut target.position.y, -reach..=reach, false),
@@ -128,6 +129,7 @@ impl PosePanel {
         }
         if changed {
             self.playing = None;
+            target.phi += whole_turns;
             self.stopped = session.move_platform(target);
         }
     }
@@ -170,12 +172,11 @@ impl PosePanel {
             rim,
             Stroke::new(1.0, Color32::from_rgb(90, 150, 235).gamma_multiply(0.6)),
         );
+        let Some(pointer) = response.hover_pos().filter(|_| self.grip.is_none()) else {
+            return;
+        };
         let members = session.model().members(design, &pose).unwrap_or_default();
-        let pointed = response
-            .hover_pos()
-            .filter(|_| self.grip.is_none())
-            .and_then(|pointer| plan.pointed_at(&members, pointer));
-        if let Some(member) = pointed {
+        if let Some(member) = plan.pointed_at(&members, pointer) {
             plan.outline(&painter, member, theme::ink(ui));
             response.on_hover_ui_at_pointer(|ui| card(ui, member));
         }

@@ -4,18 +4,14 @@ use maud::{Markup, html};
 
 use super::results::levels;
 use super::{change, figures, optional, percent};
-use crate::evaluation::{Constraint, Evaluation};
+use crate::evaluation::Evaluation;
 use crate::report::{ClearanceCost, Front, Report};
 use crate::text::{number, short};
-
-fn clearance_of(evaluation: &Evaluation) -> Option<f64> {
-    evaluation.constraint(Constraint::Clearance).value
-}
 
 pub(super) fn clearance(report: &Report) -> Markup {
     let model = report.study.model();
     let worst = |front: &Front| -> Option<String> {
-        let found = front.shown().filter_map(|member| Some((clearance_of(member)?, member)));
+        let found = front.shown().filter_map(|member| Some((member.clearance()?, member)));
         let (_, member) = found.reduce(|worst, next| if next.0 < worst.0 { next } else { worst })?;
         Some(model.nearest(member)?.to_string())
     };
@@ -54,7 +50,7 @@ pub(super) fn clearance(report: &Report) -> Markup {
 
 /// The clearances of the designs drawn, in order \[m\].
 fn sorted(front: &Front) -> Vec<f64> {
-    let mut clearances: Vec<f64> = front.shown().filter_map(clearance_of).collect();
+    let mut clearances: Vec<f64> = front.shown().filter_map(Evaluation::clearance).collect();
     clearances.sort_by(f64::total_cmp);
     clearances
 }
