@@ -383,7 +383,7 @@ fn touching_is_zero() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(11));
     for &architecture in Architecture::ALL {
         let mut touched = 0;
-        for _ in 0..20_000 {
+        for _ in 0..400_000 {
             let (mut model, mut design) = random.subject(architecture);
             model.bodies.layers = Layers {
                 platform: 0.0,
@@ -392,6 +392,8 @@ fn touching_is_zero() {
                 crank: 0.0,
                 slider: 0.0,
             };
+            // Small ones: as legs are made thicker, sliders are to stay out of the way.
+            (model.bodies.slider_half_width, model.bodies.slider_length) = (0.2, 0.4);
             let pose = random.pose();
             design.leg_bar_radius = 0.01;
             let clearance = |design: &Design| {
@@ -417,7 +419,7 @@ fn touching_is_zero() {
                 }
             }
         }
-        assert!(touched > 200, "{architecture}: {touched} touch");
+        assert!(touched > 50, "{architecture}: {touched} touch");
     }
 }
 
