@@ -220,6 +220,7 @@ impl LiveScene {
         }
         let layers = Layers {
             labels: false,
+            clearance: false,
             ..Layers::default()
         };
         for (index, pin) in pins.iter().enumerate() {

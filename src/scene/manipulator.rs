@@ -159,7 +159,9 @@ fn draw<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Scene, Un
     };
     let sizes = Sizes::new(model, design);
 
-    let anchors = ANCHOR_DIRECTIONS.map(|direction| flat(direction * design.base_radius));
+    // Where the first members hang on it.
+    let base = sizes.height(L::PROXIMAL.unwrap_or(L::DISTAL));
+    let anchors = ANCHOR_DIRECTIONS.map(|direction| (direction * design.base_radius).extend(base));
     scene.lines.push(Line {
         part: Part::Base,
         points: vec![anchors[0], anchors[1], anchors[2], anchors[0]],
