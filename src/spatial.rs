@@ -50,6 +50,13 @@ impl Pose {
     }
 }
 
+/// Where on the segment from `from` to `to` the point nearest to `at` lies, from 0 to 1; 0 where the ends coincide.
+pub fn nearest_on_segment(at: DVec2, from: DVec2, to: DVec2) -> f64 {
+    let way = to - from;
+    let share = (at - from).dot(way) / way.length_squared();
+    if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
+}
+
 /// Planar cross product: the z component of `a × b`.
 #[inline]
 pub fn cross(a: DVec2, b: DVec2) -> f64 {

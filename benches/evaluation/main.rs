@@ -255,18 +255,11 @@ fn clearance(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("clearance");
     group.sample_size(10);
     group.throughput(Throughput::Elements(EVALUATIONS as u64));
-    let plane = Layers {
-        platform: 0.0,
-        link: 0.0,
-        telescopic_leg: 0.0,
-        crank: 0.0,
-        slider: 0.0,
-    };
     for &architecture in Architecture::ALL {
         for (name, least, layers) in [
             ("may collide", None, Layers::default()),
             ("5 mm", Some(0.005), Layers::default()),
-            ("5 mm, in one plane", Some(0.005), plane),
+            ("5 mm, in one plane", Some(0.005), Layers::ONE_PLANE),
         ] {
             let mut study = Study {
                 architectures: vec![architecture],

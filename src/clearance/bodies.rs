@@ -8,7 +8,7 @@ use super::distance::{may_be_nearer, squared};
 use super::layers::BodySettings;
 use crate::lanes::{Planar, Real};
 use crate::mechanism::{Axis, Design, Leg, Manipulator, MemberKind, Members, Posture};
-use crate::spatial::LEGS;
+use crate::spatial::{LEGS, nearest_on_segment};
 
 /// Rows of members: those before the last of each leg, the last ones, and the platform's bars.
 const ROWS: usize = 3;
@@ -316,10 +316,8 @@ fn nearest_points(a: &Capsule, b: &Capsule) -> [DVec3; 2] {
         }
     }
     let foot = |at: DVec3, of: &Capsule| {
-        let way = flat(of.to - of.from);
-        let share = flat(at - of.from).dot(way) / way.length_squared();
-        of.from
-            .lerp(of.to, if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 })
+        let share = nearest_on_segment(flat(at), flat(of.from), flat(of.to));
+        of.from.lerp(of.to, share)
     };
     [
         [a.from, foot(a.from, b)],

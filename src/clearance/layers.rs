@@ -32,6 +32,17 @@ pub struct BodySettings {
     pub layers: Layers,
 }
 
+impl Layers {
+    /// All members in one plane.
+    pub const ONE_PLANE: Layers = Layers {
+        platform: 0.0,
+        link: 0.0,
+        telescopic_leg: 0.0,
+        crank: 0.0,
+        slider: 0.0,
+    };
+}
+
 impl Default for Layers {
     /// What can be built for every architecture: the members of a leg are stacked on each other, the platform at the
     /// bottom, so that a joint's pin runs between neighbouring layers and hits nothing in between.

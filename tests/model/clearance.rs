@@ -216,13 +216,7 @@ impl Random {
         // Layers as they come, in one plane, or as they are built.
         let layers = match self.0.next_u32() % 3 {
             0 => Layers::default(),
-            1 => Layers {
-                platform: 0.0,
-                link: 0.0,
-                telescopic_leg: 0.0,
-                crank: 0.0,
-                slider: 0.0,
-            },
+            1 => Layers::ONE_PLANE,
             _ => Layers {
                 platform: self.between(-2.0, 2.0),
                 link: self.between(-2.0, 2.0),
@@ -385,13 +379,7 @@ fn touching_is_zero() {
         let mut touched = 0;
         for _ in 0..400_000 {
             let (mut model, mut design) = random.subject(architecture);
-            model.bodies.layers = Layers {
-                platform: 0.0,
-                link: 0.0,
-                telescopic_leg: 0.0,
-                crank: 0.0,
-                slider: 0.0,
-            };
+            model.bodies.layers = Layers::ONE_PLANE;
             // Small ones: as legs are made thicker, sliders are to stay out of the way.
             (model.bodies.slider_half_width, model.bodies.slider_length) = (0.2, 0.4);
             let pose = random.pose();

@@ -36,14 +36,7 @@ pub fn bodies() -> impl Strategy<Value = BodySettings> {
         crank,
         slider,
     });
-    let plane = Layers {
-        platform: 0.0,
-        link: 0.0,
-        telescopic_leg: 0.0,
-        crank: 0.0,
-        slider: 0.0,
-    };
-    let layers = prop_oneof![Just(Layers::default()), Just(plane), any];
+    let layers = prop_oneof![Just(Layers::default()), Just(Layers::ONE_PLANE), any];
     (layers, 0.5..3.0, prop_oneof![Just(2.0), 2.0..6.0]).prop_map(|(layers, half_width, length)| BodySettings {
         slider_length: length * half_width,
         slider_half_width: half_width,

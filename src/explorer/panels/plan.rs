@@ -8,6 +8,7 @@ use crate::evaluation::{MemberReport, Share};
 use crate::explorer::theme;
 use crate::mechanism::{Design, MemberKind};
 use crate::scene::{Part, Scene, Solid, SolidShape};
+use crate::spatial::nearest_on_segment;
 
 /// How far beside a thin member the pointer may be, in points.
 const CATCH: f32 = 4.0;
@@ -128,10 +129,8 @@ fn top(shape: &SolidShape) -> f64 {
 
 /// Distance of a point from a member's axis.
 fn distance(at: DVec2, member: &MemberReport) -> f64 {
-    let (from, way) = (member.from.truncate(), (member.to - member.from).truncate());
-    let share = (at - from).dot(way) / way.length_squared();
-    let foot = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
-    at.distance(from + way * foot)
+    let (from, to) = (member.from.truncate(), member.to.truncate());
+    at.distance(from.lerp(to, nearest_on_segment(at, from, to)))
 }
 
 /// What is known of a member.
