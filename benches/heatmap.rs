@@ -3,8 +3,8 @@
 //! About 10⁵ cells of the paper's design II, its edges and contours included, on one thread and on two.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use kinefront::evaluation::Model;
-use kinefront::mechanism::Design;
+use kinefront_model::evaluation::Model;
+use kinefront_model::mechanism::Design;
 use kinefront::scene::{Field, Heatmap, HeatmapSettings};
 
 fn heatmaps(criterion: &mut Criterion) {

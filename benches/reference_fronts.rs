@@ -16,9 +16,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use kinefront::evaluation::{BarRanges, Demand, Evaluation, GridChoice, Model};
-use kinefront::mechanism::{Architecture, Design, VARIABLES};
-use kinefront::optimize::{
+use kinefront_model::evaluation::{BarRanges, Demand, Evaluation, GridChoice, Model};
+use kinefront_model::mechanism::{Architecture, Design, VARIABLES};
+use kinefront_optimize::{
     Archive, Evaluated, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, drive, hypervolume, spread,
 };
 use kinefront::study::{BUILTIN, DesignProblem, Study};

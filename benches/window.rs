@@ -9,9 +9,9 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
-use kinefront::evaluation::{Evaluation, GridChoice};
+use kinefront_model::evaluation::{Evaluation, GridChoice};
 use kinefront::explorer::{Explorer, Session, StudyEditor, Subject};
-use kinefront::optimize::{Archive, Evaluated, sobol};
+use kinefront_optimize::{Archive, Evaluated, sobol};
 use kinefront::recording::LiveScene;
 use kinefront::study::{
     BUILTIN, Batch, DesignProblem, Event, FrontMember, GenerationSummary, Outcome, RunSummary, RunTimes, Started,

@@ -3,11 +3,11 @@
 //! A design explorer for planar parallel manipulators: which 3-PRR, 3-RPR and 3-RRR are light **and** have a large
 //! regular dexterous workspace.
 //!
-//! Data flows one way: **[`study`] → [`optimize`] → evaluated designs → [`recording`], run folder**. What a design is
+//! Data flows one way: **[`study`] → [`kinefront_optimize`] → evaluated designs → [`recording`], run folder**. What a design is
 //! worth is one call:
 //!
 //! ```
-//! use kinefront::evaluation::{GridChoice, Model};
+//! use kinefront_model::evaluation::{GridChoice, Model};
 //!
 //! let design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056".parse()?;
 //! let evaluation = Model::default().evaluate(&design, GridChoice::Reference)?;
@@ -17,14 +17,6 @@
 //!
 //! | module | purpose |
 //! |---|---|
-//! | [`spatial`] | poses, and the one table of notation and frames |
-//! | [`mechanism`] | architectures, designs, inverse kinematics |
-//! | [`kinematics`] | Jacobian, dexterity, forward kinematics |
-//! | [`stiffness`] | bars, legs and platform: closed form, and the 6×6 form as its oracle |
-//! | [`clearance`] | bodies that must not collide |
-//! | [`workspace`] | the regular workspace of a design |
-//! | [`evaluation`] | design → objectives, constraints, margins |
-//! | [`optimize`] | problems, algorithms, archive; knows nothing of robots |
 //! | [`scene`] | a design at a pose → named shapes and fields, free of any renderer |
 //! | [`study`] | study file, run, run folder |
 //! | [`export`] | a design as files of other programs |
@@ -34,21 +26,12 @@
 //! | [`text`] | numbers for people |
 //! | `explorer` | the window (feature `explorer`) |
 
-pub mod clearance;
-pub mod evaluation;
 #[cfg(feature = "explorer")]
 pub mod explorer;
 pub mod export;
-pub mod kinematics;
-pub mod lanes;
-pub mod mechanism;
-pub mod optimize;
 pub mod palette;
 pub mod recording;
 pub mod report;
 pub mod scene;
-pub mod spatial;
-pub mod stiffness;
 pub mod study;
 pub mod text;
-pub mod workspace;

@@ -1,6 +1,6 @@
 //! What colours mean, wherever they are shown: red, green, blue.
 
-use crate::mechanism::Architecture;
+use kinefront_model::mechanism::Architecture;
 use crate::scene::Part;
 
 /// One colour per architecture, told apart by people with any colour vision (Okabe and Ito).

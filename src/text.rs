@@ -1,5 +1,7 @@
 //! Numbers for people.
 
+use kinefront_model::clearance::Clearance;
+
 /// A number with four significant digits, in plain form where that is short.
 pub fn number(value: f64) -> String {
     let size = value.abs();
@@ -26,6 +28,17 @@ pub fn short(value: f64) -> String {
     } else {
         let text = format!("{value:.2e}");
         text.replace(".00e", "e").replace("0e", "e")
+    }
+}
+
+/// A clearance as in `12.3 mm from leg1_link to leg2_link`, or `overlap of 12.3 mm of leg1_link and leg2_link`.
+pub fn clearance(clearance: &Clearance) -> String {
+    let [member, neighbour] = clearance.pair();
+    let size = number(1e3 * clearance.distance.abs());
+    if clearance.distance < 0.0 {
+        format!("overlap of {size} mm of {member} and {neighbour}")
+    } else {
+        format!("{size} mm from {member} to {neighbour}")
     }
 }
 

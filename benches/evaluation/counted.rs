@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use kinefront::lanes::Real;
+use kinefront_model::lanes::Real;
 
 /// Operations of one pose.
 #[derive(Debug, Clone, Copy, Default)]

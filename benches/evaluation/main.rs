@@ -17,17 +17,17 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec2;
-use kinefront::clearance::Layers;
-use kinefront::evaluation::{GridChoice, Model};
-use kinefront::kinematics::Jacobian;
-use kinefront::lanes::{InstructionSet, Planar};
-use kinefront::mechanism::{Architecture, Design, Leg, PrrLeg, RprLeg, RrrLeg};
-use kinefront::optimize::{FrontDe, FrontDeSettings, drive, sobol};
-use kinefront::spatial::{LEGS, Rotation, smaller_eigenvalue};
-use kinefront::stiffness::joint_model;
+use kinefront_model::clearance::Layers;
+use kinefront_model::evaluation::{GridChoice, Model};
+use kinefront_model::kinematics::Jacobian;
+use kinefront_model::lanes::{InstructionSet, Planar};
+use kinefront_model::mechanism::{Architecture, Design, Leg, PrrLeg, RprLeg, RrrLeg};
+use kinefront_optimize::{FrontDe, FrontDeSettings, drive, sobol};
+use kinefront_model::spatial::{LEGS, Rotation, smaller_eigenvalue};
+use kinefront_model::stiffness::joint_model;
 use kinefront::study::{DesignProblem, Study};
-use kinefront::workspace::plain::plain;
-use kinefront::workspace::{PoseChecker, ValueColumns};
+use kinefront_model::workspace::plain::plain;
+use kinefront_model::workspace::{PoseChecker, ValueColumns};
 use rayon::prelude::*;
 
 use self::counted::{Operations, operations};

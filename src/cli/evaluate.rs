@@ -2,9 +2,9 @@
 
 use std::io::{BufRead, Write};
 
-use kinefront::evaluation::{Evaluation, GridChoice, Model};
+use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront::export::EvaluationJson;
-use kinefront::mechanism::{Design, WorkingMode};
+use kinefront_model::mechanism::{Design, WorkingMode};
 use miette::miette;
 
 use super::{Ending, Failure, GridArgument, load_study, tables, to_json};

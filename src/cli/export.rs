@@ -3,9 +3,9 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use kinefront::evaluation::GridChoice;
+use kinefront_model::evaluation::GridChoice;
 use kinefront::export::{ExportError, Format, Subject, export, front_to_parquet};
-use kinefront::spatial::Pose;
+use kinefront_model::spatial::Pose;
 use kinefront::study::write_whole;
 use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
 

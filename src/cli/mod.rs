@@ -17,7 +17,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use kinefront::evaluation::GridChoice;
+use kinefront_model::evaluation::GridChoice;
 use kinefront::study::{BUILTIN, Builtin, Study};
 use miette::{IntoDiagnostic, Report, Result, miette};
 

@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, OnceLock};
 use std::thread::{Builder, JoinHandle};
 
-use kinefront::mechanism::Architecture;
+use kinefront_model::mechanism::Architecture;
 use kinefront::recording::Recorder;
 use kinefront::study::{AlgorithmName, Event, Outcome, RunControl, RunFolder, RunReport, RunSummary, Study, spawn};
 use miette::{Report, miette};

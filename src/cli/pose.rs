@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use kinefront::export::PoseReportJson;
-use kinefront::mechanism::Design;
-use kinefront::spatial::Pose;
+use kinefront_model::mechanism::Design;
+use kinefront_model::spatial::Pose;
 use miette::{Report, miette};
 
 use super::{Ending, Failure, load_study, tables, to_json};

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use kinefront::evaluation::GridChoice;
+use kinefront_model::evaluation::GridChoice;
 use kinefront::recording::record_design;
 use kinefront::scene::Field;
 use miette::Report;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use kinefront::mechanism::Design;
+use kinefront_model::mechanism::Design;
 use kinefront::study::Study;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 

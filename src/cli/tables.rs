@@ -2,9 +2,9 @@
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{CellAlignment, Table};
-use kinefront::evaluation::{Evaluation, Model, PoseReport, Unreachable};
-use kinefront::mechanism::Design;
-use kinefront::spatial::Pose;
+use kinefront_model::evaluation::{Evaluation, Model, PoseReport, Unreachable};
+use kinefront_model::mechanism::Design;
+use kinefront_model::spatial::Pose;
 use kinefront::study::{FrontMember, RunSummary};
 use kinefront::text::number;
 
@@ -63,7 +63,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         } else {
             "at the best centre"
         };
-        facts.add_row(["clearance".to_owned(), format!("{nearest}, least {where_least}")]);
+        facts.add_row(["clearance".to_owned(), format!("{}, least {where_least}", text::clearance(&nearest))]);
     }
     let mut constraints = table(
         [
@@ -126,7 +126,7 @@ pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseReport, Unreachab
         "k_φz".to_owned(),
         format!("{} N·m/rad", number(report.rigidity.k_phi_z)),
     ]);
-    facts.add_row(["clearance".to_owned(), report.clearance.to_string()]);
+    facts.add_row(["clearance".to_owned(), text::clearance(&report.clearance)]);
     let mut stiffness = table(["K", "x", "y", "z", "φx", "φy", "φz"], &[1, 2, 3, 4, 5, 6]);
     for (i, name) in ["fx", "fy", "fz", "mx", "my", "mz"].into_iter().enumerate() {
         let mut row = vec![name.to_owned()];

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Filter;
-use crate::mechanism::Design;
+use kinefront_model::mechanism::Design;
 
 /// Where a design comes from.
 #[derive(Debug, Clone, PartialEq)]

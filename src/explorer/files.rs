@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, channel};
 
 use super::running::Writing;
 use super::{Phase, Session};
-use crate::evaluation::GridChoice;
+use kinefront_model::evaluation::GridChoice;
 use crate::export::{ExportError, Format, Subject, export, front_to_parquet};
 use crate::recording::{record_design, save_copy};
 use crate::report::{Options, Report, Source};

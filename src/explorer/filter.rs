@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 use super::{Quantity, Store};
-use crate::mechanism::Architecture;
+use kinefront_model::mechanism::Architecture;
 
 /// Which designs are in the light; the others are dimmed.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -105,7 +105,7 @@ impl Sieve<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanism::Variable;
+    use kinefront_model::mechanism::Variable;
 
     #[test]
     fn a_filter_reads_what_it_writes() {

@@ -1,7 +1,7 @@
 //! The front as the window shows it.
 
 use super::Row;
-use crate::optimize::{Archive, Evaluated, Outcome};
+use kinefront_optimize::{Archive, Evaluated, Outcome};
 use crate::study::FrontMember;
 
 /// A non-dominated design.

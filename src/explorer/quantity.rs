@@ -1,8 +1,8 @@
 //! Numbers of a design that can stand on an axis, in a column or in a filter.
 
 use super::Row;
-use crate::evaluation::Constraint;
-use crate::mechanism::{VARIABLES, Variable};
+use kinefront_model::evaluation::Constraint;
+use kinefront_model::mechanism::{VARIABLES, Variable};
 
 /// A number of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -13,10 +13,10 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::Duration;
 
-use crate::evaluation::{Evaluation, GridChoice};
-use crate::mechanism::Design;
+use kinefront_model::evaluation::{Evaluation, GridChoice};
+use kinefront_model::mechanism::Design;
 use crate::recording::{FrontPoint, Layers, LiveScene, Pinned, Shown};
-use crate::spatial::Pose;
+use kinefront_model::spatial::Pose;
 use crate::study::Study;
 
 /// Time after which a design is taken to stay.

@@ -31,10 +31,10 @@ use egui::{Context, ViewportCommand};
 use super::files::Purpose;
 use super::panels::Panel;
 use super::{Explorer, Phase, Quantity};
-use crate::evaluation::Constraint;
-use crate::mechanism::VARIABLES;
+use kinefront_model::evaluation::Constraint;
+use kinefront_model::mechanism::VARIABLES;
 use crate::scene::{EllipsoidKind, Field};
-use crate::spatial::Pose;
+use kinefront_model::spatial::Pose;
 
 /// A script under way.
 #[derive(Debug)]

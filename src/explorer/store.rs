@@ -1,7 +1,7 @@
 //! Every evaluated design of a run, in columns: about 200 bytes each, so that a million fit in memory.
 
-use crate::evaluation::Constraint;
-use crate::mechanism::{Architecture, Design, VARIABLES, WorkingMode};
+use kinefront_model::evaluation::Constraint;
+use kinefront_model::mechanism::{Architecture, Design, VARIABLES, WorkingMode};
 use crate::study::Row;
 
 /// Evaluated designs in the order of their ids, which begin at 0 and leave none out.

@@ -3,7 +3,7 @@
 use egui::{Color32, Context, Ui};
 use egui_plot::MarkerShape;
 
-use crate::mechanism::Architecture;
+use kinefront_model::mechanism::Architecture;
 use crate::palette;
 use crate::scene::Part;
 pub use crate::text::number;

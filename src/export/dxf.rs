@@ -148,7 +148,7 @@ impl Sheet {
                     half_size,
                     angle,
                 } => {
-                    let along = crate::spatial::unit(angle) * half_size.x;
+                    let along = kinefront_model::spatial::unit(angle) * half_size.x;
                     let (from, to) = (centre - along.extend(0.0), centre + along.extend(0.0));
                     self.bar(layer, from, to, half_size.y);
                 }

@@ -14,7 +14,7 @@ use json::{Accessor, Index, Node};
 use super::Prepared;
 use crate::palette;
 use crate::scene::{Frame, Mesh, Part, Solid, linkage};
-use crate::spatial::unit;
+use kinefront_model::spatial::unit;
 
 /// Seconds that the tour takes.
 const TOUR_SECONDS: f64 = 12.0;
@@ -59,7 +59,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
                 let at = linkage(&subject.model, design, pose)?;
                 Ok(at.bodies.iter().map(|body| body.frame).collect())
             })
-            .collect::<Result<_, crate::evaluation::Unreachable>>()
+            .collect::<Result<_, kinefront_model::evaluation::Unreachable>>()
             .map_err(|error| error.to_string())?;
         file.animate(&bodies, &frames);
     }

@@ -3,11 +3,11 @@
 use serde::Serialize;
 
 use super::Prepared;
-use crate::evaluation::{Evaluation, Model, PoseReport, Unreachable};
-use crate::mechanism::{Actuator, Design};
+use kinefront_model::evaluation::{Evaluation, Model, PoseReport, Unreachable};
+use kinefront_model::mechanism::{Actuator, Design};
 use crate::scene::{Body, Frame, Linkage};
-use crate::spatial::Pose;
-use crate::stiffness::Material;
+use kinefront_model::spatial::Pose;
+use kinefront_model::stiffness::Material;
 
 /// The lengths of a design.
 #[derive(Debug, Serialize)]

@@ -3,7 +3,7 @@
 
 use super::xml::Element;
 use super::{Format, Prepared, inertial, joint_axis, joint_name, rgba};
-use crate::mechanism::Actuator;
+use kinefront_model::mechanism::Actuator;
 use crate::scene::{Body, Solid, SolidShape};
 
 pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {

@@ -22,13 +22,13 @@ mod xml;
 
 use glam::DVec3;
 
-use crate::evaluation::{Evaluation, Model, Unreachable};
-use crate::mechanism::Actuator;
+use kinefront_model::evaluation::{Evaluation, Model, Unreachable};
+use kinefront_model::mechanism::Actuator;
 use crate::palette;
 use crate::scene::{
     Body, Linkage, Part, RegularCylinder, Scene, Solid, SolidShape, Tour, linkage, manipulator, regular_workspace, tour,
 };
-use crate::spatial::{LEGS, Pose};
+use kinefront_model::spatial::{LEGS, Pose};
 use crate::study::Study;
 
 pub use json::{DesignJson, EvaluationJson, PoseReportJson};

@@ -2,7 +2,7 @@
 
 use super::xml::{Element, numbers};
 use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, text};
-use crate::mechanism::Actuator;
+use kinefront_model::mechanism::Actuator;
 use crate::scene::{Body, Frame, Joint, Solid, SolidShape};
 
 /// Stands for "no limit" where the format asks for a number.

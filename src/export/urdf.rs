@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::xml::{Element, numbers};
 use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, text};
-use crate::mechanism::Actuator;
+use kinefront_model::mechanism::Actuator;
 use crate::scene::{Body, Solid, SolidShape};
 
 /// Force, torque and speed that joints are given, since the format asks for them and the study knows none.

@@ -1,7 +1,7 @@
 //! A design's numbers as a card to read, in markdown.
 
-use crate::evaluation::{Evaluation, Model};
-use crate::mechanism::VARIABLES;
+use kinefront_model::evaluation::{Evaluation, Model};
+use kinefront_model::mechanism::VARIABLES;
 use crate::scene::{EllipsoidSet, Tour};
 use crate::text::short;
 
@@ -55,7 +55,7 @@ pub(super) fn card(
     }
     card.push('\n');
     if let Some(nearest) = model.nearest(evaluation) {
-        card += &format!("- clearance of the bodies: {nearest}\n");
+        card += &format!("- clearance of the bodies: {}\n", text::clearance(&nearest));
     }
     for set in ellipsoids {
         card += &format!("- {}\n", set.scale_text());

@@ -2,7 +2,7 @@
 
 use rerun::Color;
 
-use crate::mechanism::{Architecture, ReachReason};
+use kinefront_model::mechanism::{Architecture, ReachReason};
 use crate::palette;
 use crate::scene::{Part, Scale};
 

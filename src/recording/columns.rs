@@ -7,8 +7,8 @@ use rerun::external::arrow::datatypes::Float64Type;
 use rerun::{ComponentDescriptor, ComponentIdentifier, SerializedComponentBatch, SerializedComponentColumn};
 
 use super::writer::RecordingError;
-use crate::evaluation::{Constraint, Evaluation};
-use crate::mechanism::VARIABLES;
+use kinefront_model::evaluation::{Constraint, Evaluation};
+use kinefront_model::mechanism::VARIABLES;
 
 fn descriptor(name: &str) -> Result<ComponentDescriptor, RecordingError> {
     let identifier = ComponentIdentifier::try_new(name).map_err(RecordingError::encode)?;

@@ -7,9 +7,9 @@ use super::draw::Canvas;
 use super::subject::Subject;
 use super::writer::{ALWAYS, Moment, RecordingError, Writer};
 use super::{blueprint, paths, timelines};
-use crate::evaluation::{Evaluation, Model};
+use kinefront_model::evaluation::{Evaluation, Model};
 use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour};
-use crate::spatial::Pose;
+use kinefront_model::spatial::Pose;
 use crate::study::Study;
 
 /// Cells along the longer side of a heatmap: of a design by itself, of a layer over φ, of a step of a front,

@@ -12,9 +12,9 @@ use super::stage::{Rows, Stage};
 use super::subject::Subject;
 use super::writer::{RecordingError, Writer};
 use super::{blueprint, colors, paths};
-use crate::evaluation::{Evaluation, Model};
+use kinefront_model::evaluation::{Evaluation, Model};
 use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Scene, ellipsoids, manipulator};
-use crate::spatial::Pose;
+use kinefront_model::spatial::Pose;
 use crate::study::Study;
 
 /// Cells along the longer side of a heatmap, and of an outline over φ.

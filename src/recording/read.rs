@@ -15,7 +15,7 @@ use super::design;
 use super::sink::RrdFile;
 use super::writer::{RecordingError, Writer};
 use super::{paths, timelines};
-use crate::evaluation::{Evaluation, Model};
+use kinefront_model::evaluation::{Evaluation, Model};
 
 /// Why a recording cannot be read.
 #[derive(Debug, thiserror::Error)]

@@ -9,8 +9,8 @@ use rerun::{Scalars, SeriesLines, TimeColumn};
 use super::scatter::{Frame, FrontPoint, INFEASIBLE_COLOR, front_points, points, selected, staircase};
 use super::writer::{ALWAYS, Moment, RecordingError, Writer};
 use super::{blueprint, colors, columns, design, paths, timelines};
-use crate::evaluation::{Evaluation, Model};
-use crate::mechanism::Architecture;
+use kinefront_model::evaluation::{Evaluation, Model};
+use kinefront_model::mechanism::Architecture;
 use crate::study::{Batch, Event, GenerationSummary, RunSummary, Study};
 
 /// Rows of `/designs` written at a time: enough that the file's index stays small.

@@ -7,8 +7,8 @@ use rerun::datatypes::{Range1D, Range2D};
 use rerun::{Color, LineStrips2D, Points2D, Radius, Transform3D};
 
 use super::colors;
-use crate::evaluation::Evaluation;
-use crate::mechanism::Architecture;
+use kinefront_model::evaluation::Evaluation;
+use kinefront_model::mechanism::Architecture;
 use crate::study::{FrontMember, Study};
 
 /// Width of one decade of mass on screen, in units in which the range of `R_w` is [`HEIGHT`] high.

@@ -6,10 +6,10 @@ use super::colors::ColorMap;
 use super::draw::Canvas;
 use super::paths;
 use super::writer::RecordingError;
-use crate::evaluation::{Evaluation, Model};
-use crate::mechanism::Design;
+use kinefront_model::evaluation::{Evaluation, Model};
+use kinefront_model::mechanism::Design;
 use crate::scene::{ConfigurationSpace, Field, Heatmap, HeatmapSettings, SolidShape, manipulator, regular_workspace};
-use crate::spatial::Pose;
+use kinefront_model::spatial::Pose;
 
 /// Orientations of the layers from home \[deg\].
 const LAYERS_DEG: [f64; 5] = [-60.0, -30.0, 0.0, 30.0, 60.0];

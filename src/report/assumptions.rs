@@ -3,8 +3,8 @@
 use super::fronts::Front;
 use super::source::Source;
 use super::{Fronts, ReportError};
-use crate::evaluation::GridChoice;
-use crate::mechanism::Architecture;
+use kinefront_model::evaluation::GridChoice;
+use kinefront_model::mechanism::Architecture;
 use crate::study::{LengthChoice, StiffnessChoice, Study, TelescopicBar};
 
 /// Another reading of one assumption.

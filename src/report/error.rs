@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::study::{FolderError, StudyError, TableError};
-use crate::workspace::GridError;
+use kinefront_model::workspace::GridError;
 
 /// Why a report cannot be made.
 #[derive(Debug, thiserror::Error)]

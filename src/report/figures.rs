@@ -4,11 +4,11 @@ use super::chart::{Axis, Chart, Mark, Series};
 use super::fits::Trend;
 use super::fronts::Front;
 use super::{ClearanceCost, Figure, Report, ReportError, slug};
-use crate::evaluation::Constraint;
-use crate::mechanism::{Architecture, Variable};
+use kinefront_model::evaluation::Constraint;
+use kinefront_model::mechanism::{Architecture, Variable};
 use crate::palette;
 use crate::text::short;
-use crate::workspace::Thresholds;
+use kinefront_model::workspace::Thresholds;
 
 const MASS: &str = "mass in motion [kg]";
 const RADIUS: &str = "workspace radius R_w [m]";

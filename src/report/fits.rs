@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::Front;
-use crate::mechanism::{VARIABLES, Variable};
+use kinefront_model::mechanism::{VARIABLES, Variable};
 use crate::study::Bounds;
 
 /// A polynomial in `R_w` fitted to a variable.

@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 
 use super::{ReportError, Source};
-use crate::evaluation::{Evaluation, GridChoice, Model};
-use crate::mechanism::{Architecture, Design};
-use crate::optimize::{Archive, Evaluated, Outcome, knee, spread};
+use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
+use kinefront_model::mechanism::{Architecture, Design};
+use kinefront_optimize::{Archive, Evaluated, Outcome, knee, spread};
 use crate::study::{DesignProblem, Study};
 
 /// A front: evaluations on the fine grid, non-dominated, by mass and so by `R_w`.

@@ -27,8 +27,8 @@ pub use reference::Reference;
 pub use source::Source;
 pub use write::free;
 
-use crate::evaluation::Evaluation;
-use crate::mechanism::Architecture;
+use kinefront_model::evaluation::Evaluation;
+use kinefront_model::mechanism::Architecture;
 use crate::study::{AlgorithmName, BUILTIN, Study};
 
 /// What a report shall have.

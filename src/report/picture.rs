@@ -7,10 +7,10 @@ use parry3d_f64::query::{Ray, RayCast};
 use parry3d_f64::shape::{Cuboid, Cylinder, SharedShape};
 use rayon::prelude::*;
 
-use crate::evaluation::{Evaluation, Model};
+use kinefront_model::evaluation::{Evaluation, Model};
 use crate::palette;
 use crate::scene::{SolidShape, manipulator, regular_workspace};
-use crate::spatial::unit;
+use kinefront_model::spatial::unit;
 
 /// The ground, and what the workspace is tinted with.
 const GROUND: DVec3 = DVec3::ONE;
@@ -277,7 +277,7 @@ impl Stage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluation::GridChoice;
+    use kinefront_model::evaluation::GridChoice;
 
     const SIZE: [u32; 2] = [240, 180];
 

@@ -1,8 +1,8 @@
 //! The designs that a study refers to: as their source states them, as this model finds them, and what beats them.
 
 use super::{Fronts, ReportError};
-use crate::evaluation::{Evaluation, GridChoice, Model};
-use crate::mechanism::{Design, VARIABLES};
+use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
+use kinefront_model::mechanism::{Design, VARIABLES};
 use crate::study::Study;
 
 /// A design that the study refers to.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::sync_channel;
 
 use super::ReportError;
-use crate::evaluation::Evaluation;
+use kinefront_model::evaluation::Evaluation;
 use crate::study::{Event, Row, RunControl, RunTimes, Study, read_table, spawn};
 
 /// A search with all designs that it evaluated.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{Report, ReportError, chart, page};
-use crate::evaluation::Evaluation;
+use kinefront_model::evaluation::Evaluation;
 use crate::study::{FolderError, front_table, write_whole};
 
 impl Report {

@@ -3,12 +3,12 @@
 use glam::{DVec2, DVec3};
 
 use super::field::free_stiffness;
-use crate::evaluation::{Evaluation, Model};
-use crate::kinematics::Jacobian;
-use crate::mechanism::with_leg;
-use crate::spatial::{Pose, smaller_eigenvalue, unit};
-use crate::stiffness::PlanarStiffness;
-use crate::workspace::GridError;
+use kinefront_model::evaluation::{Evaluation, Model};
+use kinefront_model::kinematics::Jacobian;
+use kinefront_model::with_leg;
+use kinefront_model::spatial::{Pose, smaller_eigenvalue, unit};
+use kinefront_model::stiffness::PlanarStiffness;
+use kinefront_model::workspace::GridError;
 
 /// What the axes of an ellipsoid are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -119,7 +119,7 @@ fn ellipsoid(pose: Pose, stiffness: &PlanarStiffness, kind: EllipsoidKind) -> Op
             let [xx, xy, yy] = free_stiffness(&stiffness.in_plane)?;
             let determinant = xx * yy - xy * xy;
             let vertical = stiffness
-                .rigidity(crate::stiffness::StiffnessDefinition::Compliance)
+                .rigidity(kinefront_model::stiffness::StiffnessDefinition::Compliance)
                 .k_z;
             if determinant <= 0.0 || vertical <= 0.0 {
                 return None;

@@ -1,9 +1,9 @@
 //! Scalar fields over poses.
 
-use crate::evaluation::{Constraint, Model};
-use crate::mechanism::Design;
-use crate::stiffness::StiffnessDefinition;
-use crate::workspace::PoseValues;
+use kinefront_model::evaluation::{Constraint, Model};
+use kinefront_model::mechanism::Design;
+use kinefront_model::stiffness::StiffnessDefinition;
+use kinefront_model::workspace::PoseValues;
 
 /// What a heatmap shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -4,9 +4,10 @@ use glam::DVec2;
 
 use super::Solid;
 use super::manipulator::Sizes;
-use crate::evaluation::{Model, Unreachable};
-use crate::mechanism::{Actuator, Design, Leg, LegJoint, LegPart, Manipulator, MemberKind, with_leg};
-use crate::spatial::{LEGS, Pose, Rotation};
+use kinefront_model::evaluation::{Model, Unreachable};
+use kinefront_model::mechanism::{Actuator, Design, Leg, LegJoint, LegPart, Manipulator, MemberKind};
+use kinefront_model::with_leg;
+use kinefront_model::spatial::{LEGS, Pose, Rotation};
 
 /// A planar frame in the base frame.
 #[derive(Debug, Clone, Copy, PartialEq)]

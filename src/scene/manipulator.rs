@@ -3,10 +3,11 @@
 use glam::{DVec2, DVec3};
 
 use super::{Label, Line, Nearest, Part, Scene, Solid, SolidShape};
-use crate::clearance::{Bodies, BodySettings, Clearance, Neighbour};
-use crate::evaluation::{Model, Unreachable};
-use crate::mechanism::{Design, Guide, Leg, LegPart, Manipulator, MemberKind, with_leg};
-use crate::spatial::{ANCHOR_DIRECTIONS, Pose, unit};
+use kinefront_model::clearance::{Bodies, BodySettings, Clearance, Neighbour};
+use kinefront_model::evaluation::{Model, Unreachable};
+use kinefront_model::mechanism::{Design, Guide, Leg, LegPart, Manipulator, MemberKind};
+use kinefront_model::with_leg;
+use kinefront_model::spatial::{ANCHOR_DIRECTIONS, Pose, unit};
 use crate::text::number;
 
 /// How far a pin sticks out of its members, as a multiple of their radius.

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Solid, SolidShape};
-use crate::spatial::{Rotation, unit};
+use kinefront_model::spatial::{Rotation, unit};
 
 /// A closed surface: triangles counter-clockwise from outside.
 #[derive(Debug, Clone, Default, PartialEq)]

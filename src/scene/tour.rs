@@ -1,10 +1,11 @@
 //! A tour of the regular workspace: its rim at both ends of `Δφ`, then through the middle.
 
 use super::RegularCylinder;
-use crate::evaluation::Model;
-use crate::kinematics::forward;
-use crate::mechanism::{Actuator, Design, Leg, Manipulator, with_leg};
-use crate::spatial::{Pose, unit};
+use kinefront_model::evaluation::Model;
+use kinefront_model::kinematics::forward;
+use kinefront_model::mechanism::{Actuator, Design, Leg, Manipulator};
+use kinefront_model::with_leg;
+use kinefront_model::spatial::{Pose, unit};
 
 /// Poses along the regular workspace.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::evaluation::Evaluation;
+use kinefront_model::evaluation::Evaluation;
 
 /// The regular workspace: a disc of centres over a turn of the platform.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
 
 use super::{DesignProblem, Study};
-use crate::evaluation::Evaluation;
-use crate::optimize::{knee, spread};
+use kinefront_model::evaluation::Evaluation;
+use kinefront_optimize::{knee, spread};
 
 /// Where a listener receives events.
 pub type Subscriber = SyncSender<Arc<Event>>;

@@ -1,8 +1,8 @@
 //! Values of a study that cannot be.
 
 use super::{Bounds, LengthChoice, Study};
-use crate::mechanism::Design;
-use crate::workspace::Grid;
+use kinefront_model::mechanism::Design;
+use kinefront_model::workspace::Grid;
 
 /// A key whose value cannot be.
 #[derive(Debug, Clone, PartialEq, Eq)]

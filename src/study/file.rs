@@ -11,12 +11,12 @@ use super::sections::{
     ActuatorSection, Bounds, Grids, LengthChoice, MaterialSection, ModelSection, ReferenceDesign, RequirementSection,
     StiffnessChoice, TelescopicBar, WorkspaceSection,
 };
-use crate::clearance::BodySettings;
-use crate::evaluation::Model;
-use crate::kinematics::CharacteristicLength;
-use crate::mechanism::{Architecture, BarLength, LegSettings, WorkingMode};
-use crate::stiffness::{ActuatorStiffness, Material, StiffnessDefinition};
-use crate::workspace::{Thresholds, WorkspaceSpec};
+use kinefront_model::clearance::BodySettings;
+use kinefront_model::evaluation::Model;
+use kinefront_model::kinematics::CharacteristicLength;
+use kinefront_model::mechanism::{Architecture, BarLength, LegSettings, WorkingMode};
+use kinefront_model::stiffness::{ActuatorStiffness, Material, StiffnessDefinition};
+use kinefront_model::workspace::{Thresholds, WorkspaceSpec};
 
 /// A study: what is asked, of which manipulators, and how it is searched.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -11,7 +11,7 @@ use std::sync::mpsc::Receiver;
 use serde::Serialize;
 
 use super::{AlgorithmName, Batch, Event, GenerationSummary, Outcome, RunSummary, RunTimes, Study};
-use crate::evaluation::{Constraint, Evaluation};
+use kinefront_model::evaluation::{Constraint, Evaluation};
 
 /// First columns of `designs.csv` and `front.csv`; values, margins, active constraints and violation follow.
 pub const TABLE_HEADER: [&str; 13] = [

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::optimize::{FrontDeSettings, Moga2Settings, Nsga2Settings};
+use kinefront_optimize::{FrontDeSettings, Moga2Settings, Nsga2Settings};
 
 /// Name of an algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]

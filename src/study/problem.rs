@@ -1,10 +1,10 @@
 //! A study as a problem for the optimizer: `x` = the architecture, then the five lengths.
 
 use super::Study;
-use crate::evaluation::{BarRanges, Demand, Evaluation, GridChoice, Model};
-use crate::mechanism::{Architecture, Design, DesignError, VARIABLES, Variable, WorkingMode};
-use crate::optimize::{Aim, Outcome, Problem, Variable as Unknown};
-use crate::workspace::GridError;
+use kinefront_model::evaluation::{BarRanges, Demand, Evaluation, GridChoice, Model};
+use kinefront_model::mechanism::{Architecture, Design, DesignError, VARIABLES, Variable, WorkingMode};
+use kinefront_optimize::{Aim, Outcome, Problem, Variable as Unknown};
+use kinefront_model::workspace::GridError;
 
 /// Designs of a study, encoded for an optimizer.
 ///

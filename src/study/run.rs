@@ -27,8 +27,8 @@ use super::{
     AlgorithmName, Batch, DesignProblem, Event, FrontMember, GenerationSummary, Outcome, RunControl, RunSummary,
     RunTimes, Started, Study, Subscriber,
 };
-use crate::evaluation::{Evaluation, GridChoice};
-use crate::optimize::{Algorithm, Archive, Evaluated, FrontDe, Moga2, Nsga2, Problem, hypervolume, spread};
+use kinefront_model::evaluation::{Evaluation, GridChoice};
+use kinefront_optimize::{Algorithm, Archive, Evaluated, FrontDe, Moga2, Nsga2, Problem, hypervolume, spread};
 
 /// Starts the run of a study on a thread of its own.
 ///

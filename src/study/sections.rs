@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::evaluation::Model;
-use crate::mechanism::{Design, TextError, VARIABLES, Variable, WorkingMode};
-use crate::stiffness::Material;
-use crate::workspace::Grid;
+use kinefront_model::evaluation::Model;
+use kinefront_model::mechanism::{Design, TextError, VARIABLES, Variable, WorkingMode};
+use kinefront_model::stiffness::Material;
+use kinefront_model::workspace::Grid;
 
 /// Material of every bar.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

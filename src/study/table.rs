@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::Study;
-use crate::evaluation::{Constraint, Evaluation};
-use crate::mechanism::{Design, VARIABLES};
+use kinefront_model::evaluation::{Constraint, Evaluation};
+use kinefront_model::mechanism::{Design, VARIABLES};
 
 /// What is stored of one design.
 #[derive(Debug, Clone, Copy, PartialEq)]

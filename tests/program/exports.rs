@@ -166,7 +166,7 @@ fn small_mechanisms_and_other_working_modes_are_exported() {
         .nth(1)
         .and_then(|rest| rest.lines().next())
         .expect("a title");
-    let same = kinefront::mechanism::Design::parse(title, kinefront::mechanism::WorkingMode::ALL_PLUS);
+    let same = kinefront_model::mechanism::Design::parse(title, kinefront_model::mechanism::WorkingMode::ALL_PLUS);
     assert_eq!(same, small.parse());
     for inertia in text.split("fullinertia=\"").skip(1) {
         let moments: Vec<f64> = inertia[..inertia.find('"').expect("an end")]

@@ -3,9 +3,9 @@
 use egui::accesskit::{Role, Toggled};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use kinefront::evaluation::MemberReport;
+use kinefront_model::evaluation::MemberReport;
 use kinefront::explorer::{Origin, Phase, Quantity};
-use kinefront::mechanism::{MemberKind, Variable};
+use kinefront_model::mechanism::{MemberKind, Variable};
 use kinefront::study::Outcome;
 
 use super::support::{click_at, idle_window, opened_window, set_slider, until};

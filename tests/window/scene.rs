@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
-use kinefront::evaluation::{GridChoice, Model};
-use kinefront::mechanism::{Design, WorkingMode};
+use kinefront_model::evaluation::{GridChoice, Model};
+use kinefront_model::mechanism::{Design, WorkingMode};
 use kinefront::recording::{Layers, LiveScene, Picked, Pinned, Shown};
 use kinefront::scene::EllipsoidKind;
 use kinefront::study::BUILTIN;

@@ -3,7 +3,7 @@
 use egui::{DragValue, ScrollArea, Slider, Ui};
 
 use crate::explorer::{Filter, Quantity, Session, theme};
-use crate::optimize::{groups, ranking};
+use kinefront_optimize::{groups, ranking};
 
 /// The panel of choosing.
 pub struct ChoosePanel {

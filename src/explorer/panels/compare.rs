@@ -2,9 +2,9 @@
 
 use egui::{Color32, Grid, RichText, ScrollArea, Ui};
 
-use crate::evaluation::{Constraint, Evaluation};
+use kinefront_model::evaluation::{Constraint, Evaluation};
 use crate::explorer::{Session, theme};
-use crate::mechanism::VARIABLES;
+use kinefront_model::mechanism::VARIABLES;
 
 /// The panel of the pinned designs.
 #[derive(Default)]

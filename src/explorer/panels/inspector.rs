@@ -2,9 +2,9 @@
 
 use egui::{Color32, Grid, ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo, WidgetType};
 
-use crate::evaluation::ConstraintReport;
+use kinefront_model::evaluation::ConstraintReport;
 use crate::explorer::{Known, Session, theme};
-use crate::mechanism::VARIABLES;
+use kinefront_model::mechanism::VARIABLES;
 
 /// The panel of the design in the light.
 #[derive(Default)]
@@ -209,7 +209,7 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
             }
         });
     if let Some(nearest) = session.model().nearest(&known.evaluation) {
-        let words = format!("nearest bodies: {nearest}");
+        let words = format!("nearest bodies: {}", text::clearance(&nearest));
         if nearest.distance < 0.0 {
             ui.colored_label(theme::BROKEN, words);
         } else {

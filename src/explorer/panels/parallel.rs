@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 
-use crate::evaluation::{Constraint, Model};
+use kinefront_model::evaluation::{Constraint, Model};
 use crate::explorer::{Better, Quantity, Session, theme};
-use crate::mechanism::VARIABLES;
+use kinefront_model::mechanism::VARIABLES;
 
 /// Designs beside the front that are drawn, evenly over all of them: more lines would be a grey sheet.
 const SAMPLE: usize = 800;

@@ -3,12 +3,12 @@
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2};
 use glam::{DVec2, DVec3};
 
-use crate::clearance::Member;
-use crate::evaluation::{MemberReport, Share};
+use kinefront_model::clearance::Member;
+use kinefront_model::evaluation::{MemberReport, Share};
 use crate::explorer::theme;
-use crate::mechanism::{Design, MemberKind};
+use kinefront_model::mechanism::{Design, MemberKind};
 use crate::scene::{Part, Scene, Solid, SolidShape};
-use crate::spatial::nearest_on_segment;
+use kinefront_model::spatial::nearest_on_segment;
 
 /// How far beside a thin member the pointer may be, in points.
 const CATCH: f32 = 4.0;

@@ -5,9 +5,9 @@ use glam::DVec2;
 
 use super::plan::{Plan, card, paint};
 use crate::explorer::{Session, theme};
-use crate::mechanism::Design;
+use kinefront_model::mechanism::Design;
 use crate::scene::{Tour, manipulator, regular_workspace, tour};
-use crate::spatial::Pose;
+use kinefront_model::spatial::Pose;
 
 /// Poses around each rim of the tour, and how many are passed in a second.
 const TOUR_STEPS: usize = 90;

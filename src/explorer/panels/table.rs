@@ -3,9 +3,9 @@
 use egui::{Align, Label, RichText, Sense, Ui};
 use egui_extras::{Column, TableBuilder};
 
-use crate::evaluation::Constraint;
+use kinefront_model::evaluation::Constraint;
 use crate::explorer::{FrontEntry, Origin, Quantity, Session, theme};
-use crate::mechanism::VARIABLES;
+use kinefront_model::mechanism::VARIABLES;
 
 /// What the table is sorted by.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::super::document::{Chosen, Named, Origin};
 use super::{MOST_PINS, Session};
-use crate::mechanism::{Design, VARIABLES};
+use kinefront_model::mechanism::{Design, VARIABLES};
 use crate::recording::Picked;
 
 impl Session {

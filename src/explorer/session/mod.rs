@@ -13,9 +13,9 @@ use super::document::{Chosen, Document, History, Named, Origin};
 use super::running::{Running, Writing};
 use super::scene_thread::{Answer, Known, SceneThread};
 use super::{Filter, FrontEntry, Row, Store, StudyEditor};
-use crate::evaluation::{Evaluation, GridChoice, Model};
+use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use crate::recording::{FrontPoint, Layers, LiveScene};
-use crate::spatial::Pose;
+use kinefront_model::spatial::Pose;
 use crate::study::{GenerationSummary, Outcome, Study};
 
 /// Designs that can be compared at once.

@@ -1,8 +1,8 @@
 //! The pose of the design in the light.
 
 use super::Session;
-use crate::evaluation::Constraint;
-use crate::spatial::Pose;
+use kinefront_model::evaluation::Constraint;
+use kinefront_model::spatial::Pose;
 
 impl Session {
     /// Where the manipulator stands.

@@ -11,7 +11,7 @@ use super::super::running::Running;
 use super::super::scene_thread::Request;
 use super::super::{FrontEntry, Store, StudyEditor};
 use super::{GLANCE, Phase, Session, references};
-use crate::optimize::knee;
+use kinefront_optimize::knee;
 use crate::recording::FrontPoint;
 use crate::study::{RunControl, Study, Subscriber, spawn};
 

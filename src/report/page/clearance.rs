@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::results::levels;
 use super::{change, figures, optional, percent};
-use crate::evaluation::Evaluation;
+use kinefront_model::evaluation::Evaluation;
 use crate::report::{ClearanceCost, Front, Report};
 use crate::text::{number, short};
 
@@ -13,7 +13,7 @@ pub(super) fn clearance(report: &Report) -> Markup {
     let worst = |front: &Front| -> Option<String> {
         let found = front.shown().filter_map(|member| Some((member.clearance()?, member)));
         let (_, member) = found.reduce(|worst, next| if next.0 < worst.0 { next } else { worst })?;
-        Some(model.nearest(member)?.to_string())
+        Some(text::clearance(&model.nearest(member)?))
     };
     html! {
         p {

@@ -4,8 +4,8 @@ use maud::{Markup, html};
 
 use super::results::{levels, unknown, verdict};
 use super::{cell, change, optional, percent};
-use crate::mechanism::{Architecture, VARIABLES, Variable};
-use crate::optimize::hypervolume;
+use kinefront_model::mechanism::{Architecture, VARIABLES, Variable};
+use kinefront_optimize::hypervolume;
 use crate::report::{Front, Reference, Report, Variation};
 use crate::text::number;
 

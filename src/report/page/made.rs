@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::optional;
-use crate::mechanism::{Architecture, VARIABLES};
+use kinefront_model::mechanism::{Architecture, VARIABLES};
 use crate::report::Report;
 
 /// Where a reader of the paper finds what.
@@ -116,8 +116,8 @@ fn parameters(report: &Report) -> Markup {
 
 fn actuator(architecture: Architecture) -> String {
     let kind = match architecture.actuator() {
-        crate::mechanism::Actuator::Prismatic => "prismatic",
-        crate::mechanism::Actuator::Revolute => "revolute",
+        kinefront_model::mechanism::Actuator::Prismatic => "prismatic",
+        kinefront_model::mechanism::Actuator::Revolute => "revolute",
     };
     format!("{kind}: 1 spring")
 }

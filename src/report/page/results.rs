@@ -3,8 +3,8 @@
 use maud::{Markup, html};
 
 use super::{cell, figures, image, percent};
-use crate::evaluation::{Constraint, Evaluation};
-use crate::mechanism::{VARIABLES, Variable};
+use kinefront_model::evaluation::{Constraint, Evaluation};
+use kinefront_model::mechanism::{VARIABLES, Variable};
 use crate::report::{AT_BOUND, Fit, Front, Report, Trend, lightest_where};
 use crate::text::{number, short};
 

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::results::levels;
 use super::{cell, change, figures, optional};
-use crate::mechanism::Architecture;
+use kinefront_model::mechanism::Architecture;
 use crate::report::{Front, READINGS, Reading, Report, Variation};
 use crate::text::{number, short};
 

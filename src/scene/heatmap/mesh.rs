@@ -4,15 +4,15 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::Sample;
-use crate::lanes::padded;
-use crate::mechanism::ReachReason;
+use kinefront_model::lanes::padded;
+use kinefront_model::mechanism::ReachReason;
 
 /// Halvings along a side that the edge of reach cuts: to 2⁻³² of a cell.
 const HALVINGS: u32 = 32;
 
 /// What is drawn: samples where a position is reached.
 pub(super) trait Surface: Sync {
-    /// Samples at many positions, in columns whose length is a multiple of [`MOST_LANES`](crate::lanes::MOST_LANES).
+    /// Samples at many positions, in columns whose length is a multiple of [`MOST_LANES`](kinefront_model::lanes::MOST_LANES).
     fn row(&self, xs: &[f64], ys: &[f64]) -> Vec<Option<Sample>>;
     /// The sample at one position.
     fn at(&self, position: DVec2) -> Option<Sample>;

@@ -14,10 +14,11 @@ use glam::DVec2;
 use self::contour::{chains, contour};
 use self::mesh::{Layout, Mesh, Surface};
 use super::Field;
-use crate::evaluation::Model;
-use crate::mechanism::{Design, Leg, ReachReason, with_leg};
-use crate::spatial::{LEGS, Rotation};
-use crate::workspace::{GridError, PoseChecker, PoseLanes, PoseValues, ValueColumns};
+use kinefront_model::evaluation::Model;
+use kinefront_model::mechanism::{Design, Leg, ReachReason};
+use kinefront_model::with_leg;
+use kinefront_model::spatial::{LEGS, Rotation};
+use kinefront_model::workspace::{GridError, PoseChecker, PoseLanes, PoseValues, ValueColumns};
 
 /// How finely a heatmap is laid out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -86,7 +86,7 @@ impl Picture {
         let scale = [0, 1].map(|k| size[k] as f64 / (high[k] - low[k]));
         let dark = self.view.style.dark;
         let ground = theme::ground(dark);
-        let colors: Vec<Color32> = crate::mechanism::Architecture::ALL
+        let colors: Vec<Color32> = kinefront_model::mechanism::Architecture::ALL
             .iter()
             .map(|&architecture| theme::architecture(architecture, dark))
             .collect();

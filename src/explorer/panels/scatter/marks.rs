@@ -5,7 +5,7 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points, Tex
 
 use super::Scatter;
 use crate::explorer::{Quantity, Row, Session, theme};
-use crate::optimize::knee;
+use kinefront_optimize::knee;
 
 impl Scatter {
     /// The front as a staircase, its designs, the knee, the design in the light and the references.

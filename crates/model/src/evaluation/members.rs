@@ -1,0 +1,92 @@
+//! The members of a design at a pose: where they are, what they weigh, and what they give way.
+
+use glam::DVec3;
+
+use super::{Model, Unreachable};
+use crate::clearance::{Bodies, Member};
+use crate::kinematics::Jacobian;
+use crate::mechanism::{Design, Leg, Manipulator, MemberKind};
+use crate::spatial::{LEGS, Pose};
+use crate::stiffness::{Share, StiffnessModel};
+
+/// A member at a pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MemberReport {
+    /// Which.
+    pub member: Member,
+    /// Proximal end of its axis in the base frame \[m\]: of a telescopic leg where its rod ends, if that sticks out behind
+    /// the base joint; of a slider the middle of an end face.
+    pub from: DVec3,
+    /// Distal end of its axis \[m\].
+    pub to: DVec3,
+    /// Radius; half the width of a slider \[m\].
+    pub radius: f64,
+    /// Length of the bar between its joints at the pose, or of the slider \[m\].
+    pub length: f64,
+    /// Mass \[kg\]; a slider has none in this model.
+    pub mass: f64,
+    /// Its share of the compliance at the pose; `None` where the platform gives way without end.
+    pub share: Option<Share>,
+    /// That of the actuator that drives it, if one does.
+    pub actuator: Option<Share>,
+}
+
+impl Model {
+    /// The members of `design` at `pose`: of each leg from the base outwards, then the platform's bars.
+    ///
+    /// # Errors
+    /// The leg that does not get there.
+    pub fn members(&self, design: &Design, pose: &Pose) -> Result<Vec<MemberReport>, Unreachable> {
+        with_leg!(design.architecture, L => self.members_of::<L>(design, pose))
+    }
+
+    fn members_of<L: Leg>(&self, design: &Design, pose: &Pose) -> Result<Vec<MemberReport>, Unreachable> {
+        let manipulator = Manipulator::<L>::new(design, &self.legs);
+        let posture = manipulator
+            .posture(pose)
+            .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+        let shares = StiffnessModel::new::<L>(design, &self.material, &self.actuators)
+            .and_then(|stiffness| stiffness.shares(&manipulator, &posture, &Jacobian::new(&posture)));
+        let of_leg = self.legs_mass(design) / (LEGS * L::BARS) as f64;
+        let of_platform = self.platform_mass(design) / LEGS as f64;
+        let capsules = Bodies::new::<L>(design, &self.bodies).capsules(&manipulator, pose.position, &posture);
+        let members = capsules.into_iter().map(|capsule| {
+            let kind = capsule.member.kind;
+            let leg = capsule.member.leg;
+            let of_leg_shares = shares.as_ref().map(|shares| &shares[leg]);
+            let ends = match (kind, manipulator.legs[leg].actuator_axis(&posture.legs[leg])) {
+                // The capsule's axis ends before the block does.
+                (MemberKind::Slider, Some(axis)) => {
+                    let middle = 0.5 * (capsule.from + capsule.to);
+                    let half = axis.extend(0.0) * self.bodies.slider_half_length(design);
+                    [middle - half, middle + half]
+                }
+                _ => [capsule.from, capsule.to],
+            };
+            let driven = kind == L::PROXIMAL.unwrap_or(L::DISTAL);
+            MemberReport {
+                member: capsule.member,
+                from: ends[0],
+                to: ends[1],
+                radius: capsule.radius,
+                length: match kind {
+                    MemberKind::Slider => 2.0 * self.bodies.slider_half_length(design),
+                    MemberKind::TelescopicLeg => posture.legs[leg].length,
+                    _ => capsule.from.distance(capsule.to),
+                },
+                mass: match kind {
+                    MemberKind::Slider => 0.0,
+                    MemberKind::PlatformBar => of_platform,
+                    _ => of_leg,
+                },
+                share: of_leg_shares.map(|shares| match kind {
+                    MemberKind::PlatformBar => shares.platform,
+                    kind if kind == L::DISTAL => shares.distal,
+                    _ => shares.proximal,
+                }),
+                actuator: of_leg_shares.filter(|_| driven).map(|shares| shares.actuator),
+            }
+        });
+        Ok(members.collect())
+    }
+}

@@ -1,0 +1,265 @@
+//! The physics of a study: material, actuators, thresholds, definitions, workspace and grids.
+
+use glam::DVec2;
+
+use super::{Constraint, Evaluation, Unreachable, worst};
+use crate::clearance::{Bodies, BodySettings, Clearance};
+use crate::kinematics::{CharacteristicLength, Jacobian};
+use crate::lanes::InstructionSet;
+use crate::mechanism::{Design, Leg, LegSettings, Manipulator};
+use crate::spatial::{Pose, Rotation};
+use crate::stiffness::planar::ActuatorStiffness;
+use crate::stiffness::{Material, StiffnessDefinition, StiffnessModel};
+use crate::workspace::{Grid, GridError, PoseChecker, Thresholds, WorkspaceSampling, WorkspaceSpec};
+
+/// Everything but the design that an evaluation depends on. The default is the paper's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModelSettings {
+    /// Material of every bar.
+    pub material: Material,
+    /// Actuator stiffness.
+    pub actuators: ActuatorStiffness,
+    /// Choices about legs.
+    pub legs: LegSettings,
+    /// Sizes of sliders and layers of members.
+    pub bodies: BodySettings,
+    /// How many bars of length `r` count in the platform's mass (SPEC section 8, no. 1).
+    pub platform_bars: u32,
+    /// Definition of `k_xy`, `k_z`, `k_φz`.
+    pub stiffness_definition: StiffnessDefinition,
+    /// Characteristic length.
+    pub characteristic_length: CharacteristicLength,
+    /// Thresholds of g3 … g7.
+    pub thresholds: Thresholds,
+    /// Force in the plane that the study asks for \[N\], for displacements; the thresholds already hold it.
+    pub in_plane_force: f64,
+    /// Centre, home and rotation range of the regular workspace.
+    pub workspace: WorkspaceSpec,
+    /// Grid on which designs are searched.
+    pub reference_grid: Grid,
+    /// Grid on which reported designs are verified.
+    pub fine_grid: Grid,
+}
+
+/// One of the two grids.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GridChoice {
+    /// For searching.
+    Reference,
+    /// For verifying what is reported.
+    Fine,
+}
+
+/// [`ModelSettings`] whose grids fit the workspace, so that every design can be evaluated.
+///
+/// A model reads like its settings; to change one, change the settings and build the model again:
+///
+/// ```
+/// use kinefront_model::evaluation::{Model, ModelSettings};
+/// use kinefront_model::workspace::GridError;
+///
+/// let settings = ModelSettings { platform_bars: 1, ..ModelSettings::default() };
+/// assert_eq!(Model::new(settings)?.platform_bars, 1);
+///
+/// let mut settings = settings;
+/// settings.workspace.rotation_range_deg = 7.0;
+/// assert!(matches!(Model::new(settings), Err(GridError::WindowNotWhole { .. })));
+/// # Ok::<(), GridError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Model {
+    settings: ModelSettings,
+    reference: WorkspaceSampling,
+    fine: WorkspaceSampling,
+}
+
+impl std::ops::Deref for Model {
+    type Target = ModelSettings;
+
+    fn deref(&self) -> &ModelSettings {
+        &self.settings
+    }
+}
+
+impl Default for Model {
+    /// The paper's model.
+    fn default() -> Self {
+        Self::new(ModelSettings::default()).expect("the paper's grids fit its rotation range")
+    }
+}
+
+impl Default for ModelSettings {
+    fn default() -> Self {
+        Self {
+            material: Material::STEEL,
+            actuators: ActuatorStiffness {
+                prismatic: 1e7,
+                revolute: 1e7,
+            },
+            legs: LegSettings::default(),
+            bodies: BodySettings::default(),
+            platform_bars: 3,
+            stiffness_definition: StiffnessDefinition::Stiffness,
+            characteristic_length: CharacteristicLength::PlatformRadius,
+            thresholds: Thresholds {
+                inverse_condition: 0.1,
+                k_xy: 1e6,
+                k_z: 1e5,
+                k_phi_z: 10.0 / 1f64.to_radians(),
+                clearance: None,
+            },
+            in_plane_force: 100.0,
+            workspace: WorkspaceSpec {
+                rotation_range_deg: 20.0,
+                centre: DVec2::ZERO,
+                home_phi_deg: None,
+            },
+            reference_grid: Grid::REFERENCE,
+            fine_grid: Grid::FINE,
+        }
+    }
+}
+
+impl Model {
+    /// The model of the given settings.
+    ///
+    /// # Errors
+    /// [`GridError::WindowNotWhole`] when a grid does not fit the rotation range.
+    pub fn new(settings: ModelSettings) -> Result<Self, GridError> {
+        Ok(Self {
+            settings,
+            reference: WorkspaceSampling::new(settings.workspace, settings.reference_grid)?,
+            fine: WorkspaceSampling::new(settings.workspace, settings.fine_grid)?,
+        })
+    }
+
+    /// The workspace to be found, sampled on the chosen grid.
+    pub fn sampling(&self, choice: GridChoice) -> &WorkspaceSampling {
+        match choice {
+            GridChoice::Reference => &self.reference,
+            GridChoice::Fine => &self.fine,
+        }
+    }
+
+    /// `f1`: mass in motion \[kg\], `ν·π·(n·r_j²·L_b + 3·r_p²·r)`.
+    pub fn mass(&self, design: &Design) -> f64 {
+        self.legs_mass(design) + self.platform_mass(design)
+    }
+
+    /// Mass of the bars of all legs \[kg\].
+    pub fn legs_mass(&self, design: &Design) -> f64 {
+        let bars = (3 * design.architecture.bars_per_leg()) as f64;
+        bars * self.bar_mass(design.leg_bar_radius, design.link_length)
+    }
+
+    /// Mass of the platform's bars \[kg\].
+    pub fn platform_mass(&self, design: &Design) -> f64 {
+        f64::from(self.platform_bars) * self.bar_mass(design.platform_bar_radius, design.platform_radius)
+    }
+
+    /// Mass of one bar \[kg\].
+    pub fn bar_mass(&self, radius: f64, length: f64) -> f64 {
+        self.material.density * std::f64::consts::PI * radius * radius * length
+    }
+
+    /// Evaluates a design on one of the grids.
+    pub fn evaluate(&self, design: &Design, grid: GridChoice) -> Evaluation {
+        self.evaluate_with(design, grid, InstructionSet::best())
+    }
+
+    /// [`Model::evaluate`] with a given set of instructions, which changes no bit of the result.
+    pub fn evaluate_with(&self, design: &Design, grid: GridChoice, instructions: InstructionSet) -> Evaluation {
+        with_leg!(design.architecture, L => {
+            let mut checker = self.checker::<L>(design);
+            checker.instructions = instructions;
+            worst::evaluate(self, &checker, design, self.sampling(grid))
+        })
+    }
+
+    /// The design made ready for many poses.
+    pub fn checker<L: Leg>(&self, design: &Design) -> PoseChecker<L> {
+        let manipulator = Manipulator::new(design, &self.legs);
+        PoseChecker {
+            manipulator,
+            stiffness: StiffnessModel::new::<L>(design, &self.material, &self.actuators),
+            definition: self.stiffness_definition,
+            length: self.length(design, &manipulator),
+            bodies: Bodies::new::<L>(design, &self.bodies),
+            thresholds: self.thresholds,
+            instructions: InstructionSet::best(),
+        }
+    }
+
+    /// `ℓ` of a design \[m\].
+    ///
+    /// The isotropic length looks at the reference grid's orientations whatever grid is evaluated, so that one design
+    /// has one length; a design that reaches none of them with `P` at `O` falls back on `r`.
+    fn length<L: Leg>(&self, design: &Design, manipulator: &Manipulator<L>) -> f64 {
+        match self.characteristic_length {
+            CharacteristicLength::PlatformRadius => design.platform_radius,
+            CharacteristicLength::Fixed(length) => length,
+            CharacteristicLength::Isotropic => {
+                let grid = &self.reference_grid;
+                let mut largest = 0.0f64;
+                for k in 0..grid.orientations() {
+                    let phi = (k as f64 * grid.phi_step_deg()).to_radians();
+                    let arms = manipulator.arms(&Rotation::new(phi));
+                    if let Ok(posture) = manipulator.posture_at(DVec2::ZERO, &arms) {
+                        let jacobian = Jacobian::new(&posture);
+                        largest = jacobian
+                            .moment
+                            .iter()
+                            .fold(largest, |max, moment| max.max(moment.abs()));
+                    }
+                }
+                if largest > 0.0 {
+                    std::f64::consts::SQRT_2 * largest
+                } else {
+                    design.platform_radius
+                }
+            }
+        }
+    }
+
+    /// Home of an evaluated design, or for an infeasible one the pose that its constraints are reported at.
+    pub fn home(&self, evaluation: &Evaluation) -> Pose {
+        let reported = || evaluation.constraints.iter().find_map(|report| report.pose);
+        evaluation.home.or_else(reported).unwrap_or(Pose {
+            position: self.workspace.centre,
+            phi: 0.0,
+        })
+    }
+
+    /// The nearest pair of bodies of an evaluated design, at the pose where its clearance was found to be least; `None`
+    /// where it has none.
+    pub fn nearest(&self, evaluation: &Evaluation) -> Option<Clearance> {
+        let pose = evaluation.constraint(Constraint::Clearance).pose?;
+        let design = &evaluation.design;
+        // At the very end of a leg's reach rounding decides whether it gets there; a hair nearer to the centre it does.
+        let inwards = (self.workspace.centre - pose.position).clamp_length_max(1e-9 * design.base_radius);
+        let position = pose.position + inwards;
+        let found = self.nearest_at(design, &pose);
+        found
+            .or_else(|_| self.nearest_at(design, &Pose { position, ..pose }))
+            .ok()
+    }
+
+    /// The nearest pair of bodies of a design at a pose.
+    ///
+    /// # Errors
+    /// The leg that does not get there.
+    pub fn nearest_at(&self, design: &Design, pose: &Pose) -> Result<Clearance, Unreachable> {
+        with_leg!(design.architecture, L => {
+            let manipulator = Manipulator::<L>::new(design, &self.legs);
+            let posture = manipulator
+                .posture(pose)
+                .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+            Ok(Bodies::new::<L>(design, &self.bodies).nearest(&manipulator, pose.position, &posture))
+        })
+    }
+
+    /// Whether a turn by 120° about the workspace's centre maps the design on itself.
+    pub fn is_symmetric(&self, design: &Design) -> bool {
+        self.workspace.centre == DVec2::ZERO && design.working_mode.is_uniform()
+    }
+}

@@ -1,0 +1,84 @@
+//! Everything about one design at one pose.
+
+use nalgebra::Matrix6;
+
+use super::Model;
+use crate::clearance::Clearance;
+use crate::kinematics::Jacobian;
+use crate::mechanism::{Design, Leg, ReachReason, Shortfall};
+use crate::spatial::{LEGS, Pose};
+use crate::stiffness::Rigidity;
+
+/// A design at a pose that it reaches.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PoseReport {
+    /// Actuator values \[m or rad\].
+    pub actuators: [f64; LEGS],
+    /// `B_i` in the base frame \[m\]; `A_i` for a telescopic leg.
+    pub b: [[f64; 2]; LEGS],
+    /// `C_i` in the base frame \[m\].
+    pub c: [[f64; 2]; LEGS],
+    /// Least distance to a joint limit or to the end of reach \[m\].
+    pub slack: f64,
+    /// `κ_F⁻¹`.
+    pub inverse_condition: f64,
+    /// `det A / ℓ`.
+    pub determinant: f64,
+    /// `k_xy`, `k_z`, `k_φz`.
+    pub rigidity: Rigidity,
+    /// The nearest pair of bodies that are not joined.
+    pub clearance: Clearance,
+    /// `K` at `P`, linear first, base axes.
+    pub stiffness: Matrix6<f64>,
+}
+
+/// Why a pose is not reached, in words.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("leg {}: {}", .leg + 1, words(.shortfall))]
+pub struct Unreachable {
+    /// Index of the leg, from 0.
+    pub leg: usize,
+    /// How far and why.
+    pub shortfall: Shortfall,
+}
+
+fn words(shortfall: &Shortfall) -> String {
+    let distance = -shortfall.slack;
+    match shortfall.reason {
+        ReachReason::OutOfReach => format!("out of reach by {distance:.6} m"),
+        ReachReason::BelowLimit => format!("actuator {distance:.6} m below its lower limit"),
+        ReachReason::AboveLimit => format!("actuator {distance:.6} m above its upper limit"),
+        ReachReason::Degenerate => "its end joints coincide".to_owned(),
+    }
+}
+
+impl Model {
+    /// The design at `pose`, or why it does not get there.
+    ///
+    /// # Errors
+    /// The leg that does not reach the pose, and why.
+    pub fn pose(&self, design: &Design, pose: &Pose) -> Result<PoseReport, Unreachable> {
+        with_leg!(design.architecture, L => self.pose_of::<L>(design, pose))
+    }
+
+    fn pose_of<L: Leg>(&self, design: &Design, pose: &Pose) -> Result<PoseReport, Unreachable> {
+        let checker = self.checker::<L>(design);
+        let posture = checker
+            .manipulator
+            .posture(pose)
+            .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+        let jacobian = Jacobian::new(&posture);
+        let stiffness = checker.stiffness_at(&posture, &jacobian);
+        Ok(PoseReport {
+            actuators: [0, 1, 2].map(|i| checker.manipulator.legs[i].actuator(&posture.legs[i])),
+            b: posture.legs.map(|leg| leg.b.to_array()),
+            c: posture.arms.map(|arm| (pose.position + arm).to_array()),
+            slack: posture.slack,
+            inverse_condition: jacobian.inverse_condition(checker.length),
+            determinant: jacobian.determinant() / checker.length,
+            rigidity: stiffness.rigidity(self.stiffness_definition),
+            clearance: checker.nearest(pose.position, &posture),
+            stiffness: stiffness.matrix(),
+        })
+    }
+}

@@ -1,0 +1,348 @@
+//! The lightest bars for a geometry: how thin they may be for a regular workspace of a given radius.
+//!
+//! Mass and stiffness grow with both bar radii, and neither reach nor dexterity depends on them. For a given geometry
+//! and radius of workspace the lightest pair of bar radii is therefore a problem of two variables. It is solved on a few
+//! rings of the disc, some hundred poses of which a few dozen matter, where an evaluation looks at ten thousand: a sized
+//! design is a proposal, to be evaluated.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
+use super::{GridChoice, Model};
+use super::layout::{Layout, Place};
+use super::lightest::{Problem, Shares, lightest};
+use crate::mechanism::{Design, Leg};
+use crate::spatial::{LEGS, Rotation, unit};
+use crate::stiffness::StiffnessModel;
+use crate::workspace::{PoseChecker, Turn, ValueColumns};
+
+/// Directions of a ring over a sector of 120°.
+const DIRECTIONS: usize = 16;
+
+/// Rings of the disc on which bars are sized, besides its centre, as shares of its radius.
+const RINGS: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
+
+/// Halvings in search of the largest radius.
+const HALVINGS: usize = 10;
+
+/// Ranges of the bars' radii \[m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BarRanges {
+    /// Of `r_j`.
+    pub leg: [f64; 2],
+    /// Of `r_p`.
+    pub platform: [f64; 2],
+}
+
+/// The workspace that bars are sized for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Demand {
+    /// A radius \[m\].
+    Radius(f64),
+    /// The largest radius that the geometry allows with the strongest bars.
+    Largest,
+}
+
+impl Model {
+    /// `design` with the lightest bars within `ranges` that keep the stiffness asked for on the disc of the workspace
+    /// demanded; its own bars are where the search starts. `None` where the geometry or the ranges do not allow it.
+    ///
+    /// Disc and orientations are sampled, the latter as on the reference grid; that the poses are good in other respects
+    /// is looked at on the centre and the rim, and for clearance with bodies as thick as the design's own bars. The home orientation is the one in which the design is stiffest before it
+    /// is sized.
+    pub fn sized(&self, design: &Design, ranges: &BarRanges, demand: Demand) -> Option<Design> {
+        if design.link_length + design.platform_radius < 0.5 * design.base_radius {
+            return None;
+        }
+        with_leg!(design.architecture, L => Sizer::<L>::new(self, design, ranges).sized(demand))
+    }
+}
+
+struct Sizer<'a, L> {
+    model: &'a Model,
+    design: Design,
+    ranges: &'a BarRanges,
+    /// With the strongest bars until a radius is settled.
+    checker: PoseChecker<L>,
+    /// Arms orientation by orientation, as the reference grid has them.
+    arms: Vec<[DVec2; LEGS]>,
+    turn: Turn,
+    sectors: usize,
+    laid: Layout,
+    places: Vec<Place>,
+    disc_radius: f64,
+    /// The poses of `laid` that matter when bars are sized.
+    chosen: Layout,
+    values: ValueColumns,
+}
+
+impl<'a, L: Leg> Sizer<'a, L> {
+    fn new(model: &'a Model, design: &Design, ranges: &'a BarRanges) -> Self {
+        let turn = *model.sampling(GridChoice::Reference).turn();
+        let checker = model.checker::<L>(design);
+        let arms = (0..turn.count)
+            .map(|k| checker.manipulator.arms(&Rotation::new(turn.phi_deg(k).to_radians())))
+            .collect();
+        Self {
+            model,
+            design: *design,
+            ranges,
+            checker,
+            arms,
+            turn,
+            sectors: if model.is_symmetric(design) { 1 } else { LEGS },
+            laid: Layout::default(),
+            places: Vec::new(),
+            disc_radius: 0.0,
+            chosen: Layout::default(),
+            values: ValueColumns::default(),
+        }
+    }
+
+    fn sized(mut self, demand: Demand) -> Option<Design> {
+        self.set_bars([self.ranges.leg[1], self.ranges.platform[1]]);
+        // Orientations whose centre is good; of them, those in a whole window of such.
+        let all: Vec<usize> = (0..self.arms.len()).collect();
+        let centres = self.ring(0.0, &all);
+        let candidates = self.windows(&centres);
+        if candidates.is_empty() {
+            return None;
+        }
+        let radius = match demand {
+            Demand::Radius(radius) => radius,
+            Demand::Largest => self.largest(&candidates)?,
+        };
+        let home = self.home(radius, &candidates)?;
+        let window: Vec<usize> = self.turn.window(home).collect();
+        self.lay_disc(radius, &window);
+        let bar_mass = self.with_bars([1.0, 1.0]);
+        let problem = Problem {
+            start: [self.design.leg_bar_radius, self.design.platform_bar_radius],
+            ranges: [self.ranges.leg, self.ranges.platform],
+            mass: [self.model.legs_mass(&bar_mass), self.model.platform_mass(&bar_mass)],
+        };
+        let bars = lightest(&problem, &mut self)?;
+        Some(self.with_bars(bars))
+    }
+
+    fn with_bars(&self, [leg, platform]: [f64; 2]) -> Design {
+        Design {
+            leg_bar_radius: leg,
+            platform_bar_radius: platform,
+            ..self.design
+        }
+    }
+
+    /// What is asked of the stiffness alone needs no look at the bodies.
+    fn without_clearance<T>(&mut self, look: impl FnOnce(&mut Self) -> T) -> T {
+        let clearance = self.checker.thresholds.clearance.take();
+        let found = look(self);
+        self.checker.thresholds.clearance = clearance;
+        found
+    }
+
+    fn set_bars(&mut self, bars: [f64; 2]) {
+        let design = self.with_bars(bars);
+        self.checker.stiffness = StiffnessModel::new::<L>(&design, &self.model.material, &self.model.actuators);
+    }
+
+    /// Lays the ring of a radius in the given orientations; returns its number of poses.
+    fn lay_ring(&mut self, radius: f64, orientations: &[usize]) -> usize {
+        let count = if radius > 0.0 { DIRECTIONS * self.sectors } else { 1 };
+        let step = TAU / (LEGS * DIRECTIONS) as f64;
+        let ring: Vec<DVec2> = (0..count).map(|k| self.position(radius, k as f64 * step)).collect();
+        self.laid.clear();
+        for &orientation in orientations {
+            self.laid.extend(&ring, &self.arms[orientation]);
+        }
+        self.laid.pad();
+        count
+    }
+
+    /// Lays the disc of a radius, its centre too. A ring is turned by half a step against the one before, so that together
+    /// they see more directions.
+    fn lay_disc(&mut self, radius: f64, orientations: &[usize]) {
+        let step = TAU / (LEGS * DIRECTIONS) as f64;
+        let spacing = [radius / RINGS.len() as f64, step];
+        self.disc_radius = radius;
+        self.places.clear();
+        for &orientation in orientations {
+            self.places.push(Place {
+                orientation,
+                radius: 0.0,
+                angle: 0.0,
+                spacing,
+                refined: false,
+            });
+            for (ring, share) in RINGS.iter().enumerate() {
+                let turn = if ring % 2 == 0 { 0.0 } else { 0.5 };
+                self.places.extend((0..DIRECTIONS * self.sectors).map(|k| Place {
+                    orientation,
+                    radius: share * radius,
+                    angle: (k as f64 + turn) * step,
+                    spacing,
+                    refined: false,
+                }));
+            }
+        }
+        self.laid.clear();
+        let of_one = 1 + RINGS.len() * DIRECTIONS * self.sectors;
+        let disc: Vec<DVec2> = self.places[..of_one]
+            .iter()
+            .map(|place| self.position(place.radius, place.angle))
+            .collect();
+        for &orientation in orientations {
+            self.laid.extend(&disc, &self.arms[orientation]);
+        }
+        self.laid.pad();
+    }
+
+    fn position(&self, radius: f64, angle: f64) -> DVec2 {
+        self.model.workspace.centre + unit(angle) * radius
+    }
+
+    /// Lays the neighbours of a pose at half its spacing, once.
+    fn refine(&mut self, pose: usize) {
+        let place = self.places[pose];
+        if place.refined {
+            return;
+        }
+        self.places[pose].refined = true;
+        let spacing = place.spacing.map(|spacing| 0.5 * spacing);
+        for [out, round] in [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]] {
+            let radius = place.radius + out * spacing[0];
+            if radius > 0.0 && radius <= self.disc_radius {
+                let angle = place.angle + round * spacing[1];
+                self.places.push(Place {
+                    radius,
+                    angle,
+                    spacing,
+                    ..place
+                });
+            }
+        }
+    }
+
+    /// For each orientation, where it is among the given ones and the whole ring is good: the sign of `det A` there.
+    fn ring(&mut self, radius: f64, orientations: &[usize]) -> Vec<Option<f64>> {
+        let count = self.lay_ring(radius, orientations);
+        self.laid.values(&self.checker, &mut self.values);
+        let mut signs = vec![None; self.arms.len()];
+        for (&orientation, first) in orientations.iter().zip((0..).step_by(count)) {
+            let mut sign = None;
+            let good = (first..first + count).all(|index| {
+                self.values.get(index).is_ok_and(|values| {
+                    let own = values.determinant.signum();
+                    values.determinant != 0.0
+                        && *sign.get_or_insert(own) == own
+                        && self.checker.thresholds.hold(&values)
+                })
+            });
+            signs[orientation] = sign.filter(|_| good);
+        }
+        signs
+    }
+
+    /// Homes whose window has one sign throughout.
+    fn homes(&self, signs: &[Option<f64>]) -> Vec<usize> {
+        self.turn.homes_of_one_sign(|place| signs[place]).collect()
+    }
+
+    /// The orientations of the windows of all homes.
+    fn windows(&self, signs: &[Option<f64>]) -> Vec<usize> {
+        let mut inside = vec![false; self.arms.len()];
+        for home in self.homes(signs) {
+            for k in self.turn.window(home) {
+                inside[k] = true;
+            }
+        }
+        (0..inside.len()).filter(|&k| inside[k]).collect()
+    }
+
+    /// The largest radius whose ring is good over some window, by doubling and halving.
+    fn largest(&mut self, candidates: &[usize]) -> Option<f64> {
+        let mut candidates = candidates.to_vec();
+        let (mut good, mut bad) = (0.0, None);
+        let mut radius = self.design.base_radius / 8.0;
+        let mut halvings = 0;
+        while halvings < HALVINGS && !candidates.is_empty() {
+            let signs = self.ring(radius, &candidates);
+            let left = self.windows(&signs);
+            if left.is_empty() {
+                bad = Some(radius);
+            } else {
+                (good, candidates) = (radius, left);
+            }
+            radius = match bad {
+                None => 2.0 * radius,
+                Some(bad) => 0.5 * (good + bad),
+            };
+            halvings += usize::from(bad.is_some());
+        }
+        (good > 0.0).then_some(good)
+    }
+
+    /// The home in whose window the rim is stiffest with the design's own bars.
+    fn home(&mut self, radius: f64, candidates: &[usize]) -> Option<usize> {
+        let signs = self.ring(radius, candidates);
+        let homes = self.homes(&signs);
+        let orientations = self.windows(&signs);
+        if homes.len() < 2 {
+            return homes.first().copied();
+        }
+        let count = self.lay_ring(radius, &orientations);
+        let shares = self.of_all([self.design.leg_bar_radius, self.design.platform_bar_radius]);
+        let mut weakest = vec![f64::INFINITY; self.arms.len()];
+        for (&orientation, first) in orientations.iter().zip((0..).step_by(count)) {
+            for index in first..first + count {
+                weakest[orientation] = shares
+                    .iter()
+                    .fold(weakest[orientation], |least, column| least.min(column[index]));
+            }
+        }
+        let of_window = |home: usize| {
+            self.turn
+                .window(home)
+                .fold(f64::INFINITY, |least, k| least.min(weakest[k]))
+        };
+        homes
+            .into_iter()
+            .map(|home| (home, of_window(home)))
+            .reduce(|best, next| if next.1 > best.1 { next } else { best })
+            .map(|(home, _)| home)
+    }
+}
+
+impl<L: Leg> Shares for Sizer<'_, L> {
+    fn of_all(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3] {
+        self.set_bars(bars);
+        self.without_clearance(|sizer| sizer.laid.shares(&sizer.checker, &mut sizer.values))
+    }
+
+    fn choose(&mut self, poses: &[usize], weakest: &[usize]) {
+        let before = self.places.len();
+        for &pose in weakest {
+            self.refine(pose);
+        }
+        self.laid.unpad();
+        for place in before..self.places.len() {
+            let Place {
+                orientation,
+                radius,
+                angle,
+                ..
+            } = self.places[place];
+            let position = self.position(radius, angle);
+            self.laid.push(position, &self.arms[orientation]);
+        }
+        let poses: Vec<usize> = poses.iter().copied().chain(before..self.places.len()).collect();
+        self.laid.pad();
+        self.chosen = self.laid.chosen(&poses);
+    }
+
+    fn of_chosen(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3] {
+        self.set_bars(bars);
+        self.without_clearance(|sizer| sizer.chosen.shares(&sizer.checker, &mut sizer.values))
+    }
+}

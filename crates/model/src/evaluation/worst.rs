@@ -1,0 +1,276 @@
+//! From a search to a report: smallest values and where they are, active constraints, violation.
+
+use super::{Constraint, ConstraintReport, Evaluation, Model};
+use crate::mechanism::{Design, Leg};
+use crate::spatial::Pose;
+use crate::workspace::{
+    Grid, Oriented, PoseChecker, PoseValues, Positions, RegularWorkspace, ValueColumns, WorkspaceSampling, search,
+};
+
+/// Rings of a disc, besides its centre, on which values are looked at; at most: smooth fields need no more.
+const MOST_RINGS: f64 = 24.0;
+
+/// Smallest violation of an infeasible design: feasible means 0, and nothing else does.
+const LEAST_VIOLATION: f64 = 1e-9;
+
+/// Evaluates a design made ready in `checker`.
+pub(super) fn evaluate<L: Leg>(
+    model: &Model,
+    checker: &PoseChecker<L>,
+    design: &Design,
+    sampling: &WorkspaceSampling,
+) -> Evaluation {
+    let found = search(checker, sampling, design.base_radius, model.is_symmetric(design));
+    let assembled = design.link_length + design.platform_radius >= 0.5 * design.base_radius;
+    let reporter = Reporter {
+        model,
+        checker,
+        design,
+        found: &found,
+    };
+    let (constraints, violation, home) = match found.home.filter(|_| assembled) {
+        Some(home) => (reporter.over_workspace(home, sampling.grid()), 0.0, Some(home)),
+        None => {
+            let (constraints, violation) = reporter.at_best_centre();
+            (constraints, violation, None)
+        }
+    };
+    let home_phi_deg = home.map(|home| found.orientations[home].phi_deg);
+    let centre = model.workspace.centre;
+    Evaluation {
+        design: *design,
+        mass: model.mass(design),
+        workspace_radius: if home.is_some() { found.radius } else { 0.0 },
+        home: home_phi_deg.map(|phi_deg| Pose::new(centre.x, centre.y, phi_deg.to_radians())),
+        home_phi_deg,
+        constraints,
+        violation,
+    }
+}
+
+struct Reporter<'a, L> {
+    model: &'a Model,
+    checker: &'a PoseChecker<L>,
+    design: &'a Design,
+    found: &'a RegularWorkspace,
+}
+
+type Reports = [ConstraintReport; Constraint::ALL.len()];
+
+impl<L: Leg> Reporter<'_, L> {
+    /// A report without values yet; g1, which needs no pose, has its own.
+    fn blank(&self) -> Reports {
+        Constraint::ALL.map(|constraint| {
+            let threshold = constraint.threshold(self.design, &self.checker.thresholds);
+            let value = matches!(constraint, Constraint::Assembly)
+                .then(|| self.design.link_length + self.design.platform_radius);
+            ConstraintReport {
+                constraint,
+                value,
+                threshold,
+                asked: constraint.is_asked(&self.checker.thresholds),
+                margin: value.map_or(-1.0, |value| constraint.margin(value, threshold, self.design)),
+                active: value.is_some_and(|value| !constraint.holds(value, threshold)),
+                pose: None,
+            }
+        })
+    }
+
+    /// Lowers the reports to the values at one pose, `det A` counted in `sign`.
+    fn visit(&self, reports: &mut Reports, values: &Result<PoseValues, f64>, pose: impl Fn() -> Pose, sign: f64) {
+        for report in reports {
+            if let Some(value) = self.value(report.constraint, values, sign) {
+                self.lower(report, value, &pose);
+            }
+        }
+    }
+
+    /// Lowers a report to a value found at a pose.
+    fn lower(&self, report: &mut ConstraintReport, value: f64, pose: impl FnOnce() -> Pose) {
+        if report.value.is_none_or(|smallest| value < smallest) {
+            report.value = Some(value);
+            report.margin = report.constraint.margin(value, report.threshold, self.design);
+            report.pose = Some(pose());
+        }
+    }
+
+    /// Value of a constraint at one pose; `None` for g1, which needs none, and where there is no value out of reach.
+    #[inline]
+    fn value(&self, constraint: Constraint, values: &Result<PoseValues, f64>, sign: f64) -> Option<f64> {
+        match (constraint, values) {
+            (Constraint::Assembly, _) => None,
+            (_, Ok(values)) => constraint.value(self.design, values, sign),
+            (Constraint::Reach, Err(slack)) => Some(*slack),
+            (_, Err(_)) => None,
+        }
+    }
+
+    /// Marks the constraints that fail at one pose.
+    fn mark_failing(&self, reports: &mut Reports, values: &Result<PoseValues, f64>, sign: f64) {
+        for report in reports {
+            // Out of reach by nothing at all (a leg at its very end, or without length) is out of reach.
+            let unreached = report.constraint == Constraint::Reach && values.is_err();
+            let broken = |value: f64| !report.constraint.holds(value, report.threshold);
+            let value = self.value(report.constraint, values, sign);
+            report.active |= unreached || report.asked && value.is_some_and(broken);
+        }
+    }
+
+    /// Smallest values over the regular workspace; active are the constraints that fail just beyond it.
+    fn over_workspace(&self, home: usize, grid: &Grid) -> Reports {
+        let found = self.found;
+        let centre = self.model.workspace.centre;
+        let sign = found.orientations[home].centre_sign.unwrap_or(1.0);
+        let mut reports = self.blank();
+        let spacing = self.design.base_radius / grid.ray_steps() as f64;
+        let rings = (found.radius / spacing).ceil().clamp(1.0, MOST_RINGS) as usize;
+        let mut disc = Positions::default();
+        disc.push(centre);
+        for direction in &found.directions {
+            for ring in 1..=rings {
+                // The last ring is the rim itself, to the bit.
+                let radius = if ring == rings {
+                    found.radius
+                } else {
+                    found.radius * ring as f64 / rings as f64
+                };
+                disc.push(centre + *direction * radius);
+            }
+        }
+        disc.pad();
+        let indices: Vec<f64> = (0..disc.xs.len()).map(|index| index as f64).collect();
+        for index in found.turn.window(home) {
+            let orientation = &found.orientations[index];
+            let oriented = Oriented {
+                arms: &orientation.arms,
+                sign,
+            };
+            let clearance = reports[Constraint::Clearance as usize].value.unwrap_or(f64::INFINITY);
+            let minima = self.checker.smallest(oriented, &disc.xs, &disc.ys, &indices, clearance);
+            for (report, minimum) in reports[Constraint::Reach as usize..].iter_mut().zip(minima) {
+                if minimum.value.is_finite() {
+                    let (x, y) = (disc.xs[minimum.index], disc.ys[minimum.index]);
+                    let pose = || Pose::new(x, y, orientation.phi_deg.to_radians());
+                    self.lower(report, minimum.value, pose);
+                }
+            }
+        }
+        self.mark_beyond(&mut reports, sign);
+        reports
+    }
+
+    /// Marks the constraints that fail just beyond what limits the workspace.
+    fn mark_beyond(&self, reports: &mut Reports, sign: f64) {
+        let mut values = ValueColumns::default();
+        for &(index, beyond) in &self.found.limits {
+            let mut rim = Positions::default();
+            for direction in &self.found.directions {
+                rim.push(self.model.workspace.centre + *direction * beyond);
+            }
+            rim.pad();
+            let arms = &self.found.orientations[index].arms;
+            self.checker.at_positions(arms, &rim.xs, &rim.ys, &mut values);
+            for at in 0..self.found.directions.len() {
+                self.mark_failing(reports, &values.get(at), sign);
+            }
+        }
+    }
+
+    /// Values at the centre pose of the best orientation of a design without a workspace, and its violation.
+    ///
+    /// The best orientation is the one with the smallest shortfall at the centre; active are the constraints that fail at
+    /// a centre pose of the best window, which is the one with the smallest mean shortfall.
+    fn at_best_centre(&self) -> (Reports, f64) {
+        let found = self.found;
+        let centre = self.model.workspace.centre;
+        let shortfalls: Vec<(f64, f64)> = (0..found.orientations.len())
+            .map(|index| self.shortfall(&found.centres.get(index)))
+            .collect();
+        let best = smallest(shortfalls.iter().map(|(shortfall, _)| *shortfall)).unwrap_or(0);
+        let homes = found.turn.homes();
+        let mean = |home: usize| {
+            let (mut sum, mut count, mut signs) = (0.0, 0.0, [false; 2]);
+            for index in found.turn.window(home) {
+                let (shortfall, sign) = shortfalls[index];
+                sum += shortfall;
+                count += 1.0;
+                signs[usize::from(sign > 0.0)] |= sign != 0.0;
+            }
+            // A window of both signs is cut by a singularity: as bad as a wholly missed constraint.
+            sum / count + if signs == [true; 2] { 1.0 } else { 0.0 }
+        };
+        let best_home = homes.start + smallest(homes.clone().map(mean)).unwrap_or(0);
+
+        let mut reports = self.blank();
+        let sign_of = |index: usize| if shortfalls[index].1 < 0.0 { -1.0 } else { 1.0 };
+        let phi = found.orientations[best].phi_deg.to_radians();
+        let pose = || Pose::new(centre.x, centre.y, phi);
+        self.visit(&mut reports, &found.centres.get(best), pose, sign_of(best));
+        // A search that does not ask for the clearance has not looked at it.
+        if let Ok(posture) = self
+            .checker
+            .manipulator
+            .posture_at(centre, &found.orientations[best].arms)
+        {
+            let clearance = self.checker.nearest(centre, &posture).distance;
+            self.lower(&mut reports[Constraint::Clearance as usize], clearance, pose);
+        }
+        for index in found.turn.window(best_home) {
+            self.mark_failing(&mut reports, &found.centres.get(index), sign_of(best_home));
+        }
+        if !reports.iter().any(|report| report.active) {
+            self.mark_beyond(&mut reports, sign_of(best_home));
+        }
+        let assembly = (-reports[Constraint::Assembly as usize].margin).max(0.0);
+        (reports, (mean(best_home) + assembly).max(LEAST_VIOLATION))
+    }
+
+    /// Sum of the relative shortfalls of g2 … g7 at a pose, and the sign of `det A` (0 where unreachable).
+    fn shortfall(&self, values: &Result<PoseValues, f64>) -> (f64, f64) {
+        const AT_POSES: [Constraint; 5] = [
+            Constraint::Dexterity,
+            Constraint::StiffnessXy,
+            Constraint::StiffnessZ,
+            Constraint::StiffnessPhiZ,
+            Constraint::Clearance,
+        ];
+        let thresholds = &self.checker.thresholds;
+        let asked = || AT_POSES.iter().filter(|constraint| constraint.is_asked(thresholds));
+        match values {
+            Ok(values) => {
+                let sum = asked()
+                    .filter_map(|constraint| {
+                        let threshold = constraint.threshold(self.design, thresholds);
+                        let value = constraint.value(self.design, values, 1.0)?;
+                        // Wholly missed at most, like what is out of reach.
+                        Some((-constraint.margin(value, threshold, self.design)).clamp(0.0, 1.0))
+                    })
+                    .sum();
+                (
+                    sum,
+                    if values.determinant == 0.0 {
+                        0.0
+                    } else {
+                        values.determinant.signum()
+                    },
+                )
+            }
+            // Out of reach nothing else has a value: every one counts as wholly missed.
+            Err(slack) => {
+                let missed = Constraint::Reach.margin(*slack, 0.0, self.design);
+                (asked().count() as f64 - missed, 0.0)
+            }
+        }
+    }
+}
+
+/// Index of the smallest number, the first among equals.
+fn smallest(numbers: impl Iterator<Item = f64>) -> Option<usize> {
+    let mut best: Option<(usize, f64)> = None;
+    for (index, number) in numbers.enumerate() {
+        if best.is_none_or(|(_, smallest)| number < smallest) {
+            best = Some((index, number));
+        }
+    }
+    best.map(|(index, _)| index)
+}

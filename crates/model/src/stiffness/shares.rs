@@ -1,0 +1,197 @@
+//! What a compliance at `P` is made of, member by member.
+//!
+//! A wrench stores energy in every actuator and bar; a member's share of the compliance along the wrench is its share of
+//! that energy, by which the compliance would grow if the member's own did.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::StiffnessModel;
+use super::planar::symmetric;
+use crate::kinematics::Jacobian;
+use crate::mechanism::{Leg, Manipulator, Posture};
+use crate::spatial::LEGS;
+
+/// Shares of what a force in the plane (the mean over its directions), a force along z and a torque about z displace the
+/// platform by. Those of all members sum to 1.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Share {
+    /// In the plane.
+    pub in_plane: f64,
+    /// Along z.
+    pub vertical: f64,
+    /// About z.
+    pub rotation: f64,
+}
+
+/// Shares of the members of one leg.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct LegShares {
+    /// The actuator.
+    pub actuator: Share,
+    /// The bar before the last; zero where there is none.
+    pub proximal: Share,
+    /// The last bar.
+    pub distal: Share,
+    /// The platform's bar.
+    pub platform: Share,
+}
+
+impl StiffnessModel {
+    /// The shares of all members at a posture; `None` where the platform gives way without end.
+    pub fn shares<L: Leg>(
+        &self,
+        manipulator: &Manipulator<L>,
+        posture: &Posture,
+        jacobian: &Jacobian,
+    ) -> Option<[LegShares; LEGS]> {
+        let mut shares = [LegShares::default(); LEGS];
+        self.add_in_plane(&mut shares, manipulator, posture, jacobian)?;
+        self.add_vertical(&mut shares, manipulator, posture)?;
+        Some(shares)
+    }
+
+    fn add_in_plane<L: Leg>(
+        &self,
+        shares: &mut [LegShares; LEGS],
+        manipulator: &Manipulator<L>,
+        posture: &Posture,
+        jacobian: &Jacobian,
+    ) -> Option<()> {
+        let compliance = symmetric(&self.in_plane(manipulator, posture, jacobian)).try_inverse()?;
+        let (in_plane, rotation) = (compliance[(0, 0)] + compliance[(1, 1)], compliance[(2, 2)]);
+        for (index, shares) in shares.iter_mut().enumerate() {
+            let parts = self.line_compliances(&manipulator.legs[index], &posture.legs[index], posture.arms[index]);
+            let line = Vector3::new(jacobian.ux[index], jacobian.uy[index], jacobian.moment[index]);
+            // The force along the leg's line under a unit force along x, along y, and a unit torque.
+            let forces = (compliance * line) / parts.iter().sum::<f64>();
+            let of = |part: f64| Share {
+                in_plane: part * (forces.x * forces.x + forces.y * forces.y) / in_plane,
+                rotation: part * forces.z * forces.z / rotation,
+                vertical: 0.0,
+            };
+            let [actuator, distal, platform, proximal] = parts.map(of);
+            *shares = LegShares {
+                actuator,
+                proximal,
+                distal,
+                platform,
+            };
+        }
+        finite(&[in_plane, rotation])
+    }
+
+    fn add_vertical<L: Leg>(
+        &self,
+        shares: &mut [LegShares; LEGS],
+        manipulator: &Manipulator<L>,
+        posture: &Posture,
+    ) -> Option<()> {
+        let mut stiffness = [Matrix3::zeros(); LEGS];
+        let mut parts = [[Matrix3::zeros(); 3]; LEGS];
+        for index in 0..LEGS {
+            let bars = self.bars(&manipulator.legs[index], &posture.legs[index], posture.arms[index]);
+            for (part, bar) in parts[index].iter_mut().zip(bars) {
+                let mut s = [0.0; 6];
+                if let Some(bar) = bar {
+                    bar.add_to(&mut s);
+                }
+                *part = symmetric(&s);
+            }
+            stiffness[index] = parts[index].iter().sum::<Matrix3<f64>>().try_inverse()?;
+        }
+        let compliance = stiffness.iter().sum::<Matrix3<f64>>().try_inverse()?;
+        let displacement: Vector3<f64> = compliance.column(0).into();
+        for (index, shares) in shares.iter_mut().enumerate() {
+            let wrench = stiffness[index] * displacement;
+            let [platform, distal, proximal] = parts[index].map(|part| wrench.dot(&(part * wrench)) / displacement.x);
+            shares.platform.vertical = platform;
+            shares.distal.vertical = distal;
+            shares.proximal.vertical = proximal;
+        }
+        finite(&[displacement.x])
+    }
+}
+
+/// Whether there is a finite compliance to have a share of.
+fn finite(compliances: &[f64]) -> Option<()> {
+    compliances
+        .iter()
+        .all(|compliance| compliance.is_finite() && *compliance > 0.0)
+        .then_some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluation::Model;
+    use crate::mechanism::{Design};
+    use crate::spatial::Pose;
+    use crate::stiffness::BarCompliance;
+
+    /// Mean in-plane, vertical and rotational compliance.
+    fn compliances<L: Leg>(model: &StiffnessModel, manipulator: &Manipulator<L>, posture: &Posture) -> [f64; 3] {
+        let stiffness = model.stiffness(manipulator, posture, &Jacobian::new(posture));
+        let in_plane = symmetric(&stiffness.in_plane).try_inverse().expect("a stiffness");
+        let vertical = symmetric(&stiffness.out_of_plane).try_inverse().expect("a stiffness");
+        [in_plane[(0, 0)] + in_plane[(1, 1)], vertical[(0, 0)], in_plane[(2, 2)]]
+    }
+
+    fn check<L: Leg>(design: &Design) {
+        let text = design.to_string();
+        let checker = Model::default().checker::<L>(design);
+        let pose = Pose::new(0.1, -0.07, 0.6);
+        let posture = checker.manipulator.posture(&pose).expect("reachable");
+        let model = checker.stiffness.expect("stiff");
+        let shares = model
+            .shares(&checker.manipulator, &posture, &Jacobian::new(&posture))
+            .expect("stiff");
+        let values = |share: Share| [share.in_plane, share.vertical, share.rotation];
+        let sum = |of: &dyn Fn(&LegShares) -> [f64; 3]| {
+            shares
+                .iter()
+                .map(of)
+                .fold([0.0; 3], |sum, each| [0, 1, 2].map(|k| sum[k] + each[k]))
+        };
+        let actuators = sum(&|leg| values(leg.actuator));
+        let bars = sum(&|leg| [0, 1, 2].map(|k| values(leg.proximal)[k] + values(leg.distal)[k]));
+        let platform = sum(&|leg| values(leg.platform));
+        for k in 0..3 {
+            assert!((actuators[k] + bars[k] + platform[k] - 1.0).abs() < 1e-9, "{text}");
+        }
+        // A share is the relative growth of the compliance with that of its members.
+        let base = compliances(&model, &checker.manipulator, &posture);
+        let softer = |bar: BarCompliance, by: f64| BarCompliance {
+            axial: bar.axial * by,
+            bending: bar.bending * by,
+            torsion: bar.torsion * by,
+        };
+        let step = 1e-6;
+        let mut changed = [model; 3];
+        changed[0].actuator *= 1.0 + step;
+        changed[1].leg_bar = softer(model.leg_bar, 1.0 + step);
+        changed[2].platform_bar = softer(model.platform_bar, 1.0 + step);
+        for (changed, wanted) in changed.iter().zip([actuators, bars, platform]) {
+            let after = compliances(changed, &checker.manipulator, &posture);
+            for k in 0..3 {
+                let growth = (after[k] / base[k] - 1.0) / step;
+                assert!(
+                    (growth - wanted[k]).abs() < 1e-4,
+                    "{text}: {growth} instead of {}",
+                    wanted[k]
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn shares_are_what_the_compliance_grows_by() {
+        for text in [
+            "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
+            "3-RPR R=1.5636 r=0.1006 Lb=2.2135 rj=0.017 rp=0.021",
+            "3-RRR R=0.7 r=0.31 Lb=0.66 rj=0.03 rp=0.02",
+        ] {
+            let design: Design = text.parse().expect("a design");
+            with_leg!(design.architecture, L => check::<L>(&design));
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! The poses that a disc and a turn are sampled at (docs/model.md, section 7.2).
+
+/// Sampling of orientations, directions and radii; every grid divides the full turn into whole steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    phi_step_deg: f64,
+    orientations: usize,
+    directions: usize,
+    ray_steps: usize,
+    halvings: u32,
+}
+
+/// Why a grid cannot be laid.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum GridError {
+    /// 360° is no multiple of the step.
+    #[error("a step of {0}° does not divide the full turn into whole steps")]
+    TurnNotWhole(f64),
+    /// The home window does not start and end on the grid.
+    #[error("half the rotation range, {half_range_deg}°, is no whole number of steps of {step_deg}°")]
+    WindowNotWhole {
+        /// Half of `Δφ` \[deg\].
+        half_range_deg: f64,
+        /// Step \[deg\].
+        step_deg: f64,
+    },
+    /// A grid without a direction or a step has no pose besides the centre.
+    #[error("the number of {0} is 0; it must be at least 1")]
+    Empty(&'static str),
+}
+
+impl Grid {
+    /// The grid that `R_w` is defined on.
+    pub const REFERENCE: Grid = Grid {
+        phi_step_deg: 2.5,
+        orientations: 144,
+        directions: 36,
+        ray_steps: 50,
+        halvings: 12,
+    };
+
+    /// The grid that a reported design is verified on.
+    pub const FINE: Grid = Grid {
+        phi_step_deg: 0.5,
+        orientations: 720,
+        directions: 180,
+        ray_steps: 200,
+        halvings: 12,
+    };
+
+    /// A grid with orientations `phi_step_deg` \[deg\] apart, `directions` over the full turn from 0°, `ray_steps` steps
+    /// of a ray per base radius `R`, and `halvings` of the step in which a ray fails.
+    ///
+    /// ```
+    /// use kinefront_model::workspace::{Grid, GridError};
+    ///
+    /// assert_eq!(Grid::new(2.5, 36, 50, 12)?, Grid::REFERENCE);
+    /// assert_eq!(Grid::new(7.0, 36, 50, 12), Err(GridError::TurnNotWhole(7.0)));
+    /// # Ok::<(), GridError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`GridError::TurnNotWhole`] or [`GridError::Empty`].
+    pub fn new(phi_step_deg: f64, directions: usize, ray_steps: usize, halvings: u32) -> Result<Self, GridError> {
+        for (name, count) in [("directions", directions), ("ray steps", ray_steps)] {
+            if count == 0 {
+                return Err(GridError::Empty(name));
+            }
+        }
+        let orientations = whole(360.0 / phi_step_deg)
+            .filter(|&orientations| orientations > 0)
+            .ok_or(GridError::TurnNotWhole(phi_step_deg))?;
+        Ok(Self {
+            phi_step_deg,
+            orientations,
+            directions,
+            ray_steps,
+            halvings,
+        })
+    }
+
+    /// Spacing of the orientations over the full turn \[deg\].
+    pub fn phi_step_deg(&self) -> f64 {
+        self.phi_step_deg
+    }
+
+    /// Number of orientations over the full turn.
+    pub fn orientations(&self) -> usize {
+        self.orientations
+    }
+
+    /// Number of directions over the full turn, from 0°.
+    pub fn directions(&self) -> usize {
+        self.directions
+    }
+
+    /// Steps of a ray per base radius `R`.
+    pub fn ray_steps(&self) -> usize {
+        self.ray_steps
+    }
+
+    /// Halvings of the step in which a ray fails.
+    pub fn halvings(&self) -> u32 {
+        self.halvings
+    }
+
+    /// Steps from a home orientation to the end of its window, `Δφ/2` away.
+    ///
+    /// # Errors
+    /// [`GridError::WindowNotWhole`].
+    pub fn half_window(&self, rotation_range_deg: f64) -> Result<usize, GridError> {
+        let half_range_deg = 0.5 * rotation_range_deg;
+        whole(half_range_deg / self.phi_step_deg).ok_or(GridError::WindowNotWhole {
+            half_range_deg,
+            step_deg: self.phi_step_deg,
+        })
+    }
+}
+
+/// `ratio` as a whole number, if it is one to within rounding.
+fn whole(ratio: f64) -> Option<usize> {
+    let nearest = ratio.round();
+    ((0.0..=1e6).contains(&nearest) && (ratio - nearest).abs() <= 1e-9 * nearest.max(1.0)).then_some(nearest as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_two_grids_are_as_if_built() {
+        for (grid, half) in [(Grid::REFERENCE, 4), (Grid::FINE, 20)] {
+            let built = Grid::new(grid.phi_step_deg, grid.directions, grid.ray_steps, grid.halvings);
+            assert_eq!(built, Ok(grid));
+            assert_eq!(grid.half_window(20.0), Ok(half));
+        }
+    }
+
+    #[test]
+    fn a_grid_that_cannot_be_laid_is_refused() {
+        for step in [7.0, 0.0, -2.5, f64::NAN, f64::INFINITY] {
+            assert!(matches!(Grid::new(step, 36, 50, 12), Err(GridError::TurnNotWhole(_))), "{step}");
+        }
+        assert_eq!(Grid::new(2.5, 0, 50, 12), Err(GridError::Empty("directions")));
+        assert_eq!(Grid::new(2.5, 36, 0, 12), Err(GridError::Empty("ray steps")));
+        assert!(Grid::REFERENCE.half_window(7.0).is_err());
+    }
+}

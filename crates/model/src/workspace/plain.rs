@@ -1,0 +1,77 @@
+//! The regular workspace by its definition (SPEC section 4): every ray of every orientation marched, a pose at a time.
+//!
+//! What the search is compared with, in tests and in benches; it says which poses are good by a function that it is
+//! given, so that every form of the stiffness can take part.
+
+use glam::DVec2;
+
+use super::{Grid, GridError, WorkspaceSpec};
+use crate::mechanism::{Leg, Manipulator};
+use crate::spatial::{LEGS, Rotation, unit};
+
+/// Radii of all windows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlainWorkspace {
+    /// `R_w` \[m\]; 0 where no window has a workspace.
+    pub radius: f64,
+    /// Radius of the window about each orientation of the grid over the full turn, 0 where it has none \[m\].
+    pub windows: Vec<f64>,
+}
+
+/// Marches all rays. `good_sign` gives the sign of `det A` with `P` at a position and the arms of an orientation where
+/// the pose is good; `step_base` is `R`, which the steps are a share of.
+///
+/// # Errors
+/// [`GridError::WindowNotWhole`].
+pub fn plain<L: Leg>(
+    manipulator: &Manipulator<L>,
+    spec: &WorkspaceSpec,
+    grid: &Grid,
+    step_base: f64,
+    good_sign: impl Fn(DVec2, &[DVec2; LEGS]) -> Option<f64>,
+) -> Result<PlainWorkspace, GridError> {
+    let count = grid.orientations();
+    let half = grid.half_window(spec.rotation_range_deg)?;
+    let step = step_base / grid.ray_steps() as f64;
+    let rays: Vec<(f64, f64)> = (0..count)
+        .map(|k| {
+            let arms = manipulator.arms(&Rotation::new((k as f64 * grid.phi_step_deg()).to_radians()));
+            let Some(sign) = good_sign(spec.centre, &arms) else {
+                return (0.0, 0.0);
+            };
+            let radii = (0..grid.directions()).map(|d| {
+                let direction = unit((d as f64 * 360.0 / grid.directions() as f64).to_radians());
+                let good = |radius: f64| good_sign(spec.centre + direction * radius, &arms) == Some(sign);
+                let mut steps = 1.0;
+                while good(steps * step) {
+                    steps += 1.0;
+                }
+                let (mut low, mut high) = ((steps - 1.0) * step, steps * step);
+                for _ in 0..grid.halvings() {
+                    let middle = 0.5 * (low + high);
+                    if good(middle) {
+                        low = middle;
+                    } else {
+                        high = middle;
+                    }
+                }
+                low
+            });
+            (radii.fold(f64::INFINITY, f64::min), sign)
+        })
+        .collect();
+    let window = |home: usize| (0..=2 * half).map(move |offset| (home + count - half + offset) % count);
+    let windows: Vec<f64> = (0..count)
+        .map(|home| {
+            let sign = rays[home].1;
+            if sign == 0.0 || window(home).any(|k| rays[k].1 != sign) {
+                return 0.0;
+            }
+            window(home).map(|k| rays[k].0).fold(f64::INFINITY, f64::min)
+        })
+        .collect();
+    Ok(PlainWorkspace {
+        radius: windows.iter().copied().fold(0.0, f64::max),
+        windows,
+    })
+}

@@ -1,0 +1,178 @@
+//! Joints close, Jacobians are derivatives, forward kinematics undoes inverse kinematics.
+
+use kinefront_model::evaluation::Model;
+use kinefront_model::kinematics::{Jacobian, forward};
+use kinefront_model::mechanism::{Actuator, Architecture, Design, Leg, LegSettings, Manipulator, PrrLeg, RprLeg, RrrLeg};
+use kinefront_model::spatial::Pose;
+use nalgebra::{Matrix3, Vector3};
+use proptest::prelude::*;
+use proptest::test_runner::TestCaseError;
+
+use super::strategies::{design, pose};
+
+type Check = Result<(), TestCaseError>;
+
+fn actuators<L: Leg>(manipulator: &Manipulator<L>, pose: &Pose) -> Option<[f64; 3]> {
+    let posture = manipulator.posture(pose).ok()?;
+    Some([0, 1, 2].map(|i| manipulator.legs[i].actuator(&posture.legs[i])))
+}
+
+fn joints_close<L: Leg>(design: &Design, pose: &Pose) -> Check {
+    let manipulator = Manipulator::<L>::new(design, &LegSettings::default());
+    let Ok(posture) = manipulator.posture(pose) else {
+        return Ok(());
+    };
+    let tolerance = 1e-12 * (design.base_radius + design.link_length + design.platform_radius);
+    for (i, leg) in posture.legs.iter().enumerate() {
+        let c = pose.position + posture.arms[i];
+        prop_assert!((c.distance(leg.b) - leg.length).abs() < tolerance);
+        prop_assert!((leg.u.length() - 1.0).abs() < 1e-12);
+        prop_assert!((posture.arms[i].length() - design.platform_radius).abs() < tolerance);
+        if let Some(bar) = manipulator.legs[i].proximal_bar(leg) {
+            prop_assert!((bar.from.distance(bar.to) - design.link_length).abs() < tolerance);
+        }
+        prop_assert!(leg.slack >= 0.0);
+    }
+    Ok(())
+}
+
+/// `A t = B q̇` against central differences of the inverse kinematics.
+fn jacobian_is_the_derivative<L: Leg>(design: &Design, pose: &Pose) -> Check {
+    let manipulator = Manipulator::<L>::new(design, &LegSettings::default());
+    let Ok(posture) = manipulator.posture(pose) else {
+        return Ok(());
+    };
+    let jacobian = Jacobian::new(&posture);
+    // Differences lose their meaning where a leg is nearly stretched out.
+    if posture.slack < 0.02 || jacobian.drive.iter().any(|drive| drive.abs() < 0.05) {
+        return Ok(());
+    }
+    let step = 1e-6;
+    for (axis, row) in [(0, jacobian.ux), (1, jacobian.uy), (2, jacobian.moment)] {
+        let moved = |sign: f64| {
+            let mut moved = *pose;
+            match axis {
+                0 => moved.position.x += sign * step,
+                1 => moved.position.y += sign * step,
+                _ => moved.phi += sign * step,
+            }
+            actuators(&manipulator, &moved)
+        };
+        let (Some(after), Some(before)) = (moved(1.0), moved(-1.0)) else {
+            return Ok(());
+        };
+        for leg in 0..3 {
+            let mut change = after[leg] - before[leg];
+            if L::ACTUATOR == Actuator::Revolute {
+                change = libm::remainder(change, 2.0 * std::f64::consts::PI);
+            }
+            let rate = change / (2.0 * step);
+            let wanted = row[leg] / jacobian.drive[leg];
+            prop_assert!(
+                (rate - wanted).abs() < 1e-5 * (1.0 + wanted.abs()),
+                "{rate} instead of {wanted}"
+            );
+        }
+    }
+    Ok(())
+}
+
+fn forward_undoes_inverse<L: Leg>(design: &Design, pose: &Pose) -> Check {
+    let manipulator = Manipulator::<L>::new(design, &LegSettings::default());
+    let Ok(posture) = manipulator.posture(pose) else {
+        return Ok(());
+    };
+    if Jacobian::new(&posture).inverse_condition(design.platform_radius) < 0.1 || posture.slack < 0.05 {
+        return Ok(());
+    }
+    let target = actuators(&manipulator, pose).expect("reachable");
+    let start = Pose::new(pose.position.x + 1e-3, pose.position.y - 1e-3, pose.phi + 1e-3);
+    let found = forward(&manipulator, target, start, 1e-12);
+    prop_assert!(found.is_ok(), "{found:?}");
+    if let Ok(found) = found {
+        prop_assert!((found.position - pose.position).length() < 1e-9);
+        prop_assert!((found.phi - pose.phi).abs() < 1e-9);
+    }
+    Ok(())
+}
+
+/// `κ_F⁻¹` from its definition, with matrices and an inverse.
+fn condition_is_its_definition<L: Leg>(design: &Design, pose: &Pose, length: f64) -> Check {
+    let manipulator = Manipulator::<L>::new(design, &LegSettings::default());
+    let Ok(posture) = manipulator.posture(pose) else {
+        return Ok(());
+    };
+    let jacobian = Jacobian::new(&posture);
+    let value = jacobian.inverse_condition(length);
+    prop_assert!((0.0..=1.0).contains(&value));
+    if value < 1e-6 {
+        return Ok(());
+    }
+    let scale = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, length));
+    let inverse = jacobian.direct().try_inverse();
+    prop_assert!(inverse.is_some());
+    if let Some(inverse) = inverse {
+        let normal = scale * inverse * Matrix3::from_diagonal(&Vector3::from(jacobian.drive));
+        // tr(JᵀJ)·tr((JᵀJ)⁻¹) = ‖J‖²·‖J⁻¹‖²; squaring the matrix first would cost half the digits.
+        let condition = normal.norm() * normal.try_inverse().expect("not singular").norm() / 3.0;
+        prop_assert!((value * condition - 1.0).abs() < 1e-6, "{value} {condition}");
+    }
+    Ok(())
+}
+
+/// Runs a generic check with the leg type of a design.
+macro_rules! for_leg {
+    ($check:ident, $design:expr, $($rest:expr),+) => {
+        match $design.architecture {
+            Architecture::Prr => $check::<PrrLeg>($design, $($rest),+),
+            Architecture::Rpr => $check::<RprLeg>($design, $($rest),+),
+            Architecture::Rrr => $check::<RrrLeg>($design, $($rest),+),
+        }
+    };
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(3000))]
+
+    #[test]
+    fn every_bar_has_its_length(design in design(0.0), pose in pose()) {
+        for_leg!(joints_close, &design, &pose)?;
+    }
+
+    #[test]
+    fn jacobian_against_finite_differences(design in design(0.0), pose in pose()) {
+        for_leg!(jacobian_is_the_derivative, &design, &pose)?;
+    }
+
+    #[test]
+    fn forward_against_inverse(design in design(0.0), pose in pose()) {
+        for_leg!(forward_undoes_inverse, &design, &pose)?;
+    }
+
+    #[test]
+    fn condition_number_against_its_definition(design in design(0.0), pose in pose(), length in 0.1..3.0) {
+        for_leg!(condition_is_its_definition, &design, &pose, length)?;
+    }
+
+    /// Non-finite numbers never leave the model, zero radii included.
+    #[test]
+    fn everything_reported_is_finite(design in design(0.0), pose in pose(), zero in any::<[bool; 2]>()) {
+        let mut values = design.values();
+        for (value, zero) in values[3..].iter_mut().zip(zero) {
+            if zero {
+                *value = 0.0;
+            }
+        }
+        let design = Design::new(design.architecture, design.working_mode, values).expect("a sound design");
+        if let Ok(report) = Model::default().pose(&design, &pose).expect("a whole grid") {
+            prop_assert!(report.stiffness.iter().all(|entry| entry.is_finite()));
+            let k = report.rigidity;
+            prop_assert!([k.k_xy, k.k_z, k.k_phi_z, report.inverse_condition, report.determinant]
+                .iter()
+                .all(|value| value.is_finite()));
+            if zero[0] || zero[1] {
+                prop_assert_eq!([k.k_xy, k.k_z, k.k_phi_z], [0.0; 3]);
+            }
+        }
+    }
+}

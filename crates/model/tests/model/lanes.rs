@@ -1,0 +1,137 @@
+//! Several poses at once against one at a time.
+
+use glam::DVec2;
+use kinefront_model::evaluation::{GridChoice, Model};
+use kinefront_model::kinematics::{CharacteristicLength, Jacobian};
+use kinefront_model::lanes::{InstructionSet, Planar};
+use kinefront_model::mechanism::{Architecture, BarLength, Design, Leg, PrrLeg, RprLeg, RrrLeg};
+use kinefront_model::spatial::{Pose, Rotation};
+use kinefront_model::stiffness::StiffnessDefinition;
+use kinefront_model::workspace::PoseChecker;
+use proptest::prelude::*;
+
+use super::strategies::{design, pose};
+
+fn compare<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<(), TestCaseError> {
+    let checker: PoseChecker<L> = model.checker(design).expect("a whole grid");
+    let arms = checker.manipulator.arms(&Rotation::new(pose.phi));
+    let found = checker.lanes::<f64>(pose.position.into(), &arms.map(|arm: DVec2| Planar::from(arm)));
+    match checker.manipulator.posture_at(pose.position, &arms) {
+        Err((_, shortfall)) => {
+            prop_assert!(!found.reachable);
+            prop_assert!((found.slack - shortfall.slack).abs() < 1e-13);
+        }
+        Ok(posture) => {
+            let jacobian = Jacobian::new(&posture);
+            let values = checker.values_at(&posture, &jacobian);
+            prop_assert!(found.reachable);
+            prop_assert!((found.slack - values.slack).abs() < 1e-13);
+            // Digits go where a leg is nearly stretched or the legs' lines nearly meet, and of what is left of a stiffness
+            // when other motions are free.
+            let distance = values.slack.min(1.0) * values.determinant.abs().min(1.0);
+            let tolerance = 1e-12 / (distance * distance);
+            if tolerance < 1e-6 {
+                let stiffness = checker.stiffness_at(&posture, &jacobian);
+                let held = stiffness.rigidity(StiffnessDefinition::Stiffness);
+                let in_plane = stiffness.in_plane[0] + stiffness.in_plane[3];
+                // With the plane free, its block is inverted: as many digits go as that is ill-conditioned.
+                let free = match checker.definition {
+                    StiffnessDefinition::Stiffness => 1.0,
+                    StiffnessDefinition::Compliance => in_plane / held.k_xy,
+                };
+                let close = |what: &str, found: f64, wanted: f64, scale: f64| {
+                    prop_assert!(
+                        (found - wanted).abs() <= tolerance * scale.abs(),
+                        "{what}: {found:e} instead of {wanted:e}"
+                    );
+                    Ok(())
+                };
+                close("det", found.determinant, values.determinant, values.determinant)?;
+                close(
+                    "condition",
+                    found.inverse_condition,
+                    values.inverse_condition,
+                    values.inverse_condition,
+                )?;
+                close("k_xy", found.k_xy, values.rigidity.k_xy, in_plane)?;
+                close("k_z", found.k_z, values.rigidity.k_z, held.k_z)?;
+                close("k_phi_z", found.k_phi_z, values.rigidity.k_phi_z, free * held.k_phi_z)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Everything an evaluation says, to the bit.
+fn bits(model: &Model, design: &Design, instructions: InstructionSet) -> String {
+    // The shortest decimal that gives a number back tells it from every other.
+    format!(
+        "{:?}",
+        model
+            .evaluate_with(design, GridChoice::Reference, instructions)
+            .expect("a whole grid")
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn every_instruction_set_gives_the_same_bits(
+        design in design(0.0), compliance: bool, x in -0.1..0.1, isotropic: bool,
+    ) {
+        let mut model = Model::default();
+        if compliance {
+            model.stiffness_definition = StiffnessDefinition::Compliance;
+        }
+        if isotropic {
+            model.characteristic_length = CharacteristicLength::Isotropic;
+        } else {
+            model.workspace.centre = DVec2::new(x, 0.5 * x);
+        }
+        let best = bits(&model, &design, InstructionSet::best());
+        for instructions in InstructionSet::available() {
+            prop_assert_eq!(&bits(&model, &design, instructions), &best, "{}", instructions.name());
+        }
+    }
+}
+
+/// A seed gives one run whatever the processor: the baseline, which every machine has, is among the sets compared.
+#[test]
+fn the_sets_compared_are_those_of_the_machine() {
+    let sets: Vec<&str> = InstructionSet::available().iter().map(|set| set.name()).collect();
+    println!("compared: {sets:?}");
+    assert!(sets.contains(&"baseline") && sets.contains(&InstructionSet::best().name()));
+    #[cfg(target_arch = "x86_64")]
+    {
+        assert_eq!(
+            sets.contains(&"AVX2"),
+            is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
+        );
+        let wide = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq");
+        assert_eq!(sets.contains(&"AVX-512"), wide && is_x86_feature_detected!("avx512vl"));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+    #[test]
+    fn the_reduced_form_gives_the_values_of_the_plain_one(
+        design in design(1e-3), pose in pose(), compliance: bool, longest: bool, shortest in 0.0..0.6,
+    ) {
+        let mut model = Model::default();
+        model.legs.telescopic_shortest = if shortest < 0.1 { 0.0 } else { shortest };
+        if longest {
+            model.legs.telescopic_bar = BarLength::Longest;
+        }
+        if compliance {
+            model.stiffness_definition = StiffnessDefinition::Compliance;
+        }
+        match design.architecture {
+            Architecture::Prr => compare::<PrrLeg>(&model, &design, &pose)?,
+            Architecture::Rpr => compare::<RprLeg>(&model, &design, &pose)?,
+            Architecture::Rrr => compare::<RrrLeg>(&model, &design, &pose)?,
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! The model against identities and independent values: joints, Jacobians, stiffness, clearance, workspace, sizing.
+
+mod clearance;
+mod forms;
+mod joints;
+mod lanes;
+mod reference;
+mod search;
+mod sizing;
+mod strategies;

@@ -1,0 +1,337 @@
+//! The search for the regular workspace against its definition, which marches every ray of every orientation.
+
+use glam::DVec2;
+use kinefront_model::evaluation::{Constraint, GridChoice, Model};
+use kinefront_model::lanes::InstructionSet;
+use kinefront_model::mechanism::{Architecture, Design, Leg, PrrLeg, RprLeg, RrrLeg, WorkingMode};
+use kinefront_optimize::{Variable, sobol};
+use kinefront_model::spatial::LEGS;
+use kinefront_model::workspace::plain::{PlainWorkspace, plain};
+use kinefront_model::workspace::{Grid, PoseChecker};
+use proptest::prelude::*;
+use rayon::prelude::*;
+
+use super::strategies::{bodies, clearance, design};
+
+/// Which form says what poses are good.
+#[derive(Clone, Copy)]
+enum Form {
+    /// The closed form as it reads.
+    Plain,
+    /// What evaluations use, one pose at a time.
+    Reduced,
+}
+
+fn plain_of<L: Leg>(model: &Model, design: &Design, grid: &Grid, form: Form) -> PlainWorkspace {
+    let checker: PoseChecker<L> = model.checker(design).expect("a whole grid");
+    let good = |position: DVec2, arms: &[DVec2; LEGS]| match form {
+        Form::Plain => checker.good_sign(position, arms),
+        Form::Reduced => {
+            let [a, b, c] = *arms;
+            let values = checker
+                .lanes::<f64>(position.into(), &[a.into(), b.into(), c.into()])
+                .reached()?;
+            (values.determinant != 0.0 && checker.thresholds.hold(&values)).then(|| values.determinant.signum())
+        }
+    };
+    plain(&checker.manipulator, &model.workspace, grid, design.base_radius, good).expect("a whole grid")
+}
+
+fn plain_in(model: &Model, design: &Design, grid: &Grid, form: Form) -> PlainWorkspace {
+    match design.architecture {
+        Architecture::Prr => plain_of::<PrrLeg>(model, design, grid, form),
+        Architecture::Rpr => plain_of::<RprLeg>(model, design, grid, form),
+        Architecture::Rrr => plain_of::<RrrLeg>(model, design, grid, form),
+    }
+}
+
+pub fn plain_search(model: &Model, design: &Design, grid: &Grid) -> PlainWorkspace {
+    plain_in(model, design, grid, Form::Plain)
+}
+
+/// The definition with the same form of a pose: then radius and home, the first among equals, are the same to the bit.
+fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
+    let grid = &model.reference_grid;
+    let wanted = plain_in(model, design, grid, Form::Reduced);
+    let first = wanted
+        .windows
+        .iter()
+        .position(|&radius| radius == wanted.radius && radius > 0.0);
+    let assembled = design.link_length + design.platform_radius >= 0.5 * design.base_radius;
+    for instructions in InstructionSet::available() {
+        let found = model
+            .evaluate_with(design, GridChoice::Reference, instructions)
+            .expect("a whole grid");
+        if !assembled {
+            prop_assert_eq!(found.workspace_radius, 0.0);
+            continue;
+        }
+        prop_assert_eq!(
+            found.workspace_radius,
+            wanted.radius,
+            "{}: {}",
+            design,
+            instructions.name()
+        );
+        prop_assert_eq!(
+            found.home_phi_deg,
+            first.map(|home| home as f64 * grid.phi_step_deg),
+            "{}: {}",
+            design,
+            instructions.name()
+        );
+        prop_assert!(found.active().next().is_some(), "{}: nothing is active", design);
+    }
+    Ok(())
+}
+
+/// Same radius; the same home, or one as good.
+fn same(model: &Model, design: &Design) -> Result<(), String> {
+    let found = model.evaluate(design, GridChoice::Reference).expect("a whole grid");
+    let wanted = plain_search(model, design, &model.reference_grid);
+    let close = |radius: f64| (found.workspace_radius - radius).abs() <= 1e-9 * wanted.radius;
+    if !close(wanted.radius) {
+        return Err(format!(
+            "{design}: {} instead of {}",
+            found.workspace_radius, wanted.radius
+        ));
+    }
+    if let Some(phi_deg) = found.home_phi_deg {
+        let home = (phi_deg / model.reference_grid.phi_step_deg).round() as usize;
+        if !close(wanted.windows[home]) {
+            return Err(format!(
+                "{design}: at {phi_deg}° the radius is {}",
+                wanted.windows[home]
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The bounds of the paper: `R`, `r`, `L_b`, `r_j` and `r_p` \[m\].
+const BOUNDS: [[f64; 2]; 5] = [[0.5, 4.0], [0.1, 4.0], [0.5, 4.0], [0.0, 0.1], [0.0, 0.1]];
+
+/// Designs of each architecture over the paper's bounds, compared one by one.
+fn all_the_same(count: usize) {
+    let bounds = BOUNDS.map(|[lower, upper]| Variable::Real { lower, upper });
+    for &architecture in Architecture::ALL {
+        let design = |x: &[f64]| {
+            let values = x.try_into().expect("a value per bound");
+            Design::new(architecture, WorkingMode::ALL_PLUS, values).expect("a design")
+        };
+        let sample = sobol(&bounds, count, 5);
+        let failures: Vec<String> = sample
+            .par_iter()
+            .filter_map(|x| same(&Model::default(), &design(x)).err())
+            .collect();
+        println!("{architecture}: {count} designs compared");
+        assert!(
+            failures.is_empty(),
+            "{} of {count} differ: {failures:#?}",
+            failures.len()
+        );
+    }
+}
+
+#[test]
+fn a_thousand_designs_of_each_architecture_have_the_plain_radius() {
+    all_the_same(1000);
+}
+
+/// The same for 10⁴, which takes minutes: `cargo test --release -- --ignored ten_thousand`.
+#[test]
+#[ignore = "takes minutes"]
+fn ten_thousand_designs_of_each_architecture_have_the_plain_radius() {
+    all_the_same(10_000);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    #[test]
+    fn best_first_finds_what_a_plain_search_finds(design in design(0.01)) {
+        same(&Model::default(), &design).map_err(TestCaseError::fail)?;
+    }
+
+    #[test]
+    fn also_about_another_centre(design in design(0.01), x in -0.3..0.3, y in -0.3..0.3) {
+        let mut model = Model::default();
+        model.workspace.centre = DVec2::new(x, y);
+        same(&model, &design).map_err(TestCaseError::fail)?;
+    }
+
+    #[test]
+    fn also_where_bodies_must_not_collide(design in design(0.01), bodies in bodies(), clearance in 0.0..0.05) {
+        let mut model = Model { bodies, ..Model::default() };
+        model.thresholds.clearance = Some(clearance);
+        same(&model, &design).map_err(TestCaseError::fail)?;
+    }
+
+    /// Ties, and grids of any shape: one direction marched, rings of a few poses, hardly a step, no halving.
+    #[test]
+    fn the_search_is_the_definition_to_the_bit(
+        design in design(0.01),
+        directions in 3..40usize,
+        ray_steps in 1..60usize,
+        halvings in 0..=40u32,
+        phi_step_deg in prop::sample::select(&[2.5, 5.0, 10.0][..]),
+        half_window in 0..5u32,
+        off_centre: bool,
+        bodies in bodies(),
+        clearance in clearance(),
+    ) {
+        let mut model = Model {
+            reference_grid: Grid { phi_step_deg, directions, ray_steps, halvings },
+            bodies,
+            ..Model::default()
+        };
+        model.thresholds.clearance = clearance;
+        model.workspace.rotation_range_deg = 2.0 * f64::from(half_window) * phi_step_deg;
+        if off_centre {
+            model.workspace.centre = DVec2::new(0.1, -0.05);
+        }
+        exactly(&model, &design)?;
+    }
+
+    /// A given home is the one window of the definition.
+    #[test]
+    fn a_given_home_is_the_window_of_the_definition(design in design(0.01), home in 0..144usize) {
+        let mut model = Model::default();
+        let wanted = plain_in(&model, &design, &model.reference_grid, Form::Reduced).windows[home];
+        model.workspace.home_phi_deg = Some(home as f64 * 2.5);
+        let found = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+        prop_assume!(design.link_length + design.platform_radius >= 0.5 * design.base_radius);
+        prop_assert_eq!(found.workspace_radius, wanted);
+    }
+
+    /// A report speaks of the workspace it reports.
+    #[test]
+    fn reports_are_consistent(design in design(0.0), bodies in bodies(), clearance in clearance()) {
+        let mut model = Model { bodies, ..Model::default() };
+        model.thresholds.clearance = clearance;
+        let found = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+        prop_assert_eq!(found.is_feasible(), found.violation == 0.0);
+        prop_assert_eq!(found.is_feasible(), found.home.is_some());
+        prop_assert!(found.violation.is_finite() && found.mass.is_finite());
+        for report in &found.constraints {
+            prop_assert!(report.margin.is_finite() && report.value.is_none_or(f64::is_finite));
+            if found.is_feasible() {
+                prop_assert!(report.margin >= 0.0 || !report.asked, "{report:?}");
+                prop_assert_eq!(report.pose.is_none(), report.constraint == Constraint::Assembly);
+            }
+        }
+        prop_assert!(found.active().next().is_some(), "nothing is active");
+        // What is told of the nearest pair is what was found over the workspace.
+        let told = found.constraint(Constraint::Clearance);
+        prop_assert_eq!(told.asked, clearance.is_some());
+        let nearest = model.nearest(&found).map(|nearest| nearest.distance);
+        let close = |nearest: f64| told.value.is_some_and(|value| (nearest - value).abs() < 1e-7);
+        prop_assert!(nearest.map_or(told.value.is_none(), close), "{:?} for {:?}", nearest, told);
+    }
+}
+
+/// A fixed home gives the window about it, and never more than the best one.
+#[test]
+fn a_given_home_is_kept() {
+    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
+        .parse()
+        .expect("a design");
+    let best = Model::default()
+        .evaluate(&design, GridChoice::Reference)
+        .expect("a whole grid");
+    for (home, equal) in [(30.0, true), (-330.0, true), (20.0, false)] {
+        let mut model = Model::default();
+        model.workspace.home_phi_deg = Some(home);
+        let found = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+        assert_eq!(found.workspace_radius == best.workspace_radius, equal, "home {home}");
+        assert!(found.workspace_radius <= best.workspace_radius && found.is_feasible());
+        assert_eq!(found.home_phi_deg, Some(if equal { 30.0 } else { home }));
+    }
+}
+
+/// Each constraint shows: lifting the one that is active makes the workspace larger.
+#[test]
+fn lifting_the_active_constraint_enlarges_the_workspace() {
+    let cases = [
+        (
+            "3-PRR R=1.412 r=0.319 Lb=0.620 rj=0.026 rp=0.023",
+            Constraint::Dexterity,
+        ),
+        (
+            "3-PRR R=3.872 r=1.947 Lb=1.977 rj=0.039 rp=0.096",
+            Constraint::StiffnessXy,
+        ),
+    ];
+    for (text, constraint) in cases {
+        let design: Design = text.parse().expect("a design");
+        let model = Model::default();
+        let before = model.evaluate(&design, GridChoice::Fine).expect("a whole grid");
+        assert!(before.active().any(|active| active == constraint), "{text}");
+        let mut eased = model;
+        eased.thresholds.inverse_condition *= 0.5;
+        eased.thresholds.k_xy *= 0.5;
+        let after = eased.evaluate(&design, GridChoice::Fine).expect("a whole grid");
+        assert!(after.workspace_radius > before.workspace_radius + 1e-5, "{text}");
+    }
+}
+
+#[test]
+fn a_zero_radius_is_infeasible_and_finite() {
+    for text in [
+        "3-PRR R=3 r=1.2 Lb=1.9 rj=0 rp=0.05",
+        "3-RRR R=3 r=1.2 Lb=1.9 rj=0.05 rp=0",
+    ] {
+        let found = Model::default()
+            .evaluate(&text.parse().expect("a design"), GridChoice::Reference)
+            .expect("a whole grid");
+        assert!(!found.is_feasible());
+        assert!(found.mass > 0.0 && found.violation > 0.0);
+        assert_eq!(found.constraint(Constraint::StiffnessXy).value, Some(0.0));
+        assert_eq!(found.constraint(Constraint::StiffnessXy).margin, -1.0);
+    }
+}
+
+/// Nothing that is no number leaves, however far the input lies beyond what can be built.
+#[test]
+fn sizes_beyond_measure_stay_finite() {
+    let mut far = Model::default();
+    far.workspace.centre = DVec2::new(1e200, 0.0);
+    for architecture in Architecture::ALL {
+        for (model, lengths) in [
+            (Model::default(), "R=1e160 r=1e159 Lb=1e160 rj=0.1 rp=0.1"),
+            (Model::default(), "R=1e-160 r=1e-160 Lb=1e-160 rj=0.1 rp=0.1"),
+            (Model::default(), "R=2 r=1 Lb=2 rj=2e74 rp=2e74"),
+            (Model::default(), "R=2 r=1 Lb=2 rj=1e200 rp=1e-200"),
+            (Model::default(), "R=1 r=1 Lb=1 rj=0.05 rp=0.05"),
+            (far, "R=2 r=1 Lb=2 rj=0.05 rp=0.05"),
+        ] {
+            let design: Design = format!("{architecture} {lengths}").parse().expect("a design");
+            let found = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+            assert!(
+                found.workspace_radius.is_finite() && found.violation.is_finite(),
+                "{design}"
+            );
+            for report in &found.constraints {
+                assert!(
+                    report.value.is_none_or(f64::is_finite) && report.margin.is_finite(),
+                    "{design}: {report:?}"
+                );
+            }
+            assert!(found.active().next().is_some(), "{design}: nothing is active");
+        }
+    }
+}
+
+/// A platform that can go far compared with its base costs time, not memory.
+#[test]
+fn a_disc_of_many_base_radii_is_searched() {
+    let design: Design = "3-RRR R=0.001 r=1 Lb=1 rj=0.1 rp=0.1".parse().expect("a design");
+    let found = Model::default()
+        .evaluate(&design, GridChoice::Reference)
+        .expect("a whole grid");
+    assert!(
+        found.workspace_radius > 100.0 * design.base_radius,
+        "{}",
+        found.workspace_radius
+    );
+}

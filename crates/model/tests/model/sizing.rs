@@ -1,0 +1,122 @@
+//! The lightest bars for a geometry, beside evaluations and an exhaustive search.
+
+use kinefront_model::evaluation::{BarRanges, Demand, GridChoice, Model};
+use kinefront_model::mechanism::{Design, WorkingMode};
+use proptest::prelude::*;
+
+use crate::strategies::design;
+
+const RANGES: BarRanges = BarRanges {
+    leg: [0.0, 0.1],
+    platform: [0.0, 0.1],
+};
+
+fn sized(model: &Model, design: &Design, demand: Demand) -> Option<Design> {
+    model.sized(design, &RANGES, demand).expect("the grid fits")
+}
+
+fn radius(model: &Model, design: &Design) -> f64 {
+    let evaluation = model.evaluate(design, GridChoice::Reference);
+    evaluation.expect("the grid fits").workspace_radius
+}
+
+/// No pair of radii on a fine lattice is lighter by more than 1 % and has the workspace too.
+#[test]
+fn no_lighter_pair_of_radii_is_found_by_trying_all() {
+    let model = Model::default();
+    for (text, demand) in [
+        ("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056", 1.2),
+        ("3-PRR R=1.412 r=0.319 Lb=0.620 rj=0.026 rp=0.023", 0.22),
+        ("3-PRR R=3.872 r=1.947 Lb=1.977 rj=0.039 rp=0.096", 1.58),
+        ("3-RPR R=1.5636 r=0.1006 Lb=2.2135 rj=0.017 rp=0.021", 0.54),
+        ("3-RRR R=0.7 r=0.11 Lb=0.56 rj=0.03 rp=0.02", 0.45),
+    ] {
+        let design: Design = text.parse().expect("a design");
+        let found = sized(&model, &design, Demand::Radius(demand)).expect("there are such bars");
+        let reached = radius(&model, &found);
+        assert!(reached >= 0.995 * demand, "{text}: {reached} instead of {demand}");
+        let least = model.mass(&found);
+        // From three times thinner to three times thicker; along r_j the lightest r_p by bisection.
+        let lightest = (-20..=20)
+            .filter_map(|k| {
+                let leg = found.leg_bar_radius * 3f64.powf(f64::from(k) / 20.0);
+                let with = |platform: f64| Design {
+                    leg_bar_radius: leg,
+                    platform_bar_radius: platform,
+                    ..found
+                };
+                let (mut short, mut enough) = (1e-4, 0.1);
+                if radius(&model, &with(enough)) < reached {
+                    return None;
+                }
+                for _ in 0..12 {
+                    let middle = 0.5 * (short + enough);
+                    if radius(&model, &with(middle)) < reached {
+                        short = middle;
+                    } else {
+                        enough = middle;
+                    }
+                }
+                Some(model.mass(&with(enough)))
+            })
+            .fold(f64::INFINITY, f64::min);
+        assert!(least <= 1.01 * lightest, "{text}: {least} kg, but {lightest} kg do");
+    }
+}
+
+#[test]
+fn what_cannot_be_had_is_none() {
+    let model = Model::default();
+    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
+        .parse()
+        .expect("a design");
+    assert_eq!(sized(&model, &design, Demand::Radius(3.0)), None, "beyond the geometry");
+    let thin = BarRanges {
+        leg: [0.0, 0.01],
+        platform: [0.0, 0.01],
+    };
+    let found = model.sized(&design, &thin, Demand::Radius(1.0)).expect("the grid fits");
+    assert_eq!(found, None, "beyond the bars");
+    let apart = Design {
+        base_radius: 8.0,
+        ..design
+    };
+    assert_eq!(sized(&model, &apart, Demand::Largest), None, "the legs do not reach");
+    // Of this one the centre is the weakest spot.
+    let text = "3-RPR R=1.5770 r=0.6257 Lb=1.22825 rj=0.0219 rp=0.0324";
+    let centre: Design = text.parse().expect("a design");
+    let found = sized(&model, &centre, Demand::Largest).expect("bars");
+    assert!(radius(&model, &found) > 0.15);
+    // A working mode without symmetry, a centre away from O, a given home: all are sized for what is asked.
+    let mut model = Model::default();
+    model.workspace.centre = glam::DVec2::new(0.1, -0.05);
+    model.workspace.home_phi_deg = Some(10.0);
+    let design = Design {
+        working_mode: WorkingMode::new([true, true, false]),
+        ..design
+    };
+    if let Some(found) = sized(&model, &design, Demand::Largest) {
+        assert!(radius(&model, &found) > 0.0);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+
+    /// Over the whole design space: what is sized is within its ranges and holds nearly all of what was asked.
+    #[test]
+    fn sized_designs_hold_what_they_were_sized_for(design in design(0.0)) {
+        let model = Model::default();
+        if let Some(found) = sized(&model, &design, Demand::Largest) {
+            for bar in [found.leg_bar_radius, found.platform_bar_radius] {
+                prop_assert!(bar.is_finite() && bar > 0.0 && bar <= 0.1);
+            }
+            let strongest = Design { leg_bar_radius: 0.1, platform_bar_radius: 0.1, ..design };
+            let most = radius(&model, &strongest);
+            let reached = radius(&model, &found);
+            prop_assert!(model.mass(&found) <= model.mass(&strongest) * (1.0 + 1e-12));
+            // Narrow spots between the poses looked at cost some; most often there are none.
+            prop_assert!(reached > 0.0 || most < 0.05 * design.base_radius, "{} of {}", reached, most);
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Bi-objective constrained optimization over mixed variables; it knows nothing of robots.
+//!
+//! A [`Problem`] is its variables and an evaluation. An [`Algorithm`] is asked for candidates and told their outcomes, so
+//! that whoever drives it decides where they are evaluated, and may pause, stop or step between generations. Both
+//! objectives are minimised; constraints come as one violation, 0 where feasible.
+//!
+//! ```
+//! use kinefront_optimize::{Algorithm, Nsga2, Nsga2Settings, Outcome, Problem, Variable, drive};
+//!
+//! struct Schaffer;
+//! impl Problem for Schaffer {
+//!     fn variables(&self) -> Vec<Variable> {
+//!         vec![Variable::Real { lower: -10.0, upper: 10.0 }]
+//!     }
+//!     fn evaluate(&self, x: &[f64]) -> Outcome {
+//!         Outcome { objectives: [x[0] * x[0], (x[0] - 2.0) * (x[0] - 2.0)], violation: 0.0 }
+//!     }
+//! }
+//!
+//! let mut algorithm = Nsga2::new(Schaffer.variables(), Nsga2Settings::default(), 1);
+//! let archive = drive(&Schaffer, &mut algorithm, 2000);
+//! assert!(archive.iter().all(|member| (-0.1..2.1).contains(&member.x[0])));
+//! ```
+
+mod archive;
+mod choice;
+mod doe;
+mod dominance;
+mod front_de;
+mod hypervolume;
+mod moga2;
+mod nsga2;
+mod population;
+mod problem;
+mod random;
+mod variation;
+
+pub use archive::{Archive, Member};
+pub use choice::{groups, knee, ranking, spread};
+pub use doe::sobol;
+pub use dominance::{Relation, compare, crowding_distances, non_dominated_ranks};
+pub use front_de::{FrontDe, FrontDeSettings};
+pub use hypervolume::hypervolume;
+pub use moga2::{Moga2, Moga2Settings};
+pub use nsga2::{Nsga2, Nsga2Settings};
+pub use problem::{Aim, Algorithm, Candidate, Evaluated, Outcome, Problem, Variable, drive};

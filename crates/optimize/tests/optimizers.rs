@@ -1,0 +1,227 @@
+//! Dominance, archive, hypervolume and the algorithms, on problems whose fronts are known.
+
+use kinefront_optimize::{
+    Aim, Algorithm, Archive, Candidate, Evaluated, FrontDe, FrontDeSettings, Moga2, Moga2Settings, Nsga2,
+    Nsga2Settings, Outcome, Problem, Relation, Variable, compare, crowding_distances, drive, hypervolume,
+    non_dominated_ranks, sobol,
+};
+use proptest::prelude::*;
+
+/// A choice and a number: each choice is best over a part of the front.
+struct Mixed;
+
+impl Problem for Mixed {
+    fn variables(&self) -> Vec<Variable> {
+        vec![
+            Variable::Categorical { choices: 3 },
+            Variable::Real { lower: 0.0, upper: 3.0 },
+        ]
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Outcome {
+        let off = x[1] - (x[0] + 0.5);
+        Outcome {
+            objectives: [x[1], 3.0 - x[1] + 4.0 * off * off],
+            violation: 0.0,
+        }
+    }
+}
+
+#[test]
+fn every_choice_finds_its_part_of_the_front() {
+    let nsga2 = drive(
+        &Mixed,
+        &mut Nsga2::new(Mixed.variables(), Nsga2Settings::default(), 3),
+        6000,
+    );
+    let moga2 = drive(
+        &Mixed,
+        &mut Moga2::new(Mixed.variables(), Moga2Settings::default(), 3),
+        6000,
+    );
+    let front_de = drive(
+        &Mixed,
+        &mut FrontDe::new(Mixed.variables(), FrontDeSettings::default(), 3),
+        6000,
+    );
+    for archive in [nsga2, moga2, front_de] {
+        for choice in [0.0, 1.0, 2.0] {
+            assert!(
+                archive.iter().any(|member| member.x[0] == choice),
+                "choice {choice} is missing"
+            );
+        }
+    }
+}
+
+/// The second variable is best at a tenth of the first, which the problem knows how to set.
+struct Structured;
+
+impl Problem for Structured {
+    fn variables(&self) -> Vec<Variable> {
+        vec![Variable::Real { lower: 0.0, upper: 1.0 }; 2]
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Outcome {
+        let off = (x[1] - 0.1 * x[0]).abs();
+        Outcome {
+            objectives: [x[0] + off, 1.0 - x[0] * x[0] + off],
+            violation: 0.0,
+        }
+    }
+
+    fn complete(&self, x: &[f64], aim: Aim) -> Option<Vec<f64>> {
+        let first = match aim {
+            Aim::Level(level) => (1.0 - level).clamp(0.0, 1.0).sqrt(),
+            Aim::Best => x[0],
+        };
+        Some(vec![first, 0.1 * first])
+    }
+}
+
+#[test]
+fn structure_is_made_use_of() {
+    let mut algorithm = FrontDe::new(Structured.variables(), FrontDeSettings::default(), 1);
+    let archive = drive(&Structured, &mut algorithm, 300);
+    assert!(archive.len() > 100);
+    for member in archive.iter() {
+        assert_eq!(
+            member.x[1],
+            0.1 * member.x[0],
+            "every candidate is completed before it is evaluated"
+        );
+    }
+    let levels = (0..20)
+        .flat_map(|_| algorithm.ask())
+        .filter_map(|candidate| match candidate.aim {
+            Some(Aim::Level(level)) => Some(level),
+            _ => None,
+        });
+    let levels: Vec<f64> = levels.collect();
+    assert!(levels.len() > 20 && levels.iter().any(|level| *level < 0.3) && levels.iter().any(|level| *level > 0.7));
+}
+
+/// Asking is pure state: the same seed asks the same, another seed asks otherwise, bounds hold.
+#[test]
+fn algorithms_repeat_themselves_and_stay_in_bounds() {
+    let algorithms: [fn(u64) -> Box<dyn Algorithm>; 3] = [
+        |seed| Box::new(FrontDe::new(Mixed.variables(), FrontDeSettings::default(), seed)),
+        |seed| Box::new(Nsga2::new(Mixed.variables(), Nsga2Settings::default(), seed)),
+        |seed| Box::new(Moga2::new(Mixed.variables(), Moga2Settings::default(), seed)),
+    ];
+    for make in algorithms {
+        let record = |seed| {
+            let mut algorithm = make(seed);
+            let mut asked = Vec::new();
+            for _ in 0..40 {
+                let candidates = algorithm.ask();
+                asked.extend(candidates.clone());
+                let tell = |candidate: Candidate| Evaluated {
+                    outcome: Mixed.evaluate(&candidate.x),
+                    x: candidate.x,
+                };
+                algorithm.tell(candidates.into_iter().map(tell).collect());
+            }
+            asked
+        };
+        let first = record(7);
+        assert_eq!(first, record(7));
+        assert_ne!(first, record(8));
+        assert!(
+            first
+                .iter()
+                .all(|Candidate { x, .. }| [0.0, 1.0, 2.0].contains(&x[0]) && (0.0..=3.0).contains(&x[1]))
+        );
+    }
+}
+
+#[test]
+fn a_sobol_sample_gives_each_choice_its_share() {
+    let variables = [
+        Variable::Categorical { choices: 3 },
+        Variable::Real { lower: 2.0, upper: 4.0 },
+    ];
+    let sample = sobol(&variables, 30, 1);
+    for choice in 0..3 {
+        let count = sample.iter().filter(|x| x[0] == f64::from(choice)).count();
+        assert!((8..=12).contains(&count), "choice {choice}: {count} of 30");
+    }
+    let lower_half = sample.iter().filter(|x| x[1] < 3.0).count();
+    assert!((13..=17).contains(&lower_half));
+    assert_eq!(sample, sobol(&variables, 30, 1));
+    assert_ne!(sample, sobol(&variables, 30, 2));
+}
+
+#[test]
+fn hypervolume_of_known_fronts() {
+    assert_eq!(hypervolume([], [1.0, 1.0]), 0.0);
+    assert_eq!(hypervolume([[0.0, 0.0]], [2.0, 3.0]), 6.0);
+    assert_eq!(
+        hypervolume([[1.0, 2.0], [2.0, 1.0], [2.0, 2.0], [1.0, 2.0]], [3.0, 3.0]),
+        3.0
+    );
+    assert_eq!(hypervolume([[4.0, 0.0]], [3.0, 3.0]), 0.0);
+}
+
+fn outcome() -> impl Strategy<Value = Outcome> {
+    // A coarse lattice, so that ties and duplicates occur.
+    (0..8i32, 0..8i32, 0..3i32).prop_map(|(first, second, violation)| Outcome {
+        objectives: [f64::from(first), f64::from(second)],
+        violation: f64::from(violation.max(1) - 1),
+    })
+}
+
+proptest! {
+    #[test]
+    fn the_archive_is_the_non_dominated_feasible_set(outcomes in prop::collection::vec(outcome(), 0..60)) {
+        let mut archive = Archive::default();
+        for (id, &outcome) in outcomes.iter().enumerate() {
+            archive.insert(id, &Evaluated { x: vec![id as f64], outcome });
+        }
+        let mut wanted: Vec<[f64; 2]> = outcomes
+            .iter()
+            .filter(|a| a.is_feasible() && outcomes.iter().all(|b| compare(b, a) != Relation::Dominates))
+            .map(|a| a.objectives)
+            .collect();
+        wanted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        wanted.dedup();
+        let found: Vec<[f64; 2]> = archive.iter().map(|member| member.objectives).collect();
+        prop_assert_eq!(found, wanted);
+    }
+
+    #[test]
+    fn ranks_are_layers_of_dominance(outcomes in prop::collection::vec(outcome(), 1..40)) {
+        let ranks = non_dominated_ranks(&outcomes);
+        for (i, a) in outcomes.iter().enumerate() {
+            let above = outcomes
+                .iter()
+                .zip(&ranks)
+                .filter(|(b, _)| compare(b, a) == Relation::Dominates)
+                .map(|(_, rank)| rank + 1)
+                .max()
+                .unwrap_or(0);
+            prop_assert_eq!(ranks[i], above);
+        }
+    }
+
+    #[test]
+    fn hypervolume_equals_counting_cells(points in prop::collection::vec((0..8u8, 0..8u8), 0..20)) {
+        let cells = (0..8u8)
+            .flat_map(|x| (0..8u8).map(move |y| (x, y)))
+            .filter(|&(x, y)| points.iter().any(|&(a, b)| a <= x && b <= y))
+            .count();
+        let points = points.iter().map(|&(x, y)| [f64::from(x), f64::from(y)]);
+        prop_assert_eq!(hypervolume(points, [8.0, 8.0]), cells as f64);
+    }
+
+    #[test]
+    fn the_ends_of_a_front_are_never_crowded(front in prop::collection::vec((0.0..1.0, 0.0..1.0), 1..20)) {
+        let front: Vec<[f64; 2]> = front.into_iter().map(|(a, b)| [a, b]).collect();
+        let distances = crowding_distances(&front);
+        for objective in 0..2 {
+            let least = (0..front.len()).min_by(|&a, &b| front[a][objective].total_cmp(&front[b][objective]));
+            prop_assert_eq!(distances[least.expect("not empty")], f64::INFINITY);
+        }
+        prop_assert!(distances.iter().all(|distance| *distance >= 0.0));
+    }
+}

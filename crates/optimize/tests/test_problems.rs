@@ -1,0 +1,240 @@
+//! Test problems of the field, on which the algorithms must reach what pymoo's NSGA-II reaches.
+
+use std::f64::consts::PI;
+
+use kinefront_optimize::{
+    Algorithm, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, Problem, Variable, drive, hypervolume,
+};
+use rayon::prelude::*;
+
+/// Made by crates/optimize/tests/tools/pymoo_fronts.py.
+const PYMOO: &str = include_str!("fixtures/pymoo_nsga2.json");
+
+/// A problem by formula: bounds, objectives, and constraints that must not be positive.
+struct Formula {
+    name: &'static str,
+    bounds: Vec<[f64; 2]>,
+    objectives: fn(&[f64]) -> [f64; 2],
+    constraints: fn(&[f64]) -> Vec<f64>,
+}
+
+impl Problem for Formula {
+    fn variables(&self) -> Vec<Variable> {
+        self.bounds
+            .iter()
+            .map(|&[lower, upper]| Variable::Real { lower, upper })
+            .collect()
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Outcome {
+        Outcome {
+            objectives: (self.objectives)(x),
+            violation: (self.constraints)(x).into_iter().map(|value| value.max(0.0)).sum(),
+        }
+    }
+}
+
+fn square(value: f64) -> f64 {
+    value * value
+}
+
+/// ZDT (Zitzler, Deb, Thiele 2000): `f2 = g·h(f1, g)`.
+fn zdt(name: &'static str, objectives: fn(&[f64]) -> [f64; 2], bounds: Vec<[f64; 2]>) -> Formula {
+    Formula {
+        name,
+        bounds,
+        objectives,
+        constraints: |_| Vec::new(),
+    }
+}
+
+fn linear_g(x: &[f64]) -> f64 {
+    1.0 + 9.0 * x[1..].iter().sum::<f64>() / (x.len() - 1) as f64
+}
+
+fn problems() -> Vec<Formula> {
+    let unit = |count: usize| vec![[0.0, 1.0]; count];
+    let mut zdt4 = vec![[-5.0, 5.0]; 10];
+    zdt4[0] = [0.0, 1.0];
+    vec![
+        // Binh and Korn 1997.
+        Formula {
+            name: "bnh",
+            bounds: vec![[0.0, 5.0], [0.0, 3.0]],
+            objectives: |x| {
+                [
+                    4.0 * (square(x[0]) + square(x[1])),
+                    square(x[0] - 5.0) + square(x[1] - 5.0),
+                ]
+            },
+            constraints: |x| {
+                vec![
+                    square(x[0] - 5.0) + square(x[1]) - 25.0,
+                    7.7 - square(x[0] - 8.0) - square(x[1] + 3.0),
+                ]
+            },
+        },
+        // Osyczka and Kundu 1995; each constraint over its right side.
+        Formula {
+            name: "osy",
+            bounds: vec![
+                [0.0, 10.0],
+                [0.0, 10.0],
+                [1.0, 5.0],
+                [0.0, 6.0],
+                [1.0, 5.0],
+                [0.0, 10.0],
+            ],
+            objectives: |x| {
+                [
+                    -(25.0 * square(x[0] - 2.0)
+                        + square(x[1] - 2.0)
+                        + square(x[2] - 1.0)
+                        + square(x[3] - 4.0)
+                        + square(x[4] - 1.0)),
+                    x.iter().map(|value| square(*value)).sum(),
+                ]
+            },
+            constraints: |x| {
+                vec![
+                    -(x[0] + x[1] - 2.0) / 2.0,
+                    -(6.0 - x[0] - x[1]) / 6.0,
+                    -(2.0 - x[1] + x[0]) / 2.0,
+                    -(2.0 - x[0] + 3.0 * x[1]) / 2.0,
+                    -(4.0 - square(x[2] - 3.0) - x[3]) / 4.0,
+                    -(square(x[4] - 3.0) + x[5] - 4.0) / 4.0,
+                ]
+            },
+        },
+        // Tanaka et al. 1995.
+        Formula {
+            name: "tnk",
+            bounds: vec![[0.0, PI], [1e-30, PI]],
+            objectives: |x| [x[0], x[1]],
+            constraints: |x| {
+                vec![
+                    -(square(x[0]) + square(x[1]) - 1.0 - 0.1 * (16.0 * (x[0] / x[1]).atan()).cos()),
+                    2.0 * (square(x[0] - 0.5) + square(x[1] - 0.5)) - 1.0,
+                ]
+            },
+        },
+        // Srinivas and Deb 1994.
+        Formula {
+            name: "srn",
+            bounds: vec![[-20.0, 20.0]; 2],
+            objectives: |x| {
+                [
+                    2.0 + square(x[0] - 2.0) + square(x[1] - 1.0),
+                    9.0 * x[0] - square(x[1] - 1.0),
+                ]
+            },
+            constraints: |x| {
+                vec![
+                    (square(x[0]) + square(x[1]) - 225.0) / 225.0,
+                    (x[0] - 3.0 * x[1] + 10.0) / 10.0,
+                ]
+            },
+        },
+        zdt(
+            "zdt1",
+            |x| {
+                let g = linear_g(x);
+                [x[0], g * (1.0 - (x[0] / g).sqrt())]
+            },
+            unit(30),
+        ),
+        zdt(
+            "zdt2",
+            |x| {
+                let g = linear_g(x);
+                [x[0], g * (1.0 - square(x[0] / g))]
+            },
+            unit(30),
+        ),
+        zdt(
+            "zdt3",
+            |x| {
+                let g = linear_g(x);
+                [
+                    x[0],
+                    g * (1.0 - (x[0] / g).sqrt() - x[0] / g * (10.0 * PI * x[0]).sin()),
+                ]
+            },
+            unit(30),
+        ),
+        zdt(
+            "zdt4",
+            |x| {
+                let g = 91.0
+                    + x[1..]
+                        .iter()
+                        .map(|value| square(*value) - 10.0 * (4.0 * PI * value).cos())
+                        .sum::<f64>();
+                [x[0], g * (1.0 - (x[0] / g).sqrt())]
+            },
+            zdt4,
+        ),
+        zdt(
+            "zdt6",
+            |x| {
+                let first = 1.0 - (-4.0 * x[0]).exp() * (6.0 * PI * x[0]).sin().powi(6);
+                let g = 1.0 + 9.0 * (x[1..].iter().sum::<f64>() / 9.0).powf(0.25);
+                [first, g * (1.0 - square(first / g))]
+            },
+            unit(10),
+        ),
+    ]
+}
+
+fn median(problem: &Formula, evaluations: usize, reference: [f64; 2], make: Make) -> f64 {
+    let mut volumes: Vec<f64> = (1..=11)
+        .into_par_iter()
+        .map(|seed| {
+            let archive = drive(problem, &mut *make(problem.variables(), seed), evaluations);
+            assert!(archive.iter().all(|member| problem.evaluate(&member.x).is_feasible()));
+            hypervolume(archive.iter().map(|member| member.objectives), reference)
+        })
+        .collect();
+    volumes.sort_by(f64::total_cmp);
+    volumes[5]
+}
+
+type Make = fn(Vec<Variable>, u64) -> Box<dyn Algorithm>;
+
+/// The medians of 11 seeds at the budget of pymoo's runs, all feasible candidates counted on both sides. They may stay
+/// below pymoo's by what medians of 11 seeds differ by from one set of seeds to the next: on OSY that is whether the
+/// front's last piece was found, which makes 1.2 % and which half the seeds do, pymoo's own among them.
+fn reach(make: Make) {
+    let pymoo: serde_json::Value = serde_json::from_str(PYMOO).expect("sound");
+    let evaluations = pymoo["evaluations"].as_u64().expect("a number") as usize;
+    let mut short = Vec::new();
+    for problem in problems() {
+        let theirs = &pymoo["problems"][problem.name];
+        let reference = [0, 1].map(|k| theirs["reference"][k].as_f64().expect("a number"));
+        let share = median(&problem, evaluations, reference, make) / theirs["median"].as_f64().expect("a number");
+        println!("{:5} {share:.5}", problem.name);
+        let allowed = if problem.name == "osy" { 0.013 } else { 0.001 };
+        if share < 1.0 - allowed {
+            short.push(format!("{}: {share}", problem.name));
+        }
+    }
+    assert!(short.is_empty(), "of what pymoo reaches: {short:?}");
+}
+
+#[test]
+fn nsga2_reaches_what_pymoo_reaches() {
+    reach(|variables, seed| Box::new(Nsga2::new(variables, Nsga2Settings::default(), seed)));
+}
+
+#[test]
+fn front_de_reaches_what_pymoo_reaches() {
+    // Without structure there is no quick start to be had from a small population.
+    reach(|variables, seed| {
+        let settings = FrontDeSettings {
+            population: 60,
+            most: 60,
+            ..FrontDeSettings::default()
+        };
+        Box::new(FrontDe::new(variables, settings, seed))
+    });
+}
