@@ -12,7 +12,7 @@ fn heatmaps(criterion: &mut Criterion) {
     let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
         .parse()
         .expect("a design");
-    let draw = |field| Heatmap::new(&model, &design, field, 0.5, HeatmapSettings { cells: 388 }).expect("a whole grid");
+    let draw = |field| Heatmap::new(&model, &design, field, 0.5, HeatmapSettings { cells: 388 });
     let cells = draw(Field::InverseCondition).cells;
     println!("{cells} cells");
     let mut group = criterion.benchmark_group("heatmap");

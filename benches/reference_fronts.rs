@@ -133,7 +133,7 @@ impl Front {
     fn evaluate(&mut self, model: &Model, designs: Vec<Design>) {
         let evaluations: Vec<Evaluation> = designs
             .par_iter()
-            .map(|design| model.evaluate(design, GridChoice::Fine).expect("the grid fits"))
+            .map(|design| model.evaluate(design, GridChoice::Fine))
             .collect();
         evaluations.iter().for_each(|evaluation| self.take(evaluation));
     }
@@ -324,10 +324,9 @@ impl Search {
     fn sized_mass(&self, design: &Design, level: f64, met: &mut Vec<Evaluation>) -> f64 {
         let sized = self
             .model
-            .sized(design, &self.bars, Demand::Radius(level))
-            .expect("the grid fits");
+            .sized(design, &self.bars, Demand::Radius(level));
         let Some(sized) = sized else { return f64::INFINITY };
-        let evaluation = self.model.evaluate(&sized, GridChoice::Fine).expect("the grid fits");
+        let evaluation = self.model.evaluate(&sized, GridChoice::Fine);
         let radius = evaluation.workspace_radius;
         let mass = if radius >= 0.9 * level {
             // What is missing is paid for as if mass grew with the cube of the radius.
@@ -372,7 +371,6 @@ impl Search {
             let evaluation = lighter.then(|| {
                 self.model
                     .evaluate(&candidate, GridChoice::Fine)
-                    .expect("the grid fits")
             });
             match evaluation {
                 Some(evaluation) if evaluation.workspace_radius >= level => {

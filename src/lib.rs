@@ -17,14 +17,14 @@
 //!
 //! | module | purpose |
 //! |---|---|
-//! | [`scene`] | a design at a pose → named shapes and fields, free of any renderer |
-//! | [`study`] | study file, run, run folder |
-//! | [`export`] | a design as files of other programs |
-//! | [`report`] | a run as pages: figures, pictures, comparison with the paper |
-//! | [`palette`] | what colours mean |
-//! | [`recording`] | events → Rerun |
-//! | [`text`] | numbers for people |
-//! | `explorer` | the window (feature `explorer`) |
+//! | [`scene`] | named shapes and fields of a design at a pose, independent of any renderer |
+//! | [`study`] | study files, runs, run folders |
+//! | [`export`] | export of a design to the file formats of other programs |
+//! | [`report`] | report pages of a run: figures, pictures, comparison with the paper |
+//! | [`palette`] | colours and their meaning |
+//! | [`recording`] | conversion of events to Rerun recordings |
+//! | [`text`] | formatting of numbers for display |
+//! | `explorer` | the application window (feature `explorer`) |
 
 #[cfg(feature = "explorer")]
 pub mod explorer;

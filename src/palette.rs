@@ -1,9 +1,10 @@
-//! What colours mean, wherever they are shown: red, green, blue.
+//! The colours of architectures, parts and clearances in every view, as red, green and blue.
 
 use kinefront_model::mechanism::Architecture;
 use crate::scene::Part;
 
-/// One colour per architecture, told apart by people with any colour vision (Okabe and Ito).
+/// Returns the colour of an architecture. The colours can be distinguished with any type of colour vision (Okabe and
+/// Ito).
 pub fn architecture(architecture: Architecture) -> [u8; 3] {
     const PALETTE: [[u8; 3]; 4] = [[86, 180, 233], [230, 159, 0], [0, 190, 140], [204, 121, 167]];
     let index = Architecture::ALL
@@ -13,7 +14,8 @@ pub fn architecture(architecture: Architecture) -> [u8; 3] {
     PALETTE[index % PALETTE.len()]
 }
 
-/// Steel for what moves, orange for what is driven, dark for what stands still.
+/// Returns the colour of a part: orange for actuated parts, darker grey for fixed parts, steel grey for other moving
+/// parts, blue for the bars of the platform.
 pub fn part(part: Part) -> [u8; 3] {
     match part {
         Part::Base => [120, 126, 138],
@@ -31,7 +33,7 @@ pub fn part(part: Part) -> [u8; 3] {
     }
 }
 
-/// The nearest pair of bodies: green while they are far enough apart.
+/// Returns the colour of the nearest pair of members: red if it is too near, otherwise green.
 pub fn nearest(too_near: bool) -> [u8; 3] {
     if too_near { [255, 60, 60] } else { [90, 225, 130] }
 }

@@ -1,8 +1,9 @@
-//! Numbers for people.
+//! Formatting of numbers for display.
 
 use kinefront_model::clearance::Clearance;
 
-/// A number with four significant digits, in plain form where that is short.
+/// Formats a number with four significant digits: in decimal notation from 0.001 up to 100 000, otherwise in scientific
+/// notation. A number that is not finite becomes a dash.
 pub fn number(value: f64) -> String {
     let size = value.abs();
     if !value.is_finite() {
@@ -17,7 +18,8 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// A number with up to four decimals and no more digits than it needs, as beside a scale.
+/// Formats a number with at most four decimals and without trailing zeros, as for the labels of a scale: in decimal
+/// notation from 0.001 up to 10 000, otherwise in scientific notation.
 pub fn short(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 {
@@ -31,12 +33,13 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// A clearance as in `12.3 mm from leg1_link to leg2_link`, or `overlap of 12.3 mm of leg1_link and leg2_link`.
+/// Writes a clearance, for example `12.3 mm from leg1_link to leg2_link` or
+/// `overlap of 12.3 mm between leg1_link and leg2_link`.
 pub fn clearance(clearance: &Clearance) -> String {
     let [member, neighbour] = clearance.pair();
     let size = number(1e3 * clearance.distance.abs());
     if clearance.distance < 0.0 {
-        format!("overlap of {size} mm of {member} and {neighbour}")
+        format!("overlap of {size} mm between {member} and {neighbour}")
     } else {
         format!("{size} mm from {member} to {neighbour}")
     }

@@ -78,8 +78,8 @@ fn batches<L: Leg>(architecture: Architecture) -> Vec<Batch<L>> {
     let model = Model::default();
     let mut found = Vec::new();
     for design in sample(architecture, 512) {
-        let checker = model.checker::<L>(&design).expect("a whole grid");
-        let evaluation = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+        let checker = model.checker::<L>(&design);
+        let evaluation = model.evaluate(&design, GridChoice::Reference);
         let Some(home) = evaluation.home else { continue };
         let arms = checker.manipulator.arms(&Rotation::new(home.phi));
         let [xs, ys] = [0, 1].map(|axis| {
@@ -165,7 +165,7 @@ fn poses(criterion: &mut Criterion) {
 /// The definition, ray after ray, a pose at a time in the given form of the stiffness.
 fn plainly(model: &Model, design: &Design, general: bool) -> f64 {
     fn of<L: Leg>(model: &Model, design: &Design, general: bool) -> f64 {
-        let checker = model.checker::<L>(design).expect("a whole grid");
+        let checker = model.checker::<L>(design);
         let least = checker.thresholds;
         let general_form = |position: DVec2, arms: &[DVec2; LEGS]| {
             let posture = checker.manipulator.posture_at(position, arms).ok()?;
@@ -185,7 +185,7 @@ fn plainly(model: &Model, design: &Design, general: bool) -> f64 {
         } else {
             plain(manipulator, spec, grid, design.base_radius, closed_form)
         };
-        found.expect("a whole grid").radius
+        found.radius
     }
     match design.architecture {
         Architecture::Prr => of::<PrrLeg>(model, design, general),
@@ -196,7 +196,7 @@ fn plainly(model: &Model, design: &Design, general: bool) -> f64 {
 
 fn evaluate(model: &Model, design: &Design, grid: GridChoice, instructions: InstructionSet) -> f64 {
     let evaluation = model.evaluate_with(design, grid, instructions);
-    evaluation.expect("a whole grid").workspace_radius
+    evaluation.workspace_radius
 }
 
 fn designs(criterion: &mut Criterion) {

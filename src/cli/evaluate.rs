@@ -1,4 +1,4 @@
-//! `kinefront evaluate`.
+//! The command `kinefront evaluate`.
 
 use std::io::{BufRead, Write};
 
@@ -11,19 +11,19 @@ use super::{Ending, Failure, GridArgument, load_study, tables, to_json};
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// The design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
+    /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
     #[arg(long, required_unless_present = "stdin", conflicts_with = "stdin")]
     design: Option<String>,
-    /// Study file, or the name of a study that comes with the program [default: paper].
+    /// Study file, or name of a built-in study [default: paper].
     #[arg(long, value_name = "FILE")]
     study: Option<String>,
-    /// Grid of poses.
+    /// Sampling grid of poses.
     #[arg(long, value_enum, default_value = "reference")]
     grid: GridArgument,
-    /// Print one JSON object.
+    /// Print the result as one JSON object.
     #[arg(long)]
     json: bool,
-    /// Read a design a line from standard input, write a JSON object a line.
+    /// Read one design per line from standard input and write one JSON object per line.
     #[arg(long)]
     stdin: bool,
 }
@@ -70,7 +70,7 @@ impl Server {
             .map_err(|error| error.to_string())
     }
 
-    /// A line in, a line out, in order; a bad line gets an error object and the stream goes on.
+    /// Writes one line for each line read, in order. For an invalid line it writes an error object and continues.
     fn serve(&self) -> Result<(), Failure> {
         let mut input = std::io::stdin().lock();
         let mut out = std::io::stdout().lock();

@@ -1,4 +1,4 @@
-//! `kinefront explore`, and `kinefront` by itself: the window.
+//! The command `kinefront explore`, also run by `kinefront` without a command: opens the window.
 
 use std::path::PathBuf;
 
@@ -10,18 +10,18 @@ use super::{Ending, Failure, load_study};
 
 #[derive(Debug, Default, clap::Args)]
 pub struct Arguments {
-    /// Study file or name, run folder, or recording (.rrd) of ours [default: paper].
+    /// Study file, name of a built-in study, run folder, or Kinefront recording (.rrd) [default: paper].
     subject: Option<String>,
-    /// Do not start the study's run at once.
+    /// Do not start the run of the study.
     #[arg(long)]
     no_run: bool,
-    /// Seed, instead of the study's.
+    /// Random seed; overrides that of the study.
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
     seed: Option<u64>,
-    /// Number of evaluations, instead of the study's.
+    /// Number of evaluations; overrides that of the study.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     evaluations: Option<u64>,
-    /// Script that works the window, for pictures and measurements.
+    /// Script that operates the window, for screenshots and measurements.
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
 }
@@ -40,7 +40,7 @@ fn subject(arguments: &Arguments) -> Result<Subject, Failure> {
     if let Some(path) = path.as_ref().filter(|path| path.exists()) {
         let is_study = path.is_file() && path.extension().is_some_and(|extension| extension == "toml");
         if !is_study {
-            // What is wrong with it is told before a window opens.
+            // Errors are reported before the window opens.
             kinefront::explorer::open(path).map_err(|error| Failure::Input(miette!("{error}")))?;
             return Ok(Subject::Run(path.clone()));
         }

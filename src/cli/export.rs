@@ -1,4 +1,4 @@
-//! `kinefront export`: a design for other programs, or a run's front as a table.
+//! The command `kinefront export`: writes a design for other programs, or the front of a run as a table.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use super::{Ending, Failure};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Formats of a design: gltf (.glb), mjcf (.xml), sdf, urdf, dxf, json.
-Formats of a front: csv, parquet; name the run's folder instead of a design.
+Formats of a front: csv, parquet; specify the run folder instead of a design.
 
 Examples:
   kinefront export --design \"3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056\" --out design.glb
@@ -24,18 +24,18 @@ Examples:
 pub struct Arguments {
     #[command(flatten)]
     subject: SubjectArguments,
-    /// Format [default: by the extension of FILE].
+    /// Format [default: determined by the extension of FILE].
     #[arg(long, value_name = "FORMAT", value_parser = target)]
     format: Option<Target>,
-    /// Pose that the design is written at, as in "x=0.1 y=0.2 phi_deg=30" [default: its home].
+    /// Pose in which the design is written, as in "x=0.1 y=0.2 phi_deg=30" [default: home pose].
     #[arg(long, value_parser = |text: &str| text.parse::<Pose>())]
     pose: Option<Pose>,
-    /// File to write; it must not exist. `-` is standard output.
+    /// File to write, which must not exist; `-` means standard output.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
 
-/// What can be asked for.
+/// Content and format of the exported file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Target {
     Design(Format),
@@ -73,14 +73,15 @@ impl Arguments {
                 miette!(
                     help =
                         "give --format, or a file that ends in .glb, .xml, .sdf, .urdf, .dxf, .json, .csv or .parquet",
-                    "which format {} shall have is not known",
+                    "cannot determine the format of {}",
                     self.out.display()
                 )
             }),
         }
     }
 
-    /// What fits no target: settings that would be ignored, and a name that promises another form.
+    /// Refuses arguments that do not fit the target: options that would be ignored, and a file extension that belongs
+    /// to another format.
     fn check(&self, target: Target) -> Result<()> {
         let is_gltf = self
             .out
@@ -88,12 +89,12 @@ impl Arguments {
             .is_some_and(|extension| extension.eq_ignore_ascii_case("gltf"));
         match target {
             Target::Design(Format::Gltf) if is_gltf => Err(miette!(
-                help = "name the file .glb",
-                "glTF is written in its binary form, which {} would not say",
+                help = "use the file extension .glb",
+                "{} has the extension of text glTF, but glTF is written in its binary form",
                 self.out.display()
             )),
             Target::Csv | Target::Parquet if self.pose.is_some() || self.subject.study.is_some() => Err(miette!(
-                "a table is copied as the run wrote it: --pose and --study have no meaning for it"
+                "--pose and --study have no meaning for a front: it is exported as the run wrote it"
             )),
             _ => Ok(()),
         }
@@ -148,12 +149,12 @@ fn design(arguments: &Arguments, format: Format) -> Result<Vec<u8>, Failure> {
     })
 }
 
-/// The front of the run that the row argument names: its folder, or one of its tables.
+/// Reads the front of the run that the row argument specifies by the run folder or by one of its tables.
 fn front(arguments: &Arguments, target: Target) -> Result<Vec<u8>> {
     let Some(run) = arguments.subject.row.as_ref().filter(|run| !run.contains('#')) else {
         return Err(miette!(
             help = "kinefront export run --out front.parquet",
-            "a table is made of a run's front: name the run's folder, not a design"
+            "csv and parquet hold the front of a run: specify the run folder, not a design"
         ));
     };
     let path = Path::new(run);

@@ -1,4 +1,4 @@
-//! Arguments to one of the commands, and errors to exit codes.
+//! The command line: dispatches the arguments to a command and converts errors into exit codes.
 
 mod evaluate;
 #[cfg(feature = "explorer")]
@@ -25,45 +25,45 @@ use miette::{IntoDiagnostic, Report, Result, miette};
 #[derive(Debug, Parser)]
 #[command(name = "kinefront", version, arg_required_else_help = cfg!(not(feature = "explorer")))]
 struct Arguments {
-    /// Without one, the window opens and runs the paper's study.
+    /// Command; without one, the window opens and runs the paper's study.
     #[command(subcommand)]
     command: Option<Command>,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Open the window on a study, a run folder or a recording.
+    /// Open a study, a run folder or a recording in the window.
     #[cfg(feature = "explorer")]
     Explore(explore::Arguments),
-    /// Mass, regular workspace and constraint margins of a design, or of a stream of designs.
+    /// Compute mass, regular workspace and constraint margins of a design, or of a stream of designs.
     Evaluate(evaluate::Arguments),
-    /// Joints, dexterity and stiffness of a design at one pose.
+    /// Compute joint values, dexterity and stiffness of a design at one pose.
     Pose(pose::Arguments),
-    /// Record one design with its overlays and a tour of its workspace.
+    /// Write a recording of one design with its overlays and a tour of its workspace.
     Show(show::Arguments),
-    /// Write a design for CAD, viewers and simulators, or a run's front as a table.
+    /// Export a design for CAD, viewers and simulators, or the front of a run as a table.
     Export(export::Arguments),
     /// Search for light designs with a large regular workspace, without a window.
     Optimize(optimize::Arguments),
-    /// Make a page of runs: fronts, trends, comparison, pictures, sensitivity.
+    /// Write a report on one or more runs: fronts, trends, comparison, pictures, sensitivity.
     Report(report::Arguments),
-    /// List, show, check and write study files.
+    /// List, show, create and check study files.
     Study(study::Arguments),
 }
 
-/// How a command ends when nothing went wrong with its input.
+/// How a command that did not fail has ended.
 enum Ending {
     Done,
     Interrupted,
 }
 
-/// Why a command did not do what was asked.
+/// Reason why a command failed.
 enum Failure {
-    /// The input was wrong: exit code 2.
+    /// The input is invalid: exit code 2.
     Input(Report),
     /// Something else failed: exit code 1.
     Runtime(Report),
-    /// Whoever read our output has left.
+    /// The reader of standard output has closed the pipe: exit code 0.
     BrokenPipe,
 }
 
@@ -86,14 +86,14 @@ impl From<std::io::Error> for Failure {
     }
 }
 
-/// Reads the arguments and does what they say.
+/// Parses the arguments and runs the command.
 pub fn run() -> ExitCode {
     let outcome = match Arguments::parse().command {
         #[cfg(feature = "explorer")]
         None => explore::run(&explore::Arguments::default()),
         #[cfg(feature = "explorer")]
         Some(Command::Explore(arguments)) => explore::run(&arguments),
-        // Asked for in the arguments' attributes: it ends with the help.
+        // Not reached: `arg_required_else_help` prints the help if there is no command.
         #[cfg(not(feature = "explorer"))]
         None => Ok(Ending::Done),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
@@ -118,18 +118,19 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// The study of an argument: a file, the name of one that comes with the program, or the paper's.
+/// Loads the study that an argument specifies: a study file or the name of a built-in study; without an argument, the
+/// paper's study.
 fn load_study(argument: Option<&str>) -> Result<Study> {
     let Some(argument) = argument else {
         return Ok(BUILTIN[0].study()?);
     };
     let path = Path::new(argument);
     match Builtin::find(argument) {
-        // A folder of that name is no study.
+        // A folder of that name does not take precedence over the built-in study.
         Some(builtin) if !path.is_file() => Ok(builtin.study()?),
         None if !path.is_file() => Err(miette!(
-            help = format!("studies that come with the program: {}", builtin_names()),
-            "there is no study file `{argument}`, and no study of that name"
+            help = format!("the built-in studies are: {}", builtin_names()),
+            "there is neither a study file nor a built-in study named `{argument}`"
         )),
         _ => Ok(Study::read(path)?),
     }
@@ -139,12 +140,12 @@ fn builtin_names() -> String {
     BUILTIN.map(|builtin| builtin.name).join(", ")
 }
 
-/// The grid of an argument.
+/// The grid that an argument specifies.
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 enum GridArgument {
-    /// The grid that designs are searched on.
+    /// The grid used in the search.
     Reference,
-    /// The grid that reported designs are verified on.
+    /// The grid on which reported designs are verified.
     Fine,
 }
 

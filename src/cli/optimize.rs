@@ -1,4 +1,4 @@
-//! `kinefront optimize`: the headless run.
+//! The command `kinefront optimize`: runs a study without a window.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -15,35 +15,35 @@ use miette::{Report, miette};
 use super::progress::Progress;
 use super::{Ending, Failure, load_study, tables};
 
-/// Events that may wait in a channel before the worker waits too.
+/// Capacity of the event channel of a listener; the worker thread waits while a channel is full.
 const CHANNEL: usize = 64;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Study file, or the name of a study that comes with the program [default: paper].
+    /// Study file, or name of a built-in study [default: paper].
     study: Option<String>,
-    /// Algorithm, instead of the study's.
+    /// Algorithm; overrides that of the study.
     #[arg(long, value_enum)]
     algorithm: Option<AlgorithmName>,
-    /// Number of evaluations, instead of the study's.
+    /// Number of evaluations; overrides that of the study.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     evaluations: Option<u64>,
-    /// Seed, instead of the study's.
+    /// Random seed; overrides that of the study.
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
     seed: Option<u64>,
-    /// Worker threads; the result does not depend on it [default: all cores].
+    /// Number of worker threads; the result does not depend on it [default: all cores].
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u64).range(1..=1024))]
     threads: Option<u64>,
-    /// Architectures, instead of the study's, as in 3-PRR,3-RRR.
+    /// Architectures, as in 3-PRR,3-RRR; override those of the study.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     architectures: Option<Vec<Architecture>>,
-    /// Folder for the run's files; it must not hold a run [default: runs/STUDY-seedS].
+    /// Run folder to write; it must not already hold a run [default: runs/STUDY-seedS].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print run.json to standard output at the end.
     #[arg(long)]
     json: bool,
-    /// No progress.
+    /// Do not show progress.
     #[arg(long, short)]
     quiet: bool,
 }
@@ -80,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
     }
     let summary = match ended {
         Ok(summary) => summary,
-        Err(message) => return Err(Failure::Runtime(miette!("the run broke off: {message}"))),
+        Err(message) => return Err(Failure::Runtime(miette!("the run failed: {message}"))),
     };
     if let Some(report) = failures.pop() {
         for other in failures {
@@ -95,7 +95,7 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
     })
 }
 
-/// The study of the arguments, checked again with what they change.
+/// Loads the study that the arguments specify and checks it again with the values that they override.
 fn study(arguments: &Arguments) -> Result<Study, Failure> {
     let mut study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
     if let Some(algorithm) = arguments.algorithm {
@@ -119,7 +119,7 @@ fn study(arguments: &Arguments) -> Result<Study, Failure> {
     }
 }
 
-/// `runs/STUDY-seedS`, with a number behind it where that is taken.
+/// Returns the folder `runs/STUDY-seedS`, with a number appended if that folder exists.
 fn free_folder(study: &Study) -> PathBuf {
     let name: String = study
         .name
@@ -141,9 +141,10 @@ fn free_folder(study: &Study) -> PathBuf {
         .unwrap_or_else(|| runs.join(base))
 }
 
-/// The first Ctrl-C ends the run in good order; the second ends the program.
+/// Installs a handler for Ctrl-C: the first Ctrl-C stops the run, which still verifies and writes its front; the second
+/// exits the program immediately.
 fn stop_on_interrupt(control: &Arc<RunControl>) -> Result<(), Failure> {
-    // The handler can be set once in a process; so is this command run.
+    // A handler can be set only once in a process, and a process runs this command only once.
     static INTERRUPTED: OnceLock<AtomicBool> = OnceLock::new();
     let interrupted = INTERRUPTED.get_or_init(|| AtomicBool::new(false));
     let control = Arc::clone(control);
@@ -151,7 +152,7 @@ fn stop_on_interrupt(control: &Arc<RunControl>) -> Result<(), Failure> {
         if interrupted.swap(true, Ordering::SeqCst) {
             std::process::exit(130);
         }
-        eprintln!("\nstopping: finishing the generation and verifying the front (Ctrl-C again to quit at once)");
+        eprintln!("\nstopping: finishing the generation and verifying the front (Ctrl-C again to quit immediately)");
         control.stop();
     })
     .map_err(Failure::runtime)
@@ -166,11 +167,11 @@ fn listener(name: &str, work: impl FnOnce() -> Result<(), Report> + Send + 'stat
 fn join(thread: Listener) -> Result<(), Report> {
     thread
         .join()
-        .unwrap_or_else(|_| Err(miette!("a thread that writes the run panicked")))
+        .unwrap_or_else(|_| Err(miette!("a thread that writes the files of the run panicked")))
 }
 
 fn watch(events: &Receiver<Arc<Event>>, progress: &mut Progress) -> Result<RunSummary, String> {
-    let mut ended = Err("the worker thread ended without a word".to_owned());
+    let mut ended = Err("the worker thread ended without a result".to_owned());
     for event in events {
         match &*event {
             Event::Generation(summary) => progress.generation(summary),
@@ -193,14 +194,15 @@ fn tell(study: &Study, summary: &RunSummary, path: &Path, arguments: &Arguments)
         writeln!(out, "{}", tables::front(summary))?;
         writeln!(
             out,
-            "{} evaluations ({} feasible) in {:.1} s{}, verified in {:.1} s; front {} of {} ({} dropped), hypervolume {:.1} kg m",
+            "{} evaluations ({} feasible) in {:.1} s{}, verified in {:.1} s; front: {} of {} verified designs kept, \
+             {} dropped by verification; hypervolume {:.1} kg m",
             last.map_or(0, |last| last.evaluations),
             last.map_or(0, |last| last.feasible),
             summary.times.search_s,
             match summary.outcome {
                 Outcome::Completed | Outcome::Stopped => "",
-                Outcome::TimeUp => ", when its time was up",
-                Outcome::Stagnated => ", when it hardly gained any more",
+                Outcome::TimeUp => " (time limit reached)",
+                Outcome::Stagnated => " (stagnated)",
             },
             summary.times.verification_s,
             summary.front.len(),

@@ -1,4 +1,4 @@
-//! `kinefront pose`.
+//! The command `kinefront pose`.
 
 use std::io::Write;
 
@@ -11,16 +11,16 @@ use super::{Ending, Failure, load_study, tables, to_json};
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// The design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
+    /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
     #[arg(long)]
     design: String,
-    /// The pose, as in "x=0.1 y=0.2 phi_deg=30" (metres and degrees).
+    /// Pose, as in "x=0.1 y=0.2 phi_deg=30" (metres and degrees).
     #[arg(long)]
     pose: String,
-    /// Study file, or the name of a study that comes with the program [default: paper].
+    /// Study file, or name of a built-in study [default: paper].
     #[arg(long, value_name = "FILE")]
     study: Option<String>,
-    /// Print one JSON object.
+    /// Print the result as one JSON object.
     #[arg(long)]
     json: bool,
 }

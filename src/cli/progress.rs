@@ -1,4 +1,5 @@
-//! What a run tells while it goes: a bar on a terminal, plain lines where output is piped, nothing when quiet.
+//! Progress display of a run: a progress bar if standard error is a terminal, otherwise plain lines, and nothing with
+//! `--quiet`.
 
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -8,21 +9,21 @@ use kinefront::study::GenerationSummary;
 
 /// Progress of a run.
 pub enum Progress {
-    /// `--quiet`.
+    /// Nothing is shown (`--quiet`).
     Quiet,
-    /// A bar on a terminal.
+    /// A progress bar on a terminal.
     Bar(ProgressBar),
-    /// A line now and then.
+    /// A line of text for each twentieth of the budget.
     Lines {
-        /// Evaluations in all.
+        /// Total number of evaluations.
         budget: usize,
-        /// Twentieths of the budget told so far.
+        /// Number of twentieths of the budget reported so far.
         told: usize,
     },
 }
 
 impl Progress {
-    /// For a run of `budget` evaluations.
+    /// Creates the progress display of a run of `budget` evaluations.
     pub fn new(budget: usize, quiet: bool) -> Self {
         if quiet {
             return Self::Quiet;
@@ -39,7 +40,7 @@ impl Progress {
         Self::Bar(bar)
     }
 
-    /// A generation is done.
+    /// Reports a complete generation.
     pub fn generation(&mut self, summary: &GenerationSummary) {
         match self {
             Self::Quiet => {}
@@ -67,7 +68,7 @@ impl Progress {
         }
     }
 
-    /// The front is being verified.
+    /// Reports the progress of the verification of the front.
     pub fn verifying(&mut self, done: usize, total: usize) {
         match self {
             Self::Quiet => {}
@@ -79,7 +80,7 @@ impl Progress {
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the progress bar.
     pub fn finish(&self) {
         if let Self::Bar(bar) = self {
             bar.finish_and_clear();

@@ -1,4 +1,4 @@
-//! `kinefront report`: a run, or the paper, as a page with figures and pictures.
+//! The command `kinefront report`: writes a page with figures and pictures on runs or on the paper's study.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -16,32 +16,32 @@ const SCALE: f32 = 2.0;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  kinefront report run                          the run's page in run/report
-  kinefront report prr rpr rrr --out compared   several runs that ask for the same
-  kinefront report --paper --out paper          the 2010 comparison from nothing")]
+  kinefront report run                          report on one run in run/report
+  kinefront report prr rpr rrr --out compared   report on several runs with the same requirements
+  kinefront report --paper --out paper          comparison with the 2010 paper, with new runs of its study")]
 pub struct Arguments {
-    /// Folders of runs; several must ask for the same, apart from architectures and search.
+    /// Run folders; the studies of several runs may differ only in architectures and search.
     #[arg(value_name = "RUN", required_unless_present = "paper", conflicts_with = "paper")]
     runs: Vec<PathBuf>,
-    /// Run the paper's study from nothing, each architecture alone and all together, and report on it.
+    /// Run the paper's study anew, each architecture alone and all together, and report on it.
     #[arg(long)]
     paper: bool,
     /// Folder for the report [default: RUN/report, or paper-report].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace the report that is there.
+    /// Replace an existing report.
     #[arg(long)]
     replace: bool,
-    /// Evaluations for each search under another reading of an assumption; 0: none are made.
+    /// Number of evaluations of each search for the sensitivity to assumptions; 0 omits the sensitivity.
     #[arg(long, value_name = "N", default_value_t = SENSITIVITY, value_parser = clap::value_parser!(u32).range(0..=10_000_000))]
     sensitivity: u32,
-    /// Width of the pictures of designs in pixels.
+    /// Width in pixels of the pictures of designs.
     #[arg(long, value_name = "PIXELS", default_value_t = PICTURE_WIDTH, value_parser = clap::value_parser!(u32).range(160..=8000))]
     picture_width: u32,
-    /// Pixels of a figure's PNG per unit; a figure is 640 units wide.
+    /// Scale of the figures' PNG files in pixels per unit; a figure is 640 units wide.
     #[arg(long, value_name = "SCALE", default_value_t = SCALE, value_parser = scale)]
     scale: f32,
-    /// No progress.
+    /// Do not show progress.
     #[arg(long, short)]
     quiet: bool,
 }
@@ -62,7 +62,7 @@ impl Arguments {
         }
     }
 
-    /// The command, without where files lie.
+    /// Returns the command line for the report, without the paths of files and folders.
     fn command(&self) -> String {
         let mut command = "kinefront report".to_owned();
         if self.paper {
@@ -113,7 +113,7 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
     Ok(Ending::Done)
 }
 
-/// What a person can mend in what was asked is a matter of input, the rest is not.
+/// Classifies an error: those that the user can correct by other input are input errors, all others are runtime errors.
 fn failure(error: ReportError) -> Failure {
     let input = matches!(
         error,

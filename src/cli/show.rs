@@ -1,4 +1,4 @@
-//! `kinefront show`: one design to a recording.
+//! The command `kinefront show`: writes a recording of one design.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -15,10 +15,10 @@ use super::{Ending, Failure};
 pub struct Arguments {
     #[command(flatten)]
     subject: SubjectArguments,
-    /// Field whose heatmap is in front.
+    /// Field whose heatmap is shown first.
     #[arg(long, default_value = Field::InverseCondition.key(), value_parser = field)]
     field: Field,
-    /// File to record to; it must not exist.
+    /// Recording to write; the file must not exist.
     #[arg(long, value_name = "FILE.rrd")]
     record: PathBuf,
 }

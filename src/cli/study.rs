@@ -1,4 +1,4 @@
-//! `kinefront study`.
+//! The command `kinefront study`.
 
 use std::fs::OpenOptions;
 use std::io::Write;
@@ -17,32 +17,32 @@ pub struct Arguments {
 
 #[derive(Debug, clap::Subcommand)]
 enum Command {
-    /// List the studies that come with the program.
+    /// List the built-in studies.
     List,
-    /// Print a study, comments and all.
+    /// Print a built-in study with its comments.
     Show {
-        /// Name of a study that comes with the program.
+        /// Name of the built-in study.
         #[arg(default_value = "paper")]
         name: String,
     },
-    /// Write a commented study file to start from.
+    /// Write a new study file with comments.
     New {
-        /// The file; it must not exist.
+        /// File to write; it must not exist.
         #[arg(default_value = "study.toml")]
         file: PathBuf,
-        /// Study to start from.
+        /// Built-in study to copy.
         #[arg(long, default_value = "paper")]
         from: String,
     },
-    /// Read a study file and say what is wrong with it.
+    /// Check a study file and report its errors.
     Check {
-        /// The file.
+        /// Study file to check.
         file: PathBuf,
     },
 }
 
 fn builtin(name: &str) -> Result<Builtin, Failure> {
-    Builtin::find(name).ok_or_else(|| Failure::Input(miette!("no study `{name}`; there are: {}", builtin_names())))
+    Builtin::find(name).ok_or_else(|| Failure::Input(miette!("no study `{name}`; expected one of {}", builtin_names())))
 }
 
 pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
@@ -67,7 +67,7 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
         }
         Command::Check { file } => {
             let study: Study = load_study(file.to_str()).map_err(Failure::Input)?;
-            writeln!(out, "{}: sound ({})", file.display(), study.name)?;
+            writeln!(out, "{}: valid ({})", file.display(), study.name)?;
         }
     }
     Ok(Ending::Done)

@@ -1,4 +1,4 @@
-//! One design of a command's arguments: as text, or as a row of a table.
+//! The design in the arguments of a command, given as text or as a row of a table.
 
 use std::path::Path;
 
@@ -10,23 +10,23 @@ use super::load_study;
 
 #[derive(Debug, clap::Args)]
 pub struct SubjectArguments {
-    /// A design of a table, as in run/front.csv#12: the row whose id is 12.
+    /// Design in a table, as in run/front.csv#12 for the row with the id 12.
     #[arg(
         value_name = "TABLE#ID",
         required_unless_present = "design",
         conflicts_with = "design"
     )]
     pub row: Option<String>,
-    /// The design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
+    /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
     #[arg(long)]
     pub design: Option<String>,
-    /// Study file, or the name of one that comes with the program [default: study.toml beside the table, else paper].
+    /// Study file, or name of a built-in study [default: study.toml in the folder of the table, else paper].
     #[arg(long, value_name = "FILE")]
     pub study: Option<String>,
 }
 
 impl SubjectArguments {
-    /// The study, the design and what to call it.
+    /// Reads the study, the design and a heading for the design.
     pub fn read(&self) -> Result<(Study, Design, String)> {
         if let Some(text) = &self.design {
             let study = load_study(self.study.as_deref())?;
@@ -36,7 +36,7 @@ impl SubjectArguments {
         let row = self.row.as_deref().unwrap_or_default();
         let (table, id) = row
             .rsplit_once('#')
-            .ok_or_else(|| miette!("`{row}` names no row; expected one like run/front.csv#12"))?;
+            .ok_or_else(|| miette!("`{row}` does not specify a row; expected TABLE#ID, as in run/front.csv#12"))?;
         let table = Path::new(table);
         let beside = table.with_file_name("study.toml");
         let study = match &self.study {
@@ -51,12 +51,12 @@ impl SubjectArguments {
 
 fn study_name(table: &Path) -> String {
     let folder = table.parent().filter(|folder| !folder.as_os_str().is_empty());
-    // Its name alone: where it lies is nothing to record.
+    // Only the name of the folder: its path on this machine must not be recorded.
     let name = folder.and_then(Path::file_name).unwrap_or(table.as_os_str());
     name.to_string_lossy().into_owned()
 }
 
-/// The design of the row with the given id, as text.
+/// Returns the design in the row with the given id, as text.
 fn design_text(table: &Path, id: &str) -> Result<String> {
     let mut reader = csv::Reader::from_path(table).into_diagnostic()?;
     let header = reader.headers().into_diagnostic()?.clone();

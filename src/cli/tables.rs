@@ -1,4 +1,4 @@
-//! Tables for people.
+//! Result tables for the terminal.
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{CellAlignment, Table};
@@ -28,7 +28,7 @@ fn pose_text(pose: &Pose) -> String {
     )
 }
 
-/// One evaluated design.
+/// Formats the evaluation of a design.
 pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
     let design = &evaluation.design;
     let mut facts = table(["design", &design.to_string()], &[]);
@@ -49,27 +49,27 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             ]);
             let centre = home.position;
             facts.add_row([
-                "home".to_owned(),
+                "home pose".to_owned(),
                 format!("({}, {}) m, φ_c = {phi_deg}°", centre.x, centre.y),
             ]);
         }
         _ => {
-            facts.add_row(["regular workspace", "none: infeasible"]);
+            facts.add_row(["regular workspace", "none: the design is infeasible"]);
         }
     }
     if let Some(nearest) = model.nearest(evaluation) {
         let where_least = if evaluation.is_feasible() {
-            "over the workspace"
+            "smallest over the workspace"
         } else {
-            "at the best centre"
+            "at the centre in the best orientation"
         };
-        facts.add_row(["clearance".to_owned(), format!("{}, least {where_least}", text::clearance(&nearest))]);
+        facts.add_row(["clearance".to_owned(), format!("{}, {where_least}", text::clearance(&nearest))]);
     }
     let mut constraints = table(
         [
             "",
             "constraint",
-            "least value",
+            "smallest value",
             "threshold",
             "unit",
             "margin",
@@ -93,7 +93,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
     format!("{facts}\n{constraints}")
 }
 
-/// One design at one pose.
+/// Formats the report on a design at one pose.
 pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseReport, Unreachable>) -> String {
     let mut facts = table(["design", &design.to_string()], &[]);
     facts.add_row(["pose".to_owned(), pose_text(pose)]);
@@ -115,7 +115,7 @@ pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseReport, Unreachab
             point(report.c[leg]),
         ]);
     }
-    facts.add_row(["distance to a limit".to_owned(), format!("{:.6} m", report.slack)]);
+    facts.add_row(["limit margin".to_owned(), format!("{:.6} m", report.slack)]);
     facts.add_row([
         "inverse condition".to_owned(),
         format!("{:.6}", report.inverse_condition),
@@ -136,7 +136,7 @@ pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseReport, Unreachab
     format!("{facts}\n{joints}\n{stiffness}")
 }
 
-/// The verified front of a run, thinned to a screenful.
+/// Formats the verified front of a run, thinned to the number of rows that fit a screen.
 pub fn front(summary: &RunSummary) -> String {
     const MOST_ROWS: usize = 20;
     let mut table = table(

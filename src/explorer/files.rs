@@ -290,7 +290,7 @@ fn report(session: &mut Session, path: PathBuf) -> Option<Job> {
     Some(Box::new(move || {
         writing.iter().for_each(Writing::wait);
         let options = Options {
-            command: "File › Report on the run, in the window".to_owned(),
+            command: "File › Create report, in the window".to_owned(),
             ..Options::default()
         };
         let make = || {

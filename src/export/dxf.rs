@@ -1,5 +1,5 @@
-//! The plan view for CAD, in millimetres: a layer for each kind of thing. As of release 12, which every CAD reads: in later
-//! ones the library leaves out handles of tables that some insist on.
+//! The plan view for CAD, in millimetres, with one layer for each kind of object. The file is DXF release 12, which
+//! every CAD program reads: for later releases the library omits table handles that some programs require.
 
 use ::dxf::entities::{Circle, Entity, EntityType, Line, Polyline, Text, Vertex};
 use ::dxf::enums::AcadVersion;
@@ -14,7 +14,7 @@ use crate::text::number;
 /// Millimetres per metre.
 const MM: f64 = 1e3;
 
-/// Layers with their colours of AutoCAD's index.
+/// Layers with their colours from the AutoCAD Color Index.
 const LAYERS: [(&str, u8); 8] = [
     ("BASE", 8),
     ("RAILS", 9),
@@ -38,7 +38,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
     for label in &scene.labels {
         sheet.text(label.at.truncate(), height, &label.text);
     }
-    // Beside the drawing, from the top.
+    // Beside the drawing, from the top downwards.
     let corner = DVec2::new(1.3 * design.base_radius, design.base_radius);
     for (line, words) in facts(subject).iter().enumerate() {
         sheet.text(corner - DVec2::new(0.0, 1.6 * height * line as f64), height, words);
@@ -50,8 +50,8 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
         .map_err(|error| error.to_string())
 }
 
-/// The file without what release 12 does not know: the library writes subclass marks and handles in tables and entities all
-/// the same. A file is pairs of lines, a code and its value.
+/// Removes what release 12 does not know: the library writes subclass markers and handles in tables and entities for
+/// this release too. A file consists of pairs of lines, a group code and its value.
 fn release_12(text: &str) -> String {
     const SUBCLASS: &str = "100";
     const HANDLE: &str = "5";
@@ -75,7 +75,7 @@ fn facts(subject: &Prepared) -> Vec<String> {
     ];
     if let Some(cylinder) = subject.cylinder {
         facts.push(format!(
-            "regular workspace R_w {} mm, {} deg of turn",
+            "regular workspace R_w {} mm, rotation range {} deg",
             number(MM * cylinder.radius),
             number(cylinder.phi_range.to_degrees())
         ));
@@ -134,7 +134,7 @@ impl Sheet {
                 _ => "LEGS",
             };
             match solid.shape {
-                // Seen from above, a pin is a circle.
+                // In plan view a pin is a circle.
                 SolidShape::Bar { from, to, radius } if from.truncate() == to.truncate() => {
                     self.circle(layer, from.truncate(), radius);
                 }
@@ -156,7 +156,7 @@ impl Sheet {
         }
     }
 
-    /// The outline of a bar seen from above.
+    /// Adds the outline of a bar in plan view.
     fn bar(&mut self, layer: &str, from: DVec3, to: DVec3, radius: f64) {
         let (from, to) = (from.truncate(), to.truncate());
         let side = (to - from).normalize_or(DVec2::X).perp() * radius;

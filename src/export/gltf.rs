@@ -16,9 +16,9 @@ use crate::palette;
 use crate::scene::{Frame, Mesh, Part, Solid, linkage};
 use kinefront_model::spatial::unit;
 
-/// Seconds that the tour takes.
+/// Duration of the tour \[s\].
 const TOUR_SECONDS: f64 = 12.0;
-/// Corners of the circle that shows the regular workspace.
+/// Number of segments of the circle that shows the regular workspace.
 const CIRCLE: usize = 96;
 
 pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
@@ -63,7 +63,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
             .map_err(|error| error.to_string())?;
         file.animate(&bodies, &frames);
     }
-    // The format's y axis is up; ours is z.
+    // In glTF the y axis points up; in the base frame z does.
     let half = std::f32::consts::FRAC_1_SQRT_2;
     let top = file.root.push(Node {
         name: Some(subject.identifier()),
@@ -89,13 +89,13 @@ fn translation(frame: &Frame) -> [f32; 3] {
     [frame.origin.x as f32, frame.origin.y as f32, 0.0]
 }
 
-/// A turn about z as a quaternion.
+/// Returns a rotation about z as a quaternion.
 fn rotation(angle: f64) -> [f32; 4] {
     let (sin, cos) = libm::sincos(0.5 * angle);
     [0.0, 0.0, sin as f32, cos as f32]
 }
 
-/// What numbers are for.
+/// Use of the numbers of an accessor.
 #[derive(Clone, Copy)]
 enum Use {
     Vertices,
@@ -103,7 +103,7 @@ enum Use {
     Animation,
 }
 
-/// The file being put together: its description and its numbers.
+/// The file being assembled: its JSON description and its binary numbers.
 #[derive(Default)]
 struct File {
     root: json::Root,
@@ -112,7 +112,7 @@ struct File {
 }
 
 impl File {
-    /// Numbers of 4 bytes as an accessor of `count` elements.
+    /// Adds numbers of 4 bytes each and returns an accessor of `count` elements.
     fn accessor(&mut self, bytes: &[u8], count: usize, component: ComponentType, kind: Type, purpose: Use) -> Accessor {
         let view = self.root.push(json::buffer::View {
             buffer: Index::new(0),
@@ -145,7 +145,7 @@ impl File {
         }
     }
 
-    /// Vectors of floats; with their bounds where the format asks for them.
+    /// Adds vectors of floats; with `bounds` also their smallest and largest values, which some uses require.
     fn floats<const N: usize>(
         &mut self,
         values: &[[f32; N]],
@@ -173,7 +173,7 @@ impl File {
         self.floats(&values, Type::Vec3, Use::Vertices, true)
     }
 
-    /// Solids as a mesh, a surface for each kind of part, so that each has its colour.
+    /// Adds solids as a mesh with one surface for each kind of part, so that each has its own colour.
     fn solids(&mut self, name: &str, solids: &[Solid]) -> Option<Index<json::Mesh>> {
         let mut surfaces: BTreeMap<Part, Mesh> = BTreeMap::new();
         for solid in solids.iter().filter(|solid| solid.shape.has_volume()) {
@@ -185,7 +185,7 @@ impl File {
 
     fn surface(&mut self, mesh: &Mesh, part: Part) -> json::mesh::Primitive {
         let positions = self.points(&mesh.positions);
-        // Of unit length in single precision, too.
+        // Normalised again, so that the normals have unit length in single precision too.
         let normals: Vec<[f32; 3]> = mesh
             .normals
             .iter()
@@ -240,7 +240,7 @@ impl File {
         if let Some(&material) = self.materials.get(&part) {
             return material;
         }
-        // Screens' colours are bent; the format asks for light.
+        // The palette is in sRGB; the format requires linear values.
         let linear = |value: u8| {
             let value = f64::from(value) / 255.0;
             let light = if value <= 0.04045 {
@@ -285,7 +285,7 @@ impl File {
         })
     }
 
-    /// Moves nodes through frames: `frames[step][body]`.
+    /// Adds an animation that moves the nodes through `frames[step][body]`.
     fn animate(&mut self, nodes: &[Index<Node>], frames: &[Vec<Frame>]) {
         let last = (frames.len() - 1).max(1) as f64;
         let times: Vec<[f32; 1]> = (0..frames.len())
@@ -299,7 +299,7 @@ impl File {
             let turns: Vec<[f32; 4]> = frames
                 .iter()
                 .map(|step| {
-                    // Without a jump where the angle wraps: half of it would turn the body the long way.
+                    // Unwrapped: a jump of 2π changes the sign of the quaternion and turns the body the long way round.
                     angle += libm::remainder(step[body].angle - angle, 2.0 * std::f64::consts::PI);
                     rotation(angle)
                 })
@@ -357,7 +357,7 @@ impl File {
             header: Header {
                 magic: *b"glTF",
                 version: 2,
-                // The writer puts in the true one.
+                // The writer fills in the actual length.
                 length: 0,
             },
             json: Cow::Owned(text),

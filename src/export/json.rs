@@ -1,4 +1,4 @@
-//! The JSON that other programs rely on. Keys are a contract: add, never rename.
+//! The JSON output that other programs rely on. Keys are a contract: new ones may be added, none may be renamed.
 
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use crate::scene::{Body, Frame, Linkage};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::Material;
 
-/// The lengths of a design.
+/// The lengths of a design \[m\].
 #[derive(Debug, Serialize)]
 pub struct DesignJson {
     #[serde(rename = "R")]
@@ -64,7 +64,7 @@ struct ConstraintJson {
     pose: Option<PoseJson>,
 }
 
-/// What `kinefront evaluate --json` tells.
+/// The output of `kinefront evaluate --json`.
 #[derive(Debug, Serialize)]
 pub struct EvaluationJson {
     architecture: &'static str,
@@ -75,16 +75,16 @@ pub struct EvaluationJson {
     home: Option<PoseJson>,
     feasible: bool,
     violation: f64,
-    /// Least clearance of bodies that are not joined, over the workspace; negative where they overlap.
+    /// Smallest clearance between members that are not joined, over the regular workspace; negative if they overlap.
     clearance_m: Option<f64>,
-    /// The two that are nearest there.
+    /// The pair of members with this clearance.
     clearance_pair: Option<[String; 2]>,
-    /// Those that the study asks for.
+    /// The constraints that the study requires.
     constraints: Vec<ConstraintJson>,
 }
 
 impl EvaluationJson {
-    /// What is told of a design that `model` evaluated.
+    /// Creates the output for a design that `model` evaluated.
     pub fn new(model: &Model, evaluation: &Evaluation) -> Self {
         let design = &evaluation.design;
         Self {
@@ -119,7 +119,7 @@ impl EvaluationJson {
     }
 }
 
-/// What `kinefront pose --json` tells.
+/// The output of `kinefront pose --json`.
 #[derive(Debug, Serialize)]
 pub struct PoseReportJson {
     reachable: bool,
@@ -158,7 +158,7 @@ impl From<&Result<PoseReport, Unreachable>> for PoseReportJson {
     }
 }
 
-/// A design as `kinefront export --format json` writes it.
+/// The output of `kinefront export --format json`.
 #[derive(Debug, Serialize)]
 struct ExportJson<'a> {
     kinefront_version: &'static str,
@@ -195,7 +195,7 @@ impl From<&Material> for MaterialJson {
 struct ActuatorJson {
     kind: &'static str,
     unit: &'static str,
-    /// N/m, or N·m/rad.
+    /// Stiffness \[N/m or N·m/rad\].
     stiffness: f64,
 }
 
@@ -232,7 +232,7 @@ struct BarJson {
     mass_kg: f64,
 }
 
-/// Elements of the tensor about the centre of mass, in the body's axes: `xy` is `−∫xy dm`.
+/// Elements of the inertia tensor about the centre of mass, in the body's axes; `xy` is `−∫xy dm`.
 #[derive(Debug, Serialize)]
 struct InertiaJson {
     xx: f64,
@@ -244,11 +244,11 @@ struct InertiaJson {
 #[derive(Debug, Serialize)]
 struct BodyJson<'a> {
     name: &'a str,
-    /// `base`, a body's name, or nothing for the platform.
+    /// `base`, the name of a body, or `None` for the platform.
     parent: Option<&'a str>,
-    /// In the base frame.
+    /// Frame of the body in the base frame.
     frame: FrameJson,
-    /// Of its bars, above the plane of the frames.
+    /// Height of the bars above the plane of the frames.
     height_m: f64,
     joint: Option<JointJson>,
     mass_kg: f64,

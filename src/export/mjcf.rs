@@ -1,5 +1,5 @@
-//! MuJoCo: legs as trees, the platform free in the plane, `C_1` to `C_3` as equality constraints, actuators as position
-//! servos whose gain is the study's actuator stiffness.
+//! MJCF for MuJoCo: legs as trees, the platform free in the plane, `C_1` to `C_3` as equality constraints, and
+//! actuators as position servos whose gain is the study's actuator stiffness.
 
 use super::xml::Element;
 use super::{Format, Prepared, inertial, joint_axis, joint_name, rgba};
@@ -16,7 +16,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
     );
     world = world.children(subject.base.iter().map(geom));
     if let Some(cylinder) = subject.cylinder {
-        // Shown, and nothing else.
+        // A site is only displayed and does not take part in the simulation.
         let [x, y] = cylinder.centre.to_array();
         world.push(
             Element::new("site")
@@ -27,11 +27,11 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
                 .with("rgba", "0.35 0.7 0.43 0.25"),
         );
     }
-    // Bodies are nested in their parents: those that hang on others are put in first.
+    // Bodies are nested in their parents, so children are created before their parents.
     let mut inside: Vec<Vec<Element>> = vec![Vec::new(); linkage.bodies.len()];
     for (place, body) in linkage.bodies.iter().enumerate().rev() {
         let mut element = element(subject, body);
-        // Pushed from the last to the first.
+        // The children were pushed from the last to the first.
         let nested: Vec<Element> = inside[place].drain(..).rev().collect();
         element = element.children(nested);
         match body.parent {
@@ -82,7 +82,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
                 .with("autolimits", "true"),
         )
         .child(
-            // The servos are as stiff as K_act, which asks for short steps.
+            // The servos have the stiffness K_act, which requires a short time step.
             Element::new("option")
                 .with("timestep", "0.0001")
                 .with("integrator", "implicitfast")
@@ -129,7 +129,7 @@ fn element(subject: &Prepared, body: &Body) -> Element {
             }
             element.push(hinge);
         }
-        // Free in the plane; its joints read the pose in the base frame.
+        // The platform is free in the plane; its joint values are the pose in the base frame.
         None => {
             let (sin, cos) = libm::sincos(frame.angle);
             for (axis, kind, direction, value) in [

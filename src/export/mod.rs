@@ -1,15 +1,15 @@
-//! A design as a file of other programs.
+//! Exports a design to file formats of other programs.
 //!
-//! | format | holds |
+//! | format | contents |
 //! |---|---|
-//! | [`Format::Gltf`] | solids in colour, the regular workspace, and a tour of it as an animation |
-//! | [`Format::Mjcf`] | bodies with masses, loops closed by constraints, actuators as stiff as the study's |
-//! | [`Format::Sdf`] | bodies with masses and every joint, loops closed |
+//! | [`Format::Gltf`] | coloured solids, the regular workspace, and a tour of it as an animation |
+//! | [`Format::Mjcf`] | bodies with masses, loops closed by constraints, actuators with the study's stiffness |
+//! | [`Format::Sdf`] | bodies with masses and every joint, with closed loops |
 //! | [`Format::Urdf`] | bodies with masses; a tree, so the loops are cut |
 //! | [`Format::Dxf`] | the plan view in layers, in millimetres |
 //! | [`Format::Json`] | evaluation, bodies, joints, and a tour with its actuator values |
 //!
-//! Every format but the plan view takes its bodies from [`crate::scene::linkage()`], so all agree.
+//! Every format except the plan view takes its bodies from [`crate::scene::linkage()`], so the formats agree.
 
 mod dxf;
 mod gltf;
@@ -34,16 +34,16 @@ use crate::study::Study;
 pub use json::{DesignJson, EvaluationJson, PoseReportJson};
 pub use table::front_to_parquet;
 
-/// A kind of file.
+/// A file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// glTF 2.0, binary.
     Gltf,
-    /// MuJoCo's model.
+    /// MuJoCo's model format.
     Mjcf,
-    /// Simulation Description Format, of Gazebo.
+    /// Simulation Description Format of Gazebo.
     Sdf,
-    /// Unified Robot Description Format, of ROS.
+    /// Unified Robot Description Format of ROS.
     Urdf,
     /// Drawing Exchange Format.
     Dxf,
@@ -52,7 +52,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// All of them.
+    /// All formats.
     pub const ALL: [Format; 6] = [
         Format::Gltf,
         Format::Mjcf,
@@ -62,12 +62,12 @@ impl Format {
         Format::Json,
     ];
 
-    /// The format of a short name.
+    /// Returns the format with a short name.
     pub fn find(key: &str) -> Option<Format> {
         Self::ALL.into_iter().find(|format| format.key() == key)
     }
 
-    /// Short name, as in arguments.
+    /// Returns the short name, as in arguments.
     pub fn key(self) -> &'static str {
         match self {
             Format::Gltf => "gltf",
@@ -79,7 +79,7 @@ impl Format {
         }
     }
 
-    /// A name for a file.
+    /// Returns a default file name.
     pub fn file(self) -> &'static str {
         match self {
             Format::Gltf => "design.glb",
@@ -91,12 +91,12 @@ impl Format {
         }
     }
 
-    /// Extension of its files.
+    /// Returns the file name extension.
     pub fn extension(self) -> &'static str {
         self.file().rsplit('.').next().unwrap_or_default()
     }
 
-    /// Its name alone.
+    /// Returns the display name.
     pub fn name(self) -> &'static str {
         match self {
             Format::Gltf => "glTF",
@@ -108,7 +108,7 @@ impl Format {
         }
     }
 
-    /// Its name and what it is for.
+    /// Returns the display name with the intended use.
     pub fn title(self) -> &'static str {
         match self {
             Format::Gltf => "glTF, for viewers and CAD",
@@ -116,23 +116,24 @@ impl Format {
             Format::Sdf => "SDF, for Gazebo",
             Format::Urdf => "URDF, for ROS",
             Format::Dxf => "DXF, plan view",
-            Format::Json => "JSON, everything",
+            Format::Json => "JSON, all data",
         }
     }
 
-    /// What of a design's mechanics the format does not hold, in words; `None` where it holds all.
+    /// Returns a text that lists what the format omits of a design's mechanics; `None` if it omits nothing.
     pub fn lost(self) -> Option<&'static str> {
         match self {
             Format::Mjcf | Format::Json => None,
-            Format::Gltf => Some("joints, masses and actuators: it is a picture that moves"),
-            Format::Dxf => Some("joints, masses, actuators and heights: it is a plan"),
+            Format::Gltf => Some("joints, masses and actuators; the file contains only geometry and an animation"),
+            Format::Dxf => Some("joints, masses, actuators and heights; the file contains only the plan view"),
             Format::Sdf => Some(
-                "the actuators' stiffness, and which joints are driven; Gazebo's default engine does not close loops, that of \
-                 Gazebo Classic does",
+                "the stiffness of the actuators, and which joints are actuated; Gazebo's default physics engine does \
+                 not close loops, that of Gazebo Classic does",
             ),
             Format::Urdf => Some(
-                "the closed loops: URDF holds trees, so the platform hangs on leg 1 and legs 2 and 3 end free at C2 and C3; \
-                 the actuators' stiffness, and which joints are driven; its limits of effort and speed are placeholders",
+                "the closed loops (URDF describes trees, so the platform is attached to leg 1, and legs 2 and 3 end \
+                 free at C2 and C3); the stiffness of the actuators, and which joints are actuated; the effort and \
+                 velocity limits are placeholders",
             ),
         }
     }
@@ -141,10 +142,10 @@ impl Format {
 /// Why a design cannot be exported.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// The pose is not reached.
+    /// The design does not reach the pose.
     #[error("the design does not reach the pose")]
     Unreachable(#[from] Unreachable),
-    /// A bar without a radius.
+    /// A bar has radius 0, but the format requires masses and shapes; contains the format's short name.
     #[error("a bar of radius 0 has no mass and no shape; {0} needs r_j and r_p above 0")]
     NoBar(&'static str),
     /// Writing the format failed.
@@ -152,26 +153,26 @@ pub enum ExportError {
     Format {
         /// Name of the format.
         format: &'static str,
-        /// Why.
+        /// Reason.
         message: String,
     },
 }
 
-/// What is exported: a design at a pose.
+/// The subject of an export: a design at a pose.
 #[derive(Debug, Clone, Copy)]
 pub struct Subject<'a> {
-    /// The study that it was evaluated for.
+    /// The study for which the design was evaluated.
     pub study: &'a Study,
-    /// The design's evaluation.
+    /// The evaluation of the design.
     pub evaluation: &'a Evaluation,
-    /// Where the platform is; its home where there is none.
+    /// Pose of the platform; the home pose if `None`.
     pub pose: Option<Pose>,
 }
 
-/// Poses around each rim of the tour that files hold.
+/// Number of poses around each rim of the exported tour.
 const TOUR_STEPS: usize = 72;
 
-/// A subject made ready for every format.
+/// A subject prepared for every format.
 struct Prepared<'a> {
     study: &'a Study,
     evaluation: &'a Evaluation,
@@ -179,29 +180,29 @@ struct Prepared<'a> {
     pose: Pose,
     linkage: Linkage,
     scene: Scene,
-    /// What stands still, as solids.
+    /// The fixed parts (base triangle and rails) as solids.
     base: Vec<Solid>,
     cylinder: Option<RegularCylinder>,
     tour: Option<Tour>,
 }
 
 impl Prepared<'_> {
-    /// `3-PRR R=3.066 …`, as the program reads it.
+    /// Returns the design as text that the program can read: `3-PRR R=3.066 …`.
     fn title(&self) -> String {
         self.evaluation.design.to_string()
     }
 
-    /// Name of the model in files that want an identifier.
+    /// Returns the name of the model for formats that require an identifier.
     fn identifier(&self) -> String {
         let name = self.evaluation.design.architecture.name();
         format!("kinefront_{}", name.to_lowercase().replace('-', "_"))
     }
 
-    /// What every simulator's file says at its head.
+    /// Returns the comment at the head of every simulator file.
     fn preamble(&self, format: Format) -> String {
         let mut words = format!(
             "{}\nWritten by Kinefront {}. Lengths in m, angles in rad, masses in kg; base frame, z out of the plane of motion.\n\
-             Bars are solid cylinders of density {} kg/m^3; bodies without mass in the model have {MASSLESS} kg here.",
+             Bars are solid cylinders of density {} kg/m^3; bodies without mass in the model are given {MASSLESS} kg.",
             self.title(),
             env!("CARGO_PKG_VERSION"),
             self.model.material.density,
@@ -209,10 +210,10 @@ impl Prepared<'_> {
         let counted = self.model.platform_bars;
         if counted as usize != LEGS {
             words +=
-                &format!(" The study counts {counted} of the platform's three bars: each has that share of its mass.");
+                &format!(" The study counts {counted} of the three platform bars; their masses are scaled to match.");
         }
         if matches!(format, Format::Sdf | Format::Urdf) {
-            words += "\nJoint values count from the pose that is written.";
+            words += "\nJoint values are relative to the exported pose, at which they are 0.";
         }
         if let Some(lost) = format.lost() {
             words += "\nNot in this file: ";
@@ -223,22 +224,22 @@ impl Prepared<'_> {
     }
 }
 
-/// Mass that simulators are given for a body that has none in the model \[kg\].
+/// Mass written for a body that has no mass in the model, because simulators require one \[kg\].
 const MASSLESS: f64 = 1e-3;
 
-/// Mass, centre and moments of inertia `[xx, yy, zz, xy]` of a body for a simulator.
+/// Returns the mass, centre of mass and moments of inertia `[xx, yy, zz, xy]` of a body for a simulator.
 fn inertial(body: &Body) -> (f64, DVec3, [f64; 4]) {
     let mass = body.mass();
     if mass > 0.0 {
         return (mass, body.centre_of_mass().extend(body.height), body.inertia());
     }
-    // Of a ball with a radius of a centimetre.
+    // The moment of inertia of a solid sphere with a radius of 1 cm.
     let moment = 0.4 * MASSLESS * 1e-4;
     (MASSLESS, DVec3::Z * body.height, [moment, moment, moment, 0.0])
 }
 
-/// A length, angle or direction as text: the shortest that reads back to the same bits. What turning frames leaves of a zero
-/// is a zero.
+/// Formats a length, angle or direction with the fewest digits that read back to the same value. Values below 1e-14,
+/// which the rotation of frames leaves in place of zeros, are written as 0.
 fn text(value: f64) -> String {
     const NOTHING: f64 = 1e-14;
     if value.abs() < NOTHING {
@@ -248,18 +249,18 @@ fn text(value: f64) -> String {
     }
 }
 
-/// A part's colour, 0 to 1.
+/// Returns the colour of a part as RGBA, each value from 0 to 1.
 fn rgba(part: Part) -> [f64; 4] {
     let [r, g, b] = palette::part(part).map(|value| (f64::from(value) / 255.0 * 1e3).round() / 1e3);
     [r, g, b, 1.0]
 }
 
-/// Name of the joint by which a body hangs on its parent.
+/// Returns the name of the joint between a body and its parent.
 fn joint_name(body: &Body) -> String {
     format!("{}_joint", body.name)
 }
 
-/// Axis of a joint in its body's frame.
+/// Returns the axis of a joint in the frame of its body.
 fn joint_axis(kind: Actuator) -> &'static str {
     match kind {
         Actuator::Prismatic => "1 0 0",
@@ -267,14 +268,15 @@ fn joint_axis(kind: Actuator) -> &'static str {
     }
 }
 
-/// Where SDF and URDF put a shape that they centre, with cylinders along z: position and roll, pitch, yaw.
+/// Returns the position and the roll, pitch and yaw of a shape for SDF and URDF, in which a shape is centred at its
+/// origin and a cylinder lies along z.
 fn place(shape: &SolidShape) -> [f64; 6] {
     match *shape {
         SolidShape::Block { centre, angle, .. } => [centre.x, centre.y, centre.z, 0.0, 0.0, angle],
         SolidShape::Bar { from, to, .. } => {
             let middle = 0.5 * (from + to);
             let way = (to - from).truncate();
-            // Bars lie in the plane; pins stand upright.
+            // Bars lie in the plane; pins are along z.
             let (pitch, yaw) = if way.length() > 0.0 {
                 (std::f64::consts::FRAC_PI_2, libm::atan2(way.y, way.x))
             } else {
@@ -285,10 +287,11 @@ fn place(shape: &SolidShape) -> [f64; 6] {
     }
 }
 
-/// The design in a format.
+/// Exports the design in a format.
 ///
 /// # Errors
-/// [`ExportError`] when the pose is not reached, or a simulator's bar has no radius.
+/// [`ExportError`] when the design does not reach the pose, when a simulator format is requested for a design with a
+/// bar of radius 0, or when the format cannot be written.
 pub fn export(subject: &Subject, format: Format) -> Result<Vec<u8>, ExportError> {
     let Subject {
         study,

@@ -1,11 +1,11 @@
-//! SDF: a link for every body, a joint for every joint, those that close the loops among them.
+//! SDF: a link for every body and a joint for every joint, including the joints that close the loops.
 
 use super::xml::{Element, numbers};
 use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, text};
 use kinefront_model::mechanism::Actuator;
 use crate::scene::{Body, Frame, Joint, Solid, SolidShape};
 
-/// Stands for "no limit" where the format asks for a number.
+/// Value that means "no limit" where the format requires a number.
 const UNLIMITED: f64 = 1e16;
 
 pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
@@ -13,7 +13,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
     let mut model = Element::new("model").with("name", subject.identifier()).child(
         Element::new("link")
             .with("name", "base")
-            // The ground that the legs stand on.
+            // The base carries the legs and is fixed to the world, so its mass has no effect.
             .child(Element::new("inertial").leaf("mass", "1"))
             .children(
                 subject
@@ -34,7 +34,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
         model.push(link(body));
     }
     for body in &linkage.bodies {
-        // The platform hangs on the legs alone.
+        // The platform has no parent joint; only the closures connect it to the legs.
         if let Some(joint) = body.joint {
             let parent = body
                 .parent
@@ -56,7 +56,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
         model.push(joint_element(&name, parent, &platform.name, passive, Some([x, y])));
     }
     Element::new("sdf")
-        // The newest that Gazebo Classic reads, which closes loops.
+        // The newest version that Gazebo Classic reads, and Gazebo Classic closes loops.
         .with("version", "1.7")
         .child(model)
         .document(&subject.preamble(Format::Sdf))
@@ -108,7 +108,7 @@ fn visual(index: usize, solid: &Solid) -> Element {
         )
 }
 
-/// A joint in the child's frame, or at a point of it.
+/// Returns a joint at the origin of the child's frame, or at the point `at` of it.
 fn joint_element(name: &str, parent: &str, child: &str, joint: Joint, at: Option<[f64; 2]>) -> Element {
     let kind = match joint.kind {
         Actuator::Prismatic => "prismatic",

@@ -18,7 +18,8 @@ enum Column {
 }
 
 impl Column {
-    /// The values of a column of our tables; one that is not ours holds numbers, or else texts. No text: no value.
+    /// Parses the values of a column. A column of Kinefront's tables has a known type; any other column contains
+    /// numbers or, failing that, texts. An empty text is a missing value.
     fn new(name: &str, texts: &[&str]) -> Result<Self, String> {
         fn read<T: std::str::FromStr>(name: &str, texts: &[&str]) -> Result<Vec<Option<T>>, String> {
             let parse = |(row, text): (usize, &&str)| match *text {
@@ -26,7 +27,7 @@ impl Column {
                 text => text
                     .parse()
                     .map(Some)
-                    .map_err(|_| format!("line {}: `{text}` does not fit the column `{name}`", row + 2)),
+                    .map_err(|_| format!("line {}: `{text}` is not a valid value for the column `{name}`", row + 2)),
             };
             texts.iter().enumerate().map(parse).collect()
         }
@@ -50,15 +51,15 @@ impl Column {
     }
 }
 
-/// A table of designs as it stands in `front.csv` or `designs.csv`, with the same columns.
+/// Converts a table of designs, the contents of `front.csv` or `designs.csv`, to Parquet with the same columns.
 ///
 /// # Errors
-/// What is wrong with the table, in words.
+/// A message that says what is wrong with the table.
 pub fn front_to_parquet(table: &[u8]) -> Result<Vec<u8>, String> {
     let mut reader = csv::Reader::from_reader(table);
     let header = reader.headers().map_err(|error| error.to_string())?.clone();
     if header.is_empty() {
-        return Err("it has no columns".to_owned());
+        return Err("the table has no columns".to_owned());
     }
     let records: Vec<csv::StringRecord> = reader
         .records()
@@ -91,7 +92,7 @@ fn write(header: &csv::StringRecord, columns: &[Column]) -> Result<Vec<u8>, Parq
     let mut group = file.next_row_group()?;
     for column in columns {
         let Some(mut writer) = group.next_column()? else { break };
-        // A level of 0 stands for a missing value.
+        // A definition level of 0 marks a missing value.
         fn split<S, T>(values: &[Option<S>], make: impl Fn(&S) -> T) -> (Vec<T>, Vec<i16>) {
             let levels = values.iter().map(|value| i16::from(value.is_some())).collect();
             (values.iter().flatten().map(make).collect(), levels)

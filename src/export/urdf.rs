@@ -1,4 +1,4 @@
-//! URDF: the tree that is left when the loops are cut at `C_2` and `C_3`.
+//! URDF: the tree that remains when the loops are cut at `C_2` and `C_3`.
 
 use glam::DVec2;
 
@@ -7,7 +7,7 @@ use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, tex
 use kinefront_model::mechanism::Actuator;
 use crate::scene::{Body, Solid, SolidShape};
 
-/// Force, torque and speed that joints are given, since the format asks for them and the study knows none.
+/// Limits of force or torque and of speed for all joints: the format requires them and the study does not define them.
 const EFFORT: f64 = 1e4;
 const SPEED: f64 = 10.0;
 
@@ -19,7 +19,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
             .children(subject.base.iter().map(visual)),
     );
     for body in &linkage.bodies {
-        // The platform's link has its origin where it hangs: in C_1.
+        // URDF places the origin of a link at its parent joint, which for the platform is C_1.
         let shift = match body.joint {
             Some(_) => DVec2::ZERO,
             None => linkage.closures[0].on_platform,
@@ -65,7 +65,8 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
         )
         .child(Element::new("axis").with("xyz", joint_axis(Actuator::Revolute))),
     );
-    // Frames of what was cut, so that a program can close it again: C_i on the leg and on the platform, and P.
+    // Frames at P and at the cut joints (C_i on the leg and on the platform), so that a program can close the loops
+    // again.
     let mut frames = vec![("P".to_owned(), platform.name.clone(), -closure.on_platform)];
     for (leg, cut) in linkage.closures.iter().enumerate().skip(1) {
         frames.push((

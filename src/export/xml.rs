@@ -1,11 +1,11 @@
-//! Elements as a tree, written with indentation.
+//! A tree of XML elements, written with indentation.
 
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
 
 use super::text;
 
-/// An element.
+/// An XML element.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Element {
     name: &'static str,
@@ -27,30 +27,30 @@ impl Element {
         }
     }
 
-    /// With an attribute.
+    /// Adds an attribute.
     pub(super) fn with(mut self, key: &'static str, value: impl Into<String>) -> Self {
         self.attributes.push((key, value.into()));
         self
     }
 
-    /// With an attribute of numbers.
+    /// Adds an attribute that consists of numbers.
     pub(super) fn with_numbers(self, key: &'static str, values: &[f64]) -> Self {
         self.with(key, numbers(values))
     }
 
-    /// With an element inside.
+    /// Adds a child element.
     pub(super) fn child(mut self, child: Element) -> Self {
         self.push(child);
         self
     }
 
-    /// With elements inside.
+    /// Adds child elements.
     pub(super) fn children(mut self, children: impl IntoIterator<Item = Element>) -> Self {
         self.content.extend(children.into_iter().map(Content::Element));
         self
     }
 
-    /// With an element inside that holds only text.
+    /// Adds a child element that contains only text.
     pub(super) fn leaf(self, name: &'static str, words: impl Into<String>) -> Self {
         let mut leaf = Element::new(name);
         leaf.content.push(Content::Text(words.into()));
@@ -61,7 +61,7 @@ impl Element {
         self.content.push(Content::Element(child));
     }
 
-    /// The document with this root and a comment before it.
+    /// Writes the document with this element as its root and a comment before it.
     pub(super) fn document(&self, preamble: &str) -> Result<Vec<u8>, String> {
         let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
         let write = |writer: &mut Writer<Vec<u8>>| -> std::io::Result<()> {
@@ -95,11 +95,11 @@ impl Element {
 }
 
 fn comment(words: &str) -> Event<'static> {
-    // Two hyphens would end it; the minus sign is read as well.
+    // A comment must not contain two hyphens; minus signs replace them and read the same.
     Event::Comment(BytesText::from_escaped(format!(" {} ", words.replace("--", "−−"))))
 }
 
-/// Numbers with spaces between them.
+/// Formats numbers, separated by spaces.
 pub(super) fn numbers(values: &[f64]) -> String {
     let texts: Vec<String> = values.iter().map(|&value| text(value)).collect();
     texts.join(" ")

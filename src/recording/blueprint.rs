@@ -1,7 +1,7 @@
-//! The layout that the stock viewer opens a recording with.
+//! The layout with which the stock viewer opens a recording.
 //!
-//! The SDK's own blueprint types leave out most view properties (ranges in time, axes, legends), so the layout is
-//! written with the archetypes they are made of.
+//! The SDK's own blueprint types lack most view properties (time ranges, axes, legends), so the layout is written with
+//! the archetypes on which they are built.
 
 use rerun::blueprint::components::{BackgroundKind, ContainerKind, Corner2D, Eye3DKind, PanelState, PlayState};
 use rerun::datatypes::{Range2D, TimeRange, TimeRangeBoundary, VisibleTimeRange};
@@ -14,9 +14,9 @@ use rerun::{AsComponents, EntityPath, RecordingStream, StoreId, StoreKind, TimeP
 use super::{APPLICATION_ID, paths, timelines};
 use crate::scene::Field;
 
-/// Sends the layout of a run's recording; `clouds` are the entities whose rows add up to the cloud of designs.
+/// Sends the layout of a run's recording; `clouds` are the entities whose rows together form the cloud of designs.
 ///
-/// `base_radius` is the largest `R` of the study \[m\], which the 3-D view is set up for.
+/// `base_radius` is the largest `R` of the study \[m\], which sets the scale of the 3-D views.
 pub(super) fn send_run_layout(
     recording: &RecordingStream,
     clouds: &[String],
@@ -26,13 +26,13 @@ pub(super) fn send_run_layout(
     let mut layout = Layout::new();
     let scatter = layout.view("2D", "Pareto front", paths::SCATTER, &["+ $origin/**"])?;
     layout.property(&scatter, "VisualBounds2D", &parts::VisualBounds2D::new(scatter_bounds))?;
-    // The front and the axes are states, of which the latest is drawn; the designs are a history.
+    // Of the front and the axes the latest state is drawn; of the designs the whole history.
     for cloud in clouds {
         let place = parts::ViewContents::blueprint_base_visualizer_path_for_entity(scatter.id, &cloud.as_str().into());
         layout.log(place, &up_to_now())?;
     }
     let hypervolume = layout.curve("Hypervolume [kg·m]", paths::HYPERVOLUME, "+ $origin")?;
-    let feasible = layout.curve("Feasible share", paths::FEASIBLE_SHARE, "+ $origin")?;
+    let feasible = layout.curve("Feasible fraction", paths::FEASIBLE_SHARE, "+ $origin")?;
     let size = layout.curve("Designs on the front", paths::FRONT_SIZE, "+ $origin")?;
     let along = layout.curve("Along the front", paths::ALONG_FRONT, "+ $origin/**")?;
     layout.legend(&along)?;
@@ -48,7 +48,7 @@ pub(super) fn send_run_layout(
     let configuration = layout.configuration(base_radius)?;
 
     let curves = layout.container(ContainerKind::Tabs, &[hypervolume, feasible, size], &[])?;
-    // Each has data on the other's timelines only: side by side, one of them always speaks.
+    // The two have their data on different timelines; side by side, one of them has data on whichever is selected.
     let curves = layout.container(ContainerKind::Horizontal, &[curves, along], &[1.0, 1.0])?;
     let left = layout.container(ContainerKind::Vertical, &[scatter, curves], &[2.2, 1.0])?;
     let middle = layout.container(ContainerKind::Vertical, &[manipulator, configuration], &[1.7, 1.0])?;
@@ -59,8 +59,9 @@ pub(super) fn send_run_layout(
     Ok(())
 }
 
-/// Sends the layout of a recording of one design that reaches `extent` \[m\] from O.
-/// `first` is the field whose map is in front.
+/// Sends the layout of the recording of one design that extends to the distance `extent` \[m\] from O.
+///
+/// `first` is the field whose heatmap is in front.
 pub(super) fn send_design_layout(recording: &RecordingStream, extent: f64, first: Field) -> Result<(), ChunkError> {
     let mut layout = Layout::new();
     let mut maps = Vec::new();
@@ -74,7 +75,7 @@ pub(super) fn send_design_layout(recording: &RecordingStream, extent: f64, first
             format!("+ {}/{key}/**", paths::HEATMAP_LEGEND),
             format!("+ {}/**", paths::LIMITS),
         ];
-        // Where the stiffness is looked at, its ellipsoids belong to it.
+        // The heatmaps of in-plane stiffness and displacement also show the ellipsoids of that quantity.
         match field {
             Field::StiffnessXy => contents.push(format!("+ {}/stiffness/**", paths::ELLIPSOIDS)),
             Field::Displacement => contents.push(format!("+ {}/displacement/**", paths::ELLIPSOIDS)),
@@ -94,8 +95,8 @@ pub(super) fn send_design_layout(recording: &RecordingStream, extent: f64, first
     Ok(())
 }
 
-/// Sends the layout of a window's scene; `extent` \[m\] is what its 3-D views are set up for. The pinned designs are in
-/// front where `comparing` gives what their view is set up for.
+/// Sends the layout of a window's scene; `extent` \[m\] sets the scale of its 3-D views. If `comparing` is given, the
+/// pinned designs are in front, and `comparing` \[m\] sets the scale of their view.
 pub(super) fn send_live_layout(
     recording: &RecordingStream,
     scatter_bounds: Range2D,
@@ -119,7 +120,7 @@ pub(super) fn send_live_layout(
     Ok(())
 }
 
-/// Everything from the start to the time cursor, on either timeline.
+/// Returns the time range from the start to the time cursor, on either timeline.
 fn up_to_now() -> parts::VisibleTimeRanges {
     parts::VisibleTimeRanges::new(
         [timelines::EVALUATION, timelines::GENERATION].map(|timeline| VisibleTimeRange {
@@ -147,7 +148,7 @@ struct Node {
 
 impl Layout {
     fn new() -> Self {
-        // An id of its own: viewers merge layouts of one id.
+        // Each layout has a unique id, because viewers merge layouts with the same id.
         let id = StoreId::new(
             StoreKind::Blueprint,
             APPLICATION_ID,
@@ -203,7 +204,7 @@ impl Layout {
         Ok(node)
     }
 
-    /// Shows the legend of a view of curves.
+    /// Shows the legend of a time-series view.
     fn legend(&mut self, view: &Node) -> Result<(), ChunkError> {
         let legend = parts::PlotLegend::new()
             .with_visible(true)
@@ -211,14 +212,14 @@ impl Layout {
         self.property(view, "PlotLegend", &legend)
     }
 
-    /// A view of the manipulator, seen from before and above.
+    /// Adds a view of the manipulator, seen from the front and above.
     fn space(&mut self, name: &str, origin: &str, contents: &[&str], base_radius: f64) -> Result<Node, ChunkError> {
         let node = self.view("3D", name, origin, contents)?;
         self.eye(&node, [0.32, -0.95, 2.25], [0.32, -0.06, 0.0], base_radius)?;
         Ok(node)
     }
 
-    /// A view of the configuration space, seen from the side.
+    /// Adds a view of the configuration space, seen from the side.
     fn configuration(&mut self, base_radius: f64) -> Result<Node, ChunkError> {
         let node = self.view(
             "3D",
@@ -230,7 +231,7 @@ impl Layout {
         Ok(node)
     }
 
-    /// Sets up a 3-D view: eye and target in multiples of `R`, no grid.
+    /// Sets up a 3-D view: eye and target as multiples of `R`, without a grid.
     fn eye(&mut self, view: &Node, eye: [f64; 3], target: [f64; 3], base_radius: f64) -> Result<(), ChunkError> {
         let place = |p: [f64; 3]| p.map(|coordinate| (coordinate * base_radius) as f32);
         let controls = parts::EyeControls3D::new()
@@ -248,7 +249,7 @@ impl Layout {
         self.view("TextDocument", name, entity, &["+ $origin"])
     }
 
-    /// A property of a view; `name` is the archetype's.
+    /// Sets a property of a view; `name` is the name of the archetype.
     fn property(&mut self, view: &Node, name: &str, part: &dyn AsComponents) -> Result<(), ChunkError> {
         self.log(format!("{}/{name}", view.path), part)
     }

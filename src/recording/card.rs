@@ -1,11 +1,11 @@
-//! A design's numbers as a card to read, in markdown.
+//! The numbers of a design as a card, in markdown.
 
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::VARIABLES;
 use crate::scene::{EllipsoidSet, Tour};
 use crate::text::short;
 
-/// The card of a design; `heading` says which one it is.
+/// Returns the card of a design; `heading` names the design.
 pub(super) fn card(
     heading: &str,
     model: &Model,
@@ -40,7 +40,7 @@ pub(super) fn card(
             format!(" {value:.4} m |")
         };
     }
-    card += "\n\n| | constraint | least value | threshold | margin | |\n|---|---|---|---|---|---|\n";
+    card += "\n\n| | constraint | smallest value | threshold | margin | |\n|---|---|---|---|---|---|\n";
     for report in evaluation.constraints.iter().filter(|report| report.asked) {
         card += &format!(
             "| {} | {} | {} {} | {} | {:+.1} % | {} |\n",
@@ -55,19 +55,20 @@ pub(super) fn card(
     }
     card.push('\n');
     if let Some(nearest) = model.nearest(evaluation) {
-        card += &format!("- clearance of the bodies: {}\n", text::clearance(&nearest));
+        card += &format!("- smallest clearance between members: {}\n", text::clearance(&nearest));
     }
     for set in ellipsoids {
         card += &format!("- {}\n", set.scale_text());
     }
     if let Some(tour) = tour {
         card += &format!(
-            "- tour of {} poses at radius {:.4} m; forward kinematics gives each of them back to {:.0e} m\n",
+            "- tour of {} poses at radius {:.4} m; forward kinematics reproduces each pose within {:.0e} m\n",
             tour.poses.len(),
             tour.radius,
             tour.forward_error
         );
     }
-    card + "\nwhite: regular workspace · magenta: threshold of the field · red: parallel singularity · orange edge: legs \
-            stretched out (serial singularity) · grey edge: joint limit · red dots: where active constraints are smallest\n"
+    card + "\nwhite: regular workspace · magenta: threshold of the field · red: parallel singularity · orange edge: \
+            end of a leg's reach (serial singularity) · grey edge: joint limit · red dots: poses at which the active \
+            constraints have their smallest values\n"
 }

@@ -1,4 +1,4 @@
-//! Colours of the palette as the viewer takes them, and those of overlays.
+//! The colours of the palette as Rerun colours, and the colours of overlays.
 
 use rerun::Color;
 
@@ -6,32 +6,33 @@ use kinefront_model::mechanism::{Architecture, ReachReason};
 use crate::palette;
 use crate::scene::{Part, Scale};
 
-/// The architecture's colour.
+/// Returns the colour of an architecture.
 pub(super) fn architecture(architecture: Architecture) -> Color {
     rgb(palette::architecture(architecture))
 }
 
-/// The part's colour.
+/// Returns the colour of a part.
 pub(super) fn part(part: Part) -> Color {
     rgb(palette::part(part))
 }
 
 /// The regular workspace.
 pub(super) const WORKSPACE: [u8; 3] = [255, 255, 255];
-/// Where a field has its threshold.
+/// Contour at a field's threshold.
 pub(super) const THRESHOLD: [u8; 3] = [255, 70, 200];
 /// Parallel singularities.
 pub(super) const SINGULAR: [u8; 3] = [255, 40, 40];
-/// Poses that stop the workspace from growing.
+/// Poses that limit the regular workspace.
 pub(super) const LIMIT: [u8; 3] = [255, 70, 60];
 /// Text and ticks.
 pub(super) const TEXT: [u8; 3] = [205, 208, 214];
-/// Text on a light ground.
+/// Text on a light background.
 pub(super) const INK: [u8; 3] = [12, 14, 18];
 /// Ellipsoids.
 pub(super) const ELLIPSOID: [u8; 3] = [255, 235, 140];
 
-/// Edge of the reachable workspace: red where a leg is stretched out, which is a serial singularity.
+/// Returns the colour of an edge of the reachable workspace: orange at the end of a leg's reach, which is a serial
+/// singularity, and where two joints of a leg coincide; grey at a joint limit.
 pub(super) fn edge(reason: ReachReason) -> Color {
     rgb(match reason {
         ReachReason::OutOfReach | ReachReason::Degenerate => [255, 140, 60],
@@ -43,7 +44,7 @@ pub(super) fn rgb([r, g, b]: [u8; 3]) -> Color {
     Color::from_rgb(r, g, b)
 }
 
-/// A range of values spread over viridis, which is even to the eye and in print.
+/// Maps a range of values to the colour map viridis, which is perceptually uniform on screen and in print.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ColorMap {
     scale: Scale,
@@ -51,11 +52,11 @@ pub(super) struct ColorMap {
     high: f64,
 }
 
-/// Most decades that a logarithmic map covers: beyond them differences do not matter.
+/// Largest number of decades that a logarithmic map covers; differences beyond that range do not matter.
 const DECADES: f64 = 4.0;
 
 impl ColorMap {
-    /// A map over `range`; a logarithmic one keeps the decades on the side of `threshold`.
+    /// Creates a map over the range from `low` to `high`; a logarithmic map keeps the decades next to `threshold`.
     pub(super) fn new(scale: Scale, [low, high]: [f64; 2], threshold: f64) -> Self {
         match scale {
             Scale::Linear => Self {
@@ -73,7 +74,7 @@ impl ColorMap {
         }
     }
 
-    /// Place of a value in the map, 0 to 1.
+    /// Returns the position of a value in the map, from 0 to 1.
     fn share(&self, value: f64) -> f64 {
         let share = match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
@@ -82,23 +83,23 @@ impl ColorMap {
         share.clamp(0.0, 1.0)
     }
 
-    /// Colour of a value.
+    /// Returns the colour of a value.
     pub(super) fn color(&self, value: f64) -> Color {
         Self::at(self.share(value))
     }
 
-    /// Colour at a place of the map.
+    /// Returns the colour at a position in the map, from 0 to 1.
     pub(super) fn at(share: f64) -> Color {
         let color = colorous::VIRIDIS.eval_continuous(share.clamp(0.0, 1.0));
         Color::from_rgb(color.r, color.g, color.b)
     }
 
-    /// Place of a value if it lies inside the map.
+    /// Returns the position of a value in the map, if the map's range contains it.
     pub(super) fn place(&self, value: f64) -> Option<f64> {
         (self.low..=self.high).contains(&value).then(|| self.share(value))
     }
 
-    /// Round values to write beside the map, with their places.
+    /// Returns round values for the tick labels of the map, with their positions.
     pub(super) fn ticks(&self) -> Vec<(f64, f64)> {
         const FEWEST: usize = 3;
         let place = |values: Vec<f64>| -> Vec<(f64, f64)> {
@@ -111,7 +112,7 @@ impl ColorMap {
             Scale::Linear => place(self.even()),
             Scale::Logarithmic => {
                 let decades = place(self.decades());
-                // A map within a decade has no powers of ten to show.
+                // A narrow range contains too few of these values.
                 if decades.len() < FEWEST {
                     place(self.even())
                 } else {
@@ -121,7 +122,7 @@ impl ColorMap {
         }
     }
 
-    /// Multiples of a round step.
+    /// Returns the multiples of a round step.
     fn even(&self) -> Vec<f64> {
         let span = self.high - self.low;
         let decade = libm::pow(10.0, libm::floor(libm::log10(span)));
@@ -134,7 +135,7 @@ impl ColorMap {
         (first..=last).map(|k| k as f64 * step).collect()
     }
 
-    /// Powers of ten, with twos and fives between them where there are few.
+    /// Returns the powers of ten, with 2 and 5 times each if there are few.
     fn decades(&self) -> Vec<f64> {
         let first = libm::log10(self.low).floor() as i32;
         let last = libm::log10(self.high).ceil() as i32;

@@ -1,4 +1,4 @@
-//! A row per design: typed columns of the entity `/designs`.
+//! Typed columns of the entity `/designs`, one row per design.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ fn descriptor(name: &str) -> Result<ComponentDescriptor, RecordingError> {
     Ok(ComponentDescriptor::partial(identifier))
 }
 
-/// A column with a value in every row.
+/// Creates a column with a value in every row.
 fn dense(name: &str, array: ArrayRef) -> Result<SerializedComponentColumn, RecordingError> {
     SerializedComponentBatch::new(array, descriptor(name)?)
         .column_of_unit_batches()
@@ -30,7 +30,8 @@ fn texts(name: &str, values: impl Iterator<Item = String>) -> Result<SerializedC
     dense(name, Arc::new(StringArray::from_iter_values(values)))
 }
 
-/// A column in which a row may have no value: an empty list, so that a viewer does not show the row before.
+/// Creates a column in which a row may have no value. A missing value is an empty list, because a viewer would
+/// otherwise show the value of the previous row.
 fn sparse(name: &str, values: impl Iterator<Item = Option<f64>>) -> Result<SerializedComponentColumn, RecordingError> {
     let list = ListArray::from_iter_primitive::<Float64Type, _, _>(
         values.map(|value| Some(value.map(Some).into_iter().collect::<Vec<_>>())),
@@ -38,7 +39,7 @@ fn sparse(name: &str, values: impl Iterator<Item = Option<f64>>) -> Result<Seria
     Ok(SerializedComponentColumn::new(list, descriptor(name)?))
 }
 
-/// The columns of a run of designs, named as in `designs.csv`.
+/// Returns the columns of consecutive designs, named as in `designs.csv`.
 pub(super) fn designs(evaluations: &[&Evaluation]) -> Result<Vec<SerializedComponentColumn>, RecordingError> {
     let each = || evaluations.iter().copied();
     let mut columns = vec![

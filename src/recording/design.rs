@@ -1,4 +1,4 @@
-//! One design as entities: as a step of a run's front, or by itself with all overlays and its tour.
+//! Records one design: as a step of a run's front, or alone with all overlays and its tour.
 
 use std::path::Path;
 
@@ -12,17 +12,17 @@ use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, ellipsoids, m
 use kinefront_model::spatial::Pose;
 use crate::study::Study;
 
-/// Cells along the longer side of a heatmap: of a design by itself, of a layer over φ, of a step of a front,
+/// Number of cells along the longer side of a heatmap: of a single design, of a layer over φ, of a step of a front, and
 /// of an outline over φ.
 const FINE: HeatmapSettings = HeatmapSettings { cells: 240 };
 const LAYER: HeatmapSettings = HeatmapSettings { cells: 72 };
 const STEP: HeatmapSettings = HeatmapSettings { cells: 64 };
 const OUTLINE: HeatmapSettings = HeatmapSettings { cells: 32 };
 
-/// Poses around each rim of a tour.
+/// Number of poses around each rim of a tour.
 const TOUR_STEPS: usize = 72;
 
-/// Records one design with its overlays and its tour to a file of its own; `field` is the map in front.
+/// Records one design with its overlays and its tour to its own file; the tab with the heatmap of `field` is in front.
 ///
 /// # Errors
 /// [`RecordingError::Write`] when the file exists or cannot be written; [`RecordingError::Encode`] otherwise.
@@ -65,7 +65,7 @@ pub fn record_design(
     for (index, pose) in poses.iter().enumerate() {
         let moment = [(timelines::TOUR, index)];
         let canvas = Canvas::at(&writer, &moment);
-        // A pose that is not reached leaves the one before on screen; only an infeasible design has one.
+        // At an unreachable pose the viewer keeps showing the previous one; only an infeasible design has such a pose.
         if let Ok(scene) = manipulator(model, &evaluation.design, pose) {
             canvas.manipulator(paths::MANIPULATOR, &scene)?;
             let at = space.place(pose.position, pose.phi);
@@ -85,8 +85,8 @@ pub fn record_design(
     writer.close()
 }
 
-/// Records one verified design of a front as a step: manipulator at home, workspace, heatmap of the inverse condition
-/// number, stiffness ellipsoids, configuration space and card.
+/// Records one verified design of a front as a step: manipulator at the home pose, regular workspace, heatmap of the
+/// inverse condition number, stiffness ellipsoids, configuration space and card.
 pub(super) fn record_step(
     writer: &Writer,
     moment: Moment<'_>,

@@ -1,4 +1,4 @@
-//! Scenes to Rerun entities below a root of the caller's choice.
+//! Draws scenes as Rerun entities below a root that the caller gives.
 
 use std::cell::RefCell;
 
@@ -26,7 +26,7 @@ fn point(p: DVec3) -> [f32; 3] {
     p.as_vec3().to_array()
 }
 
-/// A circle about `centre` as a closed strip.
+/// Returns a circle about `centre` as a closed strip.
 fn circle(centre: DVec3, radius: f64) -> Vec<[f32; 3]> {
     const CORNERS: u32 = 96;
     (0..=CORNERS)
@@ -39,27 +39,28 @@ fn circle(centre: DVec3, radius: f64) -> Vec<[f32; 3]> {
 
 /// Draws scenes.
 ///
-/// A group without members is drawn all the same, empty: a viewer would show the one of the moment before.
+/// A group without members is written as an empty entity, because a viewer would otherwise show that of the previous
+/// moment.
 pub(super) struct Canvas<'a>(Target<'a>);
 
 enum Target<'a> {
-    /// Rows are written at once, at one moment.
+    /// Each row is written immediately, all at one moment.
     Written(&'a Writer, Moment<'a>),
-    /// Rows are put together, to be shown at once.
+    /// Rows are collected, to be shown together.
     Collected {
         rows: &'a RefCell<Rows>,
-        /// Words are dark: a viewer in light colours puts them on a light ground.
+        /// Whether text is dark: a viewer with a light theme draws it on a light background.
         dark_words: bool,
     },
 }
 
 impl<'a> Canvas<'a> {
-    /// Draws at one moment.
+    /// Creates a canvas that writes at one moment.
     pub(super) fn at(writer: &'a Writer, moment: Moment<'a>) -> Self {
         Self(Target::Written(writer, moment))
     }
 
-    /// Puts what is drawn into `rows`.
+    /// Creates a canvas that collects what is drawn in `rows`.
     pub(super) fn collecting(rows: &'a RefCell<Rows>, dark_words: bool) -> Self {
         Self(Target::Collected { rows, dark_words })
     }
@@ -74,7 +75,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// The manipulator, below `root`.
+    /// Draws the manipulator below `root`.
     pub(super) fn manipulator(&self, root: &str, scene: &Scene) -> Outcome {
         let groups: [(&str, &[Part]); 4] = [
             ("legs", &[Part::Tube, Part::Rod, Part::Crank, Part::Link]),
@@ -111,7 +112,7 @@ impl<'a> Canvas<'a> {
         self.nearest(&format!("{root}/clearance"), scene.nearest.as_ref())
     }
 
-    /// The nearest pair of bodies as a line with its number, below `root`.
+    /// Draws the pair of members with the smallest clearance below `root`, as a line labelled with the distance.
     fn nearest(&self, root: &str, nearest: Option<&Nearest>) -> Outcome {
         let color = nearest.map(|nearest| rgb(palette::nearest(nearest.too_near)));
         let strips = nearest.iter().map(|nearest| nearest.line.map(point));
@@ -164,12 +165,12 @@ impl<'a> Canvas<'a> {
         self.row(entity, &boxes)
     }
 
-    /// A word at a point.
+    /// Draws a text at a point.
     pub(super) fn word(&self, entity: &str, at: DVec3, text: &str, color: [u8; 3]) -> Outcome {
         self.labels(entity, vec![(at, text.to_owned())], rgb(color))
     }
 
-    /// Words at points, without a dot of their own.
+    /// Draws texts at points, without markers.
     fn labels(&self, entity: &str, labels: Vec<(DVec3, String)>, color: Color) -> Outcome {
         let color = match self.0 {
             Target::Collected { dark_words: true, .. } => rgb(colors::INK),
@@ -184,7 +185,7 @@ impl<'a> Canvas<'a> {
         self.row(entity, &points)
     }
 
-    /// The regular workspace as a cylinder between two heights, below `root`.
+    /// Draws the regular workspace below `root`, as a cylinder between two heights.
     pub(super) fn cylinder(&self, root: &str, cylinder: &RegularCylinder, heights: [f64; 2], label: &str) -> Outcome {
         let [low, high] = heights.map(|z| cylinder.centre.extend(z));
         let mut strips = vec![circle(low, cylinder.radius), circle(high, cylinder.radius)];
@@ -201,7 +202,7 @@ impl<'a> Canvas<'a> {
         self.word(&format!("{root}/label"), at, label, colors::WORKSPACE)
     }
 
-    /// A heatmap at height `z`, with its contours and edges, below `root`.
+    /// Draws a heatmap with its contours and edges below `root`; `place` maps its positions to points of the scene.
     pub(super) fn heatmap(
         &self,
         root: &str,
@@ -219,7 +220,7 @@ impl<'a> Canvas<'a> {
         self.outlines(root, heatmap, place)
     }
 
-    /// Contours and edges of a heatmap, below `root`.
+    /// Draws the contours and edges of a heatmap below `root`.
     pub(super) fn outlines(&self, root: &str, heatmap: &Heatmap, place: &impl Fn(DVec2) -> DVec3) -> Outcome {
         let edges = heatmap
             .edges
@@ -243,7 +244,7 @@ impl<'a> Canvas<'a> {
         Ok(())
     }
 
-    /// The scale of a colour map, a strip beside the base, below `root`.
+    /// Draws the legend of a colour map below `root`, as a strip beside the base.
     pub(super) fn legend(
         &self,
         root: &str,
@@ -293,7 +294,7 @@ impl<'a> Canvas<'a> {
         self.row(&format!("{root}/lines"), &lines)
     }
 
-    /// Ellipsoids at height `z`, with their scale in words at `note`.
+    /// Draws ellipsoids at height `z` below `root`, with a text that gives their scale at `note`.
     pub(super) fn ellipsoids(&self, root: &str, set: &EllipsoidSet, z: f64, note: DVec3) -> Outcome {
         let each = || set.ellipsoids.iter();
         let count = set.ellipsoids.len();
@@ -308,7 +309,8 @@ impl<'a> Canvas<'a> {
         self.word(&format!("{root}/scale"), note, &set.scale_text(), colors::ELLIPSOID)
     }
 
-    /// Where and by which constraints the workspace is stopped from growing, named in the corners of a square `away` from the centre, below `root`.
+    /// Draws below `root` the poses at which the active constraints limit the regular workspace, with the names of the
+    /// constraints in the corners of a square at the distance `away` from the centre.
     pub(super) fn limits(&self, root: &str, evaluation: &Evaluation, z: f64, away: f64) -> Outcome {
         let active: Vec<(&ConstraintReport, DVec2)> = evaluation
             .constraints
@@ -322,7 +324,7 @@ impl<'a> Canvas<'a> {
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(6.0), active.len()))
             .with_colors(tints());
         self.row(&format!("{root}/poses"), &points)?;
-        // In the corners beside A3, where nothing else stands; several below one another.
+        // In the corners beside A3, where nothing else is drawn; several names are stacked.
         let names: Vec<(DVec3, String)> = active
             .iter()
             .enumerate()
@@ -344,9 +346,10 @@ impl<'a> Canvas<'a> {
         self.labels(&format!("{root}/names"), names, color)
     }
 
-    /// Axes of the configuration space over the height of `span` \[rad\] either side of its origin, below `root`.
+    /// Draws the axes of the configuration space below `root`; the φ axis extends by `span` \[rad\] on either side of
+    /// the home orientation.
     pub(super) fn configuration_axes(&self, root: &str, space: &ConfigurationSpace, extent: f64, span: f64) -> Outcome {
-        // The far corner, so that the axes stand behind what they measure.
+        // The far corner, so that the axes lie behind the data.
         let foot = DVec2::new(-extent, extent);
         let at = |turn: f64| space.place(foot, space.origin + turn);
         let ground = |p: DVec2| space.place(p, space.origin - span);
@@ -362,7 +365,7 @@ impl<'a> Canvas<'a> {
         ];
         for k in -2..=2 {
             let turn = 0.5 * span * f64::from(k);
-            // As people write angles: in (−180°, 180°].
+            // Angles are shown in (−180°, 180°].
             let phi = 180.0
                 - libm::fmod(
                     libm::fmod(180.0 - (space.origin + turn).to_degrees(), 360.0) + 360.0,
@@ -382,7 +385,7 @@ impl<'a> Canvas<'a> {
         self.labels(&format!("{root}/ticks"), labels, rgb(colors::TEXT))
     }
 
-    /// A marked point with a word.
+    /// Draws a marker with a text.
     pub(super) fn mark(&self, entity: &str, at: DVec3, text: &str, color: [u8; 3]) -> Outcome {
         let points = Points3D::new([point(at)])
             .with_radii([Radius::new_ui_points(5.0)])
@@ -393,7 +396,7 @@ impl<'a> Canvas<'a> {
     }
 }
 
-/// A constraint at its smallest value, in words.
+/// Returns a text with a constraint's smallest value and the orientation at which it occurs.
 fn limit_text(report: &ConstraintReport) -> String {
     let value = report.value.map(short).unwrap_or_default();
     let phi = report.pose.map_or(0.0, |pose| pose.phi.to_degrees());
@@ -411,7 +414,7 @@ fn about_z(angle: f64) -> RotationAxisAngle {
     RotationAxisAngle::new([0.0, 0.0, 1.0], Angle::from_radians(angle as f32))
 }
 
-/// Rotation that turns z to `direction`.
+/// Returns the rotation that turns z to `direction`.
 fn along_z(direction: DVec3) -> Quaternion {
     let rotation = match direction.try_normalize() {
         Some(direction) => glam::DQuat::from_rotation_arc(DVec3::Z, direction),

@@ -1,4 +1,4 @@
-//! The scene of a window: one design at a pose, pinned designs beside each other, and the front, replaced in place.
+//! The scene of a window: one design at a pose, the pinned designs side by side, and the front, all updated in place.
 
 use std::cell::RefCell;
 
@@ -17,20 +17,20 @@ use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Scene, 
 use kinefront_model::spatial::Pose;
 use crate::study::Study;
 
-/// Cells along the longer side of a heatmap, and of an outline over φ.
+/// Number of cells along the longer side of a heatmap, and of an outline over φ.
 const HEATMAP: HeatmapSettings = HeatmapSettings { cells: 96 };
 const OUTLINE: HeatmapSettings = HeatmapSettings { cells: 32 };
 
-/// What the 3-D views are set up for, as a multiple of `R`.
+/// Size for which the 3-D views are set up, as a multiple of `R`.
 const VIEW: f64 = 1.0;
 
-/// Distance between pinned designs in multiples of the largest `R` among them.
+/// Distance between pinned designs, as a multiple of the largest `R` among them.
 const PIN_DISTANCE: f64 = 2.1;
 
-/// Width that the view of pinned designs shows, as a multiple of the size it is set up for.
+/// Width that the view of pinned designs shows, as a multiple of the size for which it is set up.
 const PIN_VIEW: f64 = 3.1;
 
-/// What of a design is drawn.
+/// The parts and overlays of a design that are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Layers {
     /// Rails, bars and joints of the legs.
@@ -39,9 +39,9 @@ pub struct Layers {
     pub platform: bool,
     /// Names of joints and frames.
     pub labels: bool,
-    /// The nearest pair of bodies, with its distance.
+    /// The pair of members with the smallest clearance, with its distance.
     pub clearance: bool,
-    /// The regular workspace, and the poses that stop it from growing.
+    /// The regular workspace, and the poses that limit it.
     pub workspace: bool,
     /// Parallel singularities and the edge of reach.
     pub singularities: bool,
@@ -69,51 +69,51 @@ impl Default for Layers {
     }
 }
 
-/// One design as it is to be shown.
+/// A design to show, and how to show it.
 #[derive(Debug, Clone, Copy)]
 pub struct Shown<'a> {
-    /// The physics.
+    /// The model with which the design was evaluated.
     pub model: &'a Model,
-    /// The design with what it was evaluated to.
+    /// The evaluated design.
     pub evaluation: &'a Evaluation,
-    /// Pose of the manipulator; home where it is left out.
+    /// Pose of the manipulator; the home pose if `None`.
     pub pose: Option<Pose>,
-    /// Orientation of the heatmap \[rad\]; home where it is left out.
+    /// Orientation of the heatmap \[rad\]; the home orientation if `None`.
     pub heatmap_phi: Option<f64>,
-    /// What is drawn.
+    /// The parts and overlays to draw.
     pub layers: &'a Layers,
-    /// Whether the viewer's own colours are light.
+    /// Whether the viewer has a light theme.
     pub light: bool,
 }
 
 /// A design to compare with others.
 #[derive(Debug, Clone, Copy)]
 pub struct Pinned<'a> {
-    /// The design with what it was evaluated to.
+    /// The evaluated design.
     pub evaluation: &'a Evaluation,
-    /// What it is called.
+    /// Name.
     pub name: &'a str,
 }
 
-/// A member of the scene that was pointed at.
+/// A design of the scene that the user clicked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Picked {
-    /// The front's design at this place of the front last shown.
+    /// The design with this index in the front last shown.
     Front(usize),
-    /// The pinned design at this place.
+    /// The pinned design with this index.
     Pin(usize),
 }
 
-/// The scene, on its way to a viewer.
+/// The scene, as sent to a viewer.
 pub struct LiveScene {
     writer: Writer,
     frame: Frame,
-    /// Size that the 3-D views are set up for \[m\].
+    /// Size for which the 3-D views are set up \[m\].
     extent: f64,
-    /// The same of the pinned designs.
+    /// Size for which the view of the pinned designs is set up \[m\].
     pins_extent: f64,
     comparing: bool,
-    /// Words are dark: the viewer's ground for them is light.
+    /// Whether text is dark: the viewer draws it on a light background.
     light: bool,
     design: Stage,
     pins: Stage,
@@ -121,10 +121,10 @@ pub struct LiveScene {
 }
 
 impl LiveScene {
-    /// A scene that goes to `sink`, laid out for `study`.
+    /// Creates a scene that is sent to `sink`, with the layout for `study`.
     ///
     /// # Errors
-    /// [`RecordingError::Encode`] when the layout does not encode.
+    /// [`RecordingError::Encode`] when the layout cannot be encoded.
     pub fn new(sink: Box<dyn LogSink>, study: &Study) -> Result<Self, RecordingError> {
         let scene = Self {
             writer: Writer::sending(sink, "scene")?,
@@ -141,20 +141,20 @@ impl LiveScene {
         Ok(scene)
     }
 
-    /// Turns to another study.
+    /// Switches to another study.
     ///
     /// # Errors
-    /// [`RecordingError::Encode`].
+    /// [`RecordingError::Encode`] when the layout cannot be encoded.
     pub fn turn_to(&mut self, study: &Study) -> Result<(), RecordingError> {
         self.frame = Frame::new(study);
         self.extent = VIEW * study.bounds.R_m[1];
         self.layout()
     }
 
-    /// Brings the pinned designs to the front, or the one in the light.
+    /// Brings the view of the pinned designs to the front, or, if `comparing` is false, that of the selected design.
     ///
     /// # Errors
-    /// [`RecordingError::Encode`].
+    /// [`RecordingError::Encode`] when the layout cannot be encoded.
     pub fn compare(&mut self, comparing: bool) -> Result<(), RecordingError> {
         self.comparing = comparing;
         self.layout()
@@ -171,8 +171,8 @@ impl LiveScene {
         )?)
     }
 
-    /// Sets the views up anew for a design that is far from the size they are set up for; else the eye stays where a person
-    /// has put it.
+    /// Sets the views up again if the size of the design differs greatly from that for which they are set up; otherwise
+    /// the user's viewpoint is kept.
     fn fit(&mut self, evaluation: &Evaluation) -> Result<(), RecordingError> {
         const ALIKE: std::ops::Range<f64> = 0.6..1.5;
         let wanted = VIEW * evaluation.design.base_radius;
@@ -186,7 +186,7 @@ impl LiveScene {
     /// Shows a design, or none.
     ///
     /// # Errors
-    /// [`RecordingError::Encode`].
+    /// [`RecordingError::Encode`] when the scene cannot be encoded.
     pub fn design(&mut self, shown: Option<&Shown<'_>>) -> Result<(), RecordingError> {
         let rows = RefCell::new(Rows::default());
         if let Some(shown) = shown {
@@ -197,10 +197,10 @@ impl LiveScene {
         self.design.show(&self.writer, rows.into_inner())
     }
 
-    /// Shows pinned designs side by side, each at home with its workspace.
+    /// Shows the pinned designs side by side, each at its home pose with its regular workspace.
     ///
     /// # Errors
-    /// [`RecordingError::Encode`].
+    /// [`RecordingError::Encode`] when the scene cannot be encoded.
     pub fn pins(&mut self, model: &Model, pins: &[Pinned<'_>]) -> Result<(), RecordingError> {
         let rows = RefCell::new(Rows::default());
         let canvas = Canvas::collecting(&rows, self.light);
@@ -208,7 +208,7 @@ impl LiveScene {
             .iter()
             .map(|pin| pin.evaluation.design.base_radius)
             .fold(0.0, f64::max);
-        // Two in a row, so that four are as large as they can be.
+        // Two per row, so that four designs are shown as large as possible.
         let columns = pins.len().clamp(1, 2);
         let rows_of_pins = pins.len().div_ceil(columns).max(1);
         let extent = widest * (PIN_DISTANCE * columns.max(rows_of_pins) as f64 / PIN_VIEW).max(VIEW);
@@ -248,10 +248,10 @@ impl LiveScene {
         self.pins.show(&self.writer, rows.into_inner())
     }
 
-    /// Shows the front in its own scatter, and marks the selected design.
+    /// Shows the front in its own scatter plot, and marks the selected design.
     ///
     /// # Errors
-    /// [`RecordingError::Encode`].
+    /// [`RecordingError::Encode`] when the scene cannot be encoded.
     pub fn front(
         &mut self,
         study: &Study,
@@ -277,7 +277,7 @@ impl LiveScene {
         self.front.show(&self.writer, rows)
     }
 
-    /// What stands at an entity of the scene, if it is a design.
+    /// Returns the design that an entity of the scene represents, if it represents one.
     pub fn picked(entity: &str, instance: Option<u64>) -> Option<Picked> {
         let entity = entity.strip_prefix('/').unwrap_or(entity);
         if entity == &paths::FRONT_DESIGNS[1..] {
@@ -344,7 +344,7 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<(), RecordingError> {
     Ok(())
 }
 
-/// Drops the parts that are not to be drawn.
+/// Removes the parts that `layers` excludes.
 fn keep(scene: &mut Scene, layers: &Layers) {
     let platform = |part: Part| part == Part::PlatformBar;
     scene.solids.retain(|solid| {

@@ -1,26 +1,27 @@
-//! Events to Rerun entities: the only place that names entity paths.
+//! Converts events and scenes to Rerun entities. Entity paths are named here and nowhere else.
 //!
-//! | entity | holds | timelines |
+//! | entity | contents | timelines |
 //! |---|---|---|
-//! | `/study` | the study as run, markdown | static |
-//! | `/designs` | a row per evaluated design: the columns of `designs.csv` | `evaluation`, `generation` |
+//! | `/study` | the study as run, as markdown | static |
+//! | `/designs` | one row per evaluated design: the columns of `designs.csv` | `evaluation`, `generation` |
 //! | `/scatter/plot/designs/…` | points (log₁₀ mass, R_w), one row per generation and kind of design | both |
-//! | `/scatter/plot/front/…` | the front as it stood: its designs, labelled, and its staircase | both |
-//! | `/scatter/plot/axes/…` | axes, ticks, titles and legend of the scatter | both |
-//! | `/run/hypervolume`, `/run/feasible_share`, `/run/front_size` | curves, a value per generation | both |
-//! | `/summary` | the verified front as a table, markdown | static |
+//! | `/scatter/plot/front/…` | the front at that time: its designs, labelled, and its staircase line | both |
+//! | `/scatter/plot/axes/…` | axes, ticks, titles and legend of the scatter plot | both |
+//! | `/run/hypervolume`, `/run/feasible_share`, `/run/front_size` | curves, one value per generation | both |
+//! | `/summary` | the verified front as a table, as markdown | static |
 //! | `/design/manipulator/…` | a design: base, legs, platform, joints, frames, labels | `front`, or `tour` |
-//! | `/design/workspace/…`, `/design/limits` | its regular workspace and the poses that stop it from growing | `front`, or static |
+//! | `/design/workspace/…`, `/design/limits` | its regular workspace and the poses that limit it | `front`, or static |
 //! | `/design/heatmap/FIELD/…`, `/design/legend/FIELD/…` | a field with threshold, singularities and edge of reach | `front`, or static |
 //! | `/design/ellipsoids/KIND/…` | stiffness or displacement ellipsoids | `front`, or static |
 //! | `/configuration/…` | the workspace in (x, y, φ): cylinder, heatmaps over φ, the pose | `front`, or static and `tour` |
-//! | `/card` | the design's numbers, markdown | `front`, or static |
-//! | `/along_front/…` | design variables along the front | `front` |
-//! | `/pins/N/…` | designs side by side; in a window only | static |
+//! | `/card` | the design's numbers, as markdown | `front`, or static |
+//! | `/along_front/…` | design variables and `R_w` along the front | `front` |
+//! | `/pins/N/…` | pinned designs side by side; in a window only | static |
 //!
-//! `evaluation` is the id of the design; a row that belongs to a generation stands at the generation's last design.
-//! `front` counts the verified designs from the lightest, and the knee of the front stands at the end of the run's own
-//! timelines too. `tour` counts the poses of a tour. A design recorded by itself has only the last six rows.
+//! `evaluation` is the id of the design; a row that belongs to a generation is recorded at the generation's last
+//! design. `front` counts the verified designs from the lightest; the knee of the front is also recorded at the end of
+//! `evaluation` and `generation`. `tour` counts the poses of a tour. The recording of a single design has only the rows
+//! from `/design/manipulator` to `/card`.
 
 mod blueprint;
 mod card;
@@ -46,7 +47,7 @@ pub use recorder::Recorder;
 pub use scatter::FrontPoint;
 pub use writer::RecordingError;
 
-/// Application id of our recordings; the viewer keeps layouts by it.
+/// Application id of Kinefront's recordings; the viewer stores layouts under it.
 pub const APPLICATION_ID: &str = "kinefront";
 
 mod paths {

@@ -1,4 +1,4 @@
-//! Reading our recordings back, and copying one that is still being written.
+//! Reads Kinefront's recordings back, and copies a recording that is still being written.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -20,39 +20,39 @@ use kinefront_model::evaluation::{Evaluation, Model};
 /// Why a recording cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// The file.
+    /// The file cannot be read.
     #[error("cannot read {}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Cause of the failure.
         source: io::Error,
     },
-    /// It is no recording, or not one of ours.
-    #[error("{} is no recording of a run: {message}", path.display())]
+    /// The file is not a recording, or not one written by Kinefront.
+    #[error("{} is not a recording of a run: {message}", path.display())]
     Foreign {
         /// The file.
         path: PathBuf,
-        /// What is missing.
+        /// What is missing or cannot be decoded.
         message: String,
     },
 }
 
-/// A design as it stands in a recording, by the names of `designs.csv`.
+/// A design as recorded; the columns have the names of `designs.csv`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RecordedDesign {
     /// Generation, from 1.
     pub generation: usize,
-    /// Its texts.
+    /// Text columns by name.
     pub texts: BTreeMap<String, String>,
-    /// Its numbers.
+    /// Numeric columns by name; true and false are 1 and 0.
     pub numbers: BTreeMap<String, f64>,
 }
 
-/// What a recording tells of a run.
+/// The data of a run that a recording contains.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RecordedRun {
-    /// The study as run, TOML.
+    /// The study as run, as TOML.
     pub study: String,
     /// Every evaluated design, in order.
     pub designs: Vec<RecordedDesign>,
@@ -76,10 +76,11 @@ fn foreign(path: &Path, message: impl std::fmt::Display) -> ReadError {
     }
 }
 
-/// Reads the study and the designs of a recorded run. What a killed run left half-written at the end is left out.
+/// Reads the study and the designs of a recorded run. An incomplete message at the end, left by a run that was killed,
+/// is ignored.
 ///
 /// # Errors
-/// [`ReadError`].
+/// [`ReadError`] when the file cannot be read or is not a recording of a run.
 pub fn read_run(path: &Path) -> Result<RecordedRun, ReadError> {
     let mut run = RecordedRun::default();
     for message in messages(path)? {
@@ -103,7 +104,7 @@ pub fn read_run(path: &Path) -> Result<RecordedRun, ReadError> {
     Ok(run)
 }
 
-/// The TOML in the study's document.
+/// Extracts the TOML from the study's document.
 fn study(chunk: &Chunk) -> Option<String> {
     let texts = chunk.components().list_arrays().find_map(|list| {
         let row = list.iter().flatten().next()?;
@@ -145,11 +146,11 @@ fn designs(chunk: &Chunk, designs: &mut Vec<RecordedDesign>) {
     }
 }
 
-/// Copies the recording at `from`, as far as it is written, to `to`, which must not exist; `shown` is a design that stands
-/// on its views at the end.
+/// Copies the recording at `from`, as far as it has been written, to `to`, which must not exist; `shown` is a design
+/// that the views of the copy show at its last moment.
 ///
 /// # Errors
-/// What cannot be read or written, in words.
+/// A message that names the file that cannot be read or written, and the reason.
 pub fn save_copy(from: &Path, to: &Path, shown: Option<(&Model, &Evaluation, &str)>) -> Result<(), String> {
     let read = messages(from).map_err(|error| error.to_string())?;
     let file = RrdFile::create(to).map_err(|error| format!("cannot write the recording {}: {error}", to.display()))?;
@@ -157,7 +158,7 @@ pub fn save_copy(from: &Path, to: &Path, shown: Option<(&Model, &Evaluation, &st
     let mut recording: Option<StoreId> = None;
     let mut last = [(timelines::EVALUATION, 0), (timelines::GENERATION, 0)];
     for message in read {
-        // The run may be in the middle of writing the last one.
+        // The run may still be writing the last message.
         let Ok(message) = message else { break };
         if let LogMsg::ArrowMsg(store, arrow) = &message
             && store.kind() == StoreKind::Recording

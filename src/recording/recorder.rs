@@ -1,4 +1,4 @@
-//! Writes the events of a run to a `.rrd` file as they come.
+//! Writes the events of a run to a `.rrd` file as they arrive.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,13 +13,13 @@ use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Architecture;
 use crate::study::{Batch, Event, GenerationSummary, RunSummary, Study};
 
-/// Rows of `/designs` written at a time: enough that the file's index stays small.
+/// Number of rows of `/designs` written at a time, large enough to keep the file's index small.
 const ROWS: usize = 300;
 
-/// A number of a design.
+/// Function that returns a number of a design.
 type Value = fn(&Evaluation) -> f64;
 
-/// What is drawn along the front: a name with its unit, and the value.
+/// Quantities plotted along the front: the name with its unit, and the value.
 const ALONG_FRONT: [(&str, Value); 6] = [
     ("R [m]", |e| e.design.base_radius),
     ("r [m]", |e| e.design.platform_radius),
@@ -29,7 +29,7 @@ const ALONG_FRONT: [(&str, Value); 6] = [
     ("R_w [m]", |e| e.workspace_radius),
 ];
 
-/// Entity of a value along the front.
+/// Returns the entity path of a quantity along the front.
 fn along_front(name: &str) -> String {
     format!("{}/{}", paths::ALONG_FRONT, name.split(' ').next().unwrap_or(name))
 }
@@ -47,7 +47,7 @@ pub struct Recorder {
     frame_changed: bool,
 }
 
-/// Where a row of a generation stands: at its last design.
+/// Returns the moment of a row that belongs to a generation: that of the generation's last design.
 fn moment(evaluations: usize, generation: usize) -> [(&'static str, usize); 2] {
     [
         (timelines::EVALUATION, evaluations.saturating_sub(1)),
@@ -56,7 +56,7 @@ fn moment(evaluations: usize, generation: usize) -> [(&'static str, usize); 2] {
 }
 
 impl Recorder {
-    /// Creates the file and writes what is known before the run: the layout and the study.
+    /// Creates the file and writes the layout and the study, which are known before the run.
     ///
     /// # Errors
     /// [`RecordingError::Write`] when the file exists or cannot be created.
@@ -83,10 +83,10 @@ impl Recorder {
         })
     }
 
-    /// Writes what a run tells until it ends, then closes the file.
+    /// Writes the events of a run until it ends, then closes the file.
     ///
     /// # Errors
-    /// [`RecordingError`] at the first thing that cannot be written; the file stays readable up to there.
+    /// [`RecordingError`] at the first row that cannot be written; the file remains readable up to that row.
     pub fn follow(mut self, events: &Receiver<Arc<Event>>) -> Result<(), RecordingError> {
         for event in events {
             match &*event {
@@ -198,12 +198,12 @@ impl Recorder {
             self.step(&[(timelines::FRONT, step)], step, summary)?;
             self.writer.check()?;
         }
-        // The run's own timelines end with the knee of the front, and the front begins with the scatter.
+        // The timelines `evaluation` and `generation` end with the knee of the front; `front` begins with the scatter.
         let last = summary.history.last();
         if let Some((knee, last)) = summary.knee().zip(last) {
             self.step(&moment(last.evaluations, last.generation), knee, summary)?;
             self.scatter_on_front()?;
-            // The curves of the run end where the front begins: a line at their last value.
+            // On the timeline `front`, each curve of the run is a horizontal line at its last value.
             for step in [0, summary.front.len() - 1] {
                 self.curves(&[(timelines::FRONT, step)], last)?;
             }
@@ -211,7 +211,7 @@ impl Recorder {
         Ok(())
     }
 
-    /// One design of the verified front at a moment, marked in the scatter.
+    /// Writes one design of the verified front at a moment, and marks it in the scatter plot.
     fn step(&self, moment: Moment<'_>, step: usize, summary: &RunSummary) -> Result<(), RecordingError> {
         let member = &summary.front[step];
         let heading = format!(
@@ -228,7 +228,7 @@ impl Recorder {
         self.writer.row(paths::SELECTED, moment, &selected(&member.evaluation))
     }
 
-    /// Axes, ticks and legend of the scatter.
+    /// Writes the axes, ticks and legend of the scatter plot.
     fn axes(&self, moment: Moment<'_>) -> Result<(), RecordingError> {
         self.writer.row(paths::PLOT, moment, &self.frame.transform())?;
         self.writer.row(paths::AXES, moment, &self.frame.lines())?;
@@ -237,7 +237,8 @@ impl Recorder {
             .row(paths::LEGEND, moment, &self.frame.legend(&self.architectures))
     }
 
-    /// Axes, legend and front at the first step of the timeline `front`, where the scatter would else be empty.
+    /// Writes the axes, legend and front at the first step of the timeline `front`, on which the scatter plot would
+    /// otherwise be empty.
     fn scatter_on_front(&self) -> Result<(), RecordingError> {
         let moment: Moment<'_> = &[(timelines::FRONT, 0)];
         self.axes(moment)?;
@@ -272,7 +273,7 @@ impl Recorder {
     }
 }
 
-/// Entity of an architecture's feasible designs.
+/// Returns the entity path of an architecture's feasible designs.
 fn cloud(architecture: Architecture) -> String {
     format!("{}/{architecture}", paths::CLOUD)
 }
@@ -285,12 +286,12 @@ fn study_text(study: &Study) -> Result<String, RecordingError> {
     ))
 }
 
-/// The verified front as a table, thinned to a readable number of rows.
+/// Returns the verified front as a table, thinned to a readable number of rows.
 fn summary_text(summary: &RunSummary) -> String {
     const MOST_ROWS: usize = 40;
     let last = summary.history.last();
     let mut text = format!(
-        "# Result\n\n{} evaluations, {} feasible. {} designs stand on the front after verification on the fine grid \
+        "# Result\n\n{} evaluations, {} feasible. {} designs are on the front after verification on the fine grid \
          ({} dropped); hypervolume {:.1} kg·m.\n\n| # | architecture | mass [kg] | R_w [m] | φ_c [°] | R | r | L_b | r_j | \
          r_p | clearance [mm] | active |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         last.map_or(0, |last| last.evaluations),

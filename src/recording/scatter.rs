@@ -1,7 +1,8 @@
-//! The scatter of mass against `R_w`, drawn in a 2-D view.
+//! The scatter plot of `R_w` over mass, drawn in a 2-D view.
 //!
-//! Rerun's 2-D view knows no axes and points y downwards. The plot therefore stands in true coordinates, `log₁₀(mass/kg)`
-//! and `R_w` in metres, under a transform that turns y up and gives both axes a like size, and brings its own axes.
+//! Rerun's 2-D view has no axes, and its y axis points downwards. The plot is therefore given in true coordinates,
+//! `log₁₀(mass/kg)` and `R_w` in metres, under a transform that turns y upwards and gives both axes similar lengths,
+//! and it draws its own axes.
 
 use rerun::datatypes::{Range1D, Range2D};
 use rerun::{Color, LineStrips2D, Points2D, Radius, Transform3D};
@@ -11,38 +12,38 @@ use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::Architecture;
 use crate::study::{FrontMember, Study};
 
-/// Width of one decade of mass on screen, in units in which the range of `R_w` is [`HEIGHT`] high.
+/// Height of the `R_w` axis in the view, as a multiple of the width of one decade of mass.
 const HEIGHT: f32 = 2.5;
 
 pub(super) const AXIS_COLOR: [u8; 3] = [150, 155, 165];
 pub(super) const INFEASIBLE_COLOR: [u8; 3] = [95, 98, 108];
 pub(super) const FRONT_COLOR: [u8; 3] = [250, 250, 250];
 
-/// Position of a design in the plot.
+/// Returns the position of a design in the plot.
 pub(super) fn position(mass: f64, radius: f64) -> [f32; 2] {
-    // A massless design (both radii 0) has no logarithm: a tenth of a gram stands for it.
+    // The mass of a massless design (both bar radii 0) has no logarithm and is replaced by 0.1 g.
     [libm::log10(mass.max(1e-4)) as f32, radius as f32]
 }
 
-/// Points of designs, coloured.
+/// Returns the points of designs in one colour and size.
 pub(super) fn points(evaluations: &[&Evaluation], color: Color, size: f32) -> Points2D {
     Points2D::new(evaluations.iter().map(|e| position(e.mass, e.workspace_radius)))
         .with_colors(std::iter::repeat_n(color, evaluations.len()))
         .with_radii(std::iter::repeat_n(Radius::new_ui_points(size), evaluations.len()))
 }
 
-/// A design of the front as the scatter draws it.
+/// A design of the front as drawn in the scatter plot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrontPoint {
-    /// Id of its evaluation.
+    /// Id of the evaluation.
     pub id: usize,
-    /// Its architecture.
+    /// Architecture.
     pub architecture: Architecture,
     /// Mass in motion \[kg\].
     pub mass: f64,
     /// `R_w` \[m\].
     pub radius: f64,
-    /// Whether a filter leaves it in the light; else it is dimmed.
+    /// Whether the design passes the filter; otherwise it is dimmed.
     pub lit: bool,
 }
 
@@ -58,7 +59,7 @@ impl From<&FrontMember> for FrontPoint {
     }
 }
 
-/// The front's designs with a line each to read when one is pointed at.
+/// Returns the designs of the front, each with a text that is shown when the mouse is over it.
 pub(super) fn front_points(front: &[FrontPoint]) -> Points2D {
     Points2D::new(front.iter().map(|m| position(m.mass, m.radius)))
         .with_colors(front.iter().map(|m| {
@@ -75,7 +76,7 @@ pub(super) fn front_points(front: &[FrontPoint]) -> Points2D {
         .with_draw_order(40.0)
 }
 
-/// The design that the other views show.
+/// Returns the mark of the selected design, which the other views show.
 pub(super) fn selected(evaluation: &Evaluation) -> Points2D {
     Points2D::new([position(evaluation.mass, evaluation.workspace_radius)])
         .with_colors([colors::rgb(colors::LIMIT)])
@@ -83,7 +84,7 @@ pub(super) fn selected(evaluation: &Evaluation) -> Points2D {
         .with_draw_order(38.0)
 }
 
-/// The edge of what the front dominates, from its lightest design to the right end of the plot.
+/// Returns the boundary of the region that the front dominates, from its lightest design to the right end of the plot.
 pub(super) fn staircase(front: &[FrontPoint], frame: &Frame) -> LineStrips2D {
     let mut strip: Vec<[f32; 2]> = Vec::new();
     for member in front {
@@ -100,17 +101,18 @@ pub(super) fn staircase(front: &[FrontPoint], frame: &Frame) -> LineStrips2D {
         .with_draw_order(35.0)
 }
 
-/// Range of the plot: decades of mass, metres of radius. It only ever grows.
+/// Range of the plot: decades of mass and metres of `R_w`. It never shrinks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Frame {
     decades: (i32, i32),
-    /// Number of ticks above 0 on the radius axis.
+    /// Number of ticks above 0 on the `R_w` axis.
     ticks: u32,
     tick: f64,
 }
 
 impl Frame {
-    /// A range for a study: four decades up to the reference mass, radii up to 65 % of the largest base radius.
+    /// Creates the range for a study: four decades of mass up to the decade of the hypervolume's reference mass, and
+    /// `R_w` up to 65 % of the largest base radius.
     pub(super) fn new(study: &Study) -> Self {
         let top = libm::log10(study.hypervolume.reference_mass_kg).ceil() as i32;
         let largest = 0.65 * study.bounds.R_m[1];
@@ -127,7 +129,7 @@ impl Frame {
         }
     }
 
-    /// Widens the range to hold a design; tells whether it had to.
+    /// Extends the range to contain a design; returns whether the range changed.
     pub(super) fn include(&mut self, mass: f64, radius: f64) -> bool {
         let before = *self;
         let [x, y] = position(mass, radius);
@@ -139,19 +141,20 @@ impl Frame {
         *self != before
     }
 
-    /// Whether a design lies inside; infeasible ones outside are left out of the picture.
+    /// Returns whether the mass of a design lies within the range; infeasible designs outside it are not drawn.
     pub(super) fn holds(&self, evaluation: &Evaluation) -> bool {
         let [x, _] = position(evaluation.mass, evaluation.workspace_radius);
         (self.decades.0 as f32..=self.decades.1 as f32).contains(&x)
     }
 
-    /// From plot coordinates to the view's: y up, radii as high as [`HEIGHT`] decades are wide.
+    /// Returns the transform from plot coordinates to those of the view: y points upwards, and the `R_w` axis is as
+    /// high as [`HEIGHT`] decades of mass are wide.
     pub(super) fn transform(&self) -> Transform3D {
         let height = self.tick as f32 * self.ticks as f32;
         Transform3D::from_scale([1.0, -HEIGHT / height, 1.0])
     }
 
-    /// What the view shows: the plot and room for its numbers, in the view's own coordinates.
+    /// Returns the visible range of the view, in its own coordinates: the plot, with space for its tick labels.
     pub(super) fn bounds(&self) -> Range2D {
         let (left, right) = (f64::from(self.decades.0), f64::from(self.decades.1));
         let (width, height) = (right - left, f64::from(HEIGHT));
@@ -161,7 +164,7 @@ impl Frame {
         }
     }
 
-    /// Axes, grid lines and staircase of ticks.
+    /// Returns the axes and the grid lines at the ticks.
     pub(super) fn lines(&self) -> LineStrips2D {
         let (left, right) = (self.decades.0 as f32, self.decades.1 as f32);
         let top = (self.tick * f64::from(self.ticks)) as f32;
@@ -181,7 +184,7 @@ impl Frame {
             .with_draw_order(5.0)
     }
 
-    /// What the colours mean, in the corner where no design can be.
+    /// Returns the legend of the colours, in the upper left corner, where no design can be.
     pub(super) fn legend(&self, architectures: &[Architecture]) -> Points2D {
         let (left, right) = (self.decades.0 as f32, self.decades.1 as f32);
         let top = (self.tick * f64::from(self.ticks)) as f32;
@@ -200,7 +203,7 @@ impl Frame {
             .with_draw_order(7.0)
     }
 
-    /// Numbers at the ticks and titles of the axes.
+    /// Returns the tick labels and the titles of the axes.
     pub(super) fn labels(&self) -> Points2D {
         let (left, right) = (self.decades.0 as f32, self.decades.1 as f32);
         let top = (self.tick * f64::from(self.ticks)) as f32;

@@ -1,7 +1,7 @@
-//! A file sink that tells when the file could not be written.
+//! A file sink that reports write errors to its caller.
 //!
-//! The SDK's own file sink reports a full disk to its log only, and errors of the footer to nobody. This one keeps the
-//! first error for whoever asks, and synchronises the file to disk at the end.
+//! The SDK's own file sink reports a full disk only in its log, and an error in writing the footer not at all. This
+//! sink keeps the first error for the caller, and synchronises the file to disk at the end.
 
 use std::fs::File;
 use std::io;
@@ -25,7 +25,7 @@ struct State {
 }
 
 impl RrdFile {
-    /// Creates the file; an existing one is not overwritten.
+    /// Creates the file; an existing file is an error.
     pub(super) fn create(path: &Path) -> io::Result<Self> {
         let file = File::create_new(path)?;
         let encoder = Encoder::new_eager(
@@ -45,7 +45,7 @@ impl RrdFile {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The first error so far.
+    /// Returns the first error so far.
     pub(super) fn check(&self) -> io::Result<()> {
         match &self.state().error {
             Some(error) => Err(io::Error::other(error.clone())),
@@ -53,7 +53,7 @@ impl RrdFile {
         }
     }
 
-    /// Writes the footer and synchronises the file; to be called once nothing is sent any more.
+    /// Writes the footer and synchronises the file. Must be called after the last message has been sent.
     pub(super) fn finish(&self) -> io::Result<()> {
         self.check()?;
         let mut state = self.state();
@@ -72,7 +72,7 @@ impl LogSink for RrdFile {
         };
         if let Err(error) = encoder.append(&message) {
             state.error = Some(error.to_string());
-            // Taken apart rather than dropped: a drop would try to write a footer.
+            // Dropping the encoder would try to write a footer.
             if let Some(encoder) = state.encoder.take() {
                 let _ = encoder.into_inner();
             }

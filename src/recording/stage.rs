@@ -1,7 +1,7 @@
-//! A scene that changes in place: what is no longer drawn disappears.
+//! A scene that is updated in place: entities that are no longer drawn disappear.
 //!
-//! Its rows are static, so that a viewer keeps only the last of each. Static data cannot be cleared; what a drawing leaves
-//! out of what stood there before is overwritten with nothing.
+//! The rows are static, so a viewer keeps only the last row of each entity. Static data cannot be cleared, so
+//! components that the new drawing no longer has are overwritten with empty ones.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use rerun::{AsComponents, ComponentDescriptor, SerializedComponentBatch};
 
 use super::writer::{ALWAYS, RecordingError, Writer};
 
-/// What stands below one path: for each entity its components, empty.
+/// The entities that are shown below one path, each with empty batches of its components.
 type Standing = BTreeMap<String, BTreeMap<ComponentDescriptor, SerializedComponentBatch>>;
 
 /// Entities that are drawn together and replaced together.
@@ -19,7 +19,7 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    /// Replaces what stands here by `rows`.
+    /// Replaces the entities that are shown by `rows`.
     pub(super) fn show(&mut self, writer: &Writer, rows: Rows) -> Result<(), RecordingError> {
         let mut drawn = Standing::new();
         for (entity, mut batches) in rows.0 {

@@ -1,4 +1,4 @@
-//! A design with what it was evaluated to, and where its parts are drawn.
+//! A design with its evaluation, and the places at which its parts are drawn.
 
 use glam::{DVec2, DVec3};
 
@@ -11,17 +11,17 @@ use kinefront_model::mechanism::Design;
 use crate::scene::{ConfigurationSpace, Field, Heatmap, HeatmapSettings, SolidShape, manipulator, regular_workspace};
 use kinefront_model::spatial::Pose;
 
-/// Orientations of the layers from home \[deg\].
+/// Orientations of the layers, relative to the home orientation \[deg\].
 const LAYERS_DEG: [f64; 5] = [-60.0, -30.0, 0.0, 30.0, 60.0];
 
-/// Top of the regular workspace on the manipulator, as a share of the depth of the heatmap: a flat disc, whose height
-/// means nothing there.
+/// Height of the top of the regular workspace drawn below the manipulator, as a fraction of the heatmap's depth. It is
+/// drawn as a flat disc, because its height has no meaning there.
 const DISC: f64 = 0.8;
 
-/// Either side of home that the configuration space shows \[deg\].
+/// Range of orientations shown in the configuration space on either side of the home orientation \[deg\].
 const SPAN_DEG: f64 = 75.0;
 
-/// A design with what it was evaluated to.
+/// A design with its evaluation and the model.
 #[derive(Clone, Copy)]
 pub(super) struct Subject<'a> {
     pub(super) model: &'a Model,
@@ -37,7 +37,7 @@ impl Subject<'_> {
         self.model.home(self.evaluation)
     }
 
-    /// Height of the heatmaps: below every body of the manipulator.
+    /// Returns the height of the heatmaps, below every solid of the manipulator \[m\].
     pub(super) fn floor(&self) -> f64 {
         let lowest = manipulator(self.model, self.design(), &self.home()).map_or(0.0, |scene| {
             scene
@@ -45,7 +45,7 @@ impl Subject<'_> {
                 .iter()
                 .map(|solid| match solid.shape {
                     SolidShape::Bar { from, to, radius } => {
-                        // A pin ends at its faces, a bar along the plane at its radius.
+                        // A pin extends down to its lower face, a bar in the plane down by its radius.
                         if from.z == to.z {
                             from.z - radius
                         } else {
@@ -59,7 +59,8 @@ impl Subject<'_> {
         1.15 * lowest - 0.01 * self.design().base_radius
     }
 
-    /// What the view must hold: the base, and most of what the legs sweep \[m\].
+    /// Returns the radius that the view must contain \[m\]: that of the base, and most of the radius that the members
+    /// reach over `poses`.
     pub(super) fn extent(&self, poses: &[Pose]) -> f64 {
         const MOST: f64 = 0.8;
         let swept = poses
@@ -74,7 +75,7 @@ impl Subject<'_> {
         self.design().base_radius.max(MOST * swept)
     }
 
-    /// Where notes stand: before the base and the workspace.
+    /// Returns the position of notes, in front of the base and the workspace.
     pub(super) fn note(&self) -> DVec3 {
         let front = (0.95 * self.design().base_radius).max(1.3 * self.evaluation.workspace_radius);
         DVec3::new(0.0, -front, 0.0)
@@ -92,7 +93,7 @@ impl Subject<'_> {
         ))
     }
 
-    /// A heatmap below the manipulator and its legend beside it.
+    /// Draws a heatmap at height `z` below the manipulator, and its legend beside it.
     pub(super) fn heatmap(&self, canvas: &Canvas<'_>, heatmap: &Heatmap, z: f64) -> Result<(), RecordingError> {
         let Some((map, threshold)) = self.map(heatmap) else {
             return Ok(());
@@ -119,20 +120,20 @@ impl Subject<'_> {
         )
     }
 
-    /// The regular workspace on the manipulator, and what stops it from growing.
+    /// Draws the regular workspace below the manipulator, and the poses that limit it.
     pub(super) fn workspace(&self, canvas: &Canvas<'_>) -> Result<(), RecordingError> {
         let Some(cylinder) = regular_workspace(self.evaluation, self.model.workspace.rotation_range_deg) else {
             return Ok(());
         };
         let floor = self.floor();
         let label = format!("R_w = {:.4} m", cylinder.radius);
-        // A hair above the heatmap, so that the line is seen.
+        // Slightly above the heatmap, so that the line remains visible.
         canvas.cylinder(paths::WORKSPACE, &cylinder, [0.97 * floor, DISC * floor], &label)?;
         let away = self.design().base_radius.max(1.3 * cylinder.radius);
         canvas.limits(paths::LIMITS, self.evaluation, DISC * floor, away)
     }
 
-    /// The regular workspace on the manipulator alone, below `root`.
+    /// Draws only the regular workspace, at the entities below `root`.
     pub(super) fn disc(&self, canvas: &Canvas<'_>, root: &str) -> Result<(), RecordingError> {
         let Some(cylinder) = regular_workspace(self.evaluation, self.model.workspace.rotation_range_deg) else {
             return Ok(());
@@ -141,7 +142,7 @@ impl Subject<'_> {
         canvas.cylinder(root, &cylinder, [0.97 * floor, DISC * floor], "")
     }
 
-    /// Axes and cylinder of the configuration space.
+    /// Draws the axes and the regular workspace of the configuration space.
     pub(super) fn configuration(&self, canvas: &Canvas<'_>) -> Result<(), RecordingError> {
         let space = self.space();
         let root = |name: &str| format!("{}/{name}", paths::CONFIGURATION);
@@ -156,7 +157,7 @@ impl Subject<'_> {
         canvas.cylinder(&root("cylinder"), &cylinder, [height(-half), height(half)], &label)
     }
 
-    /// The inverse condition number stacked over φ: its heatmaps, or only their outlines.
+    /// Draws the inverse condition number as layers stacked over φ: its heatmaps, or only their outlines.
     pub(super) fn layers(
         &self,
         canvas: &Canvas<'_>,
@@ -165,7 +166,7 @@ impl Subject<'_> {
     ) -> Result<(), RecordingError> {
         let space = self.space();
         let field = Field::InverseCondition;
-        // One map for all layers: the field's own range.
+        // All layers share one colour map, over the full range of the inverse condition number.
         let map = ColorMap::new(field.scale(), [0.0, 1.0], field.threshold(self.model));
         for (index, turn) in LAYERS_DEG.into_iter().enumerate() {
             let phi = space.origin + turn.to_radians();

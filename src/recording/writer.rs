@@ -1,4 +1,4 @@
-//! A recording being written: rows, texts and columns at any point of any timeline.
+//! Writes a recording: rows, texts and columns at any time of any timeline.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -16,15 +16,15 @@ use super::sink::RrdFile;
 /// Why a recording could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
-    /// The file.
+    /// The file cannot be written.
     #[error("cannot write the recording {}: {source}", path.display())]
     Write {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Cause of the failure.
         source: io::Error,
     },
-    /// Data did not fit Rerun's format.
+    /// Data cannot be encoded in Rerun's format.
     #[error("cannot encode the recording: {0}")]
     Encode(String),
 }
@@ -47,20 +47,20 @@ impl From<ChunkError> for RecordingError {
     }
 }
 
-/// Where a row stands: a value on each of its timelines; none for what holds always.
+/// The time of a row: a value on each of its timelines; empty for static data.
 pub(super) type Moment<'a> = &'a [(&'static str, usize)];
 
-/// What holds always.
+/// The moment of static data.
 pub(super) const ALWAYS: Moment<'static> = &[];
 
-/// A recording being written: to a file, or to whoever listens.
+/// A recording being written, to a file or to another sink.
 pub(super) struct Writer {
     file: Option<(PathBuf, RrdFile)>,
     recording: RecordingStream,
 }
 
 impl Writer {
-    /// Creates the file; an existing one is refused.
+    /// Creates the file; an existing file is an error.
     pub(super) fn create(path: &Path, name: &str) -> Result<Self, RecordingError> {
         let file = RrdFile::create(path).map_err(|source| RecordingError::Write {
             path: path.to_owned(),
@@ -69,7 +69,7 @@ impl Writer {
         Self::over(&file, path, Self::builder().recording_name(name))
     }
 
-    /// Writes to a file that was begun what `recording` builds.
+    /// Writes the stream that `recording` builds to a file that is already open.
     pub(super) fn over(file: &RrdFile, path: &Path, recording: RecordingStreamBuilder) -> Result<Self, RecordingError> {
         let recording = recording.set_sinks(vec![Box::new(file.clone()) as Box<dyn LogSink>])?;
         recording.set_log_time_enabled(false);
@@ -79,14 +79,15 @@ impl Writer {
         })
     }
 
-    /// Sends to `sink`.
+    /// Writes to `sink`.
     pub(super) fn sending(sink: Box<dyn LogSink>, name: &str) -> Result<Self, RecordingError> {
         let recording = Self::builder().recording_name(name).set_sinks(vec![sink])?;
         recording.set_log_time_enabled(false);
         Ok(Self { file: None, recording })
     }
 
-    /// A stream of ours. Rows are written as columns, many at a time: nothing is left for the SDK's own batching to do.
+    /// Returns a builder of a stream with Kinefront's application id. Rows are written as columns, many at a time, so
+    /// the SDK's own batching is disabled.
     pub(super) fn builder() -> RecordingStreamBuilder {
         RecordingStreamBuilder::new(APPLICATION_ID)
             .enabled(true)
@@ -97,7 +98,7 @@ impl Writer {
         &self.recording
     }
 
-    /// One row of an entity, with as many instances as the archetype holds.
+    /// Writes one row of an entity, with as many instances as the archetype has.
     pub(super) fn row(
         &self,
         entity: &str,
@@ -107,7 +108,7 @@ impl Writer {
         self.batches(entity, moment, archetype.as_serialized_batches())
     }
 
-    /// One row of an entity.
+    /// Writes one row of an entity from serialized components.
     pub(super) fn batches(
         &self,
         entity: &str,
@@ -127,12 +128,12 @@ impl Writer {
         Ok(self.recording.send_columns(entity, times, columns)?)
     }
 
-    /// A markdown document.
+    /// Writes a markdown document.
     pub(super) fn text(&self, entity: &str, moment: Moment<'_>, markdown: &str) -> Result<(), RecordingError> {
         self.row(entity, moment, &TextDocument::from_markdown(markdown))
     }
 
-    /// Whether all went well so far.
+    /// Returns the first write error so far, if there is one.
     pub(super) fn check(&self) -> Result<(), RecordingError> {
         let Some((path, file)) = &self.file else {
             return Ok(());
@@ -147,7 +148,7 @@ impl Writer {
     pub(super) fn close(self) -> Result<(), RecordingError> {
         let Self { file, recording } = self;
         let flushed = recording.flush_blocking().map_err(io::Error::other);
-        // The last handle: dropping it joins the SDK's threads, after which nothing more is sent.
+        // This is the last handle. Dropping it joins the SDK's threads, after which nothing more is sent.
         drop(recording);
         let Some((path, file)) = file else {
             return Ok(());

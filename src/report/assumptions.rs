@@ -1,4 +1,4 @@
-//! What a study assumes, and how fronts and reference designs move when an assumption is read otherwise.
+//! Sensitivity to assumptions: how fronts and reference designs change when an assumption of the study is changed.
 
 use super::fronts::Front;
 use super::source::Source;
@@ -7,29 +7,29 @@ use kinefront_model::evaluation::GridChoice;
 use kinefront_model::mechanism::Architecture;
 use crate::study::{LengthChoice, StiffnessChoice, Study, TelescopicBar};
 
-/// Another reading of one assumption.
+/// An alternative to one assumption of a study.
 #[derive(Debug, Clone, Copy)]
 pub struct Reading {
-    /// Short name, as in a legend.
+    /// Short name, as shown in legends and tables.
     pub name: &'static str,
-    /// What is read otherwise, and why one might.
+    /// What the alternative changes and, where it is not obvious, why one might choose it.
     pub meaning: &'static str,
-    /// Whether it can change what one design is worth, and not only what is searched.
+    /// Whether the alternative can change the evaluation of a design, rather than only the search.
     moves_designs: bool,
     change: fn(&mut Study),
 }
 
-/// What the last readings change: nothing but chance.
-const SEED: &str = "nothing but the search's seed";
+/// Meaning of the alternatives that change only the random seed.
+const SEED: &str = "only the random seed of the search";
 
-/// Names of the readings in which bodies must not collide, or may.
+/// Names of the alternatives in which members must keep a clearance, or may collide.
 const CLEAR: &str = "5 mm clearance";
-const COLLIDING: &str = "bodies may collide";
+const COLLIDING: &str = "members may collide";
 
-/// Clearance that is tried for a study that asks for none \[m\].
+/// Clearance that is tried if the study requires none \[m\].
 const CLEARANCE: f64 = 5e-3;
 
-/// The readings tried. The last change nothing but the seed: what differs there is chance.
+/// The alternative assumptions tried. The last ones change only the random seed: their differences are due to chance.
 pub const READINGS: [Reading; 15] = [
     Reading {
         name: "K_act / 10",
@@ -45,8 +45,8 @@ pub const READINGS: [Reading; 15] = [
     },
     Reading {
         name: "other stiffness definition",
-        meaning: "stiffness from the blocks of the compliance matrix instead of those of the stiffness matrix, or the other way \
-                  round: with every other direction free instead of held",
+        meaning: "stiffness from the blocks of the compliance matrix (all other directions free) instead of the \
+                  blocks of the stiffness matrix (all other directions held), or vice versa",
         moves_designs: true,
         change: |study| {
             study.model.stiffness_definition = match study.model.stiffness_definition {
@@ -57,34 +57,34 @@ pub const READINGS: [Reading; 15] = [
     },
     Reading {
         name: "isotropic length",
-        meaning: "the Jacobian made homogeneous by the isotropic length",
+        meaning: "the Jacobian normalised with the isotropic characteristic length",
         moves_designs: true,
         change: |study| study.model.characteristic_length = LengthChoice::Isotropic,
     },
     Reading {
         name: "r ≥ 0.5 m",
-        meaning: "a larger least platform, as the 2010 paper prints it, which leaves out its own design I",
+        meaning: "a larger lower bound of r, as printed in the 2010 paper, which excludes the paper's own design I",
         moves_designs: false,
         change: |study| study.bounds.r_m[0] = study.bounds.r_m[0].max(0.5),
     },
     Reading {
         name: "telescopic bar L_b",
-        meaning: "the beam of a telescopic leg as long as the leg can get, whatever the pose",
+        meaning: "the beam of a telescopic leg as long as the fully extended leg, whatever the pose",
         moves_designs: true,
         change: |study| study.model.telescopic_bar = TelescopicBar::Longest,
     },
     Reading {
         name: "φ_c = 0",
-        meaning: "the home orientation fixed with the platform's triangle parallel to the base's",
+        meaning: "the home orientation fixed, with the platform triangle parallel to the base triangle",
         moves_designs: true,
         change: |study| study.workspace.home_phi_deg = Some(0.0),
     },
     Reading {
         name: "τ_z = 100 N·m",
-        meaning: "another torque to withstand: the 2010 paper has 100 N·m in its text and 10 N·m in its inequality",
+        meaning: "another required torque: the 2010 paper has 100 N·m in its text and 10 N·m in its inequality",
         moves_designs: true,
         change: |study| {
-            // Where the threshold is set outright, no torque matters.
+            // A threshold that is set explicitly does not depend on the torque.
             if study.requirements.k_phi_z_min_nm_per_rad.is_none() {
                 study.requirements.torque_z_nm = 100.0;
             }
@@ -92,19 +92,19 @@ pub const READINGS: [Reading; 15] = [
     },
     Reading {
         name: "one platform bar",
-        meaning: "the mass of one of the platform's bars counted, as the 2010 paper's equation has it",
+        meaning: "only one platform bar counted in the mass, as in the equation of the 2010 paper",
         moves_designs: true,
         change: |study| study.model.platform_bars = 1,
     },
     Reading {
         name: "G − 7 %",
-        meaning: "a softer shear modulus",
+        meaning: "a smaller shear modulus",
         moves_designs: true,
         change: |study| study.material.shear_modulus_pa *= 0.93,
     },
     Reading {
         name: CLEAR,
-        meaning: "bodies that are not joined keep 5 mm from each other, which the study does not ask",
+        meaning: "a clearance of 5 mm between members that are not joined, which the study does not require",
         moves_designs: true,
         change: |study| {
             study.requirements.clearance_min_m.get_or_insert(CLEARANCE);
@@ -112,7 +112,7 @@ pub const READINGS: [Reading; 15] = [
     },
     Reading {
         name: COLLIDING,
-        meaning: "nothing asked of the clearance that the study asks for",
+        meaning: "no clearance required, unlike in the study",
         moves_designs: true,
         change: |study| study.requirements.clearance_min_m = None,
     },
@@ -136,61 +136,61 @@ pub const READINGS: [Reading; 15] = [
     },
 ];
 
-/// Name of the study as it is.
-const AS_STATED: &str = "the study as it is";
+/// Name of the variation in which the study is unchanged.
+const AS_STATED: &str = "study as given";
 
 fn scale_actuators(study: &mut Study, factor: f64) {
     study.actuators.prismatic_stiffness_n_per_m *= factor;
     study.actuators.revolute_stiffness_nm_per_rad *= factor;
 }
 
-/// The fronts and the reference designs under one reading.
+/// The fronts and the reference designs under one alternative assumption.
 #[derive(Debug, Clone)]
 pub struct Variation {
-    /// The reading; `None` for the study as it is.
+    /// The alternative assumption; `None` for the study as given.
     pub reading: Option<Reading>,
-    /// Each architecture's front; empty where there is no feasible design.
+    /// Front of each architecture; empty if no feasible design was found.
     pub alone: Vec<(Architecture, Front)>,
-    /// `R_w` of each of the study's reference designs on the fine grid \[m\].
+    /// `R_w` of each reference design of the study on the fine grid \[m\].
     pub references: Vec<f64>,
 }
 
 impl Variation {
-    /// Short name of the reading.
+    /// Returns the short name of the alternative assumption.
     pub fn name(&self) -> &'static str {
         self.reading.map_or(AS_STATED, |reading| reading.name)
     }
 
-    /// Whether it can change what one design is worth, and not only what is searched.
+    /// Returns whether the alternative can change the evaluation of a design, rather than only the search.
     pub fn moves_designs(&self) -> bool {
         self.reading.is_none_or(|reading| reading.moves_designs)
     }
 
-    /// Whether it shows nothing but chance.
+    /// Returns whether only the random seed differs, so that all differences are due to chance.
     pub fn is_chance(&self) -> bool {
         self.reading.is_some_and(|reading| reading.meaning == SEED)
     }
 
-    /// The front of an architecture.
+    /// Returns the front of an architecture, unless it is empty.
     pub fn of(&self, architecture: Architecture) -> Option<&Front> {
         let found = self.alone.iter().find(|(other, _)| *other == architecture);
         found.map(|(_, front)| front).filter(|front| !front.members.is_empty())
     }
 }
 
-/// What a clearance costs: the searches with and without one.
+/// Cost of a required clearance, from the searches with and without it.
 #[derive(Debug, Clone, Copy)]
 pub struct ClearanceCost<'a> {
     /// The clearance \[m\].
     pub clearance: f64,
-    /// Where bodies keep it.
+    /// Searches in which the clearance is required.
     pub with: &'a Variation,
-    /// Where they may collide.
+    /// Searches in which members may collide.
     pub without: &'a Variation,
 }
 
 impl<'a> ClearanceCost<'a> {
-    /// The two of the searches under other readings, where they were made.
+    /// Finds the two variations to compare; `None` if one of them was not searched.
     pub fn of(study: &Study, variations: &'a [Variation]) -> Option<Self> {
         let base = variations.iter().find(|variation| variation.reading.is_none())?;
         let named = |name: &str| variations.iter().find(|variation| variation.name() == name);
@@ -209,10 +209,11 @@ impl<'a> ClearanceCost<'a> {
     }
 }
 
-/// Searches every architecture of the study anew under every reading that changes it, each alone with so many evaluations.
+/// Searches each architecture of the study on its own, with the given number of `evaluations`, for the study as given
+/// and for every alternative assumption that changes the study.
 ///
 /// # Errors
-/// [`ReportError`] when a search breaks off.
+/// [`ReportError`] if a search fails.
 pub(super) fn vary(
     study: &Study,
     evaluations: usize,
@@ -220,7 +221,7 @@ pub(super) fn vary(
 ) -> Result<Vec<Variation>, ReportError> {
     let mut base = study.clone();
     base.optimizer.evaluations = evaluations;
-    // Every search shall have as many: no time, and no standstill, ends one sooner.
+    // All searches must have the same number of evaluations: neither a time limit nor stagnation may end one earlier.
     base.optimizer.time_limit_s = None;
     base.optimizer.stagnation = None;
     let readings = std::iter::once(None).chain(READINGS.into_iter().map(Some));
@@ -229,7 +230,7 @@ pub(super) fn vary(
         let mut study = base.clone();
         if let Some(reading) = reading {
             (reading.change)(&mut study);
-            // A study may have it so already, or rule it out.
+            // The study may already make this assumption, or the changed study may be invalid.
             if study == base || !study.faults().is_empty() {
                 continue;
             }
@@ -237,7 +238,7 @@ pub(super) fn vary(
         let name = reading.map_or(AS_STATED, |reading| reading.name);
         let mut alone = Vec::new();
         for &architecture in &base.architectures {
-            tell(&format!("{name}, {architecture}"));
+            tell(&format!("sensitivity: {name}, {architecture}"));
             let mut single = study.clone();
             single.architectures = vec![architecture];
             let model = single.model();

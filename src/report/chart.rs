@@ -1,4 +1,4 @@
-//! Charts as SVG, and SVG as PNG.
+//! Drawing charts as SVG and converting SVG to PNG.
 
 use std::sync::{Arc, OnceLock};
 
@@ -7,7 +7,7 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use resvg::{tiny_skia, usvg};
 
-/// An axis.
+/// An axis of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Axis {
     pub label: &'static str,
@@ -16,7 +16,7 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// A linear axis from 0 to a little beyond the largest value.
+    /// Creates a linear axis from 0 to slightly beyond the largest value.
     pub fn from_zero(label: &'static str, values: impl Iterator<Item = f64>) -> Self {
         let largest = values.fold(0.0, f64::max);
         Self {
@@ -26,7 +26,7 @@ impl Axis {
         }
     }
 
-    /// A logarithmic axis over the positive values.
+    /// Creates a logarithmic axis over the positive values.
     pub fn decades(label: &'static str, values: impl Iterator<Item = f64>) -> Self {
         let [low, high] = values
             .filter(|&value| value > 0.0)
@@ -53,7 +53,7 @@ pub(super) enum Mark {
     Line,
     /// Joined by a thin line.
     ThinLine,
-    /// Dots.
+    /// Filled dots.
     Dots,
     /// Dots joined by a line.
     DottedLine,
@@ -63,10 +63,10 @@ pub(super) enum Mark {
     Crosses,
 }
 
-/// Points that belong together.
+/// A series of points that are drawn alike.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Series {
-    /// What the legend says; empty for none.
+    /// Entry in the legend; empty for none.
     pub name: String,
     pub color: [u8; 3],
     pub mark: Mark,
@@ -78,31 +78,31 @@ pub(super) struct Series {
 pub(super) struct Chart {
     pub x: Axis,
     pub y: Axis,
-    /// Names of the whole numbers along y, from 0 up, instead of numbers.
+    /// Labels for the integers 0, 1, 2, … of the y axis, shown instead of numbers.
     pub names: Option<Vec<String>>,
     pub series: Vec<Series>,
-    /// Words beside points.
+    /// Labels beside points.
     pub notes: Vec<([f64; 2], String)>,
-    /// Whether the corner above on the left is free for the legend, instead of that below on the right.
+    /// Whether the legend is in the upper left corner rather than in the lower right one.
     pub legend_above: bool,
 }
 
-/// Width and height of a figure.
+/// Width and height of a figure in units of its SVG.
 const SIZE: (u32, u32) = (640, 430);
-/// Steps that a unit is drawn in: the library rounds to whole ones.
+/// Drawing steps per unit: the plotting library rounds coordinates to integers.
 const FINE: u32 = 4;
 
 const INK: RGBColor = RGBColor(40, 44, 52);
 const GRID: RGBColor = RGBColor(226, 229, 234);
 
 impl Chart {
-    /// The chart as SVG.
+    /// Draws the chart as SVG.
     pub fn svg(&self) -> Result<String, String> {
         register_font()?;
         let mut text = String::new();
         {
             let root = SVGBackend::with_string(&mut text, (FINE * SIZE.0, FINE * SIZE.1)).into_drawing_area();
-            let words = |error: &dyn std::fmt::Display| format!("cannot draw a figure: {error}");
+            let words = |error: &dyn std::fmt::Display| format!("drawing failed: {error}");
             root.fill(&WHITE).map_err(|error| words(&error))?;
             let mut builder = ChartBuilder::on(&root);
             builder
@@ -125,7 +125,7 @@ impl Chart {
             drawn?;
             root.present().map_err(|error| words(&error))?;
         }
-        // As large as it is meant to be, in finer steps.
+        // The figure is displayed at its nominal size although it was drawn in finer steps.
         let drawn = format!("width=\"{}\" height=\"{}\"", FINE * SIZE.0, FINE * SIZE.1);
         let shown = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
         Ok(text.replacen(&drawn, &shown, 1))
@@ -144,7 +144,7 @@ impl Chart {
         X: Ranged<ValueType = f64> + ValueFormatter<f64>,
     {
         let font = |size: u32| ("sans-serif", FINE * size).into_font().color(&INK);
-        // What rounding leaves of a zero is a zero.
+        // A tick at zero may carry a rounding error.
         let number = |value: &f64| crate::text::short(if value.abs() < 1e-12 { 0.0 } else { *value });
         let name = |value: &f64| {
             let whole = value.round();
@@ -220,7 +220,7 @@ impl Chart {
                     .legend(move |(x, y)| PathElement::new([(x, y), (x + 18 * step, y)], color.stroke_width(width)));
             }
         }
-        // The library's marks are of another type on the chart than in its legend.
+        // The library uses different types for markers on the chart and in the legend, so a function cannot serve both.
         macro_rules! marks {
             ($mark:ident, $size:expr, $style:expr) => {{
                 let (size, style) = ($size * step, $style);
@@ -243,7 +243,7 @@ impl Chart {
     }
 }
 
-/// The font that figures are laid out with, so that they come out alike on every machine.
+/// The font with which figures are laid out; embedding it makes them identical on every machine.
 const FONT: &[u8] = epaint_default_fonts::UBUNTU_LIGHT;
 
 fn register_font() -> Result<(), String> {
@@ -253,11 +253,11 @@ fn register_font() -> Result<(), String> {
     if *registered {
         Ok(())
     } else {
-        Err("the font for figures cannot be read".to_owned())
+        Err("cannot read the embedded font".to_owned())
     }
 }
 
-/// An SVG as PNG, `scale` pixels a unit.
+/// Renders an SVG as PNG with `scale` pixels per unit.
 pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, String> {
     static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
     let fonts = FONTS.get_or_init(|| {
@@ -277,7 +277,7 @@ pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, String> {
     let tree = usvg::Tree::from_str(svg, &options).map_err(|error| error.to_string())?;
     let size = tree.size();
     let (width, height) = ((size.width() * scale) as u32, (size.height() * scale) as u32);
-    let mut picture = tiny_skia::Pixmap::new(width, height).ok_or("a picture without a size")?;
+    let mut picture = tiny_skia::Pixmap::new(width, height).ok_or("the width or the height of the picture is 0")?;
     resvg::render(
         &tree,
         tiny_skia::Transform::from_scale(scale, scale),
@@ -286,9 +286,9 @@ pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, String> {
     picture.encode_png().map_err(|error| error.to_string())
 }
 
-/// Pixels (red, green, blue, row by row) as PNG.
+/// Encodes pixels (red, green, blue, row by row) as PNG.
 pub(super) fn pixels_to_png(width: u32, height: u32, pixels: &[[u8; 3]]) -> Result<Vec<u8>, String> {
-    let mut picture = tiny_skia::Pixmap::new(width, height).ok_or("a picture without a size")?;
+    let mut picture = tiny_skia::Pixmap::new(width, height).ok_or("the width or the height of the picture is 0")?;
     for (target, &[r, g, b]) in picture.pixels_mut().iter_mut().zip(pixels) {
         *target = tiny_skia::ColorU8::from_rgba(r, g, b, 255).premultiply();
     }

@@ -1,55 +1,55 @@
-//! Why a report cannot be made.
+//! Errors of reports.
 
 use std::path::PathBuf;
 
 use crate::study::{FolderError, StudyError, TableError};
 use kinefront_model::workspace::GridError;
 
-/// Why a report cannot be made.
+/// Reason why a report cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// The folder holds no run.
+    /// The folder is not a run folder.
     #[error("{} holds no run: expected a folder with study.toml and designs.csv", .0.display())]
     NoRun(PathBuf),
-    /// Its study.
+    /// The study of a run cannot be read.
     #[error(transparent)]
     Study(#[from] Box<StudyError>),
-    /// Its table.
+    /// The table of designs of a run cannot be read.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// Runs that cannot be compared.
+    /// The runs cannot be compared because their studies differ.
     #[error("{first} and {other} cannot be put in one report: their studies differ in {key}")]
     Differing {
         /// Name of the first run.
         first: String,
         /// Name of the other run.
         other: String,
-        /// What they differ in.
+        /// Section or key of the study in which they differ.
         key: &'static str,
     },
-    /// No feasible design.
+    /// The runs have no feasible design.
     #[error("no design of the run is feasible: there is no front to report")]
     NothingFeasible,
-    /// A search of the report's own broke off.
-    #[error("the search \"{name}\" broke off: {message}")]
+    /// A search that the report ran itself failed.
+    #[error("the search \"{name}\" failed: {message}")]
     Run {
-        /// What was searched.
+        /// Name of the search.
         name: String,
-        /// Why.
+        /// Reason of the failure.
         message: String,
     },
-    /// A grid that does not fit.
+    /// The step of a grid does not divide the full turn or half the rotation range.
     #[error(transparent)]
     Grid(#[from] GridError),
-    /// A figure or picture.
-    #[error("{name}: {message}")]
+    /// A figure, a picture or `fronts.csv` cannot be created.
+    #[error("cannot create {name}: {message}")]
     Figure {
-        /// Its name.
+        /// Name of the figure, picture or file.
         name: String,
-        /// What went wrong.
+        /// Reason of the failure.
         message: String,
     },
-    /// The folder holds a report already.
+    /// The folder already holds a report, and replacing it was not requested.
     #[error("{} already holds a report; choose another folder, or replace it with --replace", .0.display())]
     Occupied(PathBuf),
     /// A file cannot be written.

@@ -1,4 +1,4 @@
-//! The figures of a report.
+//! Figures of a report.
 
 use super::chart::{Axis, Chart, Mark, Series};
 use super::fits::Trend;
@@ -12,12 +12,12 @@ use kinefront_model::workspace::Thresholds;
 
 const MASS: &str = "mass in motion [kg]";
 const RADIUS: &str = "workspace radius R_w [m]";
-/// What a source states, and what this model makes of it.
+/// Colours of the values that the source of a reference design states, and of those that this model computes.
 const STATED: [u8; 3] = [200, 40, 40];
 const MODELLED: [u8; 3] = [20, 20, 20];
-/// The paper's own algorithm.
+/// Colour of MOGA-II (reimplementation), the algorithm of the paper.
 const RIVAL: [u8; 3] = [150, 150, 150];
-/// Readings, told apart on white.
+/// Colours of the alternative assumptions, distinguishable on white.
 const READINGS: [[u8; 3]; 14] = [
     [0, 0, 0],
     [213, 94, 0],
@@ -35,14 +35,14 @@ const READINGS: [[u8; 3]; 14] = [
     [190, 190, 190],
 ];
 
-/// Every figure, in the order of the page.
+/// Draws all figures in the order of the page.
 pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
     let mut figures = Figures(Vec::new());
     for (name, words, logarithmic) in [
         ("fronts", "Pareto fronts of the architectures", false),
         (
             "fronts-log",
-            "The same over the logarithm of the mass, where light designs are told apart",
+            "The same fronts over a logarithmic mass axis, which separates the light designs",
             true,
         ),
     ] {
@@ -63,23 +63,23 @@ pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
         for (kind, words, bars) in [
             (
                 "lengths",
-                "R, r and L_b along the front, with straight lines fitted",
+                "R, r and L_b along the front, with fitted straight lines",
                 false,
             ),
             (
                 "bars",
-                "r_j and r_p along the front, with a straight line and a parabola fitted",
+                "r_j and r_p along the front, with a fitted straight line and a fitted parabola, respectively",
                 true,
             ),
         ] {
             let shown: Vec<&Trend> = of(bars).collect();
-            let words = format!("{words}; {architecture}");
+            let words = format!("{words} ({architecture})");
             figures.add(format!("{kind}-{slug}"), words, (along(&shown), 0))?;
         }
         let front = report.fronts.of(*architecture);
         if let Some(front) = front {
             let words =
-                format!("Constraints that stop the workspace from growing, along the front of the {architecture}");
+                format!("Active constraints, which limit the workspace, along the front of the {architecture}");
             figures.add(
                 format!("active-{slug}"),
                 words,
@@ -90,13 +90,13 @@ pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
     if let Some(cost) = ClearanceCost::of(&report.study, &report.variations) {
         for &(architecture, _) in &report.fronts.alone {
             let words =
-                format!("Fronts of the {architecture} where bodies may collide, and where they keep a clearance");
+                format!("Fronts of the {architecture} without and with a required clearance between members");
             let name = format!("clearance-{}", slug(architecture.name()));
             figures.add(name, words, clearance(&cost, architecture))?;
         }
     }
     for &(architecture, _) in report.fronts.alone.iter().filter(|_| !report.variations.is_empty()) {
-        let words = format!("Fronts of the {architecture} where an assumption is read otherwise");
+        let words = format!("Fronts of the {architecture} under alternative assumptions");
         let name = format!("sensitivity-{}", slug(architecture.name()));
         figures.add(name, words, sensitivity(report, architecture))?;
     }
@@ -106,7 +106,7 @@ pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
 struct Figures(Vec<Figure>);
 
 impl Figures {
-    /// Draws a chart; `beyond` designs are too heavy for it.
+    /// Draws a chart and adds it; `beyond` designs lie beyond the end of its mass axis.
     fn add(&mut self, name: String, words: String, (chart, beyond): (Chart, usize)) -> Result<(), ReportError> {
         let svg = chart.svg().map_err(|message| ReportError::Figure {
             name: name.clone(),
@@ -114,19 +114,20 @@ impl Figures {
         })?;
         let caption = match beyond {
             0 => format!("{words}."),
-            _ => format!("{words}. {beyond} designs are heavier than the axis reaches."),
+            _ => format!("{words}. Designs beyond the end of the mass axis: {beyond}."),
         };
         self.0.push(Figure { name, caption, svg });
         Ok(())
     }
 }
 
-/// An architecture's colour, dark enough for lines on white.
+/// Returns the colour of an architecture, darkened for lines on white.
 fn color(architecture: Architecture) -> [u8; 3] {
     palette::architecture(architecture).map(|value| (f64::from(value) * 0.82) as u8)
 }
 
-/// The reference designs of an architecture, or of all: as stated, and as this model finds them, with their names.
+/// Returns the reference designs of one architecture or of all: a series of the stated values, a series of the values
+/// computed by this model, and the names beside the latter.
 fn references(report: &Report, of: Option<Architecture>) -> (Vec<Series>, Vec<([f64; 2], String)>) {
     let of = |architecture: Architecture| of.is_none_or(|of| of == architecture);
     let found: Vec<_> = report
@@ -154,21 +155,22 @@ fn references(report: &Report, of: Option<Architecture>) -> (Vec<Series>, Vec<([
         points,
     };
     let mut all = vec![
-        series("reference designs, as stated", STATED, Mark::Rings, stated),
+        series("reference designs, stated", STATED, Mark::Rings, stated),
         series("reference designs, this model", MODELLED, Mark::Crosses, modelled),
     ];
     all.retain(|series| !series.points.is_empty());
     (all, notes)
 }
 
-/// A chart of fronts over the logarithm of the mass.
+/// Creates a chart of fronts over a logarithmic mass axis.
 fn decades(series: Vec<Series>, notes: Vec<([f64; 2], String)>) -> (Chart, usize) {
     let x = Axis::decades(MASS, values(&series, 0));
     (front_chart(x, series, notes, true), 0)
 }
 
-/// A chart of fronts over the mass, up to that which the hypervolume is measured from where most designs are lighter: a last
-/// millimetre of workspace may cost tons. With the number of the first `own` series' designs that are heavier.
+/// Creates a chart of fronts over a linear mass axis, and counts the designs of the first `own` series beyond its end.
+/// The axis ends near the reference mass of the hypervolume if fewer than a quarter of these designs are heavier: at
+/// the end of a front a millimetre of workspace may cost tons, which would compress the rest.
 fn plain(report: &Report, own: usize, series: Vec<Series>, notes: Vec<([f64; 2], String)>) -> (Chart, usize) {
     let most = report.study.hypervolume.reference_mass_kg;
     let masses = || values(&series[..own], 0);
@@ -196,7 +198,7 @@ fn front_chart(x: Axis, series: Vec<Series>, notes: Vec<([f64; 2], String)>, log
         names: None,
         series,
         notes,
-        // Fronts rise from the left; over the logarithm, late.
+        // Fronts rise at the left end of a linear axis but at the right end of a logarithmic one.
         legend_above: logarithmic,
     }
 }
@@ -209,7 +211,7 @@ fn alone(report: &Report, architecture: Architecture, front: &Front) -> (Chart, 
         points: front.points(),
     }];
     if let Some(rival) = report.rivals.as_ref().and_then(|rivals| rivals.of(architecture)) {
-        series.push(rival_series("after MOGA-II, alone", rival));
+        series.push(rival_series("MOGA-II (reimplementation), one architecture", rival));
     }
     let (references, notes) = references(report, Some(architecture));
     series.extend(references);
@@ -247,7 +249,7 @@ fn together(report: &Report, logarithmic: bool) -> (Chart, usize) {
     }
 }
 
-/// The front of all architectures, and that of the paper's algorithm.
+/// Creates the chart of the front of all architectures, beside that of MOGA-II (reimplementation).
 fn joint(report: &Report) -> (Chart, usize) {
     let front = &report.fronts.together;
     let mut series: Vec<Series> = report
@@ -269,14 +271,15 @@ fn joint(report: &Report) -> (Chart, usize) {
         .collect();
     let own = series.len();
     if let Some(rival) = report.rivals.as_ref().and_then(|rivals| rivals.joint.as_ref()) {
-        series.push(rival_series("after MOGA-II, all together", rival));
+        series.push(rival_series("MOGA-II (reimplementation), all architectures", rival));
     }
     let (references, notes) = references(report, None);
     series.extend(references);
     plain(report, own, series, notes)
 }
 
-/// Variables along `R_w` with the fits that the paper claims: all straight, but r_p.
+/// Creates a chart of design variables over `R_w` with the kinds of fit that the paper claims: straight lines, and a
+/// parabola for `r_p`.
 fn along(trends: &[&Trend]) -> Chart {
     const COLORS: [[u8; 3]; 3] = [[0, 114, 178], [213, 94, 0], [0, 158, 115]];
     let values = |axis: usize| {
@@ -322,7 +325,7 @@ fn along(trends: &[&Trend]) -> Chart {
     }
 }
 
-/// Which constraints are active at which `R_w`.
+/// Creates a chart of the active constraints of each design over its `R_w`.
 fn active(architecture: Architecture, front: &Front, thresholds: &Thresholds) -> Chart {
     let points: Vec<[f64; 2]> = front
         .shown()
@@ -332,7 +335,7 @@ fn active(architecture: Architecture, front: &Front, thresholds: &Thresholds) ->
                 .map(|constraint| [member.workspace_radius, constraint as u8 as f64])
         })
         .collect();
-    // The place of a constraint is that among all: what may not be asked stands last.
+    // The y value is the index among all constraints: only the last one, g7, may not be required.
     let names: Vec<String> = Constraint::asked(thresholds)
         .map(|constraint| format!("{} {}", constraint.id(), constraint.name().replace('_', " ")))
         .collect();
@@ -355,10 +358,10 @@ fn active(architecture: Architecture, front: &Front, thresholds: &Thresholds) ->
     }
 }
 
-/// Fronts of an architecture with and without a clearance.
+/// Creates a chart of the fronts of an architecture with and without a required clearance.
 fn clearance(cost: &ClearanceCost<'_>, architecture: Architecture) -> (Chart, usize) {
     let names = [
-        (cost.without, "may collide".to_owned(), RIVAL, Mark::ThinLine),
+        (cost.without, "members may collide".to_owned(), RIVAL, Mark::ThinLine),
         (
             cost.with,
             format!("{} mm clearance", short(1e3 * cost.clearance)),
@@ -377,7 +380,7 @@ fn clearance(cost: &ClearanceCost<'_>, architecture: Architecture) -> (Chart, us
     decades(series.collect(), Vec::new())
 }
 
-/// Fronts of an architecture under every reading.
+/// Creates a chart of the fronts of an architecture under every alternative assumption.
 fn sensitivity(report: &Report, architecture: Architecture) -> (Chart, usize) {
     let mut chance = false;
     let series = report
@@ -385,10 +388,10 @@ fn sensitivity(report: &Report, architecture: Architecture) -> (Chart, usize) {
         .iter()
         .zip(READINGS.iter().cycle())
         .filter_map(|(variation, &color)| {
-            // One entry of the legend for all that is chance.
+            // All variations of the random seed share one legend entry.
             let name = match (variation.is_chance(), chance) {
                 (true, true) => String::new(),
-                (true, false) => "other seeds".to_owned(),
+                (true, false) => "other random seeds".to_owned(),
                 (false, _) => variation.name().to_owned(),
             };
             chance |= variation.is_chance();

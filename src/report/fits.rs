@@ -1,4 +1,4 @@
-//! How design variables go with `R_w` along a front: least-squares fits, and whether they only ever grow.
+//! Trends of the design variables with `R_w` along a front: least-squares fits and rank correlations.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,17 +6,18 @@ use super::Front;
 use kinefront_model::mechanism::{VARIABLES, Variable};
 use crate::study::Bounds;
 
-/// A polynomial in `R_w` fitted to a variable.
+/// A polynomial in `R_w` fitted to a design variable.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
-    /// Coefficients, the constant first \[m, 1, 1/m\].
+    /// Coefficients, starting with the constant \[m, 1, 1/m\].
     pub coefficients: Vec<f64>,
-    /// Coefficient of determination: the share of the variable's variance that the fit explains.
+    /// Coefficient of determination: the fraction of the variable's variance that the fit explains.
     pub r_squared: f64,
 }
 
 impl Trend {
-    /// Whether a parabola that opens upwards says clearly more than a line: it leaves at most half of what the line does.
+    /// Returns whether a parabola that opens upwards fits clearly better than a straight line: its residual variance
+    /// is at most half of that of the line. Returns `None` if there is no fit.
     pub fn is_quadratic(&self) -> Option<bool> {
         let (line, parabola) = (self.linear.as_ref()?, self.quadratic.as_ref()?);
         Some(parabola.coefficients[2] > 0.0 && 1.0 - parabola.r_squared <= 0.5 * (1.0 - line.r_squared))
@@ -24,12 +25,13 @@ impl Trend {
 }
 
 impl Fit {
-    /// The polynomial of a degree nearest to the points `(x, y)`; `None` where there are too few or too alike.
+    /// Fits a polynomial of the given degree to the points `(x, y)` by least squares; returns `None` if there are too
+    /// few points or the fit is degenerate.
     pub fn new(points: &[[f64; 2]], degree: usize) -> Option<Self> {
         if points.len() <= degree + 1 {
             return None;
         }
-        // Powers of x scaled to 1, so that they are of one size.
+        // Scaling x to at most 1 gives all powers a similar magnitude.
         let scale = points.iter().fold(0.0f64, |scale, point| scale.max(point[0].abs()));
         if scale <= 0.0 {
             return None;
@@ -42,7 +44,7 @@ impl Fit {
         let mean = values.mean();
         let total: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
         let rest = (powers * &solved - &values).norm_squared();
-        // A variable that does not vary is explained by its constant.
+        // The constant alone explains a variable that does not vary; the quotient would divide by zero.
         let spread = 1e-9 * mean.abs().max(f64::MIN_POSITIVE);
         let constant = total <= spread * spread * points.len() as f64;
         let coefficients = solved.iter().enumerate();
@@ -55,37 +57,38 @@ impl Fit {
         fit.coefficients.iter().all(|value| value.is_finite()).then_some(fit)
     }
 
-    /// Its value at `x`.
+    /// Returns the value of the polynomial at `x`.
     pub fn at(&self, x: f64) -> f64 {
         self.coefficients.iter().rev().fold(0.0, |sum, value| sum * x + value)
     }
 }
 
-/// How one variable goes with `R_w`.
+/// Trend of one design variable with `R_w`.
 #[derive(Debug, Clone)]
 pub struct Trend {
     /// The variable.
     pub variable: Variable,
-    /// `(R_w, value)` of the designs shown.
+    /// `(R_w, value)` of the shown designs of the front.
     pub points: Vec<[f64; 2]>,
-    /// Those of them that stand at neither of the variable's bounds: what the fits are made of.
+    /// The points at which the variable is at neither of its bounds; only these are fitted.
     pub free: Vec<[f64; 2]>,
-    /// A straight line.
+    /// Straight line fitted to the free points.
     pub linear: Option<Fit>,
-    /// A parabola.
+    /// Parabola fitted to the free points.
     pub quadratic: Option<Fit>,
-    /// Spearman's rank correlation with `R_w`: 1 where the variable, off its bounds, only grows. `None` where it is
-    /// hardly ever off its bounds.
+    /// Spearman's rank correlation with `R_w` over the free points: 1 if the variable increases monotonically. `None`
+    /// if there are too few free points.
     pub rank_correlation: Option<f64>,
 }
 
-/// Distance from a bound, as a share of a variable's range, within which the variable stands at it.
+/// Distance from a bound, as a fraction of the variable's range, within which the variable counts as being at the
+/// bound.
 pub const AT_BOUND: f64 = 1e-3;
 
-/// Fewest designs that say how a variable goes.
+/// Smallest number of free points from which a trend is determined.
 const FEWEST: usize = 4;
 
-/// Trends of all five variables along a front found within `bounds`.
+/// Determines the trends of all five design variables along a front found within `bounds`.
 pub fn trends(front: &Front, bounds: &Bounds) -> Vec<Trend> {
     VARIABLES
         .into_iter()
@@ -94,7 +97,7 @@ pub fn trends(front: &Front, bounds: &Bounds) -> Vec<Trend> {
                 .shown()
                 .map(|member| [member.workspace_radius, member.design.values()[variable as usize]])
                 .collect();
-            // A variable that may not go on growing says nothing of how it would.
+            // At a bound the value is fixed by the bound and does not show the trend.
             let [lower, upper] = bounds.range(variable);
             let near = AT_BOUND * (upper - lower);
             let is_free = |point: &[f64; 2]| point[1] > lower + near && point[1] < upper - near;
@@ -120,7 +123,7 @@ fn rank_correlation(points: &[[f64; 2]]) -> f64 {
     if size > 0.0 { product(&x, &y) / size } else { 0.0 }
 }
 
-/// Places in order of size; equals share the mean of theirs.
+/// Returns the ranks of the values in ascending order; equal values get the mean of their ranks.
 fn ranks(values: Vec<f64>) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));

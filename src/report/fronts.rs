@@ -1,4 +1,4 @@
-//! Pareto fronts of a report: each architecture's, and that of all together, verified on the fine grid.
+//! Pareto fronts of a report, of each architecture and of all architectures together, verified on the fine grid.
 
 use rayon::prelude::*;
 
@@ -8,19 +8,19 @@ use kinefront_model::mechanism::{Architecture, Design};
 use kinefront_optimize::{Archive, Evaluated, Outcome, knee, spread};
 use crate::study::{DesignProblem, Study};
 
-/// A front: evaluations on the fine grid, non-dominated, by mass and so by `R_w`.
+/// A front: non-dominated evaluations on the fine grid in ascending order of mass, and hence of `R_w`.
 #[derive(Debug, Clone, Default)]
 pub struct Front {
-    /// All of them.
+    /// All designs of the front.
     pub members: Vec<Evaluation>,
-    /// Places of those that are drawn and tabulated: evenly spread, with both ends and the knee.
+    /// Indices of the designs that are drawn and tabulated: evenly spread, with both ends and the knee.
     pub shown: Vec<usize>,
-    /// Place of the knee.
+    /// Index of the knee.
     pub knee: Option<usize>,
 }
 
 impl Front {
-    /// The non-dominated feasible ones of `evaluations`, at most `most` of them shown.
+    /// Collects the non-dominated feasible designs among `evaluations`; at most `most` of them are shown.
     pub fn new(evaluations: Vec<Evaluation>, most: usize) -> Self {
         let mut archive = Archive::default();
         for (id, evaluation) in evaluations.iter().enumerate().filter(|(_, found)| found.is_feasible()) {
@@ -36,29 +36,29 @@ impl Front {
         }
     }
 
-    /// Those that are shown.
+    /// Returns the designs that are shown.
     pub fn shown(&self) -> impl Iterator<Item = &Evaluation> {
         self.shown.iter().map(|&place| &self.members[place])
     }
 
-    /// Mass and `R_w` of those that are shown.
+    /// Returns mass and `R_w` of the designs that are shown.
     pub fn points(&self) -> Vec<[f64; 2]> {
         self.shown()
             .map(|member| [member.mass, member.workspace_radius])
             .collect()
     }
 
-    /// The lightest with at least this `R_w` \[m\].
+    /// Returns the lightest design whose `R_w` is at least `radius` \[m\].
     pub fn lightest(&self, radius: f64) -> Option<&Evaluation> {
         self.members.iter().find(|member| member.workspace_radius >= radius)
     }
 
-    /// `R_w` of the largest \[m\]; 0 for an empty front.
+    /// Returns the largest `R_w` of the front \[m\]; 0 for an empty front.
     pub fn largest(&self) -> f64 {
         self.members.last().map_or(0.0, |member| member.workspace_radius)
     }
 
-    /// Members worth a picture, with what they are: the lightest, the knee, the largest.
+    /// Returns the designs to be pictured, each with its name: the lightest, the knee and the largest.
     pub fn marked(&self) -> Vec<(&'static str, &Evaluation)> {
         let mut marked = Vec::new();
         let last = self.members.len().saturating_sub(1);
@@ -75,20 +75,22 @@ impl Front {
     }
 }
 
-/// The fronts of some searches.
+/// Fronts of several searches, pooled.
 #[derive(Debug, Clone)]
 pub struct Fronts {
-    /// Each architecture's, in the order of the paper; those without a feasible design are left out.
+    /// Front of each architecture that has a feasible design, in the order of [`Architecture::ALL`], which is the
+    /// paper's.
     pub alone: Vec<(Architecture, Front)>,
-    /// Of all together.
+    /// Front of all architectures together.
     pub together: Front,
 }
 
 impl Fronts {
-    /// The fronts of all designs of the sources, evaluated again on the fine grid of `model`.
+    /// Computes the fronts of all designs of the sources: the designs that are non-dominated on the reference grid are
+    /// evaluated again on the fine grid of `model`.
     ///
     /// # Errors
-    /// [`ReportError::NothingFeasible`] when there is no feasible design.
+    /// [`ReportError::NothingFeasible`] if there is no feasible design.
     pub fn new(sources: &[Source], model: &Model, most: usize) -> Result<Self, ReportError> {
         let mut alone = Vec::new();
         for &architecture in Architecture::ALL {
@@ -110,7 +112,7 @@ impl Fronts {
         Ok(Self { alone, together })
     }
 
-    /// The front of an architecture.
+    /// Returns the front of an architecture.
     pub fn of(&self, architecture: Architecture) -> Option<&Front> {
         self.alone
             .iter()
@@ -119,7 +121,7 @@ impl Fronts {
     }
 }
 
-/// The designs of an architecture that are non-dominated on the reference grid.
+/// Returns the designs of an architecture that are non-dominated on the reference grid.
 fn candidates(sources: &[Source], architecture: Architecture) -> Vec<Design> {
     let mut archive = Archive::default();
     let rows: Vec<_> = sources
@@ -137,16 +139,17 @@ fn candidates(sources: &[Source], architecture: Architecture) -> Vec<Design> {
     archive.iter().map(|member| rows[member.id].design).collect()
 }
 
-/// Fronts of searches one by one, not pooled: what a single search finds.
+/// Fronts of individual searches, not pooled: each shows the result of a single search.
 #[derive(Debug, Clone, Default)]
 pub struct Single {
-    /// Of the search over one architecture alone.
+    /// Front of the search over each architecture on its own.
     pub alone: Vec<(Architecture, Front)>,
-    /// Of the search over all architectures together.
+    /// Front of the search over all architectures together.
     pub joint: Option<Front>,
 }
 
-/// The fronts of the first search over just these architectures; `None` without one, or without a feasible design.
+/// Returns the fronts of the first search over exactly these architectures; `None` if there is none or none is
+/// feasible.
 fn of_search(sources: &[Source], architectures: &[Architecture], study: &Study) -> Result<Option<Fronts>, ReportError> {
     let Some(source) = sources
         .iter()
@@ -162,10 +165,10 @@ fn of_search(sources: &[Source], architectures: &[Architecture], study: &Study) 
     }
 }
 
-/// The front of the search over all architectures of the study together, where there is one.
+/// Returns the front of the search over all architectures of the study together, if there is one.
 ///
 /// # Errors
-/// A grid that does not fit.
+/// [`ReportError::Grid`] if the step of a grid does not divide the full turn or half the rotation range.
 pub(super) fn joint(sources: &[Source], study: &Study) -> Result<Option<Front>, ReportError> {
     match study.architectures[..] {
         [_] => Ok(None),
@@ -174,10 +177,10 @@ pub(super) fn joint(sources: &[Source], study: &Study) -> Result<Option<Front>, 
 }
 
 impl Single {
-    /// The fronts of the first search of each kind.
+    /// Determines the fronts of the first search over each architecture and of the first search over all of them.
     ///
     /// # Errors
-    /// A grid that does not fit.
+    /// [`ReportError::Grid`] if the step of a grid does not divide the full turn or half the rotation range.
     pub fn new(sources: &[Source], study: &Study) -> Result<Self, ReportError> {
         let mut alone = Vec::new();
         for &architecture in &study.architectures {
@@ -190,7 +193,7 @@ impl Single {
         })
     }
 
-    /// The front of an architecture alone.
+    /// Returns the front of the search over one architecture.
     pub fn of(&self, architecture: Architecture) -> Option<&Front> {
         let found = self.alone.iter().find(|(other, _)| *other == architecture);
         found.map(|(_, front)| front)
@@ -198,7 +201,7 @@ impl Single {
 }
 
 impl Front {
-    /// Share of its members that are of an architecture.
+    /// Returns the fraction of the front's designs that have the given architecture.
     pub fn share(&self, architecture: Architecture) -> f64 {
         let of = self
             .members
@@ -208,7 +211,7 @@ impl Front {
     }
 }
 
-/// Over which radii which architecture is the lightest: stretches of `R_w` \[m\], in order.
+/// Determines which architecture is the lightest at which radii: intervals of `R_w` \[m\] in ascending order.
 pub fn lightest_where(fronts: &Fronts) -> Vec<(Architecture, [f64; 2])> {
     const LEVELS: u32 = 400;
     let largest = fronts.together.largest();

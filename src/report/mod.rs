@@ -1,7 +1,9 @@
-//! A run as pages: fronts, trends, comparison with what a study refers to, pictures, and how results move with assumptions.
+//! Reports on runs: fronts, trends, the comparison with the reference designs of the study, pictures, and the
+//! sensitivity of the results to assumptions.
 //!
-//! [`Report::make`] gathers and computes, [`Report::write`] leaves a folder: `index.html`, which holds everything and loads
-//! nothing, the figures once more as SVG and PNG, the pictures as PNG, and `fronts.csv`.
+//! [`Report::make`] collects the data and computes the results; [`Report::write`] writes a folder with `index.html`,
+//! which is self-contained and loads nothing, the figures as separate SVG and PNG files, the pictures as PNG, and
+//! `fronts.csv`.
 
 mod assumptions;
 mod chart;
@@ -31,16 +33,16 @@ use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::Architecture;
 use crate::study::{AlgorithmName, BUILTIN, Study};
 
-/// What a report shall have.
+/// Options of a report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// Evaluations for each search under another reading; none are made without.
+    /// Number of evaluations of each search under an alternative assumption; `None` omits these searches.
     pub sensitivity: Option<usize>,
-    /// Size of the pictures of designs \[pixels\].
+    /// Width and height of the pictures of designs \[pixels\].
     pub picture: [u32; 2],
-    /// Pixels per unit of a figure's PNG.
+    /// Pixels of a figure's PNG per unit of its SVG.
     pub scale: f32,
-    /// The command that made it, to be told.
+    /// The command that made the report, as shown on the page.
     pub command: String,
 }
 
@@ -55,12 +57,12 @@ impl Default for Options {
     }
 }
 
-/// A figure or picture by name.
+/// A figure of a report.
 #[derive(Debug, Clone, PartialEq)]
 struct Figure {
-    /// Its file's name without extension.
+    /// File name without its extension.
     name: String,
-    /// What it shows.
+    /// What the figure shows.
     caption: String,
     svg: String,
 }
@@ -74,30 +76,30 @@ struct Picture {
     png: Vec<u8>,
 }
 
-/// A report, made.
+/// A complete report.
 #[derive(Debug, Clone)]
 pub struct Report {
     study: Study,
     options: Options,
-    /// What it was made of, without the designs.
+    /// Summaries of the searches that the report covers, without their designs.
     sources: Vec<Made>,
     fronts: Fronts,
-    /// What the search over all architectures together found, where there was one.
+    /// Front of the search over all architectures together, if there was one.
     joint: Option<Front>,
-    /// Fronts of the algorithm that the paper used, after what is known of it.
+    /// Fronts found by MOGA-II (reimplementation), the algorithm that the paper used.
     rivals: Option<Single>,
     references: Vec<Reference>,
     trends: Vec<(Architecture, Vec<Trend>)>,
     variations: Vec<Variation>,
     figures: Vec<Figure>,
     pictures: Vec<Picture>,
-    /// Whether the study compares with the paper's designs.
+    /// Whether the study states the problem of the paper, so that the page may compare with the paper.
     of_paper: bool,
-    /// Making it, searches of its own included.
+    /// Time taken to make the report, including the searches that it runs itself.
     taken: Duration,
 }
 
-/// One search that went into a report.
+/// Summary of a search that a report covers.
 #[derive(Debug, Clone)]
 struct Made {
     name: String,
@@ -129,7 +131,8 @@ impl Made {
 }
 
 impl Report {
-    /// A report on the runs in `sources`, which must ask for the same. `tell` hears what is being done.
+    /// Makes a report on the runs in `sources`, whose studies must state the same problem; their architectures and
+    /// search settings may differ. `tell` is called with a progress message at each step.
     ///
     /// # Errors
     /// [`ReportError`].
@@ -137,8 +140,9 @@ impl Report {
         Self::with_rivals(sources, &[], options, tell, Instant::now())
     }
 
-    /// The report on the paper from nothing: each architecture alone and all together, by our algorithm and by that of the
-    /// paper, and all the rest.
+    /// Makes the report on the paper from scratch: searches each architecture on its own and all architectures
+    /// together, with the algorithm of the built-in study and with MOGA-II (reimplementation), the algorithm of the
+    /// paper, and evaluates the results.
     ///
     /// # Errors
     /// [`ReportError`].
@@ -154,8 +158,8 @@ impl Report {
                     let mut study = study.clone();
                     study.optimizer.algorithm = algorithm;
                     let name = match architectures[..] {
-                        [architecture] => format!("{architecture} alone"),
-                        _ => "all together".to_owned(),
+                        [architecture] => format!("{architecture} only"),
+                        _ => "all architectures".to_owned(),
                     };
                     tell(&format!("searching {name} ({algorithm})"));
                     study.architectures = architectures;
@@ -181,7 +185,7 @@ impl Report {
         tell("verifying the fronts");
         let fronts = Fronts::new(sources, &model, most)?;
         let joint = match sources {
-            // It is what was just verified.
+            // The front of a single search is the one that has just been verified.
             [_] => Some(fronts.together.clone()),
             _ => fronts::joint(sources, &study)?,
         };
@@ -199,7 +203,7 @@ impl Report {
             Some(evaluations) => assumptions::vary(&study, evaluations, tell)?,
             None => Vec::new(),
         };
-        tell("drawing");
+        tell("drawing figures and pictures");
         let of_paper = is_paper(&study);
         let mut report = Self {
             study,
@@ -231,7 +235,7 @@ impl Report {
             })
         });
         let referred = self.references.iter().enumerate().map(|(index, reference)| {
-            // Two names may be alike as names of files.
+            // The index keeps file names distinct where two names become the same slug.
             let name = format!("reference-{}-{}", index + 1, slug(&reference.name));
             (name, reference.name.clone(), &reference.fine)
         });
@@ -260,7 +264,7 @@ impl Report {
     }
 }
 
-/// The study of all sources, with the architectures of all of them.
+/// Returns the study that all sources have in common, with the architectures of all of them.
 fn common(sources: &[Source]) -> Result<Study, ReportError> {
     let Some((first, others)) = sources.split_first() else {
         return Err(ReportError::NothingFeasible);
@@ -294,7 +298,7 @@ fn common(sources: &[Source]) -> Result<Study, ReportError> {
     Ok(study)
 }
 
-/// Whether a study asks what the paper's does: then the report may speak of the paper.
+/// Returns whether a study states the same problem as the paper's study, so that the report may refer to the paper.
 fn is_paper(study: &Study) -> bool {
     BUILTIN[0].study().is_ok_and(|paper| {
         study.references == paper.references
@@ -308,7 +312,7 @@ fn is_paper(study: &Study) -> bool {
     })
 }
 
-/// A name for a file.
+/// Converts a name to a file name: its alphanumeric parts in lower case, joined by hyphens.
 fn slug(name: &str) -> String {
     let parts = name
         .split(|c: char| !c.is_alphanumeric())

@@ -1,4 +1,4 @@
-//! Pictures of designs: rays cast at the scene's solids, on any machine, without a graphics driver.
+//! Pictures of designs, rendered by casting rays at the solids of the scene; this needs no graphics driver.
 
 use glam::{DVec2, DVec3};
 use parry3d_f64::bounding_volume::Aabb;
@@ -12,24 +12,24 @@ use crate::palette;
 use crate::scene::{SolidShape, manipulator, regular_workspace};
 use kinefront_model::spatial::unit;
 
-/// The ground, and what the workspace is tinted with.
+/// Colours of the ground and of the workspace.
 const GROUND: DVec3 = DVec3::ONE;
 const WORKSPACE: DVec3 = DVec3::new(0.18, 0.62, 0.34);
-/// Where the light comes from.
+/// Direction towards the light.
 const LIGHT: DVec3 = DVec3::new(0.35, -0.45, 0.82);
-/// Elevation and azimuth of the camera \[deg\], and half its field of view.
+/// Elevation and azimuth of the camera and half of its field of view \[deg\].
 const ELEVATION: f64 = 52.0;
 const AZIMUTH: f64 = -70.0;
 const HALF_VIEW: f64 = 13.0;
-/// Room around what is shown.
+/// Ratio by which the view is larger than the scene.
 const MARGIN: f64 = 1.04;
-/// Rays along each side of a pixel on whose sides the picture differs.
+/// Number of rays along each side of a pixel that differs from one of its neighbours.
 const FINE: u32 = 3;
 
-/// A picture of a design at its home with its regular workspace, as red, green and blue, row by row.
+/// Renders a design at its home pose with its regular workspace; returns red, green and blue, row by row.
 ///
 /// # Errors
-/// What is wrong with the design, in words.
+/// A message that says what is wrong with the design.
 pub(super) fn picture(
     model: &Model,
     evaluation: &Evaluation,
@@ -94,7 +94,7 @@ struct Camera {
 }
 
 impl Camera {
-    /// A camera that sees all corners, as close as may be.
+    /// Creates a camera that sees all corners from as near as possible.
     fn new(corners: &[DVec3], size: [u32; 2]) -> Self {
         let turn = |deg: f64| libm::sincos(deg.to_radians());
         let ((sin_e, cos_e), (sin_a, cos_a)) = (turn(ELEVATION), turn(AZIMUTH));
@@ -111,7 +111,8 @@ impl Camera {
         let [x, y, z] = [right, up, back].map(across);
         let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
         let centre = right * middle(x) + up * middle(y) + back * middle(z);
-        // What is needed of the shorter side; what is nearer than the middle looks larger.
+        // The half extent that must fit, referred to the shorter side; half the depth is added to the distance because
+        // parts in front of the centre look larger.
         let shorter = size[0].min(size[1]);
         let half = (0.5 * (x[1] - x[0]) / (size[0] / shorter)).max(0.5 * (y[1] - y[0]) / (size[1] / shorter));
         let distance = MARGIN * half / libm::tan(HALF_VIEW.to_radians()) + 0.5 * (z[1] - z[0]);
@@ -126,7 +127,7 @@ impl Camera {
 
     fn ray(&self, x: f64, y: f64) -> Ray {
         let [width, height] = self.size;
-        // The same scale both ways, so that the shorter side sees the field of view.
+        // Both directions have the same scale, and the shorter side spans the field of view.
         let scale = 2.0 * libm::tan(HALF_VIEW.to_radians()) / width.min(height);
         let direction =
             self.forward + self.right * ((x - 0.5 * width) * scale) - self.up * ((y - 0.5 * height) * scale);
@@ -134,11 +135,11 @@ impl Camera {
     }
 }
 
-/// A solid that rays meet.
+/// A solid that rays can hit.
 struct Body {
     shape: SharedShape,
     pose: Pose,
-    /// Bounds in its own axes, in which they are tight: a bar lies along one.
+    /// Bounds in the solid's own axes, where they are tight because a bar lies along one of the axes.
     bounds: Aabb,
     color: DVec3,
 }
@@ -171,7 +172,7 @@ impl Body {
         }
     }
 
-    /// Distance along the ray and normal where it meets the solid, if nearer than `most`.
+    /// Returns the distance along the ray to the solid and the normal there, if the distance is smaller than `most`.
     fn meet(&self, ray: &Ray, most: f64) -> Option<(f64, DVec3)> {
         let ray = ray.inverse_transform_by(&self.pose);
         let entered = self.bounds.cast_local_ray(&ray, f64::MAX, true)?;
@@ -184,16 +185,16 @@ impl Body {
     }
 }
 
-/// What rays meet.
+/// Everything that rays can hit: bodies, workspace and ground.
 struct Stage {
     bodies: Vec<Body>,
-    /// Points that bound all there is to see.
+    /// Points that bound everything visible.
     corners: Vec<DVec3>,
     /// Centre and radius of the regular workspace.
     disc: Option<(DVec2, f64)>,
-    /// Height of the disc, and of the ground below it.
+    /// Heights of the disc and of the ground below it.
     heights: [f64; 2],
-    /// How far from a surface a shadow's ray begins.
+    /// Offset from a surface at which a shadow ray starts.
     step: f64,
     light: DVec3,
 }
@@ -248,7 +249,7 @@ impl Stage {
         if let Some((centre, radius)) = self.disc {
             let distance = meets(self.heights[0]).truncate().distance(centre);
             if distance < radius {
-                // A rim, so that the edge is seen where the tint is weak.
+                // The rim is stronger so that the edge is visible although the tint is weak.
                 let share = if distance > 0.985 * radius { 0.9 } else { 0.28 };
                 color = color.lerp(WORKSPACE, share);
             }
@@ -256,7 +257,7 @@ impl Stage {
         color
     }
 
-    /// Whether something stands between a point and the light.
+    /// Returns whether a body lies between a point and the light.
     fn is_shaded(&self, at: DVec3) -> bool {
         let ray = Ray::new(vector(at + self.light * self.step), vector(self.light));
         self.bodies.iter().any(|body| body.meet(&ray, f64::MAX).is_some())
@@ -284,7 +285,7 @@ mod tests {
     fn shares(design: &str) -> [f64; 4] {
         let model = Model::default();
         let design = design.parse().expect("a design");
-        let evaluation = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+        let evaluation = model.evaluate(&design, GridChoice::Reference);
         let pixels = picture(&model, &evaluation, 20.0, SIZE).expect("a picture");
         assert_eq!(pixels.len(), (SIZE[0] * SIZE[1]) as usize);
         let share = |is: fn([i32; 3]) -> bool| {
@@ -300,7 +301,7 @@ mod tests {
         ]
     }
 
-    /// What there is to see is seen, the workspace as large as it is.
+    /// A picture shows the ground, sliders, platform and workspace, and the size of the workspace follows `R_w`.
     #[test]
     fn a_picture_shows_the_design_and_its_workspace() {
         let [ground, workspace, driven, platform] = shares("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");

@@ -1,39 +1,41 @@
-//! The designs that a study refers to: as their source states them, as this model finds them, and what beats them.
+//! The reference designs of a study: the values that their source states, the values that this model computes, and the
+//! lightest design that replaces each of them.
 
 use super::{Fronts, ReportError};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{Design, VARIABLES};
 use crate::study::Study;
 
-/// A design that the study refers to.
+/// A reference design of the study.
 #[derive(Debug, Clone)]
 pub struct Reference {
-    /// Its name.
+    /// Name of the design.
     pub name: String,
-    /// Mass that its source states \[kg\].
+    /// Mass stated by the source of the design \[kg\].
     pub stated_mass: Option<f64>,
-    /// `R_w` that its source states \[m\].
+    /// `R_w` stated by the source of the design \[m\].
     pub stated_radius: Option<f64>,
-    /// On the reference grid.
+    /// Evaluation on the reference grid.
     pub coarse: Evaluation,
-    /// On the fine grid.
+    /// Evaluation on the fine grid.
     pub fine: Evaluation,
-    /// Mass at the two ends of what rounds to its bar radii, were they printed to a millimetre \[kg\].
+    /// Smallest and largest mass for bar radii that round to the stated ones to the nearest millimetre \[kg\].
     pub mass_range: [f64; 2],
-    /// The lightest design found with at least its `R_w` on the fine grid.
+    /// The lightest design found with at least the `R_w` of this design on the fine grid, if it is lighter than this
+    /// design and this design is feasible.
     pub beaten_by: Option<Evaluation>,
 }
 
-/// The study's references.
+/// Evaluates the reference designs of the study.
 ///
 /// # Errors
-/// A grid that does not fit.
+/// [`ReportError::Grid`] if the step of a grid does not divide the full turn or half the rotation range.
 pub(super) fn all(study: &Study, fronts: &Fronts) -> Result<Vec<Reference>, ReportError> {
     let model = study.model();
     study
         .references
         .iter()
-        // A study was read without faults.
+        // The study was validated when it was read, so every reference can be parsed.
         .filter_map(|reference| Some((reference, reference.parse(study.working_mode).ok()?)))
         .map(|(reference, design)| {
             let fine = model.evaluate(&design, GridChoice::Fine)?;
@@ -53,7 +55,7 @@ pub(super) fn all(study: &Study, fronts: &Fronts) -> Result<Vec<Reference>, Repo
         .collect()
 }
 
-/// Mass with both bar radii that much larger.
+/// Computes the mass with both bar radii increased by `more` \[m\].
 fn mass_of(model: &Model, design: &Design, more: f64) -> f64 {
     let mut values = design.values();
     for variable in VARIABLES.into_iter().filter(|variable| variable.may_be_zero()) {

@@ -1,4 +1,4 @@
-//! What a report is made of: designs that a search evaluated.
+//! Input of a report: a search with the designs that it evaluated.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -8,26 +8,26 @@ use super::ReportError;
 use kinefront_model::evaluation::Evaluation;
 use crate::study::{Event, Row, RunControl, RunTimes, Study, read_table, spawn};
 
-/// A search with all designs that it evaluated.
+/// A search with all the designs that it evaluated.
 #[derive(Debug, Clone)]
 pub struct Source {
-    /// Where it comes from: a folder, or what was searched.
+    /// Name of the run folder or of the search.
     pub name: String,
-    /// Its study.
+    /// Study of the search.
     pub study: Study,
-    /// Its designs.
+    /// All evaluated designs.
     pub rows: Vec<Row>,
-    /// Where its time went, if it is known \[s\].
+    /// Times taken by the stages of the search, if known \[s\].
     pub times: Option<RunTimes>,
-    /// Version of the program that made it, if it is known.
+    /// Version of the program that ran the search; empty if unknown.
     pub version: String,
 }
 
 impl Source {
-    /// Reads a run's folder.
+    /// Reads a run folder.
     ///
     /// # Errors
-    /// [`ReportError`] when it holds no run, or a file of it is wrong.
+    /// [`ReportError`] if the folder is not a run folder or one of its files is invalid.
     pub fn read(folder: &Path) -> Result<Self, ReportError> {
         let (study, designs) = (folder.join("study.toml"), folder.join("designs.csv"));
         if !study.exists() || !designs.exists() {
@@ -38,7 +38,7 @@ impl Source {
             .into_iter()
             .map(|entry| entry.row)
             .collect();
-        // Its name alone: where it lies is nothing to publish.
+        // Only the folder's name: a published report must not reveal its path.
         let name = folder.canonicalize().ok();
         let name = name
             .as_deref()
@@ -55,10 +55,10 @@ impl Source {
         })
     }
 
-    /// Runs a study to its end.
+    /// Runs a study to its end and collects its designs.
     ///
     /// # Errors
-    /// [`ReportError::Run`] when it breaks off.
+    /// [`ReportError::Run`] if the run fails.
     pub fn run(name: &str, study: Study) -> Result<Self, ReportError> {
         let failed = |message: String| ReportError::Run {
             name: name.to_owned(),
@@ -80,7 +80,7 @@ impl Source {
             }
         }
         if worker.join().is_err() {
-            broken = broken.or_else(|| Some("its thread panicked".to_owned()));
+            broken = broken.or_else(|| Some("the worker thread panicked".to_owned()));
         }
         match broken {
             Some(message) => Err(failed(message)),
@@ -95,14 +95,15 @@ impl Source {
     }
 }
 
-/// What a report takes of `run.json`.
+/// The fields of `run.json` that a report uses.
 #[derive(serde::Deserialize)]
 struct Told {
     times: RunTimes,
     kinefront_version: String,
 }
 
-/// A report does without: a run that was killed has none.
+/// Reads `run.json`; returns `None` if it is missing or invalid. A report does not depend on it, because a run that was
+/// killed leaves none.
 fn told(path: &Path) -> Option<Told> {
     serde_json::from_slice(&std::fs::read(path).ok()?).ok()
 }

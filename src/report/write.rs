@@ -1,4 +1,4 @@
-//! The folder that a report leaves.
+//! Writing a report to a folder.
 
 use std::path::{Path, PathBuf};
 
@@ -7,10 +7,11 @@ use kinefront_model::evaluation::Evaluation;
 use crate::study::{FolderError, front_table, write_whole};
 
 impl Report {
-    /// Writes the report to a folder; `replace` overwrites the files of one that is there.
+    /// Writes the report to a folder; with `replace`, the files of a report that is already there are replaced.
     ///
     /// # Errors
-    /// [`ReportError::Occupied`] when there is a report and it is not to be replaced, [`ReportError::Write`].
+    /// [`ReportError::Occupied`] if the folder already holds a report and `replace` is false, [`ReportError::Figure`]
+    /// if a file cannot be created, [`ReportError::Write`] if one cannot be written.
     pub fn write(&self, folder: &Path, replace: bool) -> Result<(), ReportError> {
         free(folder, replace)?;
         let make = |path: &Path| {
@@ -42,16 +43,16 @@ impl Report {
                 message,
             })?;
         write_whole(&folder.join("fronts.csv"), &table)?;
-        // Last: where it stands, the rest is there.
+        // The page is written last: if it exists, the report is complete.
         write_whole(&folder.join("index.html"), page::html(self).as_bytes())?;
         Ok(())
     }
 }
 
-/// Whether a report may be written to the folder.
+/// Checks that a report may be written to the folder.
 ///
 /// # Errors
-/// [`ReportError::Occupied`].
+/// [`ReportError::Occupied`] if the folder already holds a report and `replace` is false.
 pub fn free(folder: &Path, replace: bool) -> Result<(), ReportError> {
     if folder.join("index.html").exists() && !replace {
         return Err(ReportError::Occupied(folder.to_owned()));
@@ -59,7 +60,7 @@ pub fn free(folder: &Path, replace: bool) -> Result<(), ReportError> {
     Ok(())
 }
 
-/// Takes a report that is there away: the page first, so that none stands without its figures.
+/// Removes an existing report: the page first, so that no page is left without its figures.
 fn clear(folder: &Path, kinds: &[&Path]) -> Result<(), FolderError> {
     let failed = |path: &Path, source: std::io::Error| FolderError::Write {
         path: path.to_owned(),
@@ -71,7 +72,7 @@ fn clear(folder: &Path, kinds: &[&Path]) -> Result<(), FolderError> {
     }
     for kind in kinds.iter().filter(|kind| kind.is_dir()) {
         let entries = std::fs::read_dir(kind).map_err(|error| failed(kind, error))?;
-        // What a report does not write is not a report's to take away.
+        // Files of other kinds were not written by a report and are kept.
         let ours = |path: &PathBuf| {
             path.extension()
                 .is_some_and(|extension| extension == "svg" || extension == "png")

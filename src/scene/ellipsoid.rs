@@ -1,4 +1,4 @@
-//! Ellipsoids at points of the regular workspace.
+//! Stiffness and displacement ellipsoids at points of the regular workspace.
 
 use glam::{DVec2, DVec3};
 
@@ -10,7 +10,7 @@ use kinefront_model::spatial::{Pose, smaller_eigenvalue, unit};
 use kinefront_model::stiffness::PlanarStiffness;
 use kinefront_model::workspace::GridError;
 
-/// What the axes of an ellipsoid are.
+/// Meaning of the axes of an ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EllipsoidKind {
     /// Eigenvectors and eigenvalues of the translational block of `K` \[N/m\]: force per displacement.
@@ -23,7 +23,7 @@ impl EllipsoidKind {
     /// Both kinds.
     pub const ALL: [EllipsoidKind; 2] = [EllipsoidKind::Stiffness, EllipsoidKind::Displacement];
 
-    /// Short name, as in entity paths.
+    /// Returns the short name, as in entity paths.
     pub fn key(self) -> &'static str {
         match self {
             EllipsoidKind::Stiffness => "stiffness",
@@ -35,27 +35,27 @@ impl EllipsoidKind {
 /// One ellipsoid; its third axis is z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ellipsoid {
-    /// Where the platform is.
+    /// Pose of the platform.
     pub pose: Pose,
     /// Angle of the first axis to `Ox` \[rad\].
     pub angle: f64,
-    /// Eigenvalues along the first and second axis in the plane (the first the larger) and along z \[N/m or m/N\].
+    /// Eigenvalues along the two axes in the plane, the larger one first, and along z \[N/m or m/N\].
     pub values: DVec3,
 }
 
 /// Ellipsoids of one kind and their common scale.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EllipsoidSet {
-    /// What they show.
+    /// Kind of the ellipsoids.
     pub kind: EllipsoidKind,
-    /// Length on the drawing per unit of value \[m/(N/m) or m/(m/N)\].
+    /// Drawn length per unit of the value \[m/(N/m) or m/(m/N)\].
     pub scale: f64,
     /// The ellipsoids.
     pub ellipsoids: Vec<Ellipsoid>,
 }
 
 impl EllipsoidSet {
-    /// The scale in words.
+    /// Returns the scale as a sentence for people.
     pub fn scale_text(&self) -> String {
         match self.kind {
             EllipsoidKind::Stiffness => format!("stiffness ellipsoids: 0.1 m = {:.3e} N/m", 0.1 / self.scale),
@@ -69,14 +69,14 @@ impl EllipsoidSet {
     }
 }
 
-/// Largest half axis as a share of `R_w`, so that neighbours stay apart.
+/// Largest semi-axis as a fraction of `R_w`, so that neighbouring ellipsoids do not overlap.
 const LARGEST: f64 = 0.24;
 
-/// Ellipsoids at the centre and on two rings of the regular workspace, at the home orientation; `None` for a design
-/// without one.
+/// Computes ellipsoids at the centre and on two rings of the regular workspace, at the home orientation; `None` for a
+/// design without a regular workspace.
 ///
 /// # Errors
-/// As [`Model::checker`].
+/// [`GridError`], as for [`Model::checker`].
 pub fn ellipsoids(
     model: &Model,
     evaluation: &Evaluation,

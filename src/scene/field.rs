@@ -5,7 +5,7 @@ use kinefront_model::mechanism::Design;
 use kinefront_model::stiffness::StiffnessDefinition;
 use kinefront_model::workspace::PoseValues;
 
-/// What a heatmap shows.
+/// The quantity that a heatmap shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Field {
     /// `κ_F⁻¹`.
@@ -16,27 +16,27 @@ pub enum Field {
     StiffnessZ,
     /// `k_φz` \[N·m/rad\].
     StiffnessPhiZ,
-    /// Displacement under the study's in-plane force in its worst direction \[m\].
+    /// Displacement under the study's in-plane force in the most compliant direction \[m\].
     Displacement,
-    /// Smallest relative margin of g2 … g6, and of g7 where the study asks for it.
+    /// Smallest relative margin of g2 … g6, and of g7 if the study requires a clearance.
     WorstMargin,
-    /// Least clearance of bodies that are not joined \[m\]; negative where they overlap.
+    /// Smallest clearance between members that are not joined \[m\]; negative where they overlap.
     Clearance,
     /// `det A / ℓ`, whose zeros are the parallel singularities.
     Determinant,
 }
 
-/// How a field's range is spread over a colour map.
+/// How a field's range is mapped to the colours of a colour map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
-    /// Evenly.
+    /// Linear in the value.
     Linear,
-    /// By its logarithm.
+    /// Linear in the logarithm of the value.
     Logarithmic,
 }
 
 impl Field {
-    /// The fields to choose from.
+    /// The fields that a user can select.
     pub const ALL: [Field; 7] = [
         Field::InverseCondition,
         Field::StiffnessXy,
@@ -47,12 +47,12 @@ impl Field {
         Field::Clearance,
     ];
 
-    /// The field of a short name.
+    /// Returns the field with a short name.
     pub fn find(key: &str) -> Option<Field> {
         Self::ALL.into_iter().find(|field| field.key() == key)
     }
 
-    /// Short name, as in entity paths and arguments.
+    /// Returns the short name, as in entity paths and arguments.
     pub fn key(self) -> &'static str {
         match self {
             Field::InverseCondition => "inverse_condition",
@@ -66,7 +66,7 @@ impl Field {
         }
     }
 
-    /// Name for people, with its unit.
+    /// Returns the display name with its unit.
     pub fn title(self) -> &'static str {
         match self {
             Field::InverseCondition => "inverse condition number",
@@ -75,12 +75,12 @@ impl Field {
             Field::StiffnessPhiZ => "stiffness k_φz [N·m/rad]",
             Field::Displacement => "displacement under the in-plane force [mm]",
             Field::WorstMargin => "smallest relative margin of g2 … g7",
-            Field::Clearance => "clearance of the bodies [mm]",
+            Field::Clearance => "clearance between members [mm]",
             Field::Determinant => "det A / ℓ",
         }
     }
 
-    /// Factor from SI to the unit of [`Field::title`].
+    /// Returns the factor from the SI unit to the unit of [`Field::title`].
     pub fn display_factor(self) -> f64 {
         match self {
             Field::Displacement | Field::Clearance => 1e3,
@@ -88,7 +88,7 @@ impl Field {
         }
     }
 
-    /// How its colours are spread.
+    /// Returns how the values are mapped to colours.
     pub fn scale(self) -> Scale {
         match self {
             Field::InverseCondition | Field::WorstMargin | Field::Clearance | Field::Determinant => Scale::Linear,
@@ -96,7 +96,7 @@ impl Field {
         }
     }
 
-    /// The value at which a pose stops being good.
+    /// Returns the threshold: the value at which a pose ceases to be feasible.
     pub fn threshold(self, model: &Model) -> f64 {
         let thresholds = &model.thresholds;
         match self {
@@ -110,7 +110,8 @@ impl Field {
         }
     }
 
-    /// The least clearance that poses are looked at for; `None` where the field is not about it.
+    /// Returns the clearance threshold to check poses with; `None` if the field does not depend on the clearance, which
+    /// is then not computed.
     pub(super) fn clearance(self, model: &Model) -> Option<f64> {
         match self {
             Field::Clearance => Some(self.threshold(model)),
@@ -119,8 +120,8 @@ impl Field {
         }
     }
 
-    /// Definition of the stiffness values that [`Field::value`] takes: the model's, or for a displacement that of what
-    /// gives way with the rotation free.
+    /// Returns the definition of the stiffness values that [`Field::value`] uses: the model's, except for a
+    /// displacement, which is the compliance with the rotation left free.
     pub(super) fn definition(self, model: &Model) -> StiffnessDefinition {
         match self {
             Field::Displacement => StiffnessDefinition::Compliance,
@@ -128,7 +129,7 @@ impl Field {
         }
     }
 
-    /// The value at a reachable pose. Finite: a displacement without end is shown as a kilometre.
+    /// Evaluates the field at a reachable pose. The value is finite: an unbounded displacement is limited to 1 km.
     pub(super) fn value(self, model: &Model, design: &Design, values: &PoseValues) -> f64 {
         const FARTHEST: f64 = 1e3;
         match self {
@@ -168,8 +169,8 @@ impl Field {
     }
 }
 
-/// Translational stiffness in the plane with the rotation free, `[xx, xy, yy]` \[N/m\]: the inverse of the xy block of
-/// `K⁻¹`. `None` where nothing resists the rotation.
+/// Computes the translational in-plane stiffness with the rotation left free, `[xx, xy, yy]` \[N/m\]: the inverse of
+/// the xy block of `K⁻¹`. `None` if the stiffness against rotation is 0.
 pub(super) fn free_stiffness(&[xx, xy, xm, yy, ym, mm]: &[f64; 6]) -> Option<[f64; 3]> {
     (mm > 0.0).then(|| [xx - xm * xm / mm, xy - xm * ym / mm, yy - ym * ym / mm])
 }

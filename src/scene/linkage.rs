@@ -1,4 +1,4 @@
-//! The manipulator as rigid bodies that hang on each other: what simulators and animations need.
+//! The manipulator as a tree of rigid bodies with loop closures, as simulators and animations need it.
 
 use glam::DVec2;
 
@@ -9,29 +9,30 @@ use kinefront_model::mechanism::{Actuator, Design, Leg, LegJoint, LegPart, Manip
 use kinefront_model::with_leg;
 use kinefront_model::spatial::{LEGS, Pose, Rotation};
 
-/// A planar frame in the base frame.
+/// A planar frame, given in the base frame or in the frame of another body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
-    /// Its origin \[m\].
+    /// Origin \[m\].
     pub origin: DVec2,
-    /// Angle from `Ox` to its x axis \[rad\].
+    /// Angle from the reference x axis to the x axis of this frame \[rad\].
     pub angle: f64,
 }
 
-/// A joint by which a body hangs on its parent.
+/// The joint that connects a body to its parent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Joint {
-    /// What it does: a prismatic one moves along the body's x axis, a revolute one turns about z at its origin.
+    /// Kind of the joint: a prismatic joint moves along the body's x axis, a revolute joint turns about z at the body's
+    /// origin.
     pub kind: Actuator,
-    /// Whether it is driven.
+    /// Whether the joint is actuated.
     pub actuated: bool,
-    /// Its value \[m or rad\]: the actuator's, and 0 for a passive joint.
+    /// Joint value \[m or rad\]: the actuator value, or 0 for a passive joint.
     pub value: f64,
-    /// Least and largest value, where it has limits.
+    /// Smallest and largest value, if the joint has limits.
     pub limits: Option<[f64; 2]>,
 }
 
-/// A bar that has mass, in its body's frame.
+/// A bar with mass, in the frame of its body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MassBar {
     /// One end \[m\].
@@ -47,37 +48,37 @@ pub struct MassBar {
 /// A rigid body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
-    /// As in `leg1_crank`, or `platform`.
+    /// Name, such as `leg1_crank` or `platform`.
     pub name: String,
-    /// Place of the body it hangs on; `None` for the base.
+    /// Index of the parent body; `None` if the parent is the base, and for the platform, which has no parent.
     pub parent: Option<usize>,
-    /// Its frame.
+    /// Frame of the body in the base frame.
     pub frame: Frame,
-    /// Height of its bars above the plane of the frames \[m\].
+    /// Height of the bars above the plane of the frames \[m\].
     pub height: f64,
-    /// The joint to its parent; `None` for the platform, which nothing but the closures holds in the plane.
+    /// The joint to the parent; `None` for the platform, which only the closures hold in the plane.
     pub joint: Option<Joint>,
-    /// Its mass, bar by bar. A slider has none in this model, as in the paper.
+    /// The bars that have mass. A slider has no mass in this model, as in the paper.
     pub bars: Vec<MassBar>,
-    /// What it looks like, in its own frame.
+    /// The solids to draw, in the frame of the body.
     pub solids: Vec<Solid>,
 }
 
 impl Body {
-    /// Mass \[kg\].
+    /// Returns the mass \[kg\].
     pub fn mass(&self) -> f64 {
         self.bars.iter().fold(0.0, |sum, bar| sum + bar.mass)
     }
 
-    /// Centre of mass in the body's frame \[m\]; its origin where it has no mass.
+    /// Returns the centre of mass in the body's frame \[m\]; the origin if the body has no mass.
     pub fn centre_of_mass(&self) -> DVec2 {
         let mass = self.mass();
         let weighted: DVec2 = self.bars.iter().map(|bar| 0.5 * (bar.from + bar.to) * bar.mass).sum();
         if mass > 0.0 { weighted / mass } else { DVec2::ZERO }
     }
 
-    /// Elements `xx, yy, zz, xy` of the tensor of inertia about the centre of mass in the body's axes \[kg·m²\], of solid
-    /// cylinders; `xy` is `−∫xy dm`.
+    /// Computes the elements `xx, yy, zz, xy` of the inertia tensor about the centre of mass in the body's axes
+    /// \[kg·m²\], with the bars as solid cylinders; `xy` is `−∫xy dm`.
     pub fn inertia(&self) -> [f64; 4] {
         let centre = self.centre_of_mass();
         let mut inertia = [0.0; 4];
@@ -101,7 +102,7 @@ impl Body {
 /// A revolute joint that closes a loop: `C_i`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Closure {
-    /// Place of the leg's last body.
+    /// Index of the leg's last body.
     pub leg: usize,
     /// `C_i` in the frame of that body \[m\].
     pub on_leg: DVec2,
@@ -109,7 +110,8 @@ pub struct Closure {
     pub on_platform: DVec2,
 }
 
-/// The manipulator at a pose as rigid bodies: those of leg 1, 2 and 3, each from the base outwards, then the platform.
+/// The manipulator at a pose as rigid bodies: the bodies of legs 1, 2 and 3, each from the base outwards, then the
+/// platform.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linkage {
     /// The bodies.
@@ -119,12 +121,12 @@ pub struct Linkage {
 }
 
 impl Linkage {
-    /// Place of the platform.
+    /// Returns the index of the platform.
     pub fn platform(&self) -> usize {
         self.bodies.len() - 1
     }
 
-    /// Frame of a body in its parent's.
+    /// Returns the frame of a body in the frame of its parent.
     pub fn local_frame(&self, body: &Body) -> Frame {
         let Some(parent) = body.parent.map(|parent| self.bodies[parent].frame) else {
             return body.frame;
@@ -137,10 +139,10 @@ impl Linkage {
     }
 }
 
-/// The rigid bodies of `design` at `pose`.
+/// Builds the rigid bodies of `design` at `pose`.
 ///
 /// # Errors
-/// The leg that does not get there.
+/// [`Unreachable`], which names the leg that does not reach the pose.
 pub fn linkage(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage, Unreachable> {
     with_leg!(design.architecture, L => build::<L>(model, design, pose))
 }
@@ -201,7 +203,7 @@ fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage,
         origin: pose.position,
         angle: pose.phi,
     };
-    // The study may count another number of bars than the three that are there (SPEC section 8, no. 1).
+    // The study may count fewer platform bars than the three that exist (docs/model.md, section 11).
     let share = f64::from(model.platform_bars) / LEGS as f64;
     let ends = posture.arms.map(|arm| pose.position + arm);
     bodies.push(Body {

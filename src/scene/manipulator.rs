@@ -10,17 +10,18 @@ use kinefront_model::with_leg;
 use kinefront_model::spatial::{ANCHOR_DIRECTIONS, Pose, unit};
 use crate::text::number;
 
-/// How far a pin sticks out of its members, as a multiple of their radius.
+/// Distance from a member's axis to the end of a pin, as a multiple of the member's radius.
 const PIN: f64 = 1.2;
-/// Thickness of a telescopic leg's rod as a share of its tube's.
+/// Radius of a telescopic leg's rod as a fraction of its tube's radius.
 const ROD: f64 = 0.75;
-/// Least size of joints and frames as a share of `R`, so that a thin-barred design can be read.
+/// Smallest size of drawn details such as joints, as a fraction of `R`, so that a design with thin bars remains
+/// legible.
 const LEAST: f64 = 0.008;
 
-/// Shapes of `design` at `pose`.
+/// Builds the shapes of `design` at `pose`.
 ///
 /// # Errors
-/// The leg that does not get there.
+/// [`Unreachable`], which names the leg that does not reach the pose.
 pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene, Unreachable> {
     with_leg!(design.architecture, L => draw::<L>(model, design, pose))
 }
@@ -29,7 +30,7 @@ fn flat(point: DVec2) -> DVec3 {
     point.extend(0.0)
 }
 
-/// Sizes and layers of what a design is made of \[m\].
+/// Sizes and layer heights of the members of a design \[m\].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sizes<'a> {
     bodies: &'a BodySettings,
@@ -44,7 +45,7 @@ impl<'a> Sizes<'a> {
         }
     }
 
-    /// Height of a kind of member.
+    /// Returns the height of the layer of a kind of member.
     pub(super) fn height(&self, kind: MemberKind) -> f64 {
         self.bodies.height(kind, self.design)
     }
@@ -58,7 +59,8 @@ impl<'a> Sizes<'a> {
         }
     }
 
-    /// A pin through the members that it joins, no thicker than the thinner one unless that could not be seen.
+    /// Returns the pin of a joint: it passes through the members it joins and is as thick as the thinner one, or
+    /// thicker if it would otherwise be too thin to see.
     fn pin(&self, at: DVec2, joins: [MemberKind; 2]) -> SolidShape {
         let least = LEAST * self.design.base_radius;
         let ends = joins.map(|kind| {
@@ -76,7 +78,7 @@ impl<'a> Sizes<'a> {
         }
     }
 
-    /// A member of a leg as a solid.
+    /// Returns a part of a leg as a solid.
     pub(super) fn solid(&self, leg: usize, part: &LegPart) -> Solid {
         let (part, shape) = match *part {
             LegPart::Slider { at, axis } => {
@@ -89,7 +91,7 @@ impl<'a> Sizes<'a> {
                 (Part::Slider, shape)
             }
             LegPart::Tube { from, to } => (Part::Tube, self.bar(MemberKind::TelescopicLeg, from, to, 1.0)),
-            // It goes into the tube.
+            // The rod slides inside the tube, so it is drawn thinner.
             LegPart::Rod { from, to } => (Part::Rod, self.bar(MemberKind::TelescopicLeg, from, to, ROD)),
             LegPart::Crank { from, to } => (Part::Crank, self.bar(MemberKind::Crank, from, to, 1.0)),
             LegPart::Link { from, to } => (Part::Link, self.bar(MemberKind::Link, from, to, 1.0)),
@@ -109,7 +111,7 @@ impl<'a> Sizes<'a> {
         }
     }
 
-    /// The platform's bar to the end of a leg.
+    /// Returns the platform bar that ends at a leg's `C_i`.
     pub(super) fn platform_bar(&self, leg: usize, c: DVec2, p: DVec2) -> Solid {
         Solid {
             part: Part::PlatformBar,
@@ -119,7 +121,7 @@ impl<'a> Sizes<'a> {
     }
 }
 
-/// The nearest pair as a line from surface to surface.
+/// Returns the pair of members with the smallest clearance as a line from surface to surface.
 fn nearest(model: &Model, design: &Design, clearance: &Clearance) -> Nearest {
     let thickest = design.leg_bar_radius.max(design.platform_bar_radius);
     let [from, to] = clearance.between;
@@ -160,7 +162,7 @@ fn draw<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Scene, Un
     };
     let sizes = Sizes::new(model, design);
 
-    // Where the first members hang on it.
+    // The base triangle lies at the height of the members that are attached to it.
     let base = sizes.height(L::PROXIMAL.unwrap_or(L::DISTAL));
     let anchors = ANCHOR_DIRECTIONS.map(|direction| (direction * design.base_radius).extend(base));
     scene.lines.push(Line {
@@ -170,7 +172,7 @@ fn draw<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Scene, Un
     frame(&mut scene, DVec2::ZERO, 0.0, 0.12 * design.base_radius, "O");
     frame(&mut scene, pose.position, pose.phi, 0.12 * design.base_radius, "P");
 
-    // Above everything that is there.
+    // The labels lie above all members.
     let kinds = [L::PROXIMAL, Some(L::DISTAL), Some(MemberKind::PlatformBar)];
     let top = kinds
         .into_iter()
@@ -222,7 +224,7 @@ fn frame(scene: &mut Scene, origin: DVec2, angle: f64, length: f64, name: &str) 
             points: vec![flat(origin), flat(origin + unit(angle) * length)],
         });
     }
-    // Beside the origin, where no bar of the platform runs at home.
+    // Beside the origin, in a direction in which no platform bar lies at the home orientation.
     scene.labels.push(Label {
         at: flat(origin + unit(angle - std::f64::consts::FRAC_PI_4) * (0.35 * length)),
         text: name.to_owned(),

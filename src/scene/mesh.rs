@@ -1,26 +1,26 @@
-//! Solids as triangles.
+//! Solids as triangle meshes.
 
 use glam::{DVec2, DVec3};
 
 use super::{Solid, SolidShape};
 use kinefront_model::spatial::{Rotation, unit};
 
-/// A closed surface: triangles counter-clockwise from outside.
+/// A closed surface of triangles, counter-clockwise as seen from outside.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
-    /// Points; those on an edge are there once for each of its faces \[m\].
+    /// Points \[m\]; a point on an edge is repeated for each face that meets there.
     pub positions: Vec<DVec3>,
-    /// Outward unit normals, one a point.
+    /// Outward unit normals, one per point.
     pub normals: Vec<DVec3>,
-    /// Places of three points each.
+    /// Indices of the three points of each triangle.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Sides of a bar.
+/// Number of sides of the prism that approximates a bar.
 const SIDES: usize = 32;
 
 impl Mesh {
-    /// Puts another surface beside this one.
+    /// Appends another surface.
     pub fn append(&mut self, other: &Mesh) {
         let first = self.positions.len() as u32;
         self.positions.extend(&other.positions);
@@ -29,7 +29,7 @@ impl Mesh {
         self.triangles.extend(moved);
     }
 
-    /// A convex polygon with one normal, counter-clockwise seen from where it points.
+    /// Adds a convex polygon with one normal; the corners are counter-clockwise as seen from the tip of the normal.
     fn face(&mut self, corners: &[DVec3], normal: DVec3) {
         let first = self.positions.len() as u32;
         self.positions.extend(corners);
@@ -40,7 +40,7 @@ impl Mesh {
 }
 
 impl SolidShape {
-    /// Whether the shape has a volume: a bar of radius 0 has none.
+    /// Returns whether the shape has a volume; a bar of radius 0 has none.
     pub fn has_volume(&self) -> bool {
         match *self {
             SolidShape::Bar { radius, from, to } => radius > 0.0 && from != to,
@@ -48,7 +48,7 @@ impl SolidShape {
         }
     }
 
-    /// Its surface; a bar has 32 sides.
+    /// Returns the surface as a mesh; a bar has 32 sides.
     pub fn mesh(&self) -> Mesh {
         match *self {
             SolidShape::Bar { from, to, radius } => bar(from, to, radius),
@@ -60,7 +60,7 @@ impl SolidShape {
         }
     }
 
-    /// The shape in a frame with its origin at `origin` and turned by `angle` \[rad\] about z.
+    /// Returns the shape expressed in a frame with its origin at `origin`, rotated by `angle` \[rad\] about z.
     pub fn seen_from(&self, origin: DVec2, angle: f64) -> SolidShape {
         let back = Rotation::new(-angle);
         let place = |point: DVec3| back.apply(point.truncate() - origin).extend(point.z);
@@ -84,7 +84,7 @@ impl SolidShape {
 }
 
 impl Solid {
-    /// The solid in a frame with its origin at `origin` and turned by `angle` \[rad\] about z.
+    /// Returns the solid expressed in a frame with its origin at `origin`, rotated by `angle` \[rad\] about z.
     pub fn seen_from(&self, origin: DVec2, angle: f64) -> Solid {
         Solid {
             shape: self.shape.seen_from(origin, angle),
@@ -98,7 +98,7 @@ fn bar(from: DVec3, to: DVec3, radius: f64) -> Mesh {
     let across = if axis.z.abs() < 0.9 { DVec3::Z } else { DVec3::X };
     let side = axis.cross(across).normalize_or(DVec3::X);
     let other = axis.cross(side);
-    // Counter-clockwise seen from the `to` end.
+    // Counter-clockwise as seen from the `to` end.
     let spokes: Vec<DVec3> = (0..SIDES)
         .map(|k| unit(2.0 * std::f64::consts::PI * k as f64 / SIDES as f64))
         .map(|turn| side * turn.x + other * turn.y)
@@ -123,7 +123,7 @@ fn block(centre: DVec3, half: DVec3, angle: f64) -> Mesh {
     let half = half.to_array();
     let mut mesh = Mesh::default();
     for k in 0..3 {
-        // The other two axes, so that their cross product is this one.
+        // The other two axes, in the order in which their cross product is this axis.
         let (a, b) = ((k + 1) % 3, (k + 2) % 3);
         for sign in [1.0, -1.0] {
             let middle = centre + axes[k] * (sign * half[k]);

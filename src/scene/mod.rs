@@ -1,16 +1,17 @@
-//! A design at a pose as named shapes and fields, free of any renderer.
+//! A design at a pose as named shapes and fields, independent of any renderer.
 //!
-//! | item | is |
+//! | item | contents |
 //! |---|---|
 //! | [`manipulator`] | base, rails, legs, platform, joints, frames and labels, to scale |
 //! | [`regular_workspace`] | the cylinder, on the manipulator and in the configuration space |
 //! | [`Heatmap`] | a field over the reachable workspace at one φ: triangles, contours, edges of reach, singularities |
-//! | [`ellipsoids`] | stiffness or displacement at points of the regular workspace |
+//! | [`ellipsoids`] | stiffness or displacement ellipsoids at points of the regular workspace |
 //! | [`linkage`] | the manipulator as rigid bodies with joints and masses |
 //! | [`Mesh`] | a solid as triangles |
 //! | [`tour`] | poses along the regular workspace, checked by forward kinematics |
 //!
-//! Lengths are metres in the base frame, z out of the plane. Shapes carry what they are ([`Part`]), not how they look.
+//! Lengths are in metres in the base frame; z points out of the plane. A shape states which part of the manipulator it
+//! is ([`Part`]), not how it looks.
 
 mod ellipsoid;
 mod field;

@@ -2,14 +2,14 @@
 
 use glam::DVec3;
 
-/// What a shape is.
+/// The part of the manipulator or drawing that a shape represents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
     /// Triangle `A1A2A3`.
     Base,
-    /// Path of a slider with its travel.
+    /// Rail of a slider, over the slider's travel.
     Rail,
-    /// Between the shortest and the longest length of a telescopic leg.
+    /// Stroke of a telescopic leg, from its shortest to its longest length.
     Stroke,
     /// Slider block, actuated.
     Slider,
@@ -23,9 +23,9 @@ pub enum Part {
     Link,
     /// Bar of the platform, from `C_i` to `P`.
     PlatformBar,
-    /// Joint that is driven.
+    /// Actuated joint.
     ActuatedJoint,
-    /// Joint that follows.
+    /// Passive joint.
     PassiveJoint,
     /// x axis of a frame.
     AxisX,
@@ -38,7 +38,7 @@ pub enum Part {
 /// Shape of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SolidShape {
-    /// Circular bar between the centres of its end faces.
+    /// Circular cylinder, given by the centres of its end faces.
     Bar {
         /// Centre of one end.
         from: DVec3,
@@ -47,11 +47,11 @@ pub enum SolidShape {
         /// Radius.
         radius: f64,
     },
-    /// Box turned about z.
+    /// Box rotated about z.
     Block {
         /// Centre.
         centre: DVec3,
-        /// Half its size along its own axes.
+        /// Half of the size along the box's own axes.
         half_size: DVec3,
         /// Angle of its x axis to `Ox` \[rad\].
         angle: f64,
@@ -61,40 +61,40 @@ pub enum SolidShape {
 /// A solid of the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solid {
-    /// What it is.
+    /// The part that the solid represents.
     pub part: Part,
-    /// Index of the leg it belongs to.
+    /// Index of the leg that the solid belongs to.
     pub leg: Option<usize>,
-    /// Its shape.
+    /// Shape.
     pub shape: SolidShape,
 }
 
 /// A polyline of the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// What it is.
+    /// The part that the line represents.
     pub part: Part,
-    /// Its points.
+    /// Points.
     pub points: Vec<DVec3>,
 }
 
-/// A word at a point.
+/// A text at a point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
-    /// Where.
+    /// Position of the text.
     pub at: DVec3,
-    /// The word, as the paper writes it: `A1`, `C3`, `P`.
+    /// The text, in the paper's notation: `A1`, `C3`, `P`.
     pub text: String,
 }
 
-/// The nearest pair of bodies that are not joined, as a line.
+/// The pair of members with the smallest clearance, as a line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Nearest {
-    /// From one surface to the other; where the bodies overlap, a needle through the place.
+    /// Line from one surface to the other; if the members overlap, a line along z through the point of overlap.
     pub line: [DVec3; 2],
-    /// The distance, as in `12.3 mm`; negative where they overlap.
+    /// The distance, as in `12.3 mm`; negative if the members overlap.
     pub text: String,
-    /// Whether it is less than the study asks for, or than 0.
+    /// Whether the distance is less than the clearance that the study requires, or less than 0 if it requires none.
     pub too_near: bool,
 }
 
@@ -107,17 +107,18 @@ pub struct Scene {
     pub lines: Vec<Line>,
     /// Labels.
     pub labels: Vec<Label>,
-    /// The bodies that are nearest to each other.
+    /// The pair of members with the smallest clearance.
     pub nearest: Option<Nearest>,
 }
 
 impl Scene {
-    /// Solids of one kind.
+    /// Returns the solids that represent a part.
     pub fn solids_of(&self, part: Part) -> impl Iterator<Item = &Solid> {
         self.solids.iter().filter(move |solid| solid.part == part)
     }
 
-    /// Base triangle and rails as thin bars on a manipulator of base radius `R` \[m\], for what shows no lines.
+    /// Returns the base triangle and the rails as thin bars for a manipulator of base radius `R` \[m\], for formats and
+    /// renderers that show no lines.
     pub fn base_bars(&self, base_radius: f64) -> Vec<Solid> {
         let bars = self.lines.iter().flat_map(|line| {
             let thickness = match line.part {

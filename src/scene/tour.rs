@@ -1,4 +1,4 @@
-//! A tour of the regular workspace: its rim at both ends of `Δφ`, then through the middle.
+//! A tour of the regular workspace: along its rim at both ends of `Δφ`, then through the centre.
 
 use super::RegularCylinder;
 use kinefront_model::evaluation::Model;
@@ -10,20 +10,22 @@ use kinefront_model::spatial::{Pose, unit};
 /// Poses along the regular workspace.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tour {
-    /// The poses, each a small step from the one before.
+    /// The poses, each a small step from the previous one.
     pub poses: Vec<Pose>,
-    /// Radius of the rim that is toured \[m\]: `R_w`, less what a grid of directions may have overlooked.
+    /// Radius of the rim that the tour follows \[m\]: `R_w`, reduced where the grid of directions has missed a part of
+    /// the boundary.
     pub radius: f64,
-    /// Largest distance between a pose and what forward kinematics, followed from the pose before, makes of its actuator
-    /// values \[m, or m at the platform joints for an angle\].
+    /// Largest difference between a pose and the forward kinematics of its actuator values, followed from the previous
+    /// pose \[m\]; a difference in orientation counts as the displacement of the platform joints \[m\].
     pub forward_error: f64,
 }
 
-/// The tour of a design with `steps` poses around each rim; `None` where its rim cannot be followed even a tenth inside.
+/// Computes the tour of a design with `steps` poses around each rim; `None` if no rim of at least 90 % of the radius
+/// can be followed.
 pub fn tour(model: &Model, design: &Design, cylinder: &RegularCylinder, steps: usize) -> Option<Tour> {
     with_leg!(design.architecture, L => {
         let manipulator = Manipulator::<L>::new(design, &model.legs);
-        // A grid of directions sees a straight boundary at its corners only: between them the rim may lie outside.
+        // R_w is searched along finitely many directions: between them the rim may lie outside a straight boundary.
         (0..100).map(|k| cylinder.radius * (1.0 - 1e-3 * f64::from(k))).find_map(|radius| {
             let poses = path(&RegularCylinder { radius, ..*cylinder }, steps.max(8));
             let reached = poses.iter().all(|pose| manipulator.posture(pose).is_ok());
@@ -33,12 +35,13 @@ pub fn tour(model: &Model, design: &Design, cylinder: &RegularCylinder, steps: u
     })
 }
 
-/// Out to the rim while turning to the lower end of `Δφ`, around it, turning to the upper end, around again, across the
-/// middle while turning back to it, and home.
+/// Returns the path: out to the rim while turning to the lower end of `Δφ`, around the rim, a turn to the upper end,
+/// around the rim again, across the centre while turning back to the lower end, and home.
 fn path(cylinder: &RegularCylinder, steps: usize) -> Vec<Pose> {
     let (low, high) = (-0.5 * cylinder.phi_range, 0.5 * cylinder.phi_range);
     let turn = 2.0 * std::f64::consts::PI;
-    // (angle, share of the radius, orientation from home) at the ends of each leg of the way, and its share of steps.
+    // Start and end of each section as (angle, fraction of the radius, orientation from home), and the section's number
+    // of poses as a fraction of `steps`.
     let ways: [([f64; 3], [f64; 3], f64); 6] = [
         ([0.0, 0.0, 0.0], [0.0, 1.0, low], 0.25),
         ([0.0, 1.0, low], [turn, 1.0, low], 1.0),
@@ -66,11 +69,11 @@ fn path(cylinder: &RegularCylinder, steps: usize) -> Vec<Pose> {
     poses
 }
 
-/// Steps in which the actuators go from one pose of a tour to the next: near a singularity another assembly mode is not
-/// far, and a longer step might end in it.
+/// Number of actuator steps from one pose of a tour to the next: near a singularity another assembly mode is close, and
+/// a longer step might converge to it.
 const SUBSTEPS: u32 = 16;
 
-/// Largest difference between the poses and their forward kinematics, followed from each pose to the next.
+/// Returns the largest difference between the poses and their forward kinematics, followed from each pose to the next.
 fn check<L: Leg>(manipulator: &Manipulator<L>, design: &Design, poses: &[Pose]) -> Option<f64> {
     let actuators = |pose: &Pose| {
         let posture = manipulator.posture(pose).ok()?;
@@ -86,12 +89,12 @@ fn check<L: Leg>(manipulator: &Manipulator<L>, design: &Design, poses: &[Pose]) 
             let part = [0, 1, 2].map(|i| {
                 let way = match L::ACTUATOR {
                     Actuator::Prismatic => target[i] - before[i],
-                    // The short way round.
+                    // The shorter of the two directions of rotation.
                     Actuator::Revolute => libm::remainder(target[i] - before[i], 2.0 * std::f64::consts::PI),
                 };
                 before[i] + share * way
             });
-            // At the edge of reach an iterate may step outside; then the pose itself is the start.
+            // At the edge of reach an iterate may become unreachable; the iteration then starts from the pose itself.
             found = forward(manipulator, part, found, 1e-13)
                 .or_else(|_| forward(manipulator, target, *pose, 1e-13))
                 .ok()?;

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use kinefront_model::evaluation::Evaluation;
 
-/// The regular workspace: a disc of centres over a turn of the platform.
+/// The regular workspace: a disc of positions of `P` over a range of orientations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RegularCylinder {
     /// Centre in the base frame \[m\].
@@ -17,7 +17,7 @@ pub struct RegularCylinder {
     pub phi_range: f64,
 }
 
-/// The regular workspace of a feasible design.
+/// Returns the regular workspace of a design; `None` if it has none.
 pub fn regular_workspace(evaluation: &Evaluation, rotation_range_deg: f64) -> Option<RegularCylinder> {
     let home = evaluation.home?;
     Some(RegularCylinder {
@@ -28,7 +28,7 @@ pub fn regular_workspace(evaluation: &Evaluation, rotation_range_deg: f64) -> Op
     })
 }
 
-/// The space of `(x, y, φ)`, drawn with φ upwards: a quarter turn is as high as `R` is long, 0 at the home orientation.
+/// The space of `(x, y, φ)` with φ drawn upwards: the home orientation has height 0 and a quarter turn has height `R`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConfigurationSpace {
     /// Orientation at height 0 \[rad\].
@@ -38,7 +38,7 @@ pub struct ConfigurationSpace {
 }
 
 impl ConfigurationSpace {
-    /// The space about a home orientation \[rad\] for a design of base radius `R` \[m\].
+    /// Creates the space about a home orientation \[rad\] for a design of base radius `R` \[m\].
     pub fn new(home: f64, base_radius: f64) -> Self {
         Self {
             origin: home,
@@ -46,7 +46,7 @@ impl ConfigurationSpace {
         }
     }
 
-    /// Where a pose is drawn.
+    /// Returns the point at which a pose is drawn.
     pub fn place(&self, position: DVec2, phi: f64) -> DVec3 {
         position.extend((phi - self.origin) * self.height)
     }

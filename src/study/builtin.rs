@@ -1,17 +1,17 @@
-//! Studies that come with the program, embedded in the binary.
+//! Built-in studies, embedded in the binary.
 
 use super::{Study, StudyError};
 
-/// A study that comes with the program.
+/// A built-in study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Builtin {
-    /// Name on the command line.
+    /// Name of the study on the command line.
     pub name: &'static str,
-    /// The file, comments and all.
+    /// Text of the study file, including its comments.
     pub text: &'static str,
 }
 
-/// All of them; the first is the default.
+/// All built-in studies; the first is the default.
 pub const BUILTIN: [Builtin; 4] = [
     Builtin {
         name: "paper",
@@ -32,15 +32,15 @@ pub const BUILTIN: [Builtin; 4] = [
 ];
 
 impl Builtin {
-    /// The one of a name.
+    /// Returns the built-in study with the given name, if there is one.
     pub fn find(name: &str) -> Option<Builtin> {
         BUILTIN.into_iter().find(|builtin| builtin.name == name)
     }
 
-    /// The study.
+    /// Parses the study.
     ///
     /// # Errors
-    /// None for a file that passed the tests.
+    /// [`StudyError`]; the tests make sure that no built-in study causes one.
     pub fn study(&self) -> Result<Study, StudyError> {
         Study::parse(self.text, self.name)
     }

@@ -1,8 +1,8 @@
-//! Steering a run that is under way.
+//! Control of a run in progress.
 
 use std::sync::{Condvar, Mutex, PoisonError};
 
-/// Pauses, steps and stops a run from any thread.
+/// Pauses, resumes, steps and stops a run from any thread.
 #[derive(Debug, Default)]
 pub struct RunControl {
     state: Mutex<ControlState>,
@@ -12,7 +12,7 @@ pub struct RunControl {
 #[derive(Debug, Default)]
 struct ControlState {
     paused: bool,
-    /// Generations still to do while paused.
+    /// Number of generations still to be run while paused.
     steps: usize,
     stop: bool,
     abandon: bool,
@@ -24,12 +24,12 @@ impl RunControl {
         self.changed.notify_all();
     }
 
-    /// Holds the run after the generation under way.
+    /// Pauses the run after the current generation.
     pub fn pause(&self) {
         self.change(|state| state.paused = true);
     }
 
-    /// Goes on.
+    /// Resumes a paused run.
     pub fn resume(&self) {
         self.change(|state| {
             state.paused = false;
@@ -37,7 +37,7 @@ impl RunControl {
         });
     }
 
-    /// Does one generation and pauses again.
+    /// Runs one generation, then pauses again.
     pub fn step(&self) {
         self.change(|state| {
             state.paused = true;
@@ -45,12 +45,13 @@ impl RunControl {
         });
     }
 
-    /// Ends the run after the generation under way; what was found is verified and kept.
+    /// Ends the run after the current generation; the front found so far is verified and kept.
     pub fn stop(&self) {
         self.change(|state| state.stop = true);
     }
 
-    /// Ends the run after what is under way; nothing more is verified or told.
+    /// Ends the run after the current generation or the current part of the verification; nothing more is verified or
+    /// reported.
     pub fn abandon(&self) {
         self.change(|state| {
             state.stop = true;
@@ -62,7 +63,7 @@ impl RunControl {
         self.state.lock().unwrap_or_else(PoisonError::into_inner).abandon
     }
 
-    /// Waits while paused; tells whether to go on.
+    /// Waits while the run is paused; returns whether the run is to continue.
     pub(super) fn go_on(&self) -> bool {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         while state.paused && state.steps == 0 && !state.stop {

@@ -1,4 +1,4 @@
-//! Reading a study file: errors that show file, line and key.
+//! Reading of study files, with errors that show file, line and key.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,40 +8,40 @@ use toml::de::{DeTable, DeValue};
 
 use super::{Fault, Study};
 
-/// Why a text is not a study.
+/// Error of reading a study.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum StudyError {
     /// The file cannot be read.
     #[error("cannot read the study {}: {source}", path.display())]
     Read {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Cause of the error.
         source: std::io::Error,
     },
-    /// The text is no TOML, or a key is unknown or of the wrong type.
-    #[error("the study does not read{}: {message}", key.as_ref().map(|key| format!(" at `{key}`")).unwrap_or_default())]
+    /// The text is not TOML, or a key is unknown or has a value of the wrong type.
+    #[error("cannot parse the study{}: {message}", key.as_ref().map(|key| format!(" at `{key}`")).unwrap_or_default())]
     Shape {
-        /// What the reader found.
+        /// Message of the parser.
         message: String,
-        /// Dotted key, where it is known.
+        /// Dotted key, if it is known.
         key: Option<String>,
-        /// The text.
+        /// Text of the study.
         #[source_code]
         source_code: Arc<NamedSource<String>>,
-        /// Where.
+        /// Location of the error in the text.
         #[label("here")]
         span: Option<SourceSpan>,
     },
-    /// Values that cannot be.
-    #[error("the study asks for what cannot be: {}", summary(.faults))]
+    /// The study has invalid values.
+    #[error("the study has invalid values: {}", summary(.faults))]
     Values {
-        /// Each key with what is wrong about its value and what would be right.
+        /// Each key with an invalid value, what is wrong about the value and what would be right.
         faults: Vec<Fault>,
-        /// The text.
+        /// Text of the study.
         #[source_code]
         source_code: Arc<NamedSource<String>>,
-        /// Where.
+        /// Locations of the faults in the text.
         #[label(collection)]
         labels: Vec<LabeledSpan>,
     },
@@ -59,7 +59,7 @@ impl Study {
     /// Reads a study file.
     ///
     /// # Errors
-    /// [`StudyError`], a diagnostic with the place in the file.
+    /// [`StudyError`], a diagnostic that shows the location in the file.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         let text = std::fs::read_to_string(path).map_err(|source| StudyError::Read {
             path: path.to_owned(),
@@ -68,7 +68,7 @@ impl Study {
         Self::parse(&text, &path.display().to_string())
     }
 
-    /// Reads a study from `text`; errors name it `name`.
+    /// Parses a study from `text`; error messages refer to it by `name`.
     ///
     /// # Errors
     /// As [`Study::read`].
@@ -99,7 +99,7 @@ impl Study {
     }
 }
 
-/// Dotted key of the innermost value or key that contains byte `position`.
+/// Returns the dotted key of the innermost key or value that contains byte `position`.
 fn key_at(text: &str, position: usize) -> Option<String> {
     fn find(table: &DeTable<'_>, position: usize) -> Option<String> {
         for (key, value) in table {
@@ -121,7 +121,7 @@ fn key_at(text: &str, position: usize) -> Option<String> {
     find(DeTable::parse(text).ok()?.get_ref(), position)
 }
 
-/// Place of the value of a dotted key, or of the nearest table around it that stands in the text.
+/// Returns the location of the value of a dotted key, or of the innermost enclosing table that the text contains.
 fn span_of(text: &str, key: &str) -> Option<SourceSpan> {
     let document = DeTable::parse(text).ok()?;
     let mut table = document.get_ref();

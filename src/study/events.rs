@@ -1,4 +1,4 @@
-//! What a run tells: its events, and the summary at its end.
+//! The events of a run and the summary at its end.
 
 use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
@@ -7,63 +7,64 @@ use super::{DesignProblem, Study};
 use kinefront_model::evaluation::Evaluation;
 use kinefront_optimize::{knee, spread};
 
-/// Where a listener receives events.
+/// Channel to a listener that receives events.
 pub type Subscriber = SyncSender<Arc<Event>>;
 
-/// What the worker tells.
+/// Event sent by the worker thread of a run.
 #[derive(Debug, Clone)]
 pub enum Event {
-    /// The run begins.
+    /// The run has started.
     Started(Started),
-    /// Designs were evaluated, a generation's worth.
+    /// The designs of a generation were evaluated.
     Evaluated(Batch),
-    /// A generation is done.
+    /// A generation is complete.
     Generation(GenerationSummary),
-    /// The archive of non-dominated designs changed; sorted by mass, radii from the reference grid.
+    /// The archive of non-dominated designs changed. Its members are sorted by mass; their workspace radii are those of
+    /// the reference grid.
     Front(Vec<FrontMember>),
     /// The front is being verified on the fine grid.
     Verifying {
-        /// Designs done.
+        /// Number of designs verified so far.
         done: usize,
-        /// Designs in all.
+        /// Total number of designs to verify.
         total: usize,
     },
-    /// The run ended.
+    /// The run ended normally.
     Finished(RunSummary),
-    /// The run broke off.
+    /// The run failed; the text is the error message.
     Failed(String),
 }
 
-/// What is known at the start.
+/// Information on a run at its start.
 #[derive(Debug, Clone)]
 pub struct Started {
     /// The study as run.
     pub study: Arc<Study>,
-    /// Worker threads used.
+    /// Number of worker threads.
     pub threads: usize,
 }
 
-/// Designs of one generation, in order.
+/// Designs of one generation, in order of evaluation.
 #[derive(Debug, Clone)]
 pub struct Batch {
-    /// Generation, from 1.
+    /// Number of the generation, counted from 1.
     pub generation: usize,
-    /// Id of the first design; the others follow.
+    /// Id of the first design; the ids of the others follow consecutively.
     pub first_id: usize,
-    /// The designs.
+    /// Evaluations of the designs.
     pub evaluations: Vec<Evaluation>,
 }
 
-/// State after a generation.
+/// State of a run after a generation.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct GenerationSummary {
-    /// Generation, from 1.
+    /// Number of the generation, counted from 1.
     pub generation: usize,
-    /// Evaluations so far.
+    /// Number of evaluations so far.
     pub evaluations: usize,
-    /// Feasible designs so far.
+    /// Number of feasible designs so far.
     pub feasible: usize,
-    /// Non-dominated designs.
+    /// Number of non-dominated designs.
     pub front_size: usize,
     /// Hypervolume of the front on the reference grid \[kg·m\].
     pub hypervolume: f64,
@@ -76,72 +77,73 @@ pub struct FrontMember {
     pub id: usize,
     /// Generation of its evaluation.
     pub generation: usize,
-    /// Its evaluation; in a finished run the one on the fine grid.
+    /// Evaluation of the design; in a finished run the evaluation on the fine grid.
     pub evaluation: Evaluation,
     /// `R_w` on the reference grid \[m\].
     pub reference_radius: f64,
 }
 
 impl FrontMember {
-    /// Both objectives, minimised.
+    /// Returns both objectives, which are minimised.
     pub fn objectives(&self) -> [f64; 2] {
         DesignProblem::outcome(&self.evaluation).objectives
     }
 }
 
-/// Why a run ended.
+/// Reason why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// The budget is spent.
+    /// The budget of evaluations was used up.
     Completed,
-    /// The time is up.
+    /// The time limit was reached.
     TimeUp,
-    /// The hypervolume grew too little.
+    /// The search stagnated: the hypervolume grew too little.
     Stagnated,
-    /// It was asked to stop.
+    /// The run was stopped on request.
     Stopped,
 }
 
-/// Where the time went \[s\].
+/// Times of the parts of a run \[s\].
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RunTimes {
-    /// The search, verification left out.
+    /// Time of the search, without the verification.
     pub search_s: f64,
-    /// Evaluating designs.
+    /// Time for evaluating designs.
     pub evaluation_s: f64,
-    /// Asking and telling the algorithm and keeping the archive.
+    /// Time for the ask and tell calls of the algorithm and for updating the archive.
     pub optimizer_s: f64,
-    /// Handing events to listeners, waiting for slow ones included.
+    /// Time for sending events to listeners, including the wait for slow listeners.
     pub publish_s: f64,
-    /// Verifying the front on the fine grid.
+    /// Time for verifying the front on the fine grid.
     pub verification_s: f64,
 }
 
-/// A run at its end.
+/// Summary of a run at its end.
 #[derive(Debug, Clone)]
 pub struct RunSummary {
-    /// Why it ended.
+    /// Reason why the run ended.
     pub outcome: Outcome,
-    /// Worker threads used.
+    /// Number of worker threads.
     pub threads: usize,
-    /// State after each generation.
+    /// State of the run after each generation.
     pub history: Vec<GenerationSummary>,
     /// The front, verified on the fine grid and thinned to evenly spread designs, sorted by `R_w`.
     pub front: Vec<FrontMember>,
-    /// Designs of the verified front before it was thinned.
+    /// Number of designs of the verified front before it was thinned.
     pub verified: usize,
-    /// Non-dominated designs of the reference grid that verification dropped: infeasible or dominated on the fine one.
+    /// Number of designs that are non-dominated on the reference grid but were dropped by the verification, because
+    /// they are infeasible or dominated on the fine grid.
     pub dropped: usize,
     /// Hypervolume of the verified front before it was thinned \[kg·m\].
     pub verified_hypervolume: f64,
-    /// Where the time went.
+    /// Times of the parts of the run.
     pub times: RunTimes,
 }
 
 impl RunSummary {
-    /// At most `most` designs of the front with their places, evenly spread with its ends and its knee: what fits
-    /// a table.
+    /// Returns at most `most` evenly spread designs of the front with their places, including both ends and the knee,
+    /// for example for a short table.
     pub fn spread(&self, most: usize) -> impl Iterator<Item = (usize, &FrontMember)> {
         spread(&self.objectives(), most)
             .into_iter()
@@ -152,12 +154,12 @@ impl RunSummary {
         self.front.iter().map(FrontMember::objectives).collect()
     }
 
-    /// Place of the knee in `front`.
+    /// Returns the place of the knee in `front`.
     pub fn knee(&self) -> Option<usize> {
         knee(&self.objectives())
     }
 
-    /// What each member of the front stands out by; empty for most.
+    /// Returns the mark of each member of the front: `lightest`, `knee`, `largest`, or empty for all others.
     pub fn marks(&self) -> Vec<&'static str> {
         let mut marks = vec![""; self.front.len()];
         if let Some(last) = marks.last_mut() {

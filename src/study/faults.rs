@@ -1,20 +1,20 @@
-//! Values of a study that cannot be.
+//! Validation of the values of a study.
 
 use super::{Bounds, LengthChoice, Study};
 use kinefront_model::mechanism::Design;
 use kinefront_model::workspace::Grid;
 
-/// A key whose value cannot be.
+/// A key with an invalid value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
-    /// Dotted key.
+    /// Dotted key of the value.
     pub key: String,
-    /// What is wrong and what would be right.
+    /// Message that says what is wrong and what would be right, to be read after the key.
     pub message: String,
 }
 
 impl Study {
-    /// Values that cannot be, empty for a sound study.
+    /// Returns the faults of the study; the list is empty for a valid study.
     pub fn faults(&self) -> Vec<Fault> {
         let mut check = Check::default();
         check.that(
@@ -77,7 +77,7 @@ impl Study {
             check.that(
                 "requirements.clearance_min_m",
                 sound,
-                format!("is {clearance}; it must be in [0, 1000], or be left out where bodies may collide"),
+                format!("is {clearance}; it must be in [0, 1000], or be omitted if members may collide"),
             );
         }
 
@@ -92,7 +92,7 @@ impl Study {
             check.that(
                 "workspace.centre_m",
                 centre.is_finite(),
-                format!("holds {centre}; it must be two finite lengths"),
+                format!("contains {centre}; it must consist of two finite lengths"),
             );
         }
         if let Some(phi) = w.home_phi_deg {
@@ -110,7 +110,7 @@ impl Study {
             (LengthChoice::Fixed, None) => check.that(
                 "model.characteristic_length",
                 false,
-                "is \"fixed\", which needs `characteristic_length_m` beside it",
+                "is \"fixed\", which requires the key `characteristic_length_m`",
             ),
             (_, Some(_)) => check.that(
                 "model.characteristic_length_m",
@@ -128,7 +128,7 @@ impl Study {
         check.that(
             "model.telescopic_shortest",
             (0.0..1.0).contains(&shortest),
-            format!("is {shortest}; it must be a share of Lb in [0, 1)"),
+            format!("is {shortest}; it must be a fraction of Lb in [0, 1)"),
         );
 
         let b = &self.bodies;
@@ -138,7 +138,7 @@ impl Study {
             "bodies.slider_length",
             b.slider_length >= 2.0 * b.slider_half_width,
             format!(
-                "is {}; it must be at least twice slider_half_width = {}, the ends of a slider being round",
+                "is {}; it must be at least twice slider_half_width = {}, because sliders have round ends",
                 b.slider_length, b.slider_half_width
             ),
         );
@@ -190,7 +190,7 @@ impl Study {
             check.that(
                 key,
                 range[1].is_nan() || smallest.is_nan() || range[1] <= limit * smallest,
-                format!("reaches over {limit} times the least R; the workspace grid follows R"),
+                format!("has an upper bound above {limit} times the smallest R; the workspace grid scales with R"),
             );
         }
 
@@ -209,7 +209,7 @@ impl Study {
                     .into_iter()
                     .flatten()
                 {
-                    check.that(&key("phi_step_deg"), false, format!("does not fit: {error}"));
+                    check.that(&key("phi_step_deg"), false, format!("is invalid: {error}"));
                 }
             }
             check.range(&key("directions"), grid.directions, 3, 3600);
@@ -260,7 +260,7 @@ impl Study {
         check.that(
             "optimizer.moga2.directional_crossover",
             sum.is_nan() || sum <= 1.0 + 1e-12,
-            format!("together with selection and mutation makes {sum}; the probabilities may sum to 1"),
+            format!("has the sum {sum} together with selection and mutation; the sum must be at most 1"),
         );
         check.at_least_zero("optimizer.moga2.penalty", o.moga2.penalty);
         check.at_least_zero("optimizer.nsga2.crossover_index", o.nsga2.crossover_index);
@@ -291,7 +291,7 @@ impl Check {
         }
     }
 
-    /// Large and small enough that squares and quotients of such numbers stay finite.
+    /// Checks that a value is positive, and within limits that keep squares and quotients of such values finite.
     fn positive(&mut self, key: &str, value: f64) {
         let sound = (1e-12..=1e15).contains(&value);
         self.that(key, sound, format!("is {value}; it must be above 0 (1e-12 to 1e15)"));
@@ -310,7 +310,7 @@ impl Check {
         self.that(
             key,
             (least..=most).contains(&value),
-            format!("is {value}; it must be {least} to {most}"),
+            format!("is {value}; it must be from {least} to {most}"),
         );
     }
 }

@@ -1,7 +1,7 @@
-//! The study file: what stands in it, in the units its keys name.
+//! The contents of a study file, in the units that its keys name.
 //!
-//! Every key may be left out and then takes the paper's value. [`Study::model`] turns the file into what the model
-//! computes with.
+//! Every key may be omitted and then takes the paper's value. [`Study::model`] converts the contents into the settings
+//! of the model.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -18,39 +18,39 @@ use kinefront_model::mechanism::{Architecture, BarLength, LegSettings, WorkingMo
 use kinefront_model::stiffness::{ActuatorStiffness, Material, StiffnessDefinition};
 use kinefront_model::workspace::{Thresholds, WorkspaceSpec};
 
-/// A study: what is asked, of which manipulators, and how it is searched.
+/// A study: the requirements, the manipulators to search, and the settings of the search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Study {
-    /// Short name; run folders and recordings carry it.
+    /// Short name, which appears in run folders and recordings.
     pub name: String,
-    /// What the study is about, in a sentence or two.
+    /// Description of the study in one or two sentences.
     pub description: String,
-    /// Architectures searched; with more than one, `d` is a variable.
+    /// Architectures to search; with more than one, the architecture `d` is a variable.
     pub architectures: Vec<Architecture>,
     /// Working mode of every design.
     pub working_mode: WorkingMode,
-    /// `[material]`.
+    /// The section `[material]`.
     pub material: MaterialSection,
-    /// `[actuators]`.
+    /// The section `[actuators]`.
     pub actuators: ActuatorSection,
-    /// `[requirements]`.
+    /// The section `[requirements]`.
     pub requirements: RequirementSection,
-    /// `[workspace]`.
+    /// The section `[workspace]`.
     pub workspace: WorkspaceSection,
-    /// `[model]`.
+    /// The section `[model]`.
     pub model: ModelSection,
-    /// `[bodies]`.
+    /// The section `[bodies]`.
     pub bodies: BodySettings,
-    /// `[bounds]`.
+    /// The section `[bounds]`.
     pub bounds: Bounds,
-    /// `[grid]`.
+    /// The section `[grid]`.
     pub grid: Grids,
-    /// `[optimizer]`.
+    /// The section `[optimizer]`.
     pub optimizer: OptimizerSection,
-    /// `[hypervolume]`.
+    /// The section `[hypervolume]`.
     pub hypervolume: HypervolumeSection,
-    /// `[[references]]`: designs to compare with.
+    /// The sections `[[references]]`: reference designs to compare with.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub references: Vec<ReferenceDesign>,
 }
@@ -78,7 +78,7 @@ impl Default for Study {
 }
 
 impl Study {
-    /// What the model computes with.
+    /// Converts the study into the settings of the model, in SI units.
     pub fn model(&self) -> Model {
         let requirements = &self.requirements;
         let model = &self.model;
@@ -108,7 +108,7 @@ impl Study {
             characteristic_length: match model.characteristic_length {
                 LengthChoice::PlatformRadius => CharacteristicLength::PlatformRadius,
                 LengthChoice::Isotropic => CharacteristicLength::Isotropic,
-                // Reading a study makes sure that there is one.
+                // A study that was read without faults has this length.
                 LengthChoice::Fixed => CharacteristicLength::Fixed(model.characteristic_length_m.unwrap_or(1.0)),
             },
             thresholds: Thresholds {
@@ -135,7 +135,7 @@ impl Study {
         }
     }
 
-    /// Candidates of a generation of the algorithm chosen.
+    /// Returns the number of candidates of a generation of the study's algorithm.
     pub fn population(&self) -> usize {
         match self.optimizer.algorithm {
             AlgorithmName::FrontDe => self.optimizer.front_de.generation,

@@ -1,6 +1,8 @@
-//! The folder a run leaves: `study.toml`, `designs.csv`, `front.csv` and `run.json` (the recording is another listener).
+//! The run folder with the files `study.toml`, `designs.csv`, `front.csv` and `run.json`. The recording is written by
+//! another listener.
 //!
-//! `designs.csv` grows as designs are evaluated; the other files appear whole at the end.
+//! `study.toml` is written at the start, `designs.csv` grows as designs are evaluated, and `front.csv` and `run.json`
+//! are written at the end. All files except `designs.csv` appear only when they are complete.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -13,7 +15,7 @@ use serde::Serialize;
 use super::{AlgorithmName, Batch, Event, GenerationSummary, Outcome, RunSummary, RunTimes, Study};
 use kinefront_model::evaluation::{Constraint, Evaluation};
 
-/// First columns of `designs.csv` and `front.csv`; values, margins, active constraints and violation follow.
+/// First columns of `designs.csv` and `front.csv`; margins, values, active constraints and violation follow.
 pub const TABLE_HEADER: [&str; 13] = [
     "id",
     "generation",
@@ -30,38 +32,38 @@ pub const TABLE_HEADER: [&str; 13] = [
     "feasible",
 ];
 
-/// What went wrong with a run folder.
+/// Error of writing a run folder.
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
-    /// The folder holds a run already.
+    /// The folder already holds a run.
     #[error("{} already holds a run ({found}); choose another folder, or move that one away", path.display())]
     Occupied {
-        /// The folder.
+        /// Path of the folder.
         path: PathBuf,
-        /// A file of the run in it.
+        /// Name of a file of the run that it holds.
         found: &'static str,
     },
     /// A file cannot be written.
     #[error("cannot write {}: {source}", path.display())]
     Write {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Cause of the error.
         source: io::Error,
     },
 }
 
-/// Files of a run.
+/// Names of the files of a run.
 const FILES: [&str; 5] = ["study.toml", "designs.csv", "front.csv", "run.json", "recording.rrd"];
 
-/// A run folder being written.
+/// A run folder that is being written.
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
     designs: csv::Writer<BufWriter<File>>,
 }
 
-/// `run.json`.
+/// Contents of `run.json`.
 #[derive(Debug, Serialize)]
 pub struct RunReport<'a> {
     kinefront_version: &'static str,
@@ -91,7 +93,7 @@ struct HypervolumeReference {
 }
 
 impl<'a> RunReport<'a> {
-    /// The report of a run of `study`.
+    /// Creates the report on a run of `study`.
     pub fn new(study: &'a Study, summary: &'a RunSummary) -> Self {
         let last = summary.history.last();
         Self {
@@ -125,10 +127,10 @@ impl<'a> RunReport<'a> {
 }
 
 impl RunFolder {
-    /// Prepares `path` for a run of `study`: makes the folder, writes `study.toml` and the head of `designs.csv`.
+    /// Prepares `path` for a run of `study`: creates the folder, writes `study.toml` and the header of `designs.csv`.
     ///
     /// # Errors
-    /// [`FolderError::Occupied`] when a run lies there, [`FolderError::Write`] when it cannot be written.
+    /// [`FolderError::Occupied`] if the folder already holds a run, [`FolderError::Write`] if it cannot be written.
     pub fn create(path: &Path, study: &Study) -> Result<Self, FolderError> {
         if let Some(found) = FILES.into_iter().find(|file| path.join(file).exists()) {
             return Err(FolderError::Occupied {
@@ -157,15 +159,15 @@ impl RunFolder {
         })
     }
 
-    /// The folder.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Writes what a run tells until it ends.
+    /// Receives the events of a run and writes its files until the run ends.
     ///
     /// # Errors
-    /// [`FolderError::Write`] at the first file that cannot be written; what was written before stays.
+    /// [`FolderError::Write`] for the first file that cannot be written; files written before are kept.
     pub fn follow(mut self, events: &Receiver<Arc<Event>>, study: &Study) -> Result<(), FolderError> {
         for event in events {
             match &*event {
@@ -232,7 +234,7 @@ fn header() -> impl Iterator<Item = String> {
         .chain(["active".to_owned(), "violation".to_owned()])
 }
 
-/// A row of a table; numbers as the shortest text that reads back to the same bits.
+/// Returns a row of a table. Each number is written as the shortest text that parses to the same floating-point value.
 fn row(id: usize, generation: usize, evaluation: &Evaluation) -> Vec<String> {
     let design = &evaluation.design;
     let optional = |number: Option<f64>| number.map(|number| number.to_string()).unwrap_or_default();
@@ -260,10 +262,11 @@ fn row(id: usize, generation: usize, evaluation: &Evaluation) -> Vec<String> {
     row
 }
 
-/// A table of designs of several fronts, numbered, with the columns of `designs.csv` and whether each is on the joint front.
+/// Returns a CSV table of designs of several fronts. The designs are numbered; the columns are those of `designs.csv`,
+/// and a last column says whether the design is on the joint front.
 ///
 /// # Errors
-/// What went wrong, in words.
+/// A message that describes what went wrong.
 pub fn front_table<'a>(members: impl Iterator<Item = (&'a Evaluation, bool)>) -> Result<Vec<u8>, String> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let mut write = |record: Vec<String>| table.write_record(record).map_err(|error| error.to_string());
@@ -274,7 +277,8 @@ pub fn front_table<'a>(members: impl Iterator<Item = (&'a Evaluation, bool)>) ->
     table.into_inner().map_err(|error| error.to_string())
 }
 
-/// Writes a file beside its place and moves it there, so that it is either whole or as it was before.
+/// Writes a file atomically: writes a temporary file in the same folder and renames it, so that the file is either
+/// complete or unchanged.
 ///
 /// # Errors
 /// [`FolderError::Write`].
@@ -290,7 +294,7 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), FolderError> {
         fs::rename(&partial, path)
     };
     write().map_err(|source| {
-        // The partial file is of no use to anyone; that it may stay behind is not worth a second error.
+        // The partial file is useless; failing to remove it does not justify a second error.
         let _ = fs::remove_file(&partial);
         FolderError::Write {
             path: path.to_owned(),

@@ -1,4 +1,4 @@
-//! Studies: the file, the run of one on its own thread, and the folder it leaves.
+//! Studies: the study file, the run of a study on its own thread, and the run folder.
 
 mod builtin;
 mod control;

@@ -1,4 +1,4 @@
-//! The sections of a study file about the search, each with its defaults.
+//! The sections of a study file that define the search, each with its defaults.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,17 +10,17 @@ use kinefront_optimize::{FrontDeSettings, Moga2Settings, Nsga2Settings};
 pub enum AlgorithmName {
     /// Differential evolution along the front, with the lightest bars for each geometry.
     FrontDe,
-    /// After MOGA-II, the paper's optimizer.
+    /// MOGA-II (reimplementation), the paper's optimizer.
     Moga2,
     /// NSGA-II with constraint domination.
     Nsga2,
 }
 
 impl AlgorithmName {
-    /// All of them.
+    /// All algorithms.
     pub const ALL: [AlgorithmName; 3] = [AlgorithmName::FrontDe, AlgorithmName::Moga2, AlgorithmName::Nsga2];
 
-    /// Its name, as in study files and arguments.
+    /// Returns the name of the algorithm, as in study files and command-line arguments.
     pub fn name(self) -> &'static str {
         match self {
             AlgorithmName::FrontDe => "front-de",
@@ -36,32 +36,33 @@ impl std::fmt::Display for AlgorithmName {
     }
 }
 
-/// Algorithm, budget and seed.
+/// Algorithm, budget, random seed and settings of the search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct OptimizerSection {
-    /// Which algorithm.
+    /// Algorithm of the search.
     pub algorithm: AlgorithmName,
     /// Number of evaluations, the first sample included.
     pub evaluations: usize,
-    /// Seed of every random draw; TOML has no larger number than 2⁶³ − 1.
+    /// Random seed, which determines every random draw; at most 2⁶³ − 1, the largest integer in TOML.
     pub seed: u64,
-    /// Ends the search after the generation in which this time is up \[s\]; what it found then depends on the machine.
+    /// Time limit \[s\]: the search ends after the generation in which it is reached. The result then depends on the
+    /// machine.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_limit_s: Option<f64>,
-    /// Designs of the verified front that are kept: evenly spread, its ends and its knee among them.
+    /// Number of designs of the verified front that are kept: evenly spread, including both ends and the knee.
     pub front_designs: usize,
-    /// Worker threads; all cores where it is left out. The result does not depend on it.
+    /// Number of worker threads; all cores if omitted. The result does not depend on it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub threads: Option<usize>,
-    /// `[optimizer.stagnation]`: ends the search when it hardly gains any more.
+    /// The section `[optimizer.stagnation]`: ends the search when it has stagnated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stagnation: Option<Stagnation>,
-    /// `[optimizer.front_de]`.
+    /// The section `[optimizer.front_de]`.
     pub front_de: FrontDeSettings,
-    /// `[optimizer.moga2]`.
+    /// The section `[optimizer.moga2]`.
     pub moga2: Moga2Settings,
-    /// `[optimizer.nsga2]`.
+    /// The section `[optimizer.nsga2]`.
     pub nsga2: Nsga2Settings,
 }
 
@@ -82,21 +83,22 @@ impl Default for OptimizerSection {
     }
 }
 
-/// When a search counts as stagnated: the hypervolume grew by less than the share `gain` over the last `evaluations`.
+/// Stagnation rule: a search has stagnated if the hypervolume grew by less than the fraction `gain` over the last
+/// `evaluations` evaluations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stagnation {
-    /// Evaluations over which the gain is measured.
+    /// Number of evaluations over which the gain is measured.
     pub evaluations: usize,
-    /// Least relative gain.
+    /// Smallest relative gain with which the search continues.
     pub gain: f64,
 }
 
-/// Where the hypervolume is measured from: this mass and `R_w` = 0.
+/// Reference point of the hypervolume: this mass and `R_w` = 0.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HypervolumeSection {
-    /// Designs heavier than this add nothing.
+    /// Mass of the reference point; heavier designs contribute nothing.
     pub reference_mass_kg: f64,
 }
 

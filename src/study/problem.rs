@@ -1,4 +1,4 @@
-//! A study as a problem for the optimizer: `x` = the architecture, then the five lengths.
+//! A study as an optimization problem; `x` consists of the architecture and the five lengths.
 
 use super::Study;
 use kinefront_model::evaluation::{BarRanges, Demand, Evaluation, GridChoice, Model};
@@ -6,10 +6,10 @@ use kinefront_model::mechanism::{Architecture, Design, DesignError, VARIABLES, V
 use kinefront_optimize::{Aim, Outcome, Problem, Variable as Unknown};
 use kinefront_model::workspace::GridError;
 
-/// Designs of a study, encoded for an optimizer.
+/// The optimization problem of a study, with designs encoded as vectors of values.
 ///
-/// The first value is the index of the architecture in the study's list, then follow the lengths in the order of
-/// [`VARIABLES`]. With one architecture the first variable has a single choice.
+/// The first value is the index of the architecture in the study's list; the lengths follow in the order of
+/// [`VARIABLES`]. If the study has one architecture, the first variable has a single choice.
 #[derive(Debug, Clone)]
 pub struct DesignProblem {
     model: Model,
@@ -18,19 +18,19 @@ pub struct DesignProblem {
     ranges: [[f64; 2]; VARIABLES.len()],
 }
 
-/// Why a candidate cannot be evaluated; a study that was read without faults has none.
+/// Reason why a candidate cannot be evaluated; the candidates of a study that was read without faults have none.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CandidateError {
-    /// The values are no design.
+    /// The values are not a valid design.
     #[error(transparent)]
     Design(#[from] DesignError),
-    /// The grid does not fit.
+    /// The grid does not divide the full turn or the home window into whole steps.
     #[error(transparent)]
     Grid(#[from] GridError),
 }
 
 impl DesignProblem {
-    /// The problem of a study.
+    /// Creates the optimization problem of a study.
     pub fn new(study: &Study) -> Self {
         Self {
             model: study.model(),
@@ -40,15 +40,15 @@ impl DesignProblem {
         }
     }
 
-    /// The model that designs are evaluated with.
+    /// Returns the model with which designs are evaluated.
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// The design that `x` encodes.
+    /// Returns the design that `x` encodes.
     ///
     /// # Errors
-    /// [`DesignError`] when the bounds allow what is no design.
+    /// [`DesignError`] if the bounds allow values that are not a valid design.
     pub fn design(&self, x: &[f64]) -> Result<Design, DesignError> {
         let architecture = self.architectures[(x[0] as usize).min(self.architectures.len() - 1)];
         Design::new(architecture, self.working_mode, [x[1], x[2], x[3], x[4], x[5]])
@@ -62,7 +62,8 @@ impl DesignProblem {
         Ok(self.model.evaluate(&self.design(x)?, GridChoice::Reference)?)
     }
 
-    /// What the optimizer sees of an evaluation: mass and −`R_w`, both minimised, and the violation.
+    /// Converts an evaluation into the outcome that the optimizer uses: mass and −`R_w`, both minimised, and the
+    /// violation.
     pub fn outcome(evaluation: &Evaluation) -> Outcome {
         Outcome {
             objectives: [evaluation.mass, -evaluation.workspace_radius],
@@ -70,7 +71,7 @@ impl DesignProblem {
         }
     }
 
-    /// The variables of the problem.
+    /// Returns the variables of the problem.
     pub fn variables(&self) -> Vec<Unknown> {
         std::iter::once(Unknown::Categorical {
             choices: self.architectures.len(),
@@ -85,8 +86,9 @@ impl Problem for DesignProblem {
         DesignProblem::variables(self)
     }
 
-    /// The lightest bars for the geometry in `x`. A workspace that the geometry does not allow is made the largest that it
-    /// does.
+    /// Sets the lightest bars for the geometry in `x` that provide the workspace radius of the target. For the target
+    /// [`Aim::Best`], or for a radius that the geometry does not allow, the bars are sized for the largest radius that
+    /// it allows.
     fn complete(&self, x: &[f64], aim: Aim) -> Option<Vec<f64>> {
         let design = self.design(x).ok()?;
         let range = |variable: Variable| self.ranges[variable as usize];
@@ -108,7 +110,7 @@ impl Problem for DesignProblem {
     fn evaluate(&self, x: &[f64]) -> Outcome {
         match self.evaluation(x) {
             Ok(evaluation) => Self::outcome(&evaluation),
-            // No design at all: worse than any that is one.
+            // Values that are not a valid design are worse than every valid design.
             Err(_) => Outcome {
                 objectives: [f64::MAX, 0.0],
                 violation: f64::MAX,

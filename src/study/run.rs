@@ -1,4 +1,4 @@
-//! The run of a study: a worker thread that evaluates, and the events it tells.
+//! The run of a study: a worker thread that performs the search and the events that it sends.
 //!
 //! ```text
 //!             RunControl: pause, step, stop
@@ -10,9 +10,10 @@
 //!                  └─► terminal or window
 //! ```
 //!
-//! Channels are bounded, and the worker waits for a slow listener rather than lose an event. A listener that has gone
-//! (a full disk, a closed window) is left out from then on; the run goes on. Candidates of a generation are evaluated in
-//! parallel and told in their order, so the result does not depend on the number of threads or on who listens.
+//! The channels are bounded: the worker thread waits for a slow listener and never drops an event. A listener that has
+//! ended (because of a full disk or a closed window) receives no further events, and the run continues. The candidates
+//! of a generation are evaluated in parallel and told to the algorithm in their order, so the result depends neither on
+//! the number of threads nor on the listeners.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -30,17 +31,17 @@ use super::{
 use kinefront_model::evaluation::{Evaluation, GridChoice};
 use kinefront_optimize::{Algorithm, Archive, Evaluated, FrontDe, Moga2, Nsga2, Problem, hypervolume, spread};
 
-/// Starts the run of a study on a thread of its own.
+/// Starts the run of a study on its own thread.
 ///
 /// # Errors
-/// The thread could not be started.
+/// The I/O error if the thread cannot be started.
 pub fn spawn(study: Study, control: Arc<RunControl>, subscribers: Vec<Subscriber>) -> std::io::Result<JoinHandle<()>> {
     Builder::new().name("kinefront-run".to_owned()).spawn(move || {
         let mut publisher = Publisher {
             subscribers,
             spent: Duration::ZERO,
         };
-        // A panic is a bug, but what was found until then must reach its readers.
+        // A panic is a bug; the listeners must still learn that the run failed, so that they keep what was found.
         let ended = catch_unwind(AssertUnwindSafe(|| run(study, &control, &mut publisher)));
         let message = match ended {
             Ok(Ok(())) => return,
@@ -213,8 +214,8 @@ fn algorithm(study: &Study, problem: &DesignProblem) -> Box<dyn Algorithm> {
     }
 }
 
-/// Evaluates the front again on the fine grid and keeps what is feasible and non-dominated there; `None` for a run that
-/// was abandoned.
+/// Evaluates the front again on the fine grid and keeps the designs that are feasible and non-dominated there. Returns
+/// `None` if the run was abandoned.
 fn verify(
     front: Vec<FrontMember>,
     problem: &DesignProblem,
@@ -254,7 +255,7 @@ fn verify(
         }
         done += part.len();
     }
-    // On a front, sorted by mass is sorted by R_w.
+    // On a front, the order by mass is also the order by R_w.
     let front = archive.iter().filter_map(|member| verified.remove(&member.id));
     Ok(Some(front.collect()))
 }

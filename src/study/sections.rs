@@ -1,4 +1,4 @@
-//! The sections of a study file, each with the paper's values as its default.
+//! The sections of a study file, each with the paper's values as defaults.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,11 +11,11 @@ use kinefront_model::workspace::Grid;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MaterialSection {
-    /// `E`.
+    /// Young's modulus `E`.
     pub youngs_modulus_pa: f64,
-    /// `G`.
+    /// Shear modulus `G`.
     pub shear_modulus_pa: f64,
-    /// `ν`.
+    /// Density `ν`.
     pub density_kg_per_m3: f64,
 }
 
@@ -33,9 +33,9 @@ impl Default for MaterialSection {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ActuatorSection {
-    /// `K_act` of prismatic actuators.
+    /// Stiffness `K_act` of prismatic actuators.
     pub prismatic_stiffness_n_per_m: f64,
-    /// `K_act` of revolute actuators.
+    /// Stiffness `K_act` of revolute actuators.
     pub revolute_stiffness_nm_per_rad: f64,
 }
 
@@ -49,34 +49,35 @@ impl Default for ActuatorSection {
     }
 }
 
-/// Wrench and accuracy, from which the stiffness thresholds follow; a threshold given outright wins.
+/// Requirements. The stiffness thresholds follow from a wrench and the accuracy required under it; a threshold that is
+/// set directly takes precedence.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RequirementSection {
-    /// Least `κ_F⁻¹` (g3).
+    /// Smallest permitted inverse condition number `κ_F⁻¹` (g3).
     pub inverse_condition_min: f64,
     /// Force in the plane, in any direction.
     pub in_plane_force_n: f64,
-    /// Displacement it may cause.
+    /// Largest permitted displacement under this force.
     pub in_plane_displacement_m: f64,
     /// Force along z.
     pub vertical_force_n: f64,
-    /// Displacement it may cause.
+    /// Largest permitted displacement under this force.
     pub vertical_displacement_m: f64,
     /// Torque about z.
     pub torque_z_nm: f64,
-    /// Rotation it may cause.
+    /// Largest permitted rotation under this torque.
     pub rotation_z_deg: f64,
-    /// Threshold of g4 outright.
+    /// Threshold of g4, if it is set directly.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k_xy_min_n_per_m: Option<f64>,
-    /// Threshold of g5 outright.
+    /// Threshold of g5, if it is set directly.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k_z_min_n_per_m: Option<f64>,
-    /// Threshold of g6 outright.
+    /// Threshold of g6, if it is set directly.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k_phi_z_min_nm_per_rad: Option<f64>,
-    /// Threshold of g7: least clearance of bodies that are not joined; they may collide where it is left out.
+    /// Threshold of g7: smallest permitted clearance of members that are not joined; if omitted, they may collide.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clearance_min_m: Option<f64>,
 }
@@ -99,15 +100,15 @@ impl Default for RequirementSection {
     }
 }
 
-/// The regular workspace asked for.
+/// Required regular workspace.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct WorkspaceSection {
-    /// `Δφ`.
+    /// Rotation range `Δφ`.
     pub rotation_range_deg: f64,
     /// Centre of the disc.
     pub centre_m: [f64; 2],
-    /// Home orientation; the best one where it is left out.
+    /// Home orientation; if omitted, the best one is determined for each design.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub home_phi_deg: Option<f64>,
 }
@@ -122,54 +123,54 @@ impl Default for WorkspaceSection {
     }
 }
 
-/// `k_xy`, `k_z`, `k_φz` from `K` or from `K⁻¹`.
+/// Definition of the stiffness values `k_xy`, `k_z` and `k_φz`: from `K` or from `K⁻¹`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StiffnessChoice {
-    /// Blocks of `K`.
+    /// Values from the blocks of `K`.
     Stiffness,
-    /// Inverses of blocks of `K⁻¹`.
+    /// Values from the inverses of the blocks of `K⁻¹`.
     Compliance,
 }
 
-/// Characteristic length.
+/// Definition of the characteristic length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LengthChoice {
-    /// `r`.
+    /// The platform radius `r`.
     PlatformRadius,
-    /// `√2·max|w|`.
+    /// The isotropic length `√2·max|w|`.
     Isotropic,
-    /// `characteristic_length_m`.
+    /// The value of the key `characteristic_length_m`.
     Fixed,
 }
 
-/// Beam length of a telescopic leg.
+/// Definition of the beam length of a telescopic leg.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TelescopicBar {
-    /// `ρ_i`.
+    /// The current leg length `ρ_i`.
     Current,
-    /// `L_b`.
+    /// The longest leg length `L_b`.
     Longest,
 }
 
-/// Choices where the paper is silent or contradicts itself.
+/// Modelling choices that the paper leaves open or states inconsistently (docs/model.md, section 11).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ModelSection {
     /// Definition of the stiffness values.
     pub stiffness_definition: StiffnessChoice,
-    /// Kind of characteristic length.
+    /// Definition of the characteristic length.
     pub characteristic_length: LengthChoice,
-    /// Its value where it is fixed.
+    /// Value of a fixed characteristic length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub characteristic_length_m: Option<f64>,
-    /// Bars of length `r` in the platform's mass: 3, or 1 as the paper prints it.
+    /// Number of bars of length `r` in the mass of the platform: 3, or 1 as printed in the paper.
     pub platform_bars: u32,
-    /// Beam length of a telescopic leg.
+    /// Definition of the beam length of a telescopic leg.
     pub telescopic_bar: TelescopicBar,
-    /// Shortest telescopic leg as a share of `L_b`.
+    /// Length of the shortest telescopic leg as a fraction of `L_b`.
     pub telescopic_shortest: f64,
 }
 
@@ -186,20 +187,20 @@ impl Default for ModelSection {
     }
 }
 
-/// Ranges that the optimizer searches, `[lower, upper]`.
+/// Bounds of the design variables in the search, as `[lower, upper]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[allow(non_snake_case, reason = "keys are the paper's symbols")]
 pub struct Bounds {
-    /// `R`.
+    /// Base radius `R`.
     pub R_m: [f64; 2],
-    /// `r`.
+    /// Platform radius `r`.
     pub r_m: [f64; 2],
-    /// `L_b`.
+    /// Link length `L_b`.
     pub Lb_m: [f64; 2],
-    /// `r_j`.
+    /// Radius `r_j` of the leg bars.
     pub rj_m: [f64; 2],
-    /// `r_p`.
+    /// Radius `r_p` of the platform bars.
     pub rp_m: [f64; 2],
 }
 
@@ -216,7 +217,7 @@ impl Default for Bounds {
 }
 
 impl Bounds {
-    /// The range of one variable.
+    /// Returns the range of a variable.
     pub fn range(&self, variable: Variable) -> [f64; 2] {
         match variable {
             Variable::BaseRadius => self.R_m,
@@ -227,7 +228,7 @@ impl Bounds {
         }
     }
 
-    /// Each variable with the key of its range.
+    /// Iterates over the variables, each with the key of its range.
     pub fn keys() -> impl Iterator<Item = (Variable, String)> {
         VARIABLES
             .into_iter()
@@ -241,11 +242,11 @@ impl Bounds {
 pub struct GridSection {
     /// Spacing of orientations.
     pub phi_step_deg: f64,
-    /// Directions over the full turn.
+    /// Number of directions over the full turn.
     pub directions: usize,
-    /// Steps of a ray per `R`.
+    /// Number of steps of a ray per length `R`.
     pub ray_steps: usize,
-    /// Halvings of the failing step.
+    /// Number of halvings of the first failing step of a ray.
     pub halvings: u32,
 }
 
@@ -271,13 +272,13 @@ impl From<&GridSection> for Grid {
     }
 }
 
-/// Grids for searching and for verifying.
+/// Grids for the search and for the verification.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Grids {
-    /// Designs are searched on this one.
+    /// Reference grid, used in the search.
     pub reference: GridSection,
-    /// What is reported is verified on this one.
+    /// Fine grid, on which reported designs are verified.
     pub fine: GridSection,
 }
 
@@ -290,27 +291,27 @@ impl Default for Grids {
     }
 }
 
-/// A design to compare with: it stands as a mark beside the front.
+/// A reference design to compare with, shown as a mark beside the front.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReferenceDesign {
-    /// What it is called.
+    /// Name of the design.
     pub name: String,
     /// The design as text.
     pub design: String,
-    /// Mass as its source states it.
+    /// Mass as stated by the source of the design.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_kg: Option<f64>,
-    /// `R_w` as its source states it.
+    /// Workspace radius `R_w` as stated by the source of the design.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub workspace_radius_m: Option<f64>,
 }
 
 impl ReferenceDesign {
-    /// The design; `default_mode` holds where the text names no working mode.
+    /// Parses the design; `default_mode` is used if the text does not name a working mode.
     ///
     /// # Errors
-    /// [`TextError`]; a study that was read without faults has none.
+    /// [`TextError`]; this does not occur for a study that was read without faults.
     pub fn parse(&self, default_mode: WorkingMode) -> Result<Design, TextError> {
         Design::parse(&self.design, default_mode)
     }

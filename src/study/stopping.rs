@@ -1,10 +1,10 @@
-//! When a search ends before its budget is spent.
+//! Rules that end a search before its budget is used up.
 
 use std::time::Duration;
 
 use super::{GenerationSummary, OptimizerSection, Outcome, Stagnation};
 
-/// The rules of a study, besides its budget of evaluations.
+/// Stopping rules of a study other than its budget of evaluations.
 #[derive(Debug, Clone)]
 pub(super) struct Stopping {
     time_limit: Option<f64>,
@@ -19,7 +19,7 @@ impl Stopping {
         }
     }
 
-    /// Why a search of this duration and history ends, if it does.
+    /// Returns the reason why a search of this duration and history ends, or `None` if it continues.
     pub fn reason(&self, elapsed: Duration, history: &[GenerationSummary]) -> Option<Outcome> {
         if self.time_limit.is_some_and(|limit| elapsed.as_secs_f64() >= limit) {
             return Some(Outcome::TimeUp);
@@ -27,7 +27,7 @@ impl Stopping {
         let Stagnation { evaluations, gain } = self.stagnation?;
         let last = history.last()?;
         let since = last.evaluations.checked_sub(evaluations)?;
-        // The state as it was that many evaluations ago, or longer; before it there is nothing to compare with.
+        // The latest state that is at least that many evaluations old; if there is none, no gain can be measured yet.
         let before = history.iter().rev().find(|summary| summary.evaluations <= since)?;
         let stagnated = before.hypervolume > 0.0 && last.hypervolume < before.hypervolume * (1.0 + gain);
         stagnated.then_some(Outcome::Stagnated)

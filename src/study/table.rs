@@ -1,4 +1,4 @@
-//! Designs as rows of a table, and reading them back.
+//! Designs as rows of a table, and the reading of such tables.
 
 use std::path::{Path, PathBuf};
 
@@ -6,32 +6,32 @@ use super::Study;
 use kinefront_model::evaluation::{Constraint, Evaluation};
 use kinefront_model::mechanism::{Design, VARIABLES};
 
-/// What is stored of one design.
+/// Stored values of one design.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
-    /// Generation, from 1.
+    /// Number of the generation, counted from 1.
     pub generation: u32,
     /// The design.
     pub design: Design,
     /// Mass in motion \[kg\].
     pub mass: f64,
-    /// `R_w` \[m\]; 0 for an infeasible design.
+    /// Workspace radius `R_w` \[m\]; 0 for an infeasible design.
     pub radius: f64,
-    /// `φ_c` \[deg\].
+    /// Home orientation `φ_c` \[deg\]; `None` for an infeasible design.
     pub phi: Option<f64>,
-    /// Violation, 0 for a feasible design.
+    /// Constraint violation; 0 for a feasible design.
     pub violation: f64,
-    /// Relative margins in the order of [`Constraint::ALL`], of those that the study asks for.
+    /// Relative margins in the order of [`Constraint::ALL`]; `None` for a constraint that the study does not require.
     pub margins: [Option<f64>; Constraint::ALL.len()],
-    /// Least clearance of bodies that are not joined \[m\], asked for or not; `None` where no pose has one, and in tables
-    /// of earlier versions.
+    /// Smallest clearance of members that are not joined \[m\], whether or not the study requires a clearance; `None`
+    /// if no pose has one, and for tables of earlier versions.
     pub clearance: Option<f64>,
-    /// A bit for each active constraint, the first the lowest.
+    /// Bit set of the active constraints; the lowest bit is that of the first constraint.
     pub active: u8,
 }
 
 impl Row {
-    /// The row of an evaluation.
+    /// Creates the row of an evaluation.
     pub fn new(generation: usize, evaluation: &Evaluation) -> Self {
         Self {
             generation: generation.try_into().unwrap_or(u32::MAX),
@@ -46,19 +46,19 @@ impl Row {
         }
     }
 
-    /// The row of named texts and numbers, as in `designs.csv`.
+    /// Reads a row from texts and numbers that are named as the columns of `designs.csv`.
     ///
     /// # Errors
-    /// What is missing or wrong, in words.
+    /// A message that names the missing or invalid value.
     pub fn read<'a>(
         study: &Study,
         generation: usize,
         text: impl Fn(&str) -> Option<&'a str>,
         number: impl Fn(&str) -> Option<f64>,
     ) -> Result<Self, String> {
-        let wanted = |name: &str| number(name).ok_or_else(|| format!("no number `{name}`"));
+        let wanted = |name: &str| number(name).ok_or_else(|| format!("`{name}` is missing or not a number"));
         let architecture = text("architecture")
-            .ok_or("no `architecture`")?
+            .ok_or("`architecture` is missing")?
             .parse()
             .map_err(|error| format!("{error}"))?;
         let mode = match text("working_mode") {
@@ -92,12 +92,12 @@ impl Row {
         })
     }
 
-    /// Both objectives, minimised.
+    /// Returns both objectives, which are minimised.
     pub fn objectives(&self) -> [f64; 2] {
         [self.mass, -self.radius]
     }
 
-    /// The active constraints.
+    /// Iterates over the active constraints.
     pub fn active_constraints(&self) -> impl Iterator<Item = Constraint> {
         let active = self.active;
         Constraint::ALL
@@ -106,7 +106,7 @@ impl Row {
     }
 }
 
-/// A bit for each of the constraints.
+/// Returns the bit set of the constraints.
 fn bits(constraints: impl IntoIterator<Item = Constraint>) -> u8 {
     constraints
         .into_iter()
@@ -118,26 +118,27 @@ fn bits(constraints: impl IntoIterator<Item = Constraint>) -> u8 {
 pub struct TableRow {
     /// Id of the design in its run.
     pub id: usize,
-    /// Its numbers.
+    /// Stored values of the design.
     pub row: Row,
-    /// `R_w` on the reference grid \[m\], in a front's table.
+    /// Workspace radius `R_w` on the reference grid \[m\]; only the table of a front has it.
     pub reference_radius: Option<f64>,
 }
 
-/// A table of a run that cannot be read.
+/// Error of reading a table of a run.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {message}", path.display())]
 pub struct TableError {
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
-    /// What is wrong, and where.
+    /// Message that says what is wrong, and where.
     pub message: String,
 }
 
-/// Reads `designs.csv` or `front.csv` of a run of `study`. Half a line at the end, as a killed run leaves it, is left out.
+/// Reads `designs.csv` or `front.csv` of a run of `study`. An incomplete last line, as a killed run leaves it, is
+/// ignored.
 ///
 /// # Errors
-/// [`TableError`] with the line and what is wrong in it.
+/// [`TableError`] with the line and a description of the error in it.
 pub fn read_table(path: &Path, study: &Study) -> Result<Vec<TableRow>, TableError> {
     let fault = |message: String| TableError {
         path: path.to_owned(),
@@ -150,7 +151,7 @@ pub fn read_table(path: &Path, study: &Study) -> Result<Vec<TableRow>, TableErro
     for record in reader.records() {
         let record = match record {
             Ok(record) => record,
-            // The last line of a run that was killed may be half a line.
+            // A run that was killed may leave an incomplete last line.
             Err(error) if matches!(error.kind(), csv::ErrorKind::UnequalLengths { .. }) && !rows.is_empty() => break,
             Err(error) => return Err(fault(error.to_string())),
         };
@@ -160,7 +161,7 @@ pub fn read_table(path: &Path, study: &Study) -> Result<Vec<TableRow>, TableErro
         let whole = |name: &str| {
             number(name)
                 .map(|value| value as usize)
-                .ok_or_else(|| fault(format!("line {line}: no `{name}`")))
+                .ok_or_else(|| fault(format!("line {line}: `{name}` is missing or not a number")))
         };
         let row = Row::read(study, whole("generation")?, text, number)
             .map_err(|message| fault(format!("line {line}: {message}")))?;

@@ -1,4 +1,4 @@
-//! What reports compute: fits, fronts, and where which architecture is lightest.
+//! The computations of reports: fits, fronts, and the ranges in which each architecture is the lightest.
 
 use kinefront_model::evaluation::{GridChoice, Model};
 use kinefront_model::mechanism::{Architecture, Design, VARIABLES};
@@ -7,7 +7,8 @@ use kinefront::study::{BUILTIN, Row, Study};
 use proptest::prelude::*;
 
 proptest! {
-    /// Points on a parabola give it back, and a line explains them as far as they are straight.
+    /// A fit to points on a parabola reproduces it, and a straight line explains no more of the variance than the
+    /// parabola.
     #[test]
     fn a_fit_gives_back_the_polynomial(
         [a, b, c] in prop::array::uniform3(-5.0f64..5.0),
@@ -25,7 +26,7 @@ proptest! {
         prop_assert!(parabola.r_squared > 1.0 - 1e-9);
         let line = Fit::new(&points, 1).expect("enough points");
         prop_assert!(line.r_squared <= parabola.r_squared + 1e-9 && line.r_squared > -1e-9);
-        // Least squares: no line beside it is nearer.
+        // Least squares: no neighbouring line has a smaller error.
         let error = |shift: f64, turn: f64| -> f64 {
             points.iter().map(|[x, y]| (line.at(*x) + shift + turn * x - y).powi(2)).sum()
         };
@@ -51,7 +52,8 @@ fn small(architectures: &[Architecture]) -> Study {
     study
 }
 
-/// Fronts are non-dominated, of their architecture, and the ones together no heavier than any.
+/// The front of each architecture is non-dominated and holds only its designs, and the front of all architectures is
+/// at least as light as each of them.
 #[test]
 fn fronts_are_what_they_are_called() {
     let study = small(Architecture::ALL);
@@ -68,7 +70,7 @@ fn fronts_are_what_they_are_called() {
             assert_eq!(member.design.architecture, *architecture);
             let best = fronts.together.lightest(member.workspace_radius).expect("one is");
             assert!(best.mass <= member.mass);
-            // No design of the run beats it.
+            // No design of the run dominates it.
             assert!(!source.rows.iter().any(|row| {
                 row.design.architecture == *architecture
                     && row.mass < member.mass
@@ -84,7 +86,7 @@ fn fronts_are_what_they_are_called() {
     }
     for (architecture, [from, to]) in stretches {
         let middle = 0.5 * (from + to);
-        // Stretches are told on a lattice of radii: their upper ends are on it.
+        // The ranges are determined on equally spaced radii, and their upper ends are among these.
         assert_eq!(
             fronts.together.lightest(to).map(|best| best.design.architecture),
             Some(architecture)
@@ -93,7 +95,7 @@ fn fronts_are_what_they_are_called() {
     }
 }
 
-/// A variable at its bound is left out of its fits.
+/// Designs at which a variable is at its bound are excluded from the fits of the variable.
 #[test]
 fn trends_leave_out_what_stands_at_its_bounds() {
     let study = small(&[Architecture::ALL[0]]);
@@ -106,7 +108,7 @@ fn trends_leave_out_what_stands_at_its_bounds() {
         );
         text.parse::<Design>().expect("a design")
     });
-    let evaluations = designs.map(|design| model.evaluate(&design, GridChoice::Fine).expect("a whole grid"));
+    let evaluations = designs.map(|design| model.evaluate(&design, GridChoice::Fine));
     assert!(evaluations.iter().all(|evaluation| evaluation.is_feasible()));
     let front = Front::new(evaluations.to_vec(), 10);
     assert_eq!(front.members.len(), 4);
@@ -120,15 +122,14 @@ fn trends_leave_out_what_stands_at_its_bounds() {
     assert_eq!(trends.len(), VARIABLES.len());
 }
 
-/// A row says what its evaluation says.
+/// A row has the active constraints and the objectives of its evaluation.
 #[test]
 fn rows_keep_what_is_active() {
     let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
         .parse()
         .expect("a design");
     let evaluation = Model::default()
-        .evaluate(&design, GridChoice::Reference)
-        .expect("a whole grid");
+        .evaluate(&design, GridChoice::Reference);
     let row = Row::new(3, &evaluation);
     assert_eq!(
         row.active_constraints().collect::<Vec<_>>(),

@@ -229,8 +229,8 @@ fn exports_say_what_is_wrong() {
         &["--design", DESIGN, "--format", "step"],
         "expected one of gltf, mjcf, sdf, urdf, dxf, json, csv, parquet",
     );
-    fails(&["--design", DESIGN, "--format", "parquet"], "name the run's folder");
-    fails(&["run/front.csv#1", "--format", "csv"], "name the run's folder");
+    fails(&["--design", DESIGN, "--format", "parquet"], "specify the run folder");
+    fails(&["run/front.csv#1", "--format", "csv"], "specify the run folder");
     fails(
         &["run", "--format", "csv", "--pose", "x=0 y=0 phi_deg=0"],
         "have no meaning",

@@ -51,7 +51,7 @@ fn a_design_is_recorded_with_its_overlays_and_its_tour() {
             assert!(
                 card.contains("**active**")
                     && card.contains("forward kinematics")
-                    && card.contains("clearance of the bodies"),
+                    && card.contains("smallest clearance between members"),
                 "{card}"
             );
         }

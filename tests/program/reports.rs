@@ -1,4 +1,4 @@
-//! Reports: whole pages that load nothing, with the numbers of the run.
+//! Reports: self-contained pages that load nothing and show the numbers of the run.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use predicates::str::contains;
 
 use super::support::{folder, kinefront, optimize, small_study};
 
-/// Every `name="…"` of a page, by the attribute's name.
+/// Returns the values of all attributes `name="…"` of a page.
 fn attributes<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
     let key = format!(" {name}=\"");
     page.match_indices(&key)
@@ -39,7 +39,7 @@ fn a_page_holds_everything_and_loads_nothing() {
         .stdout(contains("index.html"));
     let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
 
-    // Nothing is fetched: pictures are in the page, links lead within it, and there is no script.
+    // Nothing is fetched: pictures are embedded, links stay within the page, and there is no script.
     for source in attributes(&page, "src") {
         assert!(
             source.starts_with("data:image/png;base64,iVBOR"),
@@ -56,8 +56,8 @@ fn a_page_holds_everything_and_loads_nothing() {
         assert!(!page.contains(word), "{word}");
     }
 
-    // Three architectures: a front each and three of all, two charts of variables, active constraints, clearance, and
-    // sensitivity.
+    // Three charts of all architectures; for each of the three architectures a front, two charts of variables, and
+    // charts of active constraints, clearance and sensitivity.
     let names = |name: &str, extension: &str| -> Vec<String> {
         let mut found: Vec<String> = std::fs::read_dir(out.join(name))
             .expect("a folder")
@@ -80,7 +80,7 @@ fn a_page_holds_everything_and_loads_nothing() {
     assert_eq!(attributes(&page, "src").len(), pictures.len());
     assert!(pictures.contains(&"3-prr-knee".to_owned()), "{pictures:?}");
 
-    // Its numbers are the run's: every design of its table is one that the run evaluated.
+    // The numbers are those of the run: every design of `fronts.csv` was evaluated by the run.
     let rows = |path: &Path| -> Vec<csv::StringRecord> {
         let mut reader = csv::Reader::from_path(path).expect("a table");
         reader.records().map(|record| record.expect("a row")).collect()
@@ -92,7 +92,7 @@ fn a_page_holds_everything_and_loads_nothing() {
         let same = |other: &&csv::StringRecord| (2..9).all(|column| row[column] == other[column]);
         assert!(designs.iter().any(|other| same(&other)), "{row:?}");
     }
-    // The lightest and the largest of each architecture stand in the page with their masses.
+    // The page shows the masses of the lightest and the heaviest design of each architecture.
     for architecture in ["3-PRR", "3-RPR", "3-RRR"] {
         let masses: Vec<f64> = shown
             .iter()
@@ -110,11 +110,11 @@ fn a_page_holds_everything_and_loads_nothing() {
     }
     assert!(page.contains("kinefront report run --sensitivity 120"));
     assert!(page.contains("3 other seeds") && page.contains("K_act × 10"));
-    // Nothing of where it was made.
+    // The page does not reveal the path of the folder.
     assert!(!page.contains(&folder.path().display().to_string()));
 }
 
-/// Several runs that ask for the same make one report; those that do not are told apart.
+/// Runs whose studies state the same problem make one report; other runs are rejected.
 #[test]
 fn runs_are_put_together_where_they_ask_for_the_same() {
     let folder = folder();
@@ -133,7 +133,7 @@ fn runs_are_put_together_where_they_ask_for_the_same() {
     report(&[&first, &second], &out, &["--sensitivity", "0"]).success();
     let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
     assert!(page.contains("Pareto front of the 3-PRR.") && page.contains("Pareto front of the 3-RPR."));
-    assert!(!page.contains("Pareto front of the 3-RRR.") && !page.contains("If it were read otherwise"));
+    assert!(!page.contains("Pareto front of the 3-RRR.") && !page.contains("Sensitivity to assumptions"));
 
     let text = std::fs::read_to_string(&study).expect("a study");
     let softer = folder.path().join("softer.toml");
@@ -146,7 +146,7 @@ fn runs_are_put_together_where_they_ask_for_the_same() {
     assert!(!folder.path().join("not").exists());
 }
 
-/// The paper's study on small grids: its claims are judged where they can be, and not where nothing was compared.
+/// The paper's study on small grids: its claims are judged if they can be, and not if an architecture is missing.
 #[test]
 fn the_papers_study_is_compared_with_the_paper() {
     let folder = folder();
@@ -168,11 +168,11 @@ fn the_papers_study_is_compared_with_the_paper() {
     };
     let all = page("all", "3-PRR,3-RPR,3-RRR");
     for words in [
-        "Where and why this differs from the paper",
-        "This run asks what its study does",
+        "Differences from the paper and their causes",
+        "The model, requirements and bounds of this run are those of the paper.",
         "The 3-PRR is better than the 3-RRR.",
-        "of the one search over all",
-        "Its cause is not known, and no constant was bent for it.",
+        "of those of the single search over all architectures",
+        "The cause of the difference is not known, and no constant of the model was adjusted to remove it.",
         "484.8",
         "41.78 … 45.25",
     ] {
@@ -181,15 +181,15 @@ fn the_papers_study_is_compared_with_the_paper() {
     assert!(!all.contains("Tab. 2") && !all.contains("inf to") && !all.contains("not compared"));
     let one = page("one", "3-RPR");
     assert!(one.contains("not compared: not all architectures were searched"));
-    assert!(one.contains("not compared: there is no 3-PRR here"));
+    assert!(one.contains("not compared: at no radius do this architecture and the 3-PRR both have a design"));
     assert!(!one.contains("inf to"));
 
-    // With another material the study is not the paper's, and the page does not speak as if it were.
+    // With another material the study is not the paper's, so the page does not compare with the paper.
     let text = std::fs::read_to_string(&study).expect("a study");
     std::fs::write(&study, format!("{text}[material]\nyoungs_modulus_pa = 70e9\n")).expect("a study");
     let other = page("other", "3-PRR");
-    assert!(other.contains("Reference designs") && !other.contains("differs from the paper"));
-    assert!(!other.contains("within rounding"));
+    assert!(other.contains("Reference designs") && !other.contains("Differences from the paper"));
+    assert!(!other.contains("mass range for the rounded bar radii"));
 }
 
 #[test]
@@ -212,7 +212,7 @@ fn reports_say_what_is_wrong_and_replace_nothing_unasked() {
     report(&[&run], &out, &["--sensitivity", "0", "--replace"]).success();
     assert!(std::fs::metadata(out.join("index.html")).expect("a page").len() > 10_000);
 
-    // A table with a fault is named with its line.
+    // The message on an invalid table names the file and the line.
     let designs = run.join("designs.csv");
     let text = std::fs::read_to_string(&designs).expect("a table");
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();

@@ -30,7 +30,7 @@ fn what_cannot_be_opened_is_told_before_a_window_is() {
         .arg(&broken)
         .assert()
         .code(2)
-        .stderr(predicate::str::contains("is no recording of a run"));
+        .stderr(predicate::str::contains("is not a recording of a run"));
     let script = folder.path().join("script");
     std::fs::write(&script, "wait finished\ndance\n").expect("a file");
     kinefront()

@@ -51,7 +51,7 @@ fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_re
     let changed = session.document().chosen.clone().expect("a design");
     assert_eq!(changed.origin, Origin::WhatIf { from: Some(id) });
     assert_eq!(changed.design.base_radius, 2.0);
-    assert!(window.query_by_label("not of the run").is_some());
+    assert!(window.query_by_label("modified design").is_some());
     until(&mut window, "the what-if is evaluated", |explorer| {
         explorer.session().known().is_some()
     });
@@ -155,12 +155,12 @@ fn one_filter_holds_everywhere() {
     let mut window = opened_window();
     let all = window.state().session().front().len();
     let architecture = window.state().session().front()[0].row.design.architecture;
-    window.get_by_label(&format!("{architecture} in the light")).click();
+    window.get_by_label(&format!("include {architecture}")).click();
     window.run_steps(3);
     let document = window.state().session().document().clone();
     assert_eq!(document.filter.hidden, [architecture]);
     let toggled = window
-        .get_by_label(&format!("{architecture} in the light"))
+        .get_by_label(&format!("include {architecture}"))
         .accesskit_node()
         .toggled();
     assert_eq!(toggled, Some(Toggled::False));
@@ -205,7 +205,7 @@ fn the_platform_stops_at_its_limits_and_says_which() {
         session.document().chosen.as_ref().expect("a design").design,
     );
     assert!(pose.position.x > 0.0);
-    assert!(session.model().pose(&design, &pose).expect("a grid").is_ok());
+    assert!(session.model().pose(&design, &pose).is_ok());
     window.get_by_label("Home").click();
     window.run_steps(3);
     assert_eq!(window.state().session().pose(), window.state().session().home());
@@ -254,7 +254,7 @@ fn pointing_at_a_bar_tells_what_it_is() {
     window.get_by_label(&mass);
     let share = report.share.expect("a stiff design");
     let words = format!(
-        "share of the compliance here: {:.1} % in the plane",
+        "contribution to the compliance at this pose: {:.1} % in the plane",
         100.0 * share.in_plane
     );
     assert!(window.query_all_by_label_contains(&words).count() > 0, "{words}");

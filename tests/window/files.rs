@@ -299,7 +299,7 @@ fn files_are_dropped_and_wrong_ones_told() {
     std::fs::write(&cut, b"RRF2 and then nothing").expect("a file");
     for (path, words) in [
         (wrong, "bounds.R_m"),
-        (cut, "no recording of a run"),
+        (cut, "not a recording of a run"),
         (folder.path().join("none"), "is no run"),
     ] {
         drop_file(&mut window, path);

@@ -1,45 +1,46 @@
-//! Arithmetic on one number or on several at once, the same to the bit.
+//! Arithmetic on one number or on several at once, with bit-identical results.
 //!
-//! A formula written over [`Real`] runs on an `f64`, on the widest registers the processor has ([`InstructionSet`]), or
-//! on a type that counts. Every operation is rounded on its own as IEEE 754 asks (no fused multiply-add, no
-//! approximate reciprocal) and lanes never mix, so that every instruction set gives the same bits.
+//! A formula that is generic over [`Real`] runs on an `f64`, on the widest registers of the processor
+//! ([`InstructionSet`]), or on a type that counts operations. Every operation is rounded separately, as IEEE 754
+//! requires (no fused multiply-add, no approximate reciprocal), and lanes never mix. Every instruction set therefore
+//! gives the same bits.
 //!
-//! What is generic over [`Real`] is `#[inline(always)]`: code that is left in a function of its own is compiled for the
-//! baseline processor.
+//! Every function that is generic over [`Real`] is `#[inline(always)]`, because a function that is not inlined is
+//! compiled for the baseline processor.
 
 use std::ops::{Add, BitAnd, Div, Mul, Neg, Sub};
 
 use pulp::{Simd, WithSimd};
 
-/// One number, or several side by side.
+/// One number, or several numbers in parallel lanes.
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// Outcome of a comparison, lane by lane.
+    /// Result of a comparison, one truth value per lane.
     type Mask: Copy + BitAnd<Output = Self::Mask>;
 
-    /// `value` in as many lanes as `self` has.
+    /// Returns `value` in as many lanes as `self` has.
     fn splat(self, value: f64) -> Self;
-    /// Square root.
+    /// Returns the square root.
     fn sqrt(self) -> Self;
-    /// Absolute value.
+    /// Returns the absolute value.
     fn abs(self) -> Self;
-    /// `self ≥ other`; false where either is no number.
+    /// Compares `self ≥ other`; false if either is NaN.
     fn at_least(self, other: Self) -> Self::Mask;
-    /// `self > other`; false where either is no number.
+    /// Compares `self > other`; false if either is NaN.
     fn exceeds(self, other: Self) -> Self::Mask;
-    /// `self` where the mask is set, `other` elsewhere.
+    /// Selects `self` in the lanes where the mask is set and `other` in the rest.
     fn where_set(self, mask: Self::Mask, other: Self) -> Self;
-    /// Whether the mask is set in any lane.
+    /// Returns whether the mask is set in any lane.
     fn any(mask: Self::Mask) -> bool;
 
-    /// The smaller of two numbers; `other` where either is no number.
+    /// Returns the smaller of two numbers, or `other` if either is NaN.
     #[inline(always)]
     fn smaller(self, other: Self) -> Self {
         self.where_set(other.exceeds(self), other)
     }
 
-    /// The larger of two numbers; `other` where either is no number.
+    /// Returns the larger of two numbers, or `other` if either is NaN.
     #[inline(always)]
     fn larger(self, other: Self) -> Self {
         self.where_set(self.exceeds(other), other)
@@ -85,7 +86,7 @@ impl Real for f64 {
     }
 }
 
-/// A vector of the plane, or several side by side.
+/// A planar vector, or several planar vectors in parallel lanes.
 #[derive(Clone, Copy)]
 pub struct Planar<V> {
     /// First component.
@@ -95,49 +96,49 @@ pub struct Planar<V> {
 }
 
 impl<V: Real> Planar<V> {
-    /// The vector of two components.
+    /// Creates the vector with the given components.
     #[inline(always)]
     pub fn new(x: V, y: V) -> Self {
         Self { x, y }
     }
 
-    /// `self · other`.
+    /// Returns the dot product `self · other`.
     #[inline(always)]
     pub fn dot(self, other: Self) -> V {
         self.x * other.x + self.y * other.y
     }
 
-    /// z component of `self × other`.
+    /// Returns the z component of `self × other`.
     #[inline(always)]
     pub fn cross(self, other: Self) -> V {
         self.x * other.y - self.y * other.x
     }
 
-    /// `self` turned by +90°.
+    /// Returns `self` rotated by +90°.
     #[inline(always)]
     pub fn perp(self) -> Self {
         Self::new(-self.y, self.x)
     }
 
-    /// `factor · self`.
+    /// Returns `factor · self`.
     #[inline(always)]
     pub fn scaled(self, factor: V) -> Self {
         Self::new(factor * self.x, factor * self.y)
     }
 
-    /// `self + other`.
+    /// Returns `self + other`.
     #[inline(always)]
     pub fn plus(self, other: Self) -> Self {
         Self::new(self.x + other.x, self.y + other.y)
     }
 
-    /// `self − other`.
+    /// Returns `self − other`.
     #[inline(always)]
     pub fn minus(self, other: Self) -> Self {
         Self::new(self.x - other.x, self.y - other.y)
     }
 
-    /// `vector` in as many lanes as `like` has.
+    /// Returns `vector` in as many lanes as `like` has.
     #[inline(always)]
     pub fn splat(like: V, vector: glam::DVec2) -> Self {
         Self::new(like.splat(vector.x), like.splat(vector.y))
@@ -150,17 +151,17 @@ impl From<glam::DVec2> for Planar<f64> {
     }
 }
 
-/// Registers that are worked on side by side: while one waits for a quotient, the other goes on.
+/// Number of registers that are processed together: while one waits for the result of a division, the other proceeds.
 const REGISTERS: usize = 2;
 
-/// As many numbers as two registers of the instruction set `S` hold.
+/// The numbers that two registers of the instruction set `S` hold.
 #[derive(Clone, Copy)]
 pub(crate) struct Lanes<S: Simd> {
     simd: S,
     registers: [S::f64s; REGISTERS],
 }
 
-/// Outcome of comparing [`Lanes`].
+/// Result of a comparison of [`Lanes`].
 #[derive(Clone, Copy)]
 pub(crate) struct LaneMask<S: Simd> {
     simd: S,
@@ -174,7 +175,7 @@ impl<S: Simd> Lanes<S> {
         REGISTERS * S::F64_LANES
     };
 
-    /// The same number in every lane.
+    /// Returns the same number in every lane.
     #[inline(always)]
     pub(crate) fn all(simd: S, value: f64) -> Self {
         let register = simd.splat_f64s(value);
@@ -184,19 +185,19 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// A column of numbers in groups of [`Lanes::COUNT`]; what does not fill a group is left out.
+    /// Splits a column of numbers into groups of [`Lanes::COUNT`]; numbers after the last complete group are omitted.
     #[inline(always)]
     pub(crate) fn column(column: &[f64]) -> &[[S::f64s; REGISTERS]] {
         S::as_simd_f64s(column).0.as_chunks().0
     }
 
-    /// [`Lanes::column`] for writing.
+    /// Does the same as [`Lanes::column`] for a column to be written.
     #[inline(always)]
     pub(crate) fn column_mut(column: &mut [f64]) -> &mut [[S::f64s; REGISTERS]] {
         S::as_mut_simd_f64s(column).0.as_chunks_mut().0
     }
 
-    /// A group of a column.
+    /// Loads a group of a column.
     #[inline(always)]
     pub(crate) fn load(simd: S, group: &[S::f64s; REGISTERS]) -> Self {
         Self {
@@ -205,7 +206,7 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// Writes to a group of a column.
+    /// Stores the numbers in a group of a column.
     #[inline(always)]
     pub(crate) fn store(self, group: &mut [S::f64s; REGISTERS]) {
         *group = self.registers;
@@ -213,22 +214,23 @@ impl<S: Simd> Lanes<S> {
 }
 
 impl<S: Simd> LaneMask<S> {
-    /// The lanes before the first that is not set.
+    /// Returns the number of lanes before the first lane that is not set.
     #[inline(always)]
     pub(crate) fn leading(self) -> usize {
         self.bits().trailing_ones() as usize
     }
 
-    /// A bit for each lane, the first the lowest.
+    /// Returns one bit per lane, with the first lane in the lowest bit.
     ///
-    /// Read from the mask's bytes: `first_true_m64s` of pulp 0.22 counts from the wrong end where masks are bits.
+    /// It reads the bytes of the mask, because `first_true_m64s` of pulp 0.22 counts from the wrong end for masks that
+    /// are stored as bits.
     #[inline(always)]
     fn bits(self) -> u32 {
         let mut bits = 0u32;
         for (register, mask) in self.registers.iter().enumerate() {
             let bytes = pulp::bytemuck::bytes_of(mask);
             if bytes.len() == 1 {
-                // A bit for each lane.
+                // The mask holds one bit per lane.
                 bits |= u32::from(bytes[0]) << (S::F64_LANES * register);
             } else {
                 for lane in 0..S::F64_LANES {
@@ -347,25 +349,25 @@ impl<S: Simd> Real for Lanes<S> {
     }
 }
 
-/// Most lanes that any instruction set has: columns of poses are padded to a multiple of it.
+/// Largest number of lanes of any instruction set; columns of poses are padded to a multiple of it.
 pub const MOST_LANES: usize = 16;
 
-/// `count` rounded up to a multiple of [`MOST_LANES`].
+/// Returns `count` rounded up to a multiple of [`MOST_LANES`].
 pub(crate) fn padded(count: usize) -> usize {
     count.next_multiple_of(MOST_LANES)
 }
 
-/// A set of instructions that this processor has.
+/// An instruction set that this processor supports.
 #[derive(Debug, Clone, Copy)]
 pub struct InstructionSet(pulp::Arch);
 
 impl InstructionSet {
-    /// The widest one.
+    /// Returns the instruction set with the widest registers.
     pub fn best() -> Self {
         Self(pulp::Arch::new())
     }
 
-    /// All of them, from the baseline to the widest.
+    /// Returns all supported instruction sets, from the baseline to the widest.
     pub fn available() -> Vec<Self> {
         #[allow(unused_mut)]
         let mut sets = vec![pulp::Arch::Scalar];
@@ -379,7 +381,7 @@ impl InstructionSet {
         sets.into_iter().map(Self).collect()
     }
 
-    /// Its name, for people.
+    /// Returns the name for display.
     pub fn name(self) -> &'static str {
         match self.0 {
             pulp::Arch::Scalar => "baseline",
@@ -394,7 +396,7 @@ impl InstructionSet {
         }
     }
 
-    /// Runs `job` compiled for this set.
+    /// Runs `job` compiled for this instruction set.
     #[inline]
     pub(crate) fn run<J: WithSimd>(self, job: J) -> J::Output {
         self.0.dispatch(job)

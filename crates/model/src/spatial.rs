@@ -1,4 +1,4 @@
-//! Poses, planar vectors and the one table of notation and frames.
+//! Poses, planar vectors, and the notation and frames that the whole crate uses (docs/model.md, section 1).
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
@@ -8,11 +8,12 @@
 //! | twist | `[vx vy vz ωx ωy ωz]`, **linear first**, of the platform at `P`, in base axes | m/s, rad/s |
 //! | wrench | `[fx fy fz mx my mz]`, **linear first**, at `P`, in base axes | N, N·m |
 //! | `A_i`, `B_i`, `C_i` | base, intermediate and platform joint of leg `i` | m |
-//! | `u_i` | unit vector along the last link of leg `i`, towards `C_i` | – |
+//! | `u_i` | unit vector along the distal link of leg `i`, towards `C_i` | – |
 //! | `m_i` | moment of that unit vector about `P`: `(C_i − P) × u_i` | m |
-//! | `K`, `S` | Cartesian stiffness and compliance at `P` | N/m, N, N·m/rad |
+//! | `K` | Cartesian stiffness at `P` | N/m, N, N·m/rad |
+//! | `S` | Cartesian compliance at `P` | m/N, 1/N, rad/(N·m) |
 //!
-//! SI units and radians everywhere inside; degrees only where a name ends in `_deg`.
+//! All values are in SI units and radians; only names that end in `_deg` hold degrees.
 
 use glam::DVec2;
 
@@ -21,7 +22,8 @@ use crate::lanes::Real;
 /// Number of legs of the manipulators under study.
 pub const LEGS: usize = 3;
 
-/// Directions of the anchors `A_i` and `C_i` on their circles: 210°, 330° and 90°, exact in their symmetry.
+/// Directions of the anchors `A_i` and `C_i` on their circles: 210°, 330° and 90°. They are constants so that their
+/// mirror symmetry is exact.
 pub const ANCHOR_DIRECTIONS: [DVec2; LEGS] = [
     DVec2::new(-HALF_SQRT_3, -0.5),
     DVec2::new(HALF_SQRT_3, -0.5),
@@ -41,7 +43,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The pose with `P` at `(x, y)` \[m\] and orientation `phi` \[rad\].
+    /// Creates the pose with `P` at `(x, y)` \[m\] and orientation `phi` \[rad\].
     pub fn new(x: f64, y: f64, phi: f64) -> Self {
         Self {
             position: DVec2::new(x, y),
@@ -50,26 +52,28 @@ impl Pose {
     }
 }
 
-/// Where on the segment from `from` to `to` the point nearest to `at` lies, from 0 to 1; 0 where the ends coincide.
+/// Returns the position of the point nearest to `at` on the segment from `from` to `to`, as a fraction of the segment:
+/// 0 at `from`, 1 at `to`, and 0 if the ends coincide.
 pub fn nearest_on_segment(at: DVec2, from: DVec2, to: DVec2) -> f64 {
     let way = to - from;
     let share = (at - from).dot(way) / way.length_squared();
     if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
 }
 
-/// Planar cross product: the z component of `a × b`.
+/// Returns the planar cross product, which is the z component of `a × b`.
 #[inline]
 pub fn cross(a: DVec2, b: DVec2) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// Unit vector at `angle` \[rad\] from the x axis, through `libm` so that every machine agrees.
+/// Returns the unit vector at `angle` \[rad\] from the x axis, computed with `libm` so that every machine gives the
+/// same bits.
 pub fn unit(angle: f64) -> DVec2 {
     let (sin, cos) = libm::sincos(angle);
     DVec2::new(cos, sin)
 }
 
-/// Rotation by `angle` \[rad\], its sine and cosine taken once.
+/// Planar rotation that stores the sine and cosine of its angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotation {
     cos: f64,
@@ -77,20 +81,20 @@ pub struct Rotation {
 }
 
 impl Rotation {
-    /// The rotation by `angle` \[rad\].
+    /// Creates the rotation by `angle` \[rad\].
     pub fn new(angle: f64) -> Self {
         let (sin, cos) = libm::sincos(angle);
         Self { cos, sin }
     }
 
-    /// `v` turned by this rotation.
+    /// Returns `v` rotated by this rotation.
     #[inline]
     pub fn apply(&self, v: DVec2) -> DVec2 {
         DVec2::new(self.cos * v.x - self.sin * v.y, self.sin * v.x + self.cos * v.y)
     }
 }
 
-/// Smaller eigenvalue of the symmetric matrix `[[xx, xy], [xy, yy]]`.
+/// Returns the smaller eigenvalue of the symmetric matrix `[[xx, xy], [xy, yy]]`.
 #[inline(always)]
 pub fn smaller_eigenvalue<V: Real>(xx: V, xy: V, yy: V) -> V {
     let half = xx.splat(0.5);
@@ -98,14 +102,14 @@ pub fn smaller_eigenvalue<V: Real>(xx: V, xy: V, yy: V) -> V {
     let half_gap = half * (xx - yy);
     let root = (half_gap * half_gap + xy * xy).sqrt();
     let larger = half_trace + root;
-    // det/larger instead of a difference: no cancellation when the matrix is nearly singular.
+    // The quotient det/larger, unlike the difference, suffers no cancellation if the matrix is nearly singular.
     ((xx * yy - xy * xy) / larger).where_set(larger.exceeds(xx.splat(0.0)), half_trace - root)
 }
 
 impl std::str::FromStr for Pose {
     type Err = String;
 
-    /// Reads `x=0.1 y=0.2 phi_deg=30`.
+    /// Parses a pose from text such as `x=0.1 y=0.2 phi_deg=30`.
     fn from_str(text: &str) -> Result<Self, String> {
         const KEYS: [&str; 3] = ["x", "y", "phi_deg"];
         let mut values = [None; KEYS.len()];
@@ -116,7 +120,7 @@ impl std::str::FromStr for Pose {
             let index = KEYS
                 .iter()
                 .position(|&known| known == key)
-                .ok_or_else(|| format!("unknown key `{key}`; a pose has x, y (m) and phi_deg"))?;
+                .ok_or_else(|| format!("unknown key `{key}`; expected x, y or phi_deg"))?;
             let number: f64 = value
                 .parse()
                 .map_err(|_| format!("`{value}` is not a number (key {key})"))?;
@@ -128,7 +132,7 @@ impl std::str::FromStr for Pose {
             }
         }
         let value = |index: usize| {
-            values[index].ok_or_else(|| format!("`{}` is missing; a pose has x, y (m) and phi_deg", KEYS[index]))
+            values[index].ok_or_else(|| format!("`{}` is missing; a pose needs x, y (m) and phi_deg", KEYS[index]))
         };
         Ok(Pose::new(value(0)?, value(1)?, value(2)?.to_radians()))
     }

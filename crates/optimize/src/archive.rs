@@ -1,4 +1,4 @@
-//! All non-dominated feasible candidates seen so far.
+//! The archive of all non-dominated feasible candidates found so far.
 
 use std::ops::Deref;
 
@@ -7,16 +7,16 @@ use super::Evaluated;
 /// A member of the archive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Member {
-    /// Number of its evaluation, from 0.
+    /// Number of its evaluation, counted from 0.
     pub id: usize,
-    /// Its variables.
+    /// Values of its variables.
     pub x: Vec<f64>,
-    /// Its objectives.
+    /// Values of its objectives.
     pub objectives: [f64; 2],
 }
 
-/// Non-dominated feasible candidates, sorted by the first objective: ascending in it, strictly descending in the
-/// second. It derefs to a slice of its [`Member`]s.
+/// Non-dominated feasible candidates in ascending order of the first objective, which makes the second objective
+/// strictly descending. The archive dereferences to a slice of its [`Member`]s.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Archive {
     members: Vec<Member>,
@@ -31,19 +31,20 @@ impl Deref for Archive {
 }
 
 impl Archive {
-    /// Takes in evaluation `id` if it is feasible and nothing in the archive dominates or equals it, and drops what it
-    /// dominates. Tells whether the archive changed.
+    /// Inserts evaluation `id` if it is feasible and no member of the archive dominates or equals it, and removes the
+    /// members that it dominates. Returns whether the archive changed.
     pub fn insert(&mut self, id: usize, candidate: &Evaluated) -> bool {
         if !candidate.outcome.is_feasible() {
             return false;
         }
         let [first, second] = candidate.outcome.objectives;
-        // Members before `place` are at most as large in the first objective.
+        // The first objective of every member before `place` is at most `first`.
         let place = self.members.partition_point(|member| member.objectives[0] <= first);
         if place > 0 && self.members[place - 1].objectives[1] <= second {
             return false;
         }
-        // Dominated: an equal first objective (then just before `place`), and the run behind that is no better.
+        // The candidate dominates a member with an equal first objective (which is the one just before `place`) and the
+        // run of members from `place` on whose second objective is not smaller.
         let start = if place > 0 && self.members[place - 1].objectives[0] == first {
             place - 1
         } else {

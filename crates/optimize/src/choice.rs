@@ -1,15 +1,16 @@
-//! Choosing among the members of a front: its knee, evenly spread ones, a weighted ranking, groups of like members.
+//! Selection among the members of a front: the knee, an evenly spread subset, a weighted ranking, groups of similar
+//! members.
 //!
-//! A front is a slice of objectives, both minimised, in the order of the [archive](super::Archive): the first ascending,
-//! the second descending. Each objective is scaled by the range that the front spans in it.
+//! A front is a slice of pairs of objectives, both minimised, in the order of the [archive](super::Archive): ascending
+//! in the first objective, descending in the second. Each objective is scaled by its range over the front.
 
-/// The member farthest below the line between the two ends of the front, the first among equals.
+/// Returns the knee: the member farthest below the line between the two ends of the front, and among equals the first.
 pub fn knee(front: &[[f64; 2]]) -> Option<usize> {
     smallest(scaled(front).iter().map(|[first, second]| first + second))
 }
 
-/// At most `most` members, evenly spread: both ends and the knee, then again and again the one farthest from those
-/// chosen (Gonzalez 1985). In the order of the front.
+/// Selects at most `most` evenly spread members: both ends and the knee, then repeatedly the member farthest from those
+/// already selected (Gonzalez 1985). The result is in the order of the front.
 pub fn spread(front: &[[f64; 2]], most: usize) -> Vec<usize> {
     if front.len() <= most {
         return (0..front.len()).collect();
@@ -35,9 +36,10 @@ pub fn spread(front: &[[f64; 2]], most: usize) -> Vec<usize> {
     chosen
 }
 
-/// The members from best to worst by the weighted distance to the ideal point, which has the best of both objectives.
+/// Sorts the members by their weighted distance to the ideal point, which combines the best values of both objectives;
+/// the best member comes first.
 ///
-/// `weight` in \[0, 1\] is the share of the first objective: with 1 the first member comes first, with 0 the last.
+/// `weight` in \[0, 1\] is the weight of the first objective: with 1 the first member ranks best, with 0 the last.
 pub fn ranking(front: &[[f64; 2]], weight: f64) -> Vec<usize> {
     let weight = weight.clamp(0.0, 1.0);
     let distances: Vec<f64> = scaled(front)
@@ -45,13 +47,14 @@ pub fn ranking(front: &[[f64; 2]], weight: f64) -> Vec<usize> {
         .map(|[first, second]| libm::hypot(weight * first, (1.0 - weight) * second))
         .collect();
     let mut order: Vec<usize> = (0..front.len()).collect();
-    // Where one objective has no weight at all, the other decides between equals by the order of the front.
+    // The sort is stable: members at equal distance keep the order of the front.
     order.sort_by(|&a, &b| distances[a].total_cmp(&distances[b]));
     order
 }
 
-/// Splits the front into at most `count` groups of neighbours, the sum of squared distances to their means the smallest
-/// there is (dynamic programming: on a front, groups are intervals). Each is a range of members.
+/// Splits the front into at most `count` groups of neighbours such that the sum of squared distances to the group means
+/// is the smallest possible. On a front every optimal group is an interval, so dynamic programming finds the optimum.
+/// Each group is returned as a range of members.
 pub fn groups(front: &[[f64; 2]], count: usize) -> Vec<std::ops::Range<usize>> {
     let points = scaled(front);
     let n = points.len();
@@ -59,7 +62,7 @@ pub fn groups(front: &[[f64; 2]], count: usize) -> Vec<std::ops::Range<usize>> {
     if count == 0 {
         return Vec::new();
     }
-    // Sums over the first k members, so that the cost of an interval is a difference.
+    // Prefix sums over the first k members make the cost of an interval a difference of two sums.
     let mut sums = vec![[0.0; 3]];
     for &[x, y] in &points {
         let [sx, sy, squares] = sums[sums.len() - 1];
@@ -69,7 +72,8 @@ pub fn groups(front: &[[f64; 2]], count: usize) -> Vec<std::ops::Range<usize>> {
         let [x, y, squares] = [0, 1, 2].map(|k| sums[to][k] - sums[from][k]);
         (squares - (x * x + y * y) / (to - from) as f64).max(0.0)
     };
-    // best[k][to]: least cost of the first `to` members in k + 1 groups, and where the last group begins.
+    // best[k][to]: smallest cost of splitting the first `to` members into k + 1 groups, and the start of the last
+    // group.
     let mut best: Vec<Vec<(f64, usize)>> = vec![
         (0..=n)
             .map(|to| if to == 0 { (0.0, 0) } else { (cost(0, to), 0) })
@@ -98,7 +102,7 @@ pub fn groups(front: &[[f64; 2]], count: usize) -> Vec<std::ops::Range<usize>> {
     ranges
 }
 
-/// Objectives from 0 (best of the front) to 1 (worst).
+/// Scales each objective to \[0, 1\], where 0 is the best value of the front and 1 the worst.
 fn scaled(front: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let range = |k: usize| {
         front
@@ -115,7 +119,7 @@ fn scaled(front: &[[f64; 2]]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Index of the smallest number, the first among equals.
+/// Returns the index of the smallest number, the first among equals.
 fn smallest(numbers: impl Iterator<Item = f64>) -> Option<usize> {
     numbers
         .enumerate()
@@ -130,7 +134,7 @@ fn smallest(numbers: impl Iterator<Item = f64>) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// A quarter circle bulging to the ideal point, as a front of 11 members.
+    /// Returns a front of 11 members on a quarter circle that is convex towards the ideal point.
     fn front() -> Vec<[f64; 2]> {
         (0..=10)
             .map(|k| {
@@ -160,7 +164,7 @@ mod tests {
 
     #[test]
     fn a_spread_has_the_ends_the_knee_and_no_crowd() {
-        // Many members at one end, few elsewhere.
+        // The members crowd at one end of the front.
         let front: Vec<[f64; 2]> = (0..=200)
             .map(|k| {
                 let share = libm::pow(f64::from(k) / 200.0, 3.0);
@@ -189,7 +193,7 @@ mod tests {
         assert_eq!(spread(&front, 500).len(), 201);
     }
 
-    /// Against every split there is.
+    /// The points form three clusters, which must be the three groups.
     #[test]
     fn groups_are_the_best_split() {
         let points: Vec<[f64; 2]> = [0.0, 0.1, 0.15, 2.0, 2.2, 5.0, 5.1, 5.3].map(|x| [x, 6.0 - x]).to_vec();

@@ -1,23 +1,24 @@
-//! Design of experiments: the candidates an algorithm starts from.
+//! Design of experiments: the first sample of candidates of an algorithm.
 
 use super::Variable;
 
-/// Most points of one sample, and most variables.
+/// Largest number of points of one sample.
 const MOST_POINTS: usize = 1 << 16;
 
-/// `count` points of an Owen-scrambled Sobol sequence over the variables; another seed is another scrambling.
+/// Returns `count` points of an Owen-scrambled Sobol sequence over the ranges of the variables; each random seed gives
+/// a different scrambling.
 ///
-/// A categorical variable takes the choice in whose equal share of \[0, 1) its coordinate falls, so every choice is drawn
-/// as evenly as the sequence is.
+/// For a categorical variable, \[0, 1) is divided into equal intervals, one per choice, and the coordinate selects the
+/// choice whose interval contains it. The choices are thus sampled as evenly as the sequence is distributed.
 ///
 /// # Panics
-/// More than 65 536 points or 256 variables: the sequence has no more.
+/// If more than 65 536 points or 256 variables are requested: the sequence has no more.
 pub fn sobol(variables: &[Variable], count: usize, seed: u64) -> Vec<Vec<f64>> {
     assert!(
         count <= MOST_POINTS && variables.len() <= 256,
         "the Sobol sequence has 65536 points in 256 dimensions"
     );
-    // The sequence takes 32 bits of seed.
+    // The sequence takes a seed of 32 bits.
     let seed = (seed ^ (seed >> 32)) as u32;
     (0..count as u32)
         .map(|index| {

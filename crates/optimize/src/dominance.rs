@@ -4,18 +4,19 @@ use std::cmp::Ordering;
 
 use super::Outcome;
 
-/// How two outcomes stand to each other.
+/// Dominance relation of two outcomes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Relation {
-    /// The first is better.
+    /// The first outcome is better.
     Dominates,
-    /// The second is better.
+    /// The second outcome is better.
     Dominated,
-    /// Neither: equal, or each better in one objective.
+    /// Neither is better: they are equal, or each is better in one objective.
     Incomparable,
 }
 
-/// Constraint domination: feasible before infeasible, less violation before more, then Pareto dominance.
+/// Compares two outcomes by constraint domination: a feasible outcome dominates an infeasible one, of two infeasible
+/// outcomes the one with the smaller violation dominates, and two feasible ones are compared by Pareto dominance.
 pub fn compare(a: &Outcome, b: &Outcome) -> Relation {
     match (a.is_feasible(), b.is_feasible()) {
         (true, false) => Relation::Dominates,
@@ -29,7 +30,7 @@ pub fn compare(a: &Outcome, b: &Outcome) -> Relation {
     }
 }
 
-/// Pareto dominance of two pairs of minimised objectives.
+/// Compares two pairs of minimised objectives by Pareto dominance.
 pub fn pareto(a: &[f64; 2], b: &[f64; 2]) -> Relation {
     let better = a[0] < b[0] || a[1] < b[1];
     let worse = a[0] > b[0] || a[1] > b[1];
@@ -40,7 +41,8 @@ pub fn pareto(a: &[f64; 2], b: &[f64; 2]) -> Relation {
     }
 }
 
-/// Rank of each outcome under [`compare`]: 0 for the non-dominated ones, 1 for those that only these dominate, ….
+/// Returns the rank of each outcome under [`compare`]: 0 for the non-dominated outcomes, 1 for those dominated only by
+/// outcomes of rank 0, and so on.
 pub fn non_dominated_ranks(outcomes: &[Outcome]) -> Vec<usize> {
     let count = outcomes.len();
     let mut dominated_by = vec![0usize; count];
@@ -81,7 +83,8 @@ pub fn non_dominated_ranks(outcomes: &[Outcome]) -> Vec<usize> {
     ranks
 }
 
-/// Crowding distance of each of `front`'s objectives: infinite at the ends, 0 for a duplicate in a crowd.
+/// Returns the crowding distance of each member of `front`: infinite at the ends, 0 for a member whose two neighbours
+/// coincide with it.
 pub fn crowding_distances(front: &[[f64; 2]]) -> Vec<f64> {
     let mut distances = vec![0.0; front.len()];
     for objective in 0..2 {

@@ -1,19 +1,22 @@
-//! Differential evolution along the front, for problems that may have structure.
+//! The `front-de` algorithm: differential evolution along the front, which can exploit the structure of a problem.
 //!
-//! With two objectives the best candidates lie on a curve, and so do, piece by piece, their variables. A population held
-//! in the order of the front is therefore crossed among neighbours only: their differences (Storn and Price 1997) point
-//! along the curve and shrink with its width, which differences between its far ends do not. Survivors are cut by
-//! non-domination and crowding (Deb et al. 2002; the crowding is counted anew after each that leaves), as in GDE3
-//! (Kukkonen and Lampinen 2005); the population starts small, to find the front, and grows to fill it.
+//! With two objectives the best candidates lie on a curve in objective space, and their variables lie on a piecewise
+//! curve as well. The population is therefore kept in the order of the front, and differences are taken between
+//! neighbours only (Storn and Price 1997): such differences point along the curve and shrink with the width of the
+//! population around it, whereas differences between the far ends do not. Survivors are selected by non-domination and
+//! crowding (Deb et al. 2002; the crowding distances are recomputed after each removal), as in GDE3 (Kukkonen and
+//! Lampinen 2005). The population starts small, to find the front, and grows to cover it.
 //!
-//! - **Structure**: each candidate aims, at the best that its other variables allow or at a level of the second objective
-//!   that is carried along the front by the same differences. A problem that can [complete](super::Problem::complete)
-//!   candidates takes part of the search over; for any other the aim has no meaning.
-//! - **Categories**: each combination of the categorical variables is a niche with a population of its own, for
-//!   differences between unlike things mean nothing. Evaluations go to the niches whose candidates reach the common front,
-//!   and a small share to every one, so that none starves early and none wastes late.
-//! - **Crossover**: where differences do not help (many local fronts, variables that act alone), simulated binary
-//!   crossover and polynomial mutation do; which of the two makes a candidate follows what either achieved lately.
+//! - **Structure**: each candidate has a target, which is either the best second objective that its other variables
+//!   allow or a level of the second objective, obtained from the levels of its parents by the same difference. A
+//!   problem that can [complete](super::Problem::complete) candidates solves part of the search itself; other problems
+//!   ignore the target.
+//! - **Categories**: each combination of the categorical variables is a niche with its own population, because
+//!   differences between candidates of different categories have no meaning. Evaluations go mainly to the niches whose
+//!   candidates reach the common front. Every niche receives a small fraction, so that no niche is given up early; the
+//!   fraction is small, so that few evaluations are spent on niches that no longer contribute.
+//! - **Crossover**: where differences do not help (many local fronts, separable variables), simulated binary crossover
+//!   and polynomial mutation do. The probability of each of the two operators follows its recent success.
 
 use super::population::{Member, best, ranked, tournament};
 use super::random::Random;
@@ -24,21 +27,22 @@ use super::{Aim, Algorithm, Archive, Candidate, Evaluated, Variable, doe};
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FrontDeSettings {
-    /// Candidates of a generation, and of the first sample; at least 2.
+    /// Number of candidates of a generation, at least 2. The first sample has as many, but at least four per niche.
     pub generation: usize,
-    /// Members of a population at first, at least 4.
+    /// Initial size of a population, at least 4.
     pub population: usize,
-    /// Evaluations for which a population grows by a member, at least 1.
+    /// Number of evaluations of a niche after which its population grows by one member, at least 1.
     pub growth: usize,
-    /// Members of a population at most.
+    /// Largest size of a population, at least 4.
     pub most: usize,
-    /// Neighbours on either side along the front, at least 1.
+    /// Number of neighbours on either side along the front, at least 1.
     pub neighbours: usize,
-    /// Factor of the differences.
+    /// Scale factor of the differences.
     pub scale: f64,
     /// Probability that a variable takes part in a difference.
     pub crossover: f64,
-    /// Share of candidates that aim at the best their other variables allow, rather than at a level.
+    /// Fraction of candidates whose target is the best second objective that their other variables allow, rather than a
+    /// level.
     pub best: f64,
 }
 
@@ -57,16 +61,16 @@ impl Default for FrontDeSettings {
     }
 }
 
-/// Share of the candidates that every niche, or either way of making a candidate, has at least.
+/// Smallest probability with which a niche, or one of the two operators, is drawn for a candidate.
 const LEAST_SHARE: f64 = 0.03;
 
-/// Weight of a candidate in the running success of its niche and of the way it was made.
+/// Weight of one candidate in the exponential moving averages of the success of its niche and of its operator.
 const MEMORY: f64 = 0.02;
 
-/// Probability that two parents are crossed before the mutation.
+/// Probability that two parents are crossed before mutation.
 const CROSSED: f64 = 0.9;
 
-/// Distribution indices of crossover and mutation.
+/// Distribution indices of the crossover and of the mutation.
 const INDICES: [f64; 2] = [15.0, 20.0];
 
 /// The algorithm's state between generations.
@@ -78,13 +82,14 @@ pub struct FrontDe {
     seed: u64,
     niches: Vec<Niche>,
     ways: [Success; 2],
-    /// Of each candidate asked for, its niche and the way it was made.
+    /// Niche and operator of each candidate of the current generation; `None` for a candidate drawn without an
+    /// operator.
     asked: Vec<(usize, Option<usize>)>,
     archive: Archive,
     evaluated: usize,
 }
 
-/// Share of the late candidates that reached the common front.
+/// Exponential moving average of the fraction of candidates that reached the common front.
 #[derive(Debug, Clone, Copy)]
 struct Success(f64);
 
@@ -101,14 +106,14 @@ impl Success {
 struct Niche {
     /// Values of the categorical variables, in the order of the variables.
     categories: Vec<f64>,
-    /// In the order of the front: feasible ones by the first objective, then the others by violation.
+    /// Members in the order of the front: feasible members by the first objective, then infeasible ones by violation.
     population: Vec<Member>,
     evaluated: usize,
     success: Success,
 }
 
 impl FrontDe {
-    /// The algorithm before its first generation.
+    /// Creates the algorithm in its state before the first generation.
     pub fn new(variables: Vec<Variable>, settings: FrontDeSettings, seed: u64) -> Self {
         let niches = combinations(&variables)
             .into_iter()
@@ -132,7 +137,7 @@ impl FrontDe {
         }
     }
 
-    /// A Sobol sample, dealt out to the niches in turn.
+    /// Returns the first sample: a Sobol sample whose candidates are assigned to the niches in turn.
     fn sample(&mut self) -> Vec<Candidate> {
         let count = self.settings.generation.max(2).max(4 * self.niches.len());
         let mut sample = doe::sobol(&self.variables, count, self.seed);
@@ -145,7 +150,7 @@ impl FrontDe {
         sample.into_iter().map(|x| Candidate { x, aim }).collect()
     }
 
-    /// One of several by their success, each with its least share.
+    /// Draws an index with a probability in proportion to the success, but at least [`LEAST_SHARE`] for each.
     fn draw(&mut self, successes: &[Success]) -> usize {
         let sum: f64 = successes.iter().map(|success| success.0).sum();
         let count = successes.len();
@@ -186,7 +191,7 @@ impl FrontDe {
         Candidate { x, aim: Some(aim) }
     }
 
-    /// Any candidate of a niche.
+    /// Returns a uniformly distributed random candidate of a niche.
     fn anywhere(&mut self, niche: usize) -> Candidate {
         let mut x: Vec<f64> = self
             .variables
@@ -203,9 +208,9 @@ impl FrontDe {
         }
     }
 
-    /// A place near `place` along the front.
+    /// Draws a place near `place` along the front.
     fn near(&mut self, size: usize, place: usize) -> usize {
-        // Fewer would leave a difference no two others to be taken from.
+        // A smaller reach would leave no two other members to take a difference of.
         let reach = self.settings.neighbours.max(1);
         if 2 * reach + 1 >= size {
             return self.random.below(size);
@@ -214,7 +219,9 @@ impl FrontDe {
         first + self.random.below(2 * reach + 1)
     }
 
-    /// A neighbour, or the member itself, moved by the difference of two others; and the level it moves to.
+    /// Moves the member at `place`, or a neighbour of it, by the scaled difference of two other neighbours. Returns the
+    /// new variables and the level of the second objective that the same difference leads to; the level is `None`
+    /// unless all three members are feasible.
     fn difference(&mut self, niche: usize, place: usize) -> (Vec<f64>, Option<f64>) {
         let size = self.niches[niche].population.len();
         let base = if self.random.chance(0.5) {
@@ -238,7 +245,7 @@ impl FrontDe {
                 && (k == forced || self.random.chance(self.settings.crossover))
             {
                 let moved = base.x[k] + self.settings.scale * (to.x[k] - from.x[k]);
-                // Past a bound: anywhere between it and the base, so that the bound itself is not favoured.
+                // A value beyond a bound is redrawn between the bound and the base, so that the bound is not favoured.
                 x[k] = if moved < lower {
                     lower + self.random.uniform() * (base.x[k] - lower)
                 } else if moved > upper {
@@ -254,7 +261,8 @@ impl FrontDe {
         (x, all_feasible.then_some(moved))
     }
 
-    /// Two members that won a tournament, crossed and mutated; and the level of the first.
+    /// Crosses two members selected by tournament and mutates the result. Returns the new variables and the second
+    /// objective of the first parent, or `None` if that parent is infeasible.
     fn crossed(&mut self, niche: usize) -> (Vec<f64>, Option<f64>) {
         let population = &self.niches[niche].population;
         let parents = [(); 2].map(|()| &population[tournament(&mut self.random, population)].candidate);
@@ -304,7 +312,7 @@ impl Algorithm for FrontDe {
     }
 }
 
-/// Every combination of the categorical variables' values.
+/// Returns every combination of the values of the categorical variables.
 fn combinations(variables: &[Variable]) -> Vec<Vec<f64>> {
     variables.iter().fold(vec![Vec::new()], |combinations, variable| {
         let Variable::Categorical { choices } = *variable else {
@@ -333,7 +341,8 @@ fn set_categories(variables: &[Variable], x: &mut [f64], categories: &[f64]) {
     }
 }
 
-/// Ranked and in the order of the front: feasible ones by the first objective, then the others by violation.
+/// Ranks the candidates and sorts them along the front: feasible ones by the first objective, then infeasible ones by
+/// violation.
 fn along_front(candidates: Vec<Evaluated>) -> Vec<Member> {
     let mut members = ranked(candidates);
     members.sort_by(|a, b| {

@@ -1,8 +1,10 @@
-//! Exact hypervolume of two minimised objectives.
+//! Exact hypervolume for two minimised objectives.
 
-/// Area dominated by `points` and bounded by `reference`, both objectives minimised.
+/// Computes the area that is dominated by `points` and bounded by the point `reference`, with both objectives
+/// minimised.
 ///
-/// Points that do not dominate the reference add nothing; order and duplicates do not matter.
+/// Points that are not smaller than the reference in both objectives contribute nothing; order and duplicates do not
+/// matter.
 pub fn hypervolume(points: impl IntoIterator<Item = [f64; 2]>, reference: [f64; 2]) -> f64 {
     let mut inside: Vec<[f64; 2]> = points
         .into_iter()

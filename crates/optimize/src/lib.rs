@@ -1,8 +1,10 @@
-//! Bi-objective constrained optimization over mixed variables; it knows nothing of robots.
+//! Constrained optimization of two objectives over real and categorical variables; this module is independent of
+//! robots.
 //!
-//! A [`Problem`] is its variables and an evaluation. An [`Algorithm`] is asked for candidates and told their outcomes, so
-//! that whoever drives it decides where they are evaluated, and may pause, stop or step between generations. Both
-//! objectives are minimised; constraints come as one violation, 0 where feasible.
+//! A [`Problem`] consists of its variables and an evaluation function. An [`Algorithm`] has an ask-and-tell interface:
+//! it is asked for candidates and told their outcomes. Its caller thus decides where candidates are evaluated and can
+//! pause, stop or step between generations. Both objectives are minimised; the constraints are combined into a single
+//! violation, which is 0 for a feasible candidate.
 //!
 //! ```
 //! use kinefront_optimize::{Algorithm, Nsga2, Nsga2Settings, Outcome, Problem, Variable, drive};

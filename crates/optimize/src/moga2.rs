@@ -1,45 +1,51 @@
-//! An optimizer after MOGA-II (Poles 2003; Poles, Rigoni, Robič 2004).
+//! MOGA-II (reimplementation), from its public descriptions (Poles 2003; Poles, Rigoni, Robič 2004).
 //!
-//! MOGA-II is proprietary. What is publicly known of it: a population `P` from the design of experiments and an elite set
-//! `E`, at first empty; each generation `P ∪ E` is cut at random to `|P|`; one operator is drawn for each individual
-//! (directional crossover, mutation, selection, else classical crossover); non-dominated offspring enter `E`, dominated
-//! and duplicate members leave it, and `E` is cut at random to `|P|`. Directional crossover moves an individual along its
-//! differences to two others, found by random walks on a toroidal grid, away from the worse and towards the better.
-//! Constraints act by penalty.
+//! MOGA-II is proprietary. The following is publicly known. The algorithm keeps a population `P`, which starts from the
+//! design of experiments, and an elite set `E`, which starts empty. In each generation `P ∪ E` is reduced at random to
+//! `|P|` individuals, and one operator is drawn for each individual: directional crossover, mutation, selection, or
+//! otherwise classical crossover. Non-dominated offspring enter `E`, dominated and duplicate members leave it, and `E`
+//! is reduced at random to `|P|`. Directional crossover moves an individual along its differences to two reference
+//! individuals, found by random walks on a toroidal grid, away from worse ones and towards better ones. Constraints are
+//! handled by a penalty.
 //!
-//! What is left open was closed as follows:
+//! The descriptions leave some details open. This implementation makes the following choices:
 //!
-//! - **Bits**: a real variable is coded in 16 plain binary bits over its range, a categorical one in ⌈log₂ choices⌉ bits.
-//!   The code exists only inside mutation and classical crossover; values between its steps are kept until then.
-//! - **`d`**: a flipped bit of a categorical variable redraws it evenly among the other choices, so that no choice is
-//!   favoured where their number is no power of two. The first sample gives each choice an equal share of \[0, 1).
-//!   Directional crossover draws it from the individual and its two references.
-//! - **Mutation** flips `⌈share · bits⌉` distinct bits of the whole string, drawn at random.
-//! - **Classical crossover**: one point, on the string, with a partner drawn from the population; the first child is kept.
-//! - **Grid**: the individuals stand row by row on a torus of ⌊√P⌋ columns in their current order; a walk takes
-//!   [`WALK`] steps to one of the four neighbours and returns the best individual met, the first among equals.
-//! - **Better and worse**: dominance of the penalised objectives; between incomparable ones a coin decides.
-//! - **Out of bounds** values are set on the bound.
+//! - **Bits**: a real variable is encoded in 16 plain binary bits over its range, a categorical one in ⌈log₂ choices⌉
+//!   bits. Variables are encoded only for mutation and classical crossover; until then values between the steps of the
+//!   code are kept.
+//! - **Categorical variables** such as the architecture `d`: a flipped bit redraws the variable uniformly among the
+//!   other choices, so that no choice is favoured if their number is not a power of two. The first sample gives each
+//!   choice an equal interval of \[0, 1). Directional crossover takes the value of the individual or of one of its two
+//!   references, drawn at random.
+//! - **Mutation** flips `⌈mutation_ratio · bits⌉` distinct bits of the whole string, drawn at random.
+//! - **Classical crossover** is one-point crossover on the string with a partner drawn from the population; the first
+//!   child is kept.
+//! - **Grid**: the individuals are placed row by row, in their current order, on a torus of ⌊√P⌋ columns. A walk takes
+//!   [`WALK`] steps, each to one of the four neighbours, and returns the best individual visited, the first among
+//!   equals.
+//! - **Better and worse** are defined by dominance of the penalised objectives; for incomparable individuals the
+//!   direction is drawn at random.
+//! - **Values out of bounds** are set to the bound.
 //! - **Penalty**: `penalty · violation` is added to both objectives.
-//! - **Generations**: the first sample is generation 1 of the budget: 30 individuals and 200 generations make 6000
-//!   evaluations.
-//! - **Selection**, the copy of an individual, is evaluated (and counted) again like any offspring.
+//! - **Generations**: the first sample counts as generation 1 of the budget: 30 individuals and 200 generations give
+//!   6000 evaluations.
+//! - **Selection** copies an individual; the copy is evaluated and counted again like any other offspring.
 
 use super::dominance::{Relation, pareto};
 use super::random::Random;
 use super::{Algorithm, Candidate, Evaluated, Variable, doe};
 
-/// Bits of a real variable.
+/// Number of bits that encode a real variable.
 const REAL_BITS: u32 = 16;
 
-/// Steps of a random walk.
+/// Number of steps of a random walk.
 pub const WALK: usize = 3;
 
-/// Parameters of [`Moga2`]; the default is the paper's.
+/// Parameters of [`Moga2`]; the defaults are the paper's values; the paper does not state the penalty.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Moga2Settings {
-    /// Population size, the points of the first sample; at least 2.
+    /// Population size, which is also the size of the first sample; at least 2.
     pub population: usize,
     /// Probability of directional crossover.
     pub directional_crossover: f64,
@@ -47,9 +53,9 @@ pub struct Moga2Settings {
     pub selection: f64,
     /// Probability of mutation.
     pub mutation: f64,
-    /// Share of the string's bits that a mutation flips.
+    /// Fraction of the string's bits that a mutation flips.
     pub mutation_ratio: f64,
-    /// Added to both objectives per unit of violation.
+    /// Penalty that is added to both objectives per unit of violation.
     pub penalty: f64,
 }
 
@@ -85,7 +91,7 @@ struct Individual {
 }
 
 impl Moga2 {
-    /// The algorithm before its first generation.
+    /// Creates the algorithm in its state before the first generation.
     pub fn new(variables: Vec<Variable>, settings: Moga2Settings, seed: u64) -> Self {
         Self {
             variables,
@@ -134,7 +140,7 @@ impl Moga2 {
             .collect()
     }
 
-    /// +1 if the individual is the better of the two, −1 if the reference is.
+    /// Returns +1 if the individual dominates the reference, −1 if the reference dominates it, else either at random.
     fn sign(&mut self, individual: usize, reference: usize) -> f64 {
         let coin = if self.random.chance(0.5) { 1.0 } else { -1.0 };
         let relation = pareto(
@@ -148,7 +154,7 @@ impl Moga2 {
         }
     }
 
-    /// The best individual met on a random walk over the torus, its start left out.
+    /// Returns the best individual visited on a random walk over the torus; the start is excluded.
     fn walk(&mut self, start: usize) -> usize {
         let count = self.population.len();
         let columns = (1..)
@@ -219,7 +225,8 @@ impl Moga2 {
         x
     }
 
-    /// One-point crossover on the strings: bits before the point from the individual, the rest from its partner.
+    /// Performs one-point crossover on the bit strings: the bits before the point come from the individual, the others
+    /// from its partner.
     fn classical(&mut self, index: usize) -> Vec<f64> {
         let partner = self.random.below(self.population.len());
         let total: u32 = self.variables.iter().map(Self::bits).sum();
@@ -231,7 +238,7 @@ impl Moga2 {
             .enumerate()
             .map(|(k, variable)| {
                 let bits = Self::bits(variable);
-                // Bits of this variable that lie before the point; its high bits come first.
+                // Number of bits of this variable before the point; its most significant bits come first.
                 let kept = point.saturating_sub(first).min(bits);
                 first += bits;
                 match *variable {
@@ -241,7 +248,7 @@ impl Moga2 {
                             (Self::encode(own[k], lower, upper) & !low) | (Self::encode(other[k], lower, upper) & low);
                         Self::decode(code, lower, upper)
                     }
-                    // A choice cannot be cut in two.
+                    // A choice cannot be split: it comes from the parent that contributes more of its bits.
                     _ if 2 * kept >= bits => own[k],
                     _ => other[k],
                 }

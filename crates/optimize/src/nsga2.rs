@@ -1,9 +1,9 @@
 //! NSGA-II (Deb, Pratap, Agarwal, Meyarivan 2002) with constraint domination, for mixed variables.
 //!
-//! Real variables: simulated binary crossover and polynomial mutation. Categorical variables: taken from either parent,
-//! redrawn with the mutation's probability. The first generation is a Sobol sample and counts as a generation. Copies of
-//! candidates that are in the population or already among the offspring are not evaluated again: another pair of parents is
-//! drawn instead.
+//! Real variables undergo simulated binary crossover and polynomial mutation. A categorical variable is taken from
+//! either parent and redrawn with the probability of mutation. The first generation is a Sobol sample and counts as a
+//! generation. A child that equals a member of the population or another child is not evaluated; a further pair of
+//! parents is drawn instead.
 
 use super::population::{Member, ranked, tournament};
 use super::random::Random;
@@ -18,9 +18,9 @@ pub struct Nsga2Settings {
     pub population: usize,
     /// Probability that a pair is crossed rather than copied.
     pub crossover: f64,
-    /// Distribution index of the crossover: the larger, the nearer to the parents.
+    /// Distribution index of the crossover: the larger it is, the closer the children are to their parents.
     pub crossover_index: f64,
-    /// Mutation probability of a variable; `None` for one over the number of variables.
+    /// Mutation probability of a variable; `None` means the reciprocal of the number of variables.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mutation: Option<f64>,
     /// Distribution index of the mutation.
@@ -49,11 +49,12 @@ pub struct Nsga2 {
     population: Vec<Member>,
 }
 
-/// Pairs drawn in search of offspring that are no copies, per individual, before copies are accepted.
+/// Number of pairs of parents, per individual of the population, that are drawn before copies are accepted as
+/// offspring.
 const PATIENCE: usize = 50;
 
 impl Nsga2 {
-    /// The algorithm before its first generation.
+    /// Creates the algorithm in its state before the first generation.
     pub fn new(variables: Vec<Variable>, settings: Nsga2Settings, seed: u64) -> Self {
         Self {
             variables,
@@ -120,10 +121,10 @@ impl Algorithm for Nsga2 {
     }
 }
 
-/// Best `size` of `pool` by rank, the last rank thinned by crowding.
+/// Keeps the best `size` candidates of `pool` by rank and, within the last rank kept, by crowding distance.
 fn survive(pool: Vec<Evaluated>, size: usize) -> Vec<Member> {
     let mut members = ranked(pool);
-    // A stable sort: among equals the elder stays.
+    // The sort is stable: among equals the older member is kept.
     members.sort_by(|a, b| a.rank.cmp(&b.rank).then(b.crowding.total_cmp(&a.crowding)));
     members.truncate(size);
     members

@@ -1,4 +1,5 @@
-//! Members of a population with their rank and crowding, and the tournament that these decide (Deb et al. 2002).
+//! Members of a population with their rank and crowding distance, and the tournament selection that uses both (Deb et
+//! al. 2002).
 
 use std::cmp::Ordering;
 
@@ -10,13 +11,13 @@ use super::{Evaluated, Outcome};
 #[derive(Debug, Clone)]
 pub struct Member {
     pub candidate: Evaluated,
-    /// 0 for the non-dominated ones.
+    /// Non-domination rank, 0 for a non-dominated member.
     pub rank: usize,
-    /// Crowding distance within its rank.
+    /// Crowding distance among the members of the same rank.
     pub crowding: f64,
 }
 
-/// Ranks a population.
+/// Determines the rank and the crowding distance of each candidate.
 pub fn ranked(candidates: Vec<Evaluated>) -> Vec<Member> {
     let outcomes: Vec<Outcome> = candidates.iter().map(|candidate| candidate.outcome).collect();
     let ranks = non_dominated_ranks(&outcomes);
@@ -40,7 +41,7 @@ pub fn ranked(candidates: Vec<Evaluated>) -> Vec<Member> {
         .collect()
 }
 
-/// The better of two drawn members by rank, then crowding, then a coin.
+/// Draws two members and returns the place of the better one: by rank, then by crowding distance, then at random.
 pub fn tournament(random: &mut Random, population: &[Member]) -> usize {
     let a = random.below(population.len());
     let b = random.below(population.len());
@@ -58,8 +59,9 @@ pub fn tournament(random: &mut Random, population: &[Member]) -> usize {
     }
 }
 
-/// Keeps the best `size` by rank. The last rank that fits is thinned by crowding, which is counted anew after each that
-/// leaves, so that what stays is evenly spread.
+/// Keeps the best `size` candidates by rank. The first rank that does not fit completely is thinned: the member with
+/// the smallest crowding distance is removed and the distances are recomputed until the rank fits, so that the
+/// remaining members are evenly spread.
 pub fn best(candidates: Vec<Evaluated>, size: usize) -> Vec<Evaluated> {
     let outcomes: Vec<Outcome> = candidates.iter().map(|candidate| candidate.outcome).collect();
     let ranks = non_dominated_ranks(&outcomes);

@@ -1,4 +1,4 @@
-//! The seam between a problem, an algorithm and whoever drives it.
+//! The interfaces between a problem, an algorithm and the caller that runs the algorithm on the problem.
 
 use super::Archive;
 
@@ -7,49 +7,49 @@ use super::Archive;
 pub enum Variable {
     /// A real number in `[lower, upper]`.
     Real {
-        /// Least value.
+        /// Smallest value.
         lower: f64,
         /// Largest value.
         upper: f64,
     },
-    /// One of `choices` alternatives without order, held as 0.0, 1.0, ….
+    /// One of `choices` unordered alternatives, represented as 0.0, 1.0, ….
     Categorical {
         /// Number of alternatives, at least 1.
         choices: usize,
     },
 }
 
-/// What an evaluation gives.
+/// Result of an evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
-    /// Both minimised; finite.
+    /// Both objectives, which are minimised and finite.
     pub objectives: [f64; 2],
-    /// 0 where feasible, else positive and finite.
+    /// Constraint violation: 0 for a feasible candidate, otherwise positive and finite.
     pub violation: f64,
 }
 
 impl Outcome {
-    /// Whether all constraints hold.
+    /// Returns whether all constraints are satisfied.
     pub fn is_feasible(&self) -> bool {
         self.violation <= 0.0
     }
 }
 
-/// What a candidate is to be completed for, before it is evaluated.
+/// Target that a candidate is completed for before it is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Aim {
-    /// The least first objective at which the second is at most this.
+    /// The smallest first objective for which the second objective is at most this level.
     Level(f64),
-    /// The least first objective at the best second one that there is.
+    /// The smallest first objective for which the second objective is the best attainable.
     Best,
 }
 
-/// What an algorithm asks for.
+/// A candidate that an algorithm proposes for evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
-    /// A value per variable.
+    /// One value per variable.
     pub x: Vec<f64>,
-    /// What the problem may complete it for; `None` to have it evaluated as it stands.
+    /// Target that the problem may complete the candidate for; `None` if it is to be evaluated unchanged.
     pub aim: Option<Aim>,
 }
 
@@ -59,35 +59,35 @@ impl From<Vec<f64>> for Candidate {
     }
 }
 
-/// A candidate and its outcome.
+/// An evaluated candidate with its outcome.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluated {
-    /// A value per variable, as evaluated.
+    /// One value per variable, as evaluated.
     pub x: Vec<f64>,
-    /// Its outcome.
+    /// Outcome of the evaluation.
     pub outcome: Outcome,
 }
 
-/// A problem: its variables and an evaluation.
+/// An optimization problem: its variables and its evaluation function.
 pub trait Problem: Sync {
-    /// The variables, in the order of a candidate's values.
+    /// Returns the variables, in the order of a candidate's values.
     fn variables(&self) -> Vec<Variable>;
 
     /// Evaluates one candidate.
     fn evaluate(&self, x: &[f64]) -> Outcome;
 
-    /// Sets those variables of a candidate that follow from the others and from what it aims at; `None` where there are
-    /// none, or where nothing the others allow has the aim.
+    /// Sets those variables of a candidate that follow from the other variables and from the target. Returns `None` if
+    /// there are no such variables, or if the other variables do not allow the target.
     ///
-    /// This is where a problem tells of its structure. Some variables may be settled by a cheaper problem of their own:
-    /// bars, say, that must carry what the other variables ask of them and are best as thin as that allows. It is no
-    /// evaluation, and need not be exact: what comes of it is evaluated like any candidate.
+    /// With this function a problem exposes its structure: some variables may be the solution of a cheaper subproblem.
+    /// Bars, for example, must carry the load that the other variables imply and are best as thin as that load allows.
+    /// The function is not an evaluation and need not be exact: the completed candidate is evaluated like any other.
     fn complete(&self, x: &[f64], aim: Aim) -> Option<Vec<f64>> {
         let _ = (x, aim);
         None
     }
 
-    /// The values that a candidate is evaluated at.
+    /// Returns the values at which a candidate is evaluated: the completed ones, or its own if it cannot be completed.
     fn completed(&self, candidate: Candidate) -> Vec<f64> {
         candidate
             .aim
@@ -96,17 +96,17 @@ pub trait Problem: Sync {
     }
 }
 
-/// An algorithm that is asked and told, a generation at a time.
+/// An optimization algorithm with an ask-and-tell interface; each step is one generation.
 pub trait Algorithm: Send {
-    /// The candidates of the next generation; never empty.
+    /// Returns the candidates of the next generation, at least one.
     fn ask(&mut self) -> Vec<Candidate>;
 
-    /// The outcomes of the candidates last asked for, in their order and as they were completed; a last generation may
-    /// be cut short.
+    /// Receives the outcomes of the candidates returned by the last call of [`Algorithm::ask`], in the same order and
+    /// with the values as completed. The last generation may be truncated.
     fn tell(&mut self, evaluated: Vec<Evaluated>);
 }
 
-/// Runs `algorithm` on `problem` for `evaluations` evaluations in this thread and returns the archive of its
+/// Runs `algorithm` on `problem` for `evaluations` evaluations in the current thread and returns the archive of the
 /// non-dominated feasible candidates.
 pub fn drive(problem: &impl Problem, algorithm: &mut (impl Algorithm + ?Sized), evaluations: usize) -> Archive {
     let mut archive = Archive::default();

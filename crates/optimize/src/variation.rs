@@ -1,12 +1,13 @@
-//! Variation of real and categorical variables: simulated binary crossover and polynomial mutation, both bounded (Deb and
-//! Agrawal 1995; Deb and Goyal 1996).
+//! Variation of real and categorical variables: simulated binary crossover and polynomial mutation, both within the
+//! bounds of the variables (Deb and Agrawal 1995; Deb and Goyal 1996).
 
 use super::Variable;
 use super::random::Random;
 
-/// Simulated binary crossover with distribution index `index`, in place.
+/// Applies simulated binary crossover with distribution index `index` in place.
 ///
-/// Each variable is exchanged or left with equal chance, as in Deb's own program. A categorical variable is swapped.
+/// Each variable is crossed with probability 0.5 and otherwise left unchanged, as in Deb's own program. Crossing swaps
+/// the values of a categorical variable.
 pub fn cross(random: &mut Random, variables: &[Variable], index: f64, [first, second]: &mut [Vec<f64>; 2]) {
     for (k, variable) in variables.iter().enumerate() {
         if !random.chance(0.5) {
@@ -42,8 +43,8 @@ pub fn cross(random: &mut Random, variables: &[Variable], index: f64, [first, se
     }
 }
 
-/// Polynomial mutation with distribution index `index` of each variable with the given probability, in place. A
-/// categorical variable is redrawn.
+/// Mutates each variable with the given probability in place: a real variable by polynomial mutation with distribution
+/// index `index`, a categorical variable by redrawing it.
 pub fn mutate(random: &mut Random, variables: &[Variable], probability: f64, index: f64, x: &mut [f64]) {
     for (value, variable) in x.iter_mut().zip(variables) {
         if !random.chance(probability) {

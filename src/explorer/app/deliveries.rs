@@ -1,4 +1,4 @@
-//! What comes to the window from outside: dropped files, pictures of it, ends of work on files.
+//! Handles input from outside the panels: dropped files, pictures taken of the window, and results of file jobs.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,11 +8,11 @@ use egui::{Context, Event};
 use super::super::files::{self, Purpose};
 use super::Explorer;
 
-/// A picture of the window on its way to a file.
+/// The file that a requested picture of the window is saved to; it accompanies the request.
 pub(super) struct Picture(pub(super) PathBuf);
 
 impl Explorer {
-    /// Files dropped on the window, and pictures of it that were taken.
+    /// Opens dropped files, saves pictures that were taken of the window, and reports the results of file jobs.
     pub(super) fn deliveries(&mut self, ctx: &Context) {
         let dropped: Vec<PathBuf> = ctx.input_mut(|input| {
             input.raw.hovered_files.clear();
@@ -57,7 +57,7 @@ fn save_picture(path: &Path, picture: &egui::ColorImage) -> Result<String, Strin
         .flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()])
         .collect();
     image::RgbImage::from_raw(width, height, rgb)
-        .ok_or_else(|| failed(&"the picture is not whole"))?
+        .ok_or_else(|| failed(&"the picture is incomplete"))?
         .write_to(&mut bytes, image::ImageFormat::Png)
         .map_err(|error| failed(&error))?;
     files::write_whole(path, bytes.get_ref())?;

@@ -1,4 +1,4 @@
-//! Where the panels stand, and drawing them there.
+//! The default layout of the panels, and drawing the panels in their tiles.
 
 use egui::Ui;
 use egui_tiles::{Linear, LinearDir, SimplificationOptions, TileId, Tiles, Tree, UiResponse};
@@ -7,7 +7,7 @@ use super::super::files::Purpose;
 use super::super::viewer::Viewer;
 use super::super::{Panel, Panels, Session};
 
-/// The layout to begin with.
+/// Returns the default layout.
 pub(super) fn layout() -> Tree<Panel> {
     let mut tiles = Tiles::default();
     let mut tabs = |panels: &[Panel]| {
@@ -34,7 +34,7 @@ pub(super) fn layout() -> Tree<Panel> {
     Tree::new("kinefront", root, tiles)
 }
 
-/// Draws the panels into the tiles.
+/// Draws the panels into the tiles, and collects a panel's request for a file dialog.
 pub(super) struct Drawing<'a> {
     pub(super) session: &'a mut Session,
     pub(super) panels: &'a mut Panels,
@@ -48,7 +48,7 @@ impl egui_tiles::Behavior<Panel> for Drawing<'_> {
         if *panel == Panel::Scene {
             match &mut self.viewer {
                 Some(viewer) => viewer.ui(ui, self.frame),
-                None => drop(ui.weak("without a viewer")),
+                None => drop(ui.weak("the 3-D viewer is not available")),
             }
             return UiResponse::None;
         }

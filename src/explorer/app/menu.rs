@@ -1,4 +1,4 @@
-//! The menu, notices, and the small windows above the panels.
+//! The menu bar, the notices, and the path and shortcut windows above the panels.
 
 use std::path::PathBuf;
 
@@ -21,7 +21,7 @@ impl Explorer {
                     ("Save recording… (Ctrl+S)", Purpose::SaveRecording),
                     ("Save run folder…", Purpose::SaveRun),
                     ("Save study…", Purpose::SaveStudy),
-                    ("Report on the run…", Purpose::Report),
+                    ("Create report…", Purpose::Report),
                     ("Export front…", Purpose::ExportFront),
                     ("Record design…", Purpose::RecordDesign),
                     ("Save picture…", Purpose::SavePicture),
@@ -38,7 +38,7 @@ impl Explorer {
                     }
                 });
                 let recent = self.recent.clone();
-                ui.menu_button("Recent", |ui| {
+                ui.menu_button("Open recent", |ui| {
                     for path in recent {
                         if ui.button(path.display().to_string()).clicked() {
                             self.act(&ui.ctx().clone(), Purpose::Open, path);
@@ -71,7 +71,7 @@ impl Explorer {
                 if ui.button("Reset layout").clicked() {
                     self.tree = layout();
                 }
-                if ui.button(if self.dark { "Light" } else { "Dark" }).clicked() {
+                if ui.button(if self.dark { "Light theme" } else { "Dark theme" }).clicked() {
                     self.dark = !self.dark;
                     ui.ctx().set_theme(if self.dark {
                         egui::Theme::Dark
@@ -80,7 +80,7 @@ impl Explorer {
                     });
                 }
             });
-            if ui.button("?").on_hover_text("shortcuts").clicked() {
+            if ui.button("?").on_hover_text("keyboard shortcuts").clicked() {
                 self.help = !self.help;
             }
             ui.separator();
@@ -91,7 +91,7 @@ impl Explorer {
                 Phase::Paused => "paused",
                 Phase::Verifying { .. } => "verifying",
                 Phase::Finished(_) => "finished",
-                Phase::Failed => "broke off",
+                Phase::Failed => "failed",
                 Phase::Opened(_) => "opened",
             };
             ui.weak(phase);
@@ -120,7 +120,8 @@ impl Explorer {
         }
     }
 
-    /// The path of a file that is asked for: a system without dialogs has this one.
+    /// Shows a field for the path of the requested file, for systems without a file dialog. A choice made in a
+    /// dialog is acted on as well.
     pub(super) fn path_field(&mut self, ui: &mut Ui) {
         let chosen = self.dialog.as_ref().and_then(Dialog::choice);
         if let Some((purpose, path)) = chosen {
@@ -143,7 +144,7 @@ impl Explorer {
             .show(ui.ctx(), |ui| {
                 let field = ui.add(
                     egui::TextEdit::singleline(&mut path)
-                        .hint_text("path of the file")
+                        .hint_text("path of the file or folder")
                         .desired_width(460.0),
                 );
                 ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("Path"));
@@ -166,7 +167,7 @@ impl Explorer {
     }
 
     pub(super) fn help(&mut self, ui: &mut Ui) {
-        egui::Window::new("Shortcuts")
+        egui::Window::new("Keyboard shortcuts")
             .open(&mut self.help)
             .resizable(false)
             .collapsible(false)
@@ -182,7 +183,7 @@ impl Explorer {
                         }
                     });
                 ui.separator();
-                ui.weak("scatter: drag moves, wheel zooms, right drag zooms into a box, double click fits");
+                ui.weak("scatter: drag to pan, scroll to zoom, right-drag to zoom into a box, double-click to fit");
             });
     }
 }

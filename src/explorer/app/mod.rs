@@ -1,4 +1,4 @@
-//! The window: menu, panels, shortcuts, notices, and what is remembered between two sessions.
+//! The window: menu, panels, shortcuts, notices, and the state that is saved between two sessions.
 
 mod deliveries;
 mod layout;
@@ -24,23 +24,23 @@ use super::viewer::Viewer;
 use super::{Phase, Script, Session, StudyEditor, theme};
 use crate::study::Study;
 
-/// What the window opens with.
+/// Content that the window opens with.
 #[derive(Debug, Clone)]
 pub enum Subject {
-    /// A study, run at once where `start`.
+    /// A study, which is run at once if `start` is true.
     Study {
         /// The study.
         study: Box<Study>,
-        /// Its file.
+        /// File that the study was read from.
         path: Option<PathBuf>,
         /// Whether its run starts at once.
         start: bool,
     },
-    /// What a run left.
+    /// Path of a run folder, of one of its tables, or of a recording.
     Run(PathBuf),
 }
 
-/// What is remembered between two sessions.
+/// State of the window that is saved between two sessions.
 #[derive(Serialize, Deserialize)]
 struct Remembered {
     tree: Tree<Panel>,
@@ -49,17 +49,17 @@ struct Remembered {
     dark: bool,
 }
 
-/// How work on a file ended, in words.
+/// Result of a file job: the message to show on success or on failure.
 type Ended = Result<String, String>;
 
-/// Fewest and most milliseconds between two frames that news ask for.
+/// Shortest and longest interval between two frames that worker threads request \[ms\].
 const QUICKEST: u64 = 8;
 const SLOWEST: u64 = 400;
 
-/// Files that are remembered.
+/// Number of recently opened files that are saved.
 const RECENT: usize = 8;
 
-/// The window.
+/// The explorer's window.
 pub struct Explorer {
     session: Session,
     panels: Panels,
@@ -69,21 +69,21 @@ pub struct Explorer {
     recent: Vec<PathBuf>,
     dark: bool,
     help: bool,
-    /// A file that is asked for: by a dialog of the system, and by a field for its path.
+    /// Purpose of the requested file, and its path as typed so far. The system's dialog may be open as well.
     asked: Option<(Purpose, String)>,
     dialog: Option<Dialog>,
-    /// Ends of work on files.
+    /// Channel for the results of file jobs.
     ended: (Sender<Ended>, Receiver<Ended>),
     jobs: usize,
-    /// Milliseconds between two frames that news ask for.
+    /// Interval between two frames that worker threads request \[ms\].
     pace: Arc<AtomicU64>,
 }
 
 impl Explorer {
-    /// The window's contents. Without `embedded` there is no viewer, for tests without a graphics card.
+    /// Creates the window's contents. If `embedded` is false, there is no viewer: tests run without a graphics card.
     ///
     /// # Errors
-    /// The graphics card cannot draw the viewer, or threads cannot be started.
+    /// Returns an error if the graphics card cannot draw the viewer or if a thread cannot be started.
     pub fn new(
         cc: &eframe::CreationContext<'_>,
         subject: Subject,
@@ -102,7 +102,8 @@ impl Explorer {
             (None, None)
         };
         let ctx = cc.egui_ctx.clone();
-        // What comes within a frame's time is shown in one. Where frames are drawn by the processor, the search needs it more.
+        // Updates that arrive within this interval share a frame. The interval grows with the time that a frame takes:
+        // where frames are drawn by the processor, they would take its time from the search.
         let pace = Arc::new(AtomicU64::new(QUICKEST));
         let paced = Arc::clone(&pace);
         let wake = Arc::new(move || ctx.request_repaint_after(Duration::from_millis(paced.load(Ordering::Relaxed))));
@@ -112,7 +113,7 @@ impl Explorer {
             Subject::Study { .. } => {}
             Subject::Run(path) => session.open(path),
         }
-        // A script shows the window as it is made, whatever someone made of it before.
+        // A script starts from the default layout, axes and theme, not from those of an earlier session.
         let remembered: Option<Remembered> = cc
             .storage
             .filter(|_| script.is_none())
@@ -144,43 +145,43 @@ impl Explorer {
         })
     }
 
-    /// Everything the window knows.
+    /// Returns the session: the run, its designs, and everything selected, pinned and filtered.
     pub fn session(&self) -> &Session {
         &self.session
     }
 
-    /// Everything the window knows, to change it.
+    /// Returns the session for modification.
     pub fn session_mut(&mut self) -> &mut Session {
         &mut self.session
     }
 
-    /// Where a design of the run stood in the scatter in the last frame.
+    /// Returns the position on screen at which the last frame drew a design of the run in the scatter.
     pub fn scatter_position(&self, id: usize) -> Option<egui::Pos2> {
         self.panels.scatter.screen_position(&self.session.row(id)?)
     }
 
-    /// Axes of the scatter.
+    /// Returns the axes of the scatter.
     pub fn scatter_axes(&self) -> [Axis; 2] {
         self.panels.scatter.axes()
     }
 
-    /// Puts other quantities on the axes of the scatter.
+    /// Replaces the axes of the scatter and fits its view.
     pub fn set_axes(&mut self, axes: [Axis; 2]) {
         self.panels.scatter = Scatter::new(axes);
     }
 
-    /// Files opened lately, the last first.
+    /// Returns the recently opened files, the most recent first.
     pub fn recent(&self) -> &[PathBuf] {
         &self.recent
     }
 
-    /// Brings a panel to the front.
+    /// Activates the tab of a panel.
     pub fn show(&mut self, panel: Panel) {
         self.tree
             .make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(other) if *other == panel));
     }
 
-    /// Does with a file what it was chosen for.
+    /// Opens or writes the file at `path`, depending on its purpose.
     pub fn act(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
         if matches!(purpose, Purpose::Open | Purpose::OpenFolder) {
             self.recent.retain(|other| *other != path);
@@ -203,7 +204,7 @@ impl Explorer {
         });
     }
 
-    /// Whether work on files is under way.
+    /// Returns whether a file job is running.
     pub fn is_busy(&self) -> bool {
         self.jobs > 0
     }
@@ -260,7 +261,7 @@ impl eframe::App for Explorer {
         self.path_field(ui);
         self.help(ui);
         if self.session.is_running() && *self.session.phase() != Phase::Paused {
-            // Rate and time left go on where no news come.
+            // The rate and the remaining time change even while no message arrives.
             ctx.request_repaint_after(Duration::from_millis(250));
         }
         if ctx.input(|input| input.viewport().close_requested()) {
@@ -282,7 +283,7 @@ impl eframe::App for Explorer {
     }
 
     fn raw_input_hook(&mut self, _: &Context, input: &mut egui::RawInput) {
-        // A script's pictures show no trace of a mouse that happens to lie somewhere.
+        // The pictures of a script must not show the hover effects of a mouse that happens to be over the window.
         if self.script.is_some() {
             input
                 .events
@@ -298,10 +299,10 @@ impl eframe::App for Explorer {
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// Why there can be no window, in words, and what would help.
+/// Returns a message that says why the window cannot be opened and what would help.
 pub fn run(subject: Subject, script: Option<Script>) -> Result<(), String> {
     let headless =
-        "without a window, `kinefront optimize --out run` runs a study and leaves a recording to look at elsewhere";
+        "`kinefront optimize --out run` runs a study without a window and writes a recording to view elsewhere";
     let display = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"];
     if cfg!(target_os = "linux")
         && display
@@ -323,7 +324,7 @@ pub fn run(subject: Subject, script: Option<Script>) -> Result<(), String> {
     options.persist_window = script.is_none();
     let create = Box::new(move |cc: &eframe::CreationContext<'_>| {
         let explorer = Explorer::new(cc, subject, script, true)?;
-        // An interrupt at the terminal closes the window in good order; without a handler it would leave the run's files.
+        // An interrupt at the terminal closes the window normally; without a handler, the run's files would remain.
         let ctx = cc.egui_ctx.clone();
         let _ = ctrlc::set_handler(move || {
             ctx.send_viewport_cmd(ViewportCommand::Close);
@@ -332,12 +333,12 @@ pub fn run(subject: Subject, script: Option<Script>) -> Result<(), String> {
         Ok(Box::new(explorer) as Box<dyn eframe::App>)
     });
     eframe::run_native("kinefront", options, create).map_err(|error| match error {
-        // What the window library says names a place in its own source.
-        eframe::Error::WinitEventLoop(_) => format!("the display cannot be reached; {headless}"),
+        // The library's own message names a line of its source code, which does not help.
+        eframe::Error::WinitEventLoop(_) => format!("cannot connect to the display; {headless}"),
         eframe::Error::Wgpu(error) => format!(
-            "no graphics card can draw the window ({error}); a driver for Vulkan or OpenGL is needed, in software as \
-             Debian's mesa-vulkan-drivers if there is no card; {headless}"
+            "no graphics card can draw the window ({error}); install a Vulkan or OpenGL driver, or, without a card, a \
+             software renderer such as Debian's mesa-vulkan-drivers; {headless}"
         ),
-        error => format!("the window cannot be opened: {error}; {headless}"),
+        error => format!("cannot open the window: {error}; {headless}"),
     })
 }

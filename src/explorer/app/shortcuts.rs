@@ -1,4 +1,4 @@
-//! Keys.
+//! Keyboard shortcuts.
 
 use egui::{Context, Event, Key, KeyboardShortcut, Modifiers, ViewportCommand};
 
@@ -13,22 +13,22 @@ const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O)
 const SAVE: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::S);
 const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
 
-/// Shortcuts as they are listed.
+/// Keys and descriptions of the shortcuts, as listed in the window.
 pub(super) const SHORTCUTS: [(&str, &str); 14] = [
-    ("←  →", "walk along the front"),
-    ("K", "the knee of the front"),
-    ("P", "pin or unpin the design"),
-    ("S", "star the design"),
-    ("Space", "pause and resume the run"),
-    ("G", "one generation"),
-    ("Ctrl+C, Ctrl+V", "copy the design as text, paste one"),
+    ("←  →", "select the previous or next design of the front"),
+    ("K", "select the knee of the front"),
+    ("P", "pin or unpin the selected design"),
+    ("S", "star or unstar the selected design"),
+    ("Space", "pause or resume the run"),
+    ("G", "run one generation, then pause"),
+    ("Ctrl+C, Ctrl+V", "copy the selected design as text, paste a design"),
     ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo"),
     ("Ctrl+O", "open a study, a run or a recording"),
     ("Ctrl+S", "save the session's recording"),
     ("Ctrl+Q", "quit"),
-    ("F", "only feasible designs in the light"),
-    ("Esc", "put messages and windows away"),
-    ("?", "this list"),
+    ("F", "turn the filter for feasible designs on or off"),
+    ("Esc", "close messages and dialogs"),
+    ("?", "show or hide this list"),
 ];
 
 impl Explorer {
@@ -37,7 +37,7 @@ impl Explorer {
         if ctx.text_edit_focused() {
             return;
         }
-        // The most special first: a shortcut matches with more modifiers held, too.
+        // Shortcuts with more modifiers come first: a shortcut also matches while additional modifiers are held.
         if pressed(&REDO) || pressed(&REDO_TOO) {
             self.session.history.redo();
         } else if pressed(&UNDO) {

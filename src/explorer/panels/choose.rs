@@ -1,16 +1,16 @@
-//! Help in choosing among many: what matters how much, representatives, the filter, and what was kept.
+//! The choose panel: knee and extreme designs, weighted ranking, representatives of the front, filter, kept designs.
 
 use egui::{DragValue, ScrollArea, Slider, Ui};
 
 use crate::explorer::{Filter, Quantity, Session, theme};
 use kinefront_optimize::{groups, ranking};
 
-/// The panel of choosing.
+/// The panel that supports the choice of a design.
 pub struct ChoosePanel {
-    /// How much the mass counts, in [0, 1].
+    /// Weight of the mass in the ranking, in \[0, 1\].
     weight: f64,
     groups: usize,
-    /// The middles of the groups, of which front and how many.
+    /// Number of the front, number of groups, and ids of the groups' representatives, as last computed.
     middles: Option<(u64, usize, Vec<usize>)>,
 }
 
@@ -24,21 +24,21 @@ impl Default for ChoosePanel {
     }
 }
 
-/// What the panel asks of the window.
+/// Request of the panel for a dialog on a filter file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FilterFile {
     /// Save the filter.
     Save,
-    /// Read a filter.
+    /// Open a filter.
     Open,
 }
 
 impl ChoosePanel {
-    /// The panel.
+    /// Draws the panel. Returns the filter file that it requests, if any.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
         let mut asked = None;
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-            ui.strong("Marked designs");
+            ui.strong("Knee and extreme designs");
             ui.horizontal_wrapped(|ui| {
                 let front = session.front();
                 let ends = front
@@ -47,7 +47,7 @@ impl ChoosePanel {
                     .zip(front.last().map(|entry| entry.id));
                 if ui
                     .button("Knee")
-                    .on_hover_text("where more R_w begins to cost much mass (K)")
+                    .on_hover_text("the design beyond which a larger R_w costs much more mass (K)")
                     .clicked()
                 {
                     session.choose_knee();
@@ -92,7 +92,7 @@ impl ChoosePanel {
 
     fn clusters(&mut self, ui: &mut Ui, session: &mut Session) {
         ui.horizontal(|ui| {
-            ui.strong("Groups of like designs");
+            ui.strong("Groups of similar designs");
             ui.add(DragValue::new(&mut self.groups).range(2..=12).speed(0.05));
         });
         let front = session.front_number();
@@ -192,7 +192,7 @@ fn kept(ui: &mut Ui, session: &mut Session) {
     ui.strong("Kept designs");
     let kept = session.document().kept.clone();
     if kept.is_empty() {
-        ui.weak("what-if designs that are kept stand here");
+        ui.weak("modified designs that you keep are listed here");
     }
     for named in &kept {
         if ui.link(format!("{}: {}", named.name, named.design)).clicked() {
@@ -201,7 +201,7 @@ fn kept(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// Members of the front in groups of like designs, the middle of each.
+/// Divides the front into `count` groups of similar designs and returns the id of the middle design of each.
 fn representatives(session: &Session, count: usize) -> Vec<usize> {
     let objectives: Vec<[f64; 2]> = session.front().iter().map(|entry| entry.objectives()).collect();
     groups(&objectives, count)

@@ -1,4 +1,4 @@
-//! Up to four designs side by side.
+//! The compare panel: up to four pinned designs side by side.
 
 use egui::{Color32, Grid, RichText, ScrollArea, Ui};
 
@@ -6,12 +6,12 @@ use kinefront_model::evaluation::{Constraint, Evaluation};
 use crate::explorer::{Session, theme};
 use kinefront_model::mechanism::VARIABLES;
 
-/// The panel of the pinned designs.
+/// The panel that compares the pinned designs.
 #[derive(Default)]
 pub struct ComparePanel;
 
 impl ComparePanel {
-    /// The panel.
+    /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let pins = session.document().pins.clone();
         if pins.is_empty() {
@@ -20,7 +20,7 @@ impl ComparePanel {
             return;
         }
         let mut comparing = session.staging.comparing;
-        ui.checkbox(&mut comparing, "side by side in 3-D");
+        ui.checkbox(&mut comparing, "show side by side in 3-D");
         session.staging.comparing = comparing;
         let evaluations: Vec<Option<Evaluation>> = session
             .pin_evaluations()
@@ -81,7 +81,7 @@ impl ComparePanel {
                     }
                     let clearances = evaluations.iter().map(|e| e.as_ref()?.clearance());
                     row(ui, "clearance [m]", clearances.collect(), Some(Best::Largest));
-                    ui.label("active");
+                    ui.label("active constraints");
                     for evaluation in &evaluations {
                         let active: Vec<&str> =
                             evaluation.iter().flat_map(|e| e.active().map(Constraint::id)).collect();

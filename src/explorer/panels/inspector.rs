@@ -1,4 +1,4 @@
-//! The inspector: everything about the design in the light, and what would be if one of its dimensions were another.
+//! The inspector: all results of the selected design, and sliders that modify its dimensions.
 
 use egui::{Color32, Grid, ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo, WidgetType};
 
@@ -6,15 +6,15 @@ use kinefront_model::evaluation::ConstraintReport;
 use crate::explorer::{Known, Session, theme};
 use kinefront_model::mechanism::VARIABLES;
 
-/// The panel of the design in the light.
+/// The inspector panel.
 #[derive(Default)]
 pub struct Inspector;
 
 impl Inspector {
-    /// The panel.
+    /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let Some(chosen) = session.document().chosen.clone() else {
-            ui.weak("Click a design in the scatter, or walk along the front with the arrow keys.");
+            ui.weak("Click a design in the scatter, or step along the front with the arrow keys.");
             return;
         };
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
@@ -43,10 +43,10 @@ fn heading(ui: &mut Ui, session: &mut Session) {
     ui.horizontal_wrapped(|ui| {
         ui.heading(format!("{} {name}", chosen.design.architecture));
         if session.is_what_if() {
-            ui.colored_label(theme::WHAT_IF, "not of the run");
+            ui.colored_label(theme::WHAT_IF, "modified design");
             if ui
                 .button("Keep")
-                .on_hover_text("keeps it in the list of designs")
+                .on_hover_text("adds the modified design to the kept designs")
                 .clicked()
             {
                 session.keep();
@@ -57,19 +57,19 @@ fn heading(ui: &mut Ui, session: &mut Session) {
         let pinned = session.document().pins.iter().any(|pin| pin.design == chosen.design);
         if ui
             .selectable_label(pinned, "📌 Pin")
-            .on_hover_text("compare up to four designs (P)")
+            .on_hover_text("pin this design to compare it; up to four designs (P)")
             .clicked()
         {
             session.toggle_pin();
         }
-        if ui.button("Copy").on_hover_text("the design as text (Ctrl+C)").clicked() {
+        if ui.button("Copy").on_hover_text("copy the design as text (Ctrl+C)").clicked() {
             ui.ctx().copy_text(chosen.design.to_string());
         }
         if let crate::explorer::Origin::Evaluated(id) = chosen.origin {
             let starred = session.document().stars.contains(&id);
             if ui
                 .selectable_label(starred, if starred { "★" } else { "☆" })
-                .on_hover_text("star (S)")
+                .on_hover_text("star or unstar this design (S)")
                 .clicked()
             {
                 session.toggle_star();
@@ -99,7 +99,7 @@ fn sliders(ui: &mut Ui, session: &mut Session, values: &[f64; 5]) {
     for (index, variable) in VARIABLES.into_iter().enumerate() {
         let [low, high] = bounds.range(variable);
         let mut value = values[index];
-        // A design from elsewhere may lie outside the study's bounds.
+        // A design that does not come from the run may lie outside the study's bounds.
         let range = low.min(value)..=high.max(value);
         let thin = variable.may_be_zero();
         ui.horizontal(|ui| {
@@ -147,22 +147,22 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
             if evaluation.is_feasible() {
                 ui.strong(format!("{} m", theme::number(evaluation.workspace_radius)));
             } else {
-                ui.colored_label(theme::BROKEN, "no regular workspace: infeasible");
+                ui.colored_label(theme::BROKEN, "infeasible: no regular workspace");
             }
             ui.weak(if known.verified {
                 "fine grid"
             } else {
-                "search grid, verifying…"
+                "reference grid, verifying…"
             });
         });
         ui.end_row();
         if let Some(phi) = evaluation.home_phi_deg {
-            ui.label("home φ_c");
+            ui.label("home orientation φ_c");
             ui.label(format!("{phi}° ± {}°", 0.5 * model.workspace.rotation_range_deg));
             ui.end_row();
         }
     });
-    // Mass by part, as a bar in two colours.
+    // The masses of legs and platform, as a bar in two colours.
     let total = (legs + platform).max(f64::MIN_POSITIVE);
     let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 14.0), Sense::hover());
     let split = rect.left() + rect.width() * (legs / total) as f32;
@@ -182,7 +182,7 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
 }
 
 fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
-    ui.label("constraints: least value over the workspace against its threshold");
+    ui.label("constraints: smallest value over the workspace, relative to the threshold");
     let mut worst = None;
     Grid::new("constraints")
         .num_columns(4)
@@ -192,7 +192,7 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
                 let name = report.constraint.name().replace('_', " ");
                 if !report.asked {
                     ui.weak(report.constraint.id());
-                    ui.weak(format!("{name}, not asked"));
+                    ui.weak(format!("{name}, not required"));
                 } else if report.active {
                     ui.colored_label(theme::ACTIVE, report.constraint.id());
                     ui.colored_label(theme::ACTIVE, format!("{name}, active"));
@@ -201,7 +201,7 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
                     ui.label(name);
                 }
                 margin_bar(ui, report);
-                let hover = "moves the platform to where the value is least";
+                let hover = "moves the platform to the worst pose, where the value is smallest";
                 if report.pose.is_some() && ui.small_button("pose").on_hover_text(hover).clicked() {
                     worst = Some(report.constraint);
                 }
@@ -209,7 +209,7 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
             }
         });
     if let Some(nearest) = session.model().nearest(&known.evaluation) {
-        let words = format!("nearest bodies: {}", text::clearance(&nearest));
+        let words = format!("nearest pair of members: {}", text::clearance(&nearest));
         if nearest.distance < 0.0 {
             ui.colored_label(theme::BROKEN, words);
         } else {
@@ -221,14 +221,14 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
     }
 }
 
-/// A margin as a bar from its threshold: to the right where the constraint holds.
+/// Draws a margin as a bar that begins at the threshold and extends to the right if the constraint is satisfied.
 fn margin_bar(ui: &mut Ui, report: &ConstraintReport) {
     const WIDTH: f32 = 96.0;
     let (rect, response) = ui.allocate_exact_size(Vec2::new(WIDTH, 14.0), Sense::hover());
     let painter = ui.painter_at(rect);
     let middle = rect.left() + 0.3 * WIDTH;
     painter.rect_filled(rect, 2.0, Color32::from_gray(128).gamma_multiply(0.25));
-    // A margin of 1 is half the room that is left: large ones differ little.
+    // Compresses the absolute margin into [0, 1): 1 takes half of the width, and large margins differ little.
     let share = |margin: f64| (margin.abs() / (1.0 + margin.abs())) as f32;
     let color = if !report.asked {
         Color32::from_gray(128)
@@ -250,7 +250,7 @@ fn margin_bar(ui: &mut Ui, report: &ConstraintReport) {
     painter.vline(middle, rect.y_range(), (1.0, theme::ink(ui)));
     let unit = report.constraint.unit();
     let text = format!(
-        "{}: least value {} {unit}, threshold {} {unit}, margin {:+.1} %",
+        "{}: smallest value {} {unit}, threshold {} {unit}, margin {:+.1} %",
         report.constraint.id(),
         report.value.map_or_else(|| "none".to_owned(), theme::number),
         theme::number(report.threshold),

@@ -1,23 +1,23 @@
-//! What of the design is drawn in 3-D.
+//! The layers panel: what is drawn of the selected design in 3-D.
 
 use egui::{Slider, Ui};
 
 use crate::explorer::Session;
 use crate::scene::{EllipsoidKind, Field};
 
-/// The panel of the layers.
+/// The layers panel.
 #[derive(Default)]
 pub struct LayersPanel;
 
 impl LayersPanel {
-    /// The panel.
+    /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let layers = &mut session.staging.layers;
         for (flag, name) in [
             (&mut layers.legs, "Legs"),
             (&mut layers.platform, "Platform"),
             (&mut layers.labels, "Labels"),
-            (&mut layers.clearance, "Nearest bodies"),
+            (&mut layers.clearance, "Nearest pair of members"),
             (&mut layers.workspace, "Regular workspace"),
             (&mut layers.singularities, "Singularities"),
             (&mut layers.configuration, "Configuration space"),
@@ -41,14 +41,14 @@ impl LayersPanel {
         };
         let mut degrees = (session.staging.heatmap_phi.unwrap_or(home.phi) - home.phi).to_degrees();
         ui.horizontal(|ui| {
-            let label = ui.label("at φ_c +");
+            let label = ui.label("at φ = φ_c +");
             let slider = ui
                 .add(Slider::new(&mut degrees, -90.0..=90.0).suffix("°"))
                 .labelled_by(label.id);
             if slider.changed() {
                 session.staging.heatmap_phi = Some(home.phi + degrees.to_radians());
             }
-            if ui.button("follow pose").clicked() {
+            if ui.button("use φ of the pose").clicked() {
                 session.staging.heatmap_phi = session.pose().map(|pose| pose.phi);
             }
         });

@@ -1,4 +1,4 @@
-//! The panels, one a file.
+//! The panels, one per file.
 
 mod choose;
 mod compare;
@@ -31,32 +31,32 @@ use super::files::Purpose;
 /// A panel of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Panel {
-    /// The run.
+    /// Settings, controls and progress of the run.
     Run,
     /// The study's settings.
     Study,
-    /// The scatter.
+    /// The scatter plot.
     Scatter,
-    /// The embedded viewer.
+    /// The embedded 3-D viewer.
     Scene,
-    /// The design in the light.
+    /// The inspector of the selected design.
     Design,
-    /// Its pose.
+    /// The pose of the selected design.
     Pose,
-    /// What is drawn.
+    /// Layers that are drawn in 3-D.
     Layers,
     /// Pinned designs side by side.
     Compare,
-    /// Help in choosing, and the filter.
+    /// Decision support, and the filter.
     Choose,
     /// The front as a table.
     Table,
-    /// Parallel coordinates.
+    /// The plot in parallel coordinates.
     Parallel,
 }
 
 impl Panel {
-    /// All of them.
+    /// All panels.
     pub const ALL: [Panel; 11] = [
         Panel::Run,
         Panel::Study,
@@ -71,14 +71,14 @@ impl Panel {
         Panel::Parallel,
     ];
 
-    /// Title of its tab.
+    /// Returns the title of the panel's tab.
     pub fn title(self) -> &'static str {
         match self {
             Panel::Run => "Run",
             Panel::Study => "Study",
             Panel::Scatter => "Scatter",
             Panel::Scene => "3-D",
-            Panel::Design => "Design",
+            Panel::Design => "Inspector",
             Panel::Pose => "Pose",
             Panel::Layers => "Layers",
             Panel::Compare => "Compare",
@@ -89,12 +89,12 @@ impl Panel {
     }
 }
 
-/// The state of all panels but the embedded viewer.
+/// State of all panels except the embedded viewer.
 #[derive(Default)]
 pub struct Panels {
     run: RunPanel,
     study: StudyPanel,
-    /// The scatter.
+    /// The scatter panel.
     pub scatter: Scatter,
     design: Inspector,
     pose: PosePanel,
@@ -106,7 +106,7 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Draws a panel; tells which file it asks for.
+    /// Draws a panel. Returns the purpose of the file dialog that the panel requests, if any.
     pub fn ui(&mut self, panel: Panel, ui: &mut Ui, session: &mut Session) -> Option<Purpose> {
         match panel {
             Panel::Run => self.run.ui(ui, session),
@@ -124,7 +124,7 @@ impl Panels {
             }
             Panel::Table => self.table.ui(ui, session),
             Panel::Parallel => self.parallel.ui(ui, session),
-            // Drawn by the window, which has the viewer.
+            // Drawn by the window, which owns the viewer.
             Panel::Scene => {}
         }
         None

@@ -8,25 +8,25 @@ use kinefront_model::evaluation::{Constraint, Model};
 use crate::explorer::{Better, Quantity, Session, theme};
 use kinefront_model::mechanism::VARIABLES;
 
-/// Designs beside the front that are drawn, evenly over all of them: more lines would be a grey sheet.
+/// Largest number of designs drawn besides the front, sampled evenly: more lines could not be told apart.
 const SAMPLE: usize = 800;
 
-/// The panel of parallel coordinates.
+/// The panel with parallel coordinates.
 #[derive(Default)]
 pub struct ParallelPanel {
-    /// Where a brush began: its axis and value.
+    /// Index of the axis being brushed, and the value at which the brush began.
     brushing: Option<(usize, f64)>,
-    /// Lines as drawn last, and what they show.
+    /// The lines that were drawn last, and the state that they show.
     drawn: Option<(Drawn, Arc<Mesh>)>,
     ranges: Vec<[f64; 2]>,
 }
 
-/// What the lines depend on.
+/// State that the lines depend on.
 #[derive(PartialEq)]
 struct Drawn {
     rect: Rect,
     era: u64,
-    /// Designs, in steps: lines are built anew now and then while a run goes on.
+    /// Number of designs, rounded down to a power of two: during a run, the lines are rebuilt only when it doubles.
     count: usize,
     front: Vec<usize>,
     filter: String,
@@ -45,14 +45,14 @@ fn axes(model: &Model) -> Vec<Quantity> {
 }
 
 impl ParallelPanel {
-    /// The panel.
+    /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ui.horizontal_wrapped(|ui| {
-            ui.weak("drag along an axis to brush it, click it to lift the brush");
-            if ui.button("Lift all").clicked() {
+            ui.weak("drag along an axis to set its range, click the axis to clear it");
+            if ui.button("Clear all ranges").clicked() {
                 session.history.edit(|document| document.filter.ranges.clear());
             }
-            if ui.button("Copy ranges").clicked() {
+            if ui.button("Copy filter").clicked() {
                 ui.ctx().copy_text(session.document().filter.to_text());
             }
         });
@@ -136,7 +136,7 @@ impl ParallelPanel {
         self.brush(&response, session, &axes, plot);
     }
 
-    /// Height of a value on an axis.
+    /// Returns the vertical screen coordinate of a value on an axis.
     fn height(&self, index: usize, axis: Quantity, value: f64, plot: Rect) -> f32 {
         let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
         let scale = |value: f64| {
@@ -150,7 +150,7 @@ impl ParallelPanel {
         plot.bottom() - plot.height() * share.clamp(-0.02, 1.02) as f32
     }
 
-    /// Value at a height of an axis.
+    /// Returns the value at a vertical screen coordinate of an axis.
     fn value(&self, index: usize, axis: Quantity, y: f32, plot: Rect) -> f64 {
         let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
         let share = f64::from(((plot.bottom() - y) / plot.height()).clamp(0.0, 1.0));
@@ -194,7 +194,7 @@ impl ParallelPanel {
     fn lines(&mut self, ui: &Ui, session: &Session, axes: &[Quantity], plot: Rect) {
         let store = session.store();
         let dark = ui.visuals().dark_mode;
-        // Up to a power of two designs look the same: the sample changes when their number doubles.
+        // The sample changes only when the number of designs has doubled.
         let drawn = Drawn {
             rect: plot,
             era: session.era(),
@@ -225,7 +225,7 @@ impl ParallelPanel {
                     });
                 let range = match axis {
                     Quantity::Variable(variable) => session.study().bounds.range(*variable),
-                    // Margins run away upwards: what matters is near 0.
+                    // Margins have no upper bound, and those near 0 matter most.
                     Quantity::Margin(_) => [range[0].min(0.0), range[1].clamp(0.1, 10.0)],
                     _ => range,
                 };
@@ -254,7 +254,7 @@ impl ParallelPanel {
                 before = Some(at);
             }
         };
-        // The dimmed first, the front last.
+        // Dimmed designs are drawn first and the front last, so that it is on top.
         for lit in [false, true] {
             for &id in sample.iter().filter(|&&id| sieve.passes(id) == lit) {
                 let color = theme::architecture(store.architecture(id), dark);
@@ -275,7 +275,7 @@ impl ParallelPanel {
     }
 }
 
-/// A line of a mesh: one mesh holds thousands, which are built once and not in every frame.
+/// Adds a line to a mesh: one mesh holds thousands of lines, which are built once and not in every frame.
 fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, width: f32, color: Color32) {
     let along = (to - from).normalized();
     let across = Vec2::new(-along.y, along.x) * (0.5 * width);

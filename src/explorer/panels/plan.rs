@@ -1,4 +1,4 @@
-//! The manipulator seen from above: where things are on the screen, and what is under the pointer.
+//! The manipulator seen from above: conversion to screen coordinates, drawing, and the member under the pointer.
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2};
 use glam::{DVec2, DVec3};
@@ -10,13 +10,13 @@ use kinefront_model::mechanism::{Design, MemberKind};
 use crate::scene::{Part, Scene, Solid, SolidShape};
 use kinefront_model::spatial::nearest_on_segment;
 
-/// How far beside a thin member the pointer may be, in points.
+/// Largest distance of the pointer from the axis of a thin member at which the pointer still finds it \[points\].
 const CATCH: f32 = 4.0;
 
-/// From metres to the screen.
+/// Conversion between metres and screen coordinates.
 pub(super) struct Plan {
     centre: Pos2,
-    /// Points of the screen per metre.
+    /// Screen points per metre.
     pub scale: f64,
 }
 
@@ -41,7 +41,8 @@ impl Plan {
         DVec2::new(f64::from(offset.x), -f64::from(offset.y)) / self.scale
     }
 
-    /// The member under the pointer, the topmost where there are several; thin ones can be caught a little beside.
+    /// Returns the member under the pointer, the topmost if there are several. The pointer may be slightly beside a
+    /// thin member.
     pub fn pointed_at<'a>(&self, members: &'a [MemberReport], pointer: Pos2) -> Option<&'a MemberReport> {
         let at = self.world(pointer);
         let beside = f64::from(CATCH) / self.scale;
@@ -49,13 +50,13 @@ impl Plan {
             .iter()
             .filter(|member| distance(at, member) <= member.radius.max(beside))
             .max_by(|a, b| {
-                // Of those in one layer the one whose axis is nearer.
+                // Among members of one layer, the one with the nearer axis is returned.
                 let nearer = || distance(at, b).total_cmp(&distance(at, a));
                 a.from.z.total_cmp(&b.from.z).then_with(nearer)
             })
     }
 
-    /// Outlines a member.
+    /// Draws the outline of a member.
     pub fn outline(&self, painter: &Painter, member: &MemberReport, color: Color32) {
         let ends = [member.from, member.to].map(|end| self.screen(end.truncate()));
         let side = (ends[1] - ends[0]).normalized().rot90() * ((member.radius * self.scale) as f32).max(2.0);
@@ -64,7 +65,7 @@ impl Plan {
     }
 }
 
-/// Draws a scene.
+/// Draws a scene as seen from above.
 pub(super) fn paint(ui: &Ui, painter: &egui::Painter, plan: &Plan, scene: &Scene) {
     let place = |at: DVec3| plan.screen(at.truncate());
     let dark = ui.visuals().dark_mode;
@@ -78,7 +79,7 @@ pub(super) fn paint(ui: &Ui, painter: &egui::Painter, plan: &Plan, scene: &Scene
     for solid in solids {
         let color = theme::part(solid.part, dark);
         match solid.shape {
-            // A pin stands upright: a disc from above.
+            // A pin is vertical: it appears as a disc from above.
             SolidShape::Bar { from, radius, .. } if matches!(solid.part, Part::ActuatedJoint | Part::PassiveJoint) => {
                 painter.circle_filled(place(from), ((radius * plan.scale) as f32).max(2.5), color);
             }
@@ -118,7 +119,7 @@ pub(super) fn paint(ui: &Ui, painter: &egui::Painter, plan: &Plan, scene: &Scene
     }
 }
 
-/// Height of a solid's top.
+/// Returns the height of a solid's top \[m\].
 fn top(shape: &SolidShape) -> f64 {
     match *shape {
         SolidShape::Bar { from, to, radius } if from.z == to.z => from.z + radius,
@@ -127,13 +128,13 @@ fn top(shape: &SolidShape) -> f64 {
     }
 }
 
-/// Distance of a point from a member's axis.
+/// Returns the distance of a point from a member's axis in the plane \[m\].
 fn distance(at: DVec2, member: &MemberReport) -> f64 {
     let (from, to) = (member.from.truncate(), member.to.truncate());
     at.distance(from.lerp(to, nearest_on_segment(at, from, to)))
 }
 
-/// What is known of a member.
+/// Shows the data of a member.
 pub(super) fn card(ui: &mut Ui, report: &MemberReport) {
     ui.strong(name(&report.member));
     ui.label(format!(
@@ -154,21 +155,21 @@ pub(super) fn card(ui: &mut Ui, report: &MemberReport) {
     let of_all = |what: &str, share: Share| {
         let percent = |share: f64| format!("{:.1} %", 100.0 * share);
         format!(
-            "{what} of the compliance here: {} in the plane, {} along z, {} about z",
+            "{what} to the compliance at this pose: {} in the plane, {} along z, {} about z",
             percent(share.in_plane),
             percent(share.vertical),
             percent(share.rotation)
         )
     };
     if let Some(share) = report.share.filter(|_| report.member.kind != MemberKind::Slider) {
-        ui.label(of_all("share", share));
+        ui.label(of_all("contribution", share));
     }
     if let Some(share) = report.actuator {
-        ui.label(of_all("its actuator's share", share));
+        ui.label(of_all("contribution of its actuator", share));
     }
 }
 
-/// A member's name for people.
+/// Returns the display name of a member.
 fn name(member: &Member) -> String {
     let kind = member.kind.name().replace('_', " ");
     let number = member.leg + 1;

@@ -1,4 +1,4 @@
-//! The pose: the manipulator from above, its platform dragged and turned by the mouse, and what holds there.
+//! The pose panel: the manipulator from above, its platform moved and turned by the mouse, and the values at the pose.
 
 use egui::{Align2, Color32, FontId, Grid, Sense, Slider, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 use glam::DVec2;
@@ -9,27 +9,28 @@ use kinefront_model::mechanism::Design;
 use crate::scene::{Tour, manipulator, regular_workspace, tour};
 use kinefront_model::spatial::Pose;
 
-/// Poses around each rim of the tour, and how many are passed in a second.
+/// Number of poses around each rim of the tour.
 const TOUR_STEPS: usize = 90;
+/// Number of poses of the tour shown per second.
 const TOUR_RATE: f64 = 30.0;
 
-/// What the mouse has hold of.
+/// Part of the platform that the mouse drags.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Grip {
-    /// The platform, this far from `P` \[m\].
+    /// The platform; offset of the grabbed point from `P` \[m\].
     Move(DVec2),
-    /// Its rim, turned this far from the platform's own angle \[rad\].
+    /// The rim; angle from the platform's orientation to the grabbed point \[rad\].
     Turn(f64),
 }
 
-/// A tour being played.
+/// A tour of the regular workspace that is being played.
 struct Playing {
     design: Design,
     tour: Tour,
     at: f64,
 }
 
-/// The panel of the pose.
+/// The pose panel.
 #[derive(Default)]
 pub struct PosePanel {
     grip: Option<Grip>,
@@ -38,10 +39,10 @@ pub struct PosePanel {
 }
 
 impl PosePanel {
-    /// The panel.
+    /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let (Some(known), Some(pose), Some(home)) = (session.known().cloned(), session.pose(), session.home()) else {
-            ui.weak("no design in the light");
+            ui.weak("no design is selected");
             return;
         };
         let evaluation = &known.evaluation;
@@ -49,7 +50,7 @@ impl PosePanel {
         self.sliders(ui, session, pose, home, evaluation.design.base_radius);
         match &self.stopped {
             Some(reason) => ui.colored_label(theme::BROKEN, format!("stopped: {reason}")),
-            None => ui.weak("drag the platform to move it, its rim to turn it; point at a bar to learn about it"),
+            None => ui.weak("drag the platform to move it, its rim to turn it; point at a member to see its data"),
         };
         let pose = session.pose().unwrap_or(pose);
         numbers(ui, session, &evaluation.design, &pose);
@@ -72,7 +73,7 @@ impl PosePanel {
             let button = egui::Button::selectable(playing, if playing { "⏹ Tour" } else { "▶ Tour" });
             if ui
                 .add_enabled(cylinder.is_some(), button)
-                .on_hover_text("around the regular workspace")
+                .on_hover_text("moves the platform around the rim of the regular workspace")
                 .clicked()
             {
                 self.playing = match (playing, cylinder) {
@@ -96,7 +97,7 @@ impl PosePanel {
     fn sliders(&mut self, ui: &mut Ui, session: &mut Session, pose: Pose, home: Pose, reach: f64) {
         let mut target = pose;
         let turn = std::f64::consts::PI;
-        // The same orientation on the slider, which is centred on home.
+        // Whole turns are removed from the orientation: the slider covers one turn, centred on the home orientation.
         let whole_turns = pose.phi - (home.phi - turn + (pose.phi - home.phi + turn).rem_euclid(2.0 * turn));
         target.phi -= whole_turns;
         let axes: [(&str, &mut f64, std::ops::RangeInclusive<f64>, bool); 3] = [
@@ -143,7 +144,7 @@ impl PosePanel {
             ui.painter_at(rect).text(
                 rect.center(),
                 Align2::CENTER_CENTER,
-                "this pose is not reached",
+                "the manipulator cannot reach this pose",
                 FontId::proportional(14.0),
                 theme::BROKEN,
             );
@@ -254,7 +255,7 @@ fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
     let unit = design.architecture.actuator().unit();
     let actuators = report.actuators.map(theme::number).join(", ");
     ui.weak(format!(
-        "actuators {actuators} {unit}; nearest limit {} m",
+        "actuators {actuators} {unit}; limit margin {} m",
         theme::number(report.slack)
     ));
 }

@@ -1,4 +1,4 @@
-//! The run: what is searched and how, start to end, and how it goes.
+//! The run panel: the study and the optimizer's settings, the run's controls, and its progress.
 
 use egui::{ComboBox, DragValue, Grid, ProgressBar, Ui};
 use egui_plot::{Line, Plot, PlotPoints};
@@ -6,12 +6,12 @@ use egui_plot::{Line, Plot, PlotPoints};
 use crate::explorer::{Phase, Session, StudyEditor, theme};
 use crate::study::{AlgorithmName, BUILTIN, Outcome};
 
-/// The panel of the run.
+/// The run panel.
 #[derive(Default)]
 pub struct RunPanel;
 
 impl RunPanel {
-    /// The panel.
+    /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         study(ui, session);
         settings(ui, session);
@@ -81,7 +81,7 @@ fn settings(ui: &mut Ui, session: &mut Session) {
                     .speed(0.1),
             )
             .labelled_by(label.id);
-            if ui.button("random").on_hover_text("a seed by chance").clicked() {
+            if ui.button("random").on_hover_text("draws a random seed").clicked() {
                 study.optimizer.seed = random_seed();
             }
         });
@@ -110,10 +110,10 @@ fn settings(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// A seed of up to four digits, which can be told to others.
+/// Returns a random seed of up to four digits, which is short enough to pass on to others.
 fn random_seed() -> u64 {
     let mut bytes = [0; 2];
-    // Without a source of chance the seed stays a number like any other.
+    // Without a source of randomness the seed is 0, which is as valid as any other.
     let _ = getrandom::fill(&mut bytes);
     u64::from(u16::from_le_bytes(bytes)) % 10_000
 }
@@ -144,21 +144,21 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
         let can_step = matches!(session.phase(), Phase::Searching | Phase::Paused);
         if ui
             .add_enabled(can_step, egui::Button::new("⏭ Step"))
-            .on_hover_text("one generation, then hold")
+            .on_hover_text("runs one generation, then pauses")
             .clicked()
         {
             session.step();
         }
         if ui
             .add_enabled(can_step, egui::Button::new("⏹ Stop"))
-            .on_hover_text("what was found is verified and kept")
+            .on_hover_text("ends the search; its front is verified and all designs are kept")
             .clicked()
         {
             session.stop();
         }
         if ui
             .add_enabled(sound && session.is_running(), egui::Button::new("⟲ Restart"))
-            .on_hover_text("from the beginning, with the study as it stands here")
+            .on_hover_text("discards the current run and starts again with the study as edited here")
             .clicked()
         {
             session.start();
@@ -190,12 +190,12 @@ fn progress(ui: &mut Ui, session: &Session) {
             format!("{rate:.0} designs/s, {left:.0} s left")
         }
         Phase::Paused => "paused".to_owned(),
-        Phase::Verifying { .. } => "search done".to_owned(),
+        Phase::Verifying { .. } => "search finished".to_owned(),
         Phase::Finished(Outcome::Completed) => format!("finished in {seconds:.1} s"),
-        Phase::Finished(Outcome::TimeUp) => format!("time was up after {seconds:.1} s"),
-        Phase::Finished(Outcome::Stagnated) => format!("hardly gained any more after {seconds:.1} s"),
+        Phase::Finished(Outcome::TimeUp) => format!("time limit reached after {seconds:.1} s"),
+        Phase::Finished(Outcome::Stagnated) => format!("stagnated after {seconds:.1} s"),
         Phase::Finished(Outcome::Stopped) => format!("stopped after {seconds:.1} s"),
-        Phase::Failed => "broke off".to_owned(),
+        Phase::Failed => "failed".to_owned(),
         Phase::Opened(path) => format!(
             "opened {}",
             path.file_name().unwrap_or(path.as_os_str()).to_string_lossy()
@@ -217,7 +217,7 @@ fn progress(ui: &mut Ui, session: &Session) {
 
 fn curve(ui: &mut Ui, session: &Session) {
     let generations = session.generations();
-    // As many points as a screen can show.
+    // About as many points as a screen can show.
     let every = generations.len().div_ceil(600).max(1);
     let points: Vec<[f64; 2]> = generations
         .iter()

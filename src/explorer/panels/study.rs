@@ -1,4 +1,4 @@
-//! The study's settings: a field for each, or the file's text; both are checked as typed.
+//! The study panel: the settings as fields or as the text of the study file; both are checked as they are typed.
 
 use egui::{CollapsingHeader, DragValue, ScrollArea, TextEdit, Ui};
 use toml::{Table, Value};
@@ -6,16 +6,16 @@ use toml::{Table, Value};
 use crate::explorer::{Session, theme};
 use crate::study::{AlgorithmName, Fault, Study};
 
-/// The panel of the study.
+/// The study panel.
 #[derive(Default)]
 pub struct StudyPanel {
     as_text: bool,
-    /// The text as typed, while it is not sound.
+    /// The text as typed, while it is invalid.
     typed: Option<String>,
 }
 
 impl StudyPanel {
-    /// The panel. Tells whether the study is to be saved.
+    /// Draws the panel. Returns whether it requests to save the study.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) -> bool {
         let mut save = false;
         ui.horizontal(|ui| {
@@ -32,7 +32,7 @@ impl StudyPanel {
             ui.colored_label(theme::BROKEN, format!("`{}` {}", fault.key, fault.message));
         }
         if faults.is_empty() {
-            ui.colored_label(theme::SOUND, "sound");
+            ui.colored_label(theme::SOUND, "valid");
             self.typed = None;
         }
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
@@ -57,7 +57,8 @@ impl StudyPanel {
     }
 }
 
-/// A field for every value of the study, made from the study itself: a setting that is added to it is here.
+/// Shows a field for every value of the study. The fields follow from the study's own TOML table, so a new setting
+/// appears without a change here.
 fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault]) {
     let Ok(before) = Table::try_from(session.editor.study()) else {
         return;
@@ -67,13 +68,14 @@ fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault]) {
     if table != before {
         match table.try_into::<Study>() {
             Ok(study) => session.editor.change(|edited| *edited = study),
-            // Only a text that names nothing, as an architecture, gets here: the field keeps its sound value.
-            Err(error) => session.tell_error(format!("the study cannot be: {}", error.message())),
+            // Only a text that must be a known name but is none, such as a working mode, leads here: the field keeps
+            // its last valid value.
+            Err(error) => session.tell_error(format!("invalid study: {}", error.message())),
         }
     }
 }
 
-/// Settings that a study may leave out, with the value that they begin with.
+/// Optional settings of a study: section, key, and initial value.
 const OPTIONAL: [(&str, &str, f64); 5] = [
     ("requirements", "clearance_min_m", 0.005),
     ("requirements", "k_xy_min_n_per_m", 1e6),
@@ -86,7 +88,7 @@ fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
     for (section, key, value) in OPTIONAL {
         if section == path {
             let mut stated = table.contains_key(key);
-            if ui.checkbox(&mut stated, format!("state {key}")).changed() {
+            if ui.checkbox(&mut stated, format!("set {key}")).changed() {
                 if stated {
                     table.insert(key.to_owned(), Value::Float(value));
                 } else {
@@ -108,7 +110,7 @@ fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
                     .default_open(matches!(key.as_str(), "bounds" | "requirements"))
                     .show(ui, |ui| section(ui, &path, inner, faults));
             }
-            // The architectures have their own place; the references are edited as text.
+            // Other arrays, the architectures and the references, are edited as text.
             Value::Array(items) if items.iter().all(|item| item.is_float() || item.is_integer()) => {
                 ui.horizontal(|ui| {
                     let label = ui.label(key.as_str());

@@ -1,4 +1,4 @@
-//! The front as a table: sorted, filtered, starred, with notes.
+//! The front panel: a table of the front, which can be sorted and searched, with stars and notes.
 
 use egui::{Align, Label, RichText, Sense, Ui};
 use egui_extras::{Column, TableBuilder};
@@ -7,7 +7,7 @@ use kinefront_model::evaluation::Constraint;
 use crate::explorer::{FrontEntry, Origin, Quantity, Session, theme};
 use kinefront_model::mechanism::VARIABLES;
 
-/// What the table is sorted by.
+/// Column by which the table is sorted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Key {
     Star,
@@ -16,7 +16,7 @@ enum Key {
     Number(Quantity),
 }
 
-/// The panel of the front's table.
+/// The panel with the table of the front.
 pub struct TablePanel {
     key: Key,
     descending: bool,
@@ -38,12 +38,12 @@ impl Default for TablePanel {
 }
 
 impl TablePanel {
-    /// The panel.
+    /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ui.horizontal_wrapped(|ui| {
             let field = ui.add(
                 egui::TextEdit::singleline(&mut self.search)
-                    .hint_text("search: 3-PRR, g3, a note")
+                    .hint_text("search: 3-PRR, g3, text of a note")
                     .desired_width(180.0),
             );
             ui.ctx()
@@ -51,7 +51,7 @@ impl TablePanel {
             ui.checkbox(&mut self.starred_only, "starred only");
             let verified = session.front().iter().filter(|entry| entry.verified).count();
             ui.weak(format!(
-                "{} on the front, {verified} verified on the fine grid",
+                "{} designs on the front, {verified} verified on the fine grid",
                 session.front().len()
             ));
         });
@@ -176,7 +176,7 @@ impl TablePanel {
         }
     }
 
-    /// Places on the front that are listed, in order.
+    /// Returns the positions on the front of the listed designs, in the order of the table.
     fn order(&self, session: &Session) -> Vec<usize> {
         let document = session.document();
         let search = self.search.trim().to_lowercase();

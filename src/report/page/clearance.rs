@@ -1,4 +1,4 @@
-//! Bodies that collide, and what it costs to keep them apart.
+//! Clearance between members, and the cost of requiring it.
 
 use maud::{Markup, html};
 
@@ -18,17 +18,21 @@ pub(super) fn clearance(report: &Report) -> Markup {
     html! {
         p {
             @match model.thresholds.clearance {
-                Some(least) => { "The study asks that bodies which are not joined keep " (short(1e3 * least)) " mm from each other over the regular workspace (g7)." }
-                None => "The study lets bodies collide: the clearance below is told, but nothing is asked of it."
+                Some(least) => {
+                    "The study requires a clearance of at least " (short(1e3 * least)) " mm between members that are "
+                    "not joined, over the whole regular workspace (g7)."
+                }
+                None => "The study allows members to collide: the clearance below is reported but not required."
             }
-            " A bar is a cylinder with round ends about its axis; legs, sliders and the platform's bars lie in layers, and a slider must not stick out beyond its rail. "
-            "Below 0 bodies overlap."
+            " A bar is modelled as a cylinder with rounded ends; legs, sliders and the bars of the platform lie in "
+            "layers, and a slider must not protrude beyond the end of its rail. A negative clearance means that "
+            "members overlap."
         }
         div.scroll { table {
-            caption { "Least clearance over the regular workspace of the designs drawn, on the fine grid." }
+            caption { "Smallest clearance over the regular workspace of each drawn design, on the fine grid." }
             thead { tr {
-                th { "architecture" } th.number { "designs" } th.number { "that collide" }
-                th.number { "least [mm]" } th.number { "median [mm]" } th.number { "largest [mm]" } th { "the nearest two of the worst" }
+                th { "architecture" } th.number { "designs" } th.number { "designs with collisions" }
+                th.number { "smallest [mm]" } th.number { "median [mm]" } th.number { "largest [mm]" } th { "nearest pair of members of the worst design" }
             } }
             tbody { @for (architecture, front) in &report.fronts.alone {
                 @let clearances = sorted(front);
@@ -48,14 +52,14 @@ pub(super) fn clearance(report: &Report) -> Markup {
     }
 }
 
-/// The clearances of the designs drawn, in order \[m\].
+/// Returns the clearances of the drawn designs in ascending order \[m\].
 fn sorted(front: &Front) -> Vec<f64> {
     let mut clearances: Vec<f64> = front.shown().filter_map(Evaluation::clearance).collect();
     clearances.sort_by(f64::total_cmp);
     clearances
 }
 
-/// The fronts with and without the clearance beside each other.
+/// Compares the fronts with and without a required clearance.
 fn price(report: &Report, cost: &ClearanceCost<'_>) -> Markup {
     let found = report.fronts.alone.iter().filter_map(|&(architecture, _)| {
         let (with, without) = (cost.with.of(architecture)?, cost.without.of(architecture)?);
@@ -63,25 +67,25 @@ fn price(report: &Report, cost: &ClearanceCost<'_>) -> Markup {
     });
     let clearance = short(1e3 * cost.clearance);
     html! {
-        h3 { "What " (clearance) " mm cost" }
+        h3 { "Cost of a clearance of " (clearance) " mm" }
         p {
-            "Every architecture searched anew, alone, with " (report.options.sensitivity.unwrap_or_default())
-            " evaluations, once with bodies that may collide and once with " (clearance) " mm between them."
+            "Each architecture is searched again on its own with " (report.options.sensitivity.unwrap_or_default())
+            " evaluations, once with members that may collide and once with a required clearance of " (clearance) " mm."
         }
         (figures(report, "clearance"))
         @for (architecture, with, without) in found {
             @let levels: Vec<f64> = levels(without.largest());
             div.scroll { table {
                 caption {
-                    (architecture) ": mass in motion of the lightest design with at least this workspace radius [kg]; the largest R_w is "
+                    (architecture) ": mass in motion [kg] of the lightest design with at least the given workspace radius. The largest R_w is "
                     (number(without.largest())) " m without and " (number(with.largest())) " m with the clearance (" (change(with.largest() / without.largest())) "). "
-                    "Of the " (without.shown.len()) " designs found without it, " (sorted(without).iter().filter(|clearance| **clearance < 0.0).count()) " collide."
+                    "Of the " (without.shown.len()) " designs drawn of the front without it, " (sorted(without).iter().filter(|clearance| **clearance < 0.0).count()) " have collisions."
                 }
                 thead { tr { th { "R_w [m]" } @for level in &levels { th.number { (short(*level)) } } } }
                 tbody {
-                    tr { td { "may collide" } @for level in &levels { (optional(without.lightest(*level).map(|found| found.mass))) } }
-                    tr { td { (clearance) " mm" } @for level in &levels { (optional(with.lightest(*level).map(|found| found.mass))) } }
-                    tr { td { "difference" } @for level in &levels {
+                    tr { td { "members may collide" } @for level in &levels { (optional(without.lightest(*level).map(|found| found.mass))) } }
+                    tr { td { (clearance) " mm clearance" } @for level in &levels { (optional(with.lightest(*level).map(|found| found.mass))) } }
+                    tr { td { "change in mass" } @for level in &levels {
                         td.number { @match (with.lightest(*level), without.lightest(*level)) {
                             (Some(with), Some(without)) => (change(with.mass / without.mass)),
                             _ => "–",

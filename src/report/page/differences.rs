@@ -1,4 +1,4 @@
-//! Against a study's references and the paper: the table, the reasons, the claims.
+//! Comparison with the reference designs of the study and with the paper: values, causes of differences, claims.
 
 use maud::{Markup, html};
 
@@ -23,25 +23,25 @@ pub(super) fn references(report: &Report) -> Markup {
     };
     html! {
         div.scroll { table {
-            caption { "Masses in kg, lengths in m. “Stated” is what the source of the design prints, the rest is this model." }
+            caption { "Masses in kg, lengths in m. “Stated” values are from the source of the design; all others are from this model." }
             thead {
                 tr {
                     th { "design" } th { "architecture" }
                     @for variable in VARIABLES { th.number { (variable.symbol()) } }
                     th.number { "mass, stated" } th.number { "mass" }
-                    @if report.of_paper { th.number { "within rounding of the bars" } }
-                    th.number { "R_w, stated" } th.number { "R_w, reference grid" } th.number { "R_w, fine grid" } th { "active" }
+                    @if report.of_paper { th.number { "mass range for the rounded bar radii" } }
+                    th.number { "R_w, stated" } th.number { "R_w, reference grid" } th.number { "R_w, fine grid" } th { "active constraints" }
                 }
             }
             tbody { @for reference in &report.references { (stated(reference)) } }
         } }
-        h3 { "What was found instead" }
+        h3 { "Lighter designs found" }
         div.scroll { table {
-            caption { "The lightest design found with at least the workspace of each (fine grid)." }
+            caption { "The lightest design found with at least the workspace radius of each reference design (fine grid)." }
             thead { tr {
-                th { "instead of" } th.number { "mass" } th { "" } th { "architecture" }
+                th { "reference design" } th.number { "mass" } th { "" } th { "architecture" }
                 @for variable in VARIABLES { th.number { (variable.symbol()) } }
-                th.number { "mass" } th.number { "R_w" } th.number { "of its mass" }
+                th.number { "mass" } th.number { "R_w" } th.number { "ratio of the masses" }
             } }
             tbody { @for reference in &report.references { tr {
                 td { (reference.name) } (cell(reference.fine.mass)) td { "→" }
@@ -52,7 +52,7 @@ pub(super) fn references(report: &Report) -> Markup {
                         (cell(found.mass)) (cell(found.workspace_radius))
                         td.number { (percent(found.mass / reference.fine.mass)) }
                     }
-                    None => { td colspan="9" { @if reference.fine.is_feasible() { "nothing lighter" } @else { "not feasible here" } } }
+                    None => { td colspan="9" { @if reference.fine.is_feasible() { "no lighter design found" } @else { "infeasible in this model" } } }
                 }
             } } }
         } }
@@ -64,15 +64,15 @@ fn active(reference: &Reference) -> String {
     active.join(", ")
 }
 
-/// Hypervolume of a front, from the study's reference \[kg·m\].
+/// Computes the hypervolume of a front with respect to the reference mass of the study \[kg·m\].
 fn volume(report: &Report, front: &Front) -> f64 {
     let members = front.members.iter();
     let objectives = members.map(|member| [member.mass, -member.workspace_radius]);
     hypervolume(objectives, [report.study.hypervolume.reference_mass_kg, 0.0])
 }
 
-/// The reading under which a reference design comes nearest, by the ratio, to the `R_w` that is stated, and what it has
-/// there \[m\].
+/// Finds the variation under which the `R_w` of a reference design is nearest, by ratio, to the stated one; returns it
+/// with that `R_w` \[m\].
 fn nearest(report: &Report, place: usize, stated: f64) -> Option<(&Variation, f64)> {
     let off = |radius: f64| libm::log(radius.max(f64::MIN_POSITIVE) / stated).abs();
     let radii = report
@@ -82,7 +82,7 @@ fn nearest(report: &Report, place: usize, stated: f64) -> Option<(&Variation, f6
     radii.min_by(|(_, a), (_, b)| off(*a).total_cmp(&off(*b)))
 }
 
-/// How far an `R_w` may be from the printed one without calling for an explanation.
+/// Relative difference of `R_w` from the printed value up to which the page gives no explanation.
 const NEAR: f64 = 0.05;
 
 pub(super) fn explained(report: &Report) -> Markup {
@@ -94,9 +94,9 @@ pub(super) fn explained(report: &Report) -> Markup {
         ol {
             li {
                 strong { "Masses. " }
-                @if masses_agree { "Every printed mass lies within what the printed bar radii, rounded to a millimetre, allow." }
-                @else { "Not every printed mass lies within what the printed bar radii, rounded to a millimetre, allow." }
-                " The platform counts three bars: the printed equation has one, the printed table needs three."
+                @if masses_agree { "Every printed mass lies in the range that follows from bar radii rounded to a millimetre." }
+                @else { "Not every printed mass lies in the range that follows from bar radii rounded to a millimetre." }
+                " The mass of the platform is that of three bars: the printed equation has one, but the printed masses require three."
             }
             @for (place, reference) in report.references.iter().enumerate() {
                 @if let Some(stated) = reference.stated_radius {
@@ -104,22 +104,22 @@ pub(super) fn explained(report: &Report) -> Markup {
                         strong { "Workspace of " (reference.name) ". " }
                         @let ratio = reference.fine.workspace_radius / stated;
                         "Printed " (number(stated)) " m, here " (number(reference.fine.workspace_radius)) " m (" (change(ratio)) "); "
-                        (active(reference)) " stops it. "
+                        "the workspace is limited by " (active(reference)) ". "
                         @if (ratio - 1.0).abs() > NEAR {
                             @if let Some((variation, radius)) = nearest(report, place, stated) {
-                                @if variation.reading.is_none() { "No other reading tried below comes nearer. " }
+                                @if variation.reading.is_none() { "None of the alternative assumptions tried below comes closer. " }
                                 @else {
-                                    "Of the readings tried below, “" (variation.name()) "” comes nearest by the ratio, with "
+                                    "Of the alternative assumptions tried below, “" (variation.name()) "” comes closest by ratio, with "
                                     (number(radius)) " m (" (change(radius / stated)) "). "
                                 }
                             }
-                            "Its cause is not known, and no constant was bent for it. "
+                            "The cause of the difference is not known, and no constant of the model was adjusted to remove it. "
                         }
                     }
                 }
             }
             li {
-                strong { "Far lighter designs exist. " }
+                strong { "Much lighter designs exist. " }
                 @for reference in &report.references {
                     @if let Some(found) = &reference.beaten_by {
                         "With at least the workspace of " (reference.name) ": " (number(found.mass)) " kg instead of "
@@ -127,19 +127,21 @@ pub(super) fn explained(report: &Report) -> Markup {
                     }
                 }
                 @if let Some(rival) = report.rivals.as_ref().and_then(|rivals| rivals.joint.as_ref()) {
-                    "So does an algorithm after what is publicly known of MOGA-II, with the paper's settings, all architectures together and as many "
-                    "evaluations (grey in the figures): "
+                    "A reimplementation of MOGA-II, based on what is publicly known of it, also finds lighter designs "
+                    "(grey in the figures). With the settings of the paper, all architectures together and the same "
+                    "number of evaluations per search, it finds: "
                     @for reference in &report.references {
                         @if let Some(found) = rival.lightest(reference.fine.workspace_radius) {
                             (number(found.mass)) " kg for " (reference.name) ", "
                         }
                     }
-                    "and " (percent(volume(report, rival) / volume(report, &report.fronts.together))) " of the hypervolume found here. "
-                    "Under this model, then, the paper's search had not converged; or the paper's model asked for more than the paper says."
+                    "and " (percent(volume(report, rival) / volume(report, &report.fronts.together))) " of the hypervolume of the front of all architectures found here. "
+                    "Under this model, therefore, the search of the paper had not converged, or the model of the paper had requirements "
+                    "that the paper does not state."
                 }
             }
         }
-        h3 { "What the paper says, and what is found" }
+        h3 { "Claims of the paper and results of this report" }
         (claims(report))
         h3 { "Where the paper is silent or contradicts itself" }
         (silences())
@@ -154,21 +156,21 @@ fn claims(report: &Report) -> Markup {
             .flat_map(|(architecture, trends)| trends.iter().map(move |trend| (architecture, trend)))
     };
     html! { div.scroll { table {
-        thead { tr { th { "the paper" } th { "here" } } }
+        thead { tr { th { "claim of the paper" } th { "result here" } } }
         tbody {
             (comparisons(report))
             tr {
-                td { "The larger R_w, the larger every design variable." }
+                td { "Every design variable increases with R_w." }
                 @let ranked: Vec<_> = trends().filter_map(|(architecture, trend)| Some((architecture, trend, trend.rank_correlation?))).collect();
                 @match ranked.iter().min_by(|a, b| a.2.total_cmp(&b.2)) {
                     Some((architecture, trend, least)) => {
                         @let class = if *least > 0.95 { "holds" } else if *least > 0.6 { "partly" } else { "fails" };
                         (judged(class, format!(
-                            "rank correlation at least {least:.2} ({} of the {architecture}); {} of {} above 0.95, variables at a bound left out",
+                            "smallest rank correlation {least:.2} ({} of the {architecture}); {} of {} above 0.95, variables at a bound excluded",
                             trend.variable.symbol(), ranked.iter().filter(|(.., value)| *value > 0.95).count(), ranked.len(),
                         )))
                     }
-                    None => td { "too few designs to say" }
+                    None => td { "not determined: too few designs" }
                 }
             }
             tr {
@@ -192,9 +194,9 @@ fn claims(report: &Report) -> Markup {
                 }
             }
             tr {
-                td { "r_p is rather quadratic in R_w." }
+                td { "r_p is quadratic rather than linear in R_w." }
                 td {
-                    "R² of parabola and line: "
+                    "R² of the parabola and of the straight line: "
                     @for (index, (architecture, trend)) in trends()
                         .filter(|(_, trend)| trend.variable == Variable::PlatformBarRadius)
                         .enumerate()
@@ -203,7 +205,7 @@ fn claims(report: &Report) -> Markup {
                         (architecture) " "
                         @match (&trend.quadratic, &trend.linear, trend.is_quadratic()) {
                             (Some(parabola), Some(line), Some(holds)) => {
-                                @let (class, word) = if holds { ("holds", "holds") } else { ("fails", "a line does as well") };
+                                @let (class, word) = if holds { ("holds", "holds") } else { ("fails", "an upward parabola is not clearly better") };
                                 span class=(class) { (format!("{:.3} and {:.3}, {word}", parabola.r_squared, line.r_squared)) }
                             }
                             _ => (unknown(trend))
@@ -215,17 +217,17 @@ fn claims(report: &Report) -> Markup {
     } } }
 }
 
-/// A cell with a verdict in words and colour.
+/// Returns a table cell with a verdict in words and colour.
 fn judged(class: &'static str, words: String) -> Markup {
     let verdict = match class {
         "holds" => "holds: ",
-        "partly" => "partly: ",
+        "partly" => "holds in part: ",
         _ => "does not hold: ",
     };
     html! { td { span class=(class) { (verdict) } (words) } }
 }
 
-/// What the paper says of the architectures against each other.
+/// Checks the claims of the paper on how the architectures compare.
 fn comparisons(report: &Report) -> Markup {
     let fronts = &report.fronts;
     let Some(best) = report
@@ -247,16 +249,16 @@ fn comparisons(report: &Report) -> Markup {
     let others = fronts.alone.iter().filter(|(architecture, _)| *architecture != best);
     html! {
         tr {
-            td { "All Pareto-optimal designs of the three together are " (best) "." }
+            td { "All Pareto-optimal designs of the three architectures together are of type " (best) "." }
             @if fronts.alone.len() < Architecture::ALL.len() {
                 td { "not compared: not all architectures were searched" }
             } @else {
                 @let share = fronts.together.share(best);
                 @let rival = report.rivals.as_ref().and_then(|rivals| rivals.joint.as_ref());
                 (judged(class(share), format!(
-                    "{} of all that is non-dominated here are{}{}", percent(share),
-                    report.joint.as_ref().map(|joint| format!(", {} of the one search over all", percent(joint.share(best)))).unwrap_or_default(),
-                    rival.map(|rival| format!(", {} of that after MOGA-II", percent(rival.share(best)))).unwrap_or_default(),
+                    "{} of the designs of the front of all architectures{}{}", percent(share),
+                    report.joint.as_ref().map(|joint| format!(", {} of those of the single search over all architectures", percent(joint.share(best)))).unwrap_or_default(),
+                    rival.map(|rival| format!(", {} of those of MOGA-II (reimplementation)", percent(rival.share(best)))).unwrap_or_default(),
                 )))
             }
         }
@@ -269,58 +271,58 @@ fn comparisons(report: &Report) -> Markup {
             tr {
                 td { "The " (best) " is better than the " (architecture) "." }
                 @if ratios.is_empty() {
-                    td { "not compared: there is no " (best) " here" }
+                    td { "not compared: at no radius do this architecture and the " (best) " both have a design" }
                 } @else {
                     @let class = if low > 1.0 { "holds" } else if high > 1.0 { "partly" } else { "fails" };
-                    (judged(class, format!("the {architecture} weighs {low:.2} to {high:.2} times as much at the radii of the first table")))
+                    (judged(class, format!("the {architecture} is {low:.2} to {high:.2} times as heavy at the radii of the first table")))
                 }
             }
         }
     }
 }
 
-/// What is open in the paper, and what was chosen.
+/// Points on which the paper is silent or contradicts itself, each with the choice made here.
 const SILENCES: [(&str, &str); 11] = [
     (
-        "The platform's mass is printed as that of one bar; the printed table needs three.",
+        "The printed mass of the platform is that of one bar; the printed table of designs requires three.",
         "three bars",
     ),
-    ("τ_z is 100 N·m in the text, 10 in the inequality and in g6.", "10 N·m"),
+    ("τ_z is 100 N·m in the text, but 10 N·m in the inequality and in g6.", "10 N·m"),
     (
-        "The table of bounds has r ≥ 0.5 m, but design I has 0.319 m.",
+        "The table of bounds has r ≥ 0.5 m, but design I has r = 0.319 m.",
         "r ≥ 0.1 m",
     ),
     (
-        "The actuators' stiffness is not given.",
-        "1e7 N/m and 1e7 N·m/rad, inferred: the printed workspaces of designs II and III need 0.86e7 and 1.14e7",
+        "The stiffness of the actuators is not given.",
+        "1e7 N/m and 1e7 N·m/rad, inferred: the printed R_w of designs II and III require 0.86e7 and 1.14e7",
     ),
     (
         "k_xy, k_z and k_φz are not defined.",
-        "smaller eigenvalue of the xy block of K, and its diagonal entries",
+        "k_xy: smaller eigenvalue of the xy block of K; k_z and k_φz: diagonal entries of K",
     ),
     ("The characteristic length is not given.", "r"),
     (
-        "Home posture and centre are not given.",
-        "centre O; the orientation that gives the largest workspace",
+        "The home orientation and the centre of the workspace are not given.",
+        "the orientation that gives the largest workspace; centre O",
     ),
     ("G is not given.", "80 GPa"),
     (
-        "The beam length of a telescopic leg is not given.",
-        "its current length",
+        "The length of the beam that models a telescopic leg is not given.",
+        "the current length of the leg",
     ),
     (
-        "g2 is printed for the 3-PRR only.",
-        "the leg's own limits for every architecture",
+        "Constraint g2 is given for the 3-PRR only.",
+        "for every architecture, the limits of its own legs",
     ),
     (
         "The grid on which poses are checked is not given.",
-        "searched on a reference grid, verified on a fine one; both are in the study",
+        "search on a reference grid, verification on a fine grid; both are settings of the study",
     ),
 ];
 
 fn silences() -> Markup {
     html! { div.scroll { table {
-        thead { tr { th.number { "#" } th { "the paper" } th { "here" } } }
+        thead { tr { th.number { "#" } th { "paper" } th { "choice here" } } }
         tbody { @for (index, (paper, here)) in SILENCES.iter().enumerate() {
             tr { td.number { (index + 1) } td { (paper) } td { (here) } }
         } }

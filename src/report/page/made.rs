@@ -1,4 +1,4 @@
-//! How a report was made, and where the paper's figures and tables are.
+//! How a report was made, and where the page shows the figures and tables of the paper.
 
 use maud::{Markup, html};
 
@@ -6,35 +6,35 @@ use super::optional;
 use kinefront_model::mechanism::{Architecture, VARIABLES};
 use crate::report::Report;
 
-/// Where a reader of the paper finds what.
+/// Lists where a reader of the paper finds each of its figures and tables on the page.
 pub(super) fn guide(report: &Report) -> Markup {
     let whole = report.rivals.is_some();
     let mut places = vec![
-        ("Fig. 1, the manipulators", "pictures", "Designs"),
-        ("Fig. 2 to 4, flexible models of the legs", "made", "How this was made"),
-        ("Fig. 5, a regular workspace", "pictures", "Designs (green)"),
-        ("Fig. 6, Pareto front", "fronts", "Pareto fronts, all together"),
+        ("Fig. 1, the manipulators", "pictures", "Pictures of designs"),
+        ("Fig. 2 to 4, flexible models of the legs", "made", "How this report was made"),
+        ("Fig. 5, a regular workspace", "pictures", "Pictures of designs (green)"),
+        ("Fig. 6, Pareto front", "fronts", "Pareto fronts, all architectures together"),
         ("Fig. 7, fronts of the three architectures", "fronts", "Pareto fronts"),
-        ("Fig. 8, CAD designs", "pictures", "Designs, ID-I to ID-III"),
-        ("Fig. 9, R, r, L_b along R_w", "variables", "Design variables"),
-        ("Fig. 10, r_j, r_p along R_w", "variables", "Design variables"),
-        ("Tab. 1, bounds", "made", "How this was made"),
+        ("Fig. 8, CAD designs", "pictures", "Pictures of designs, ID-I to ID-III"),
+        ("Fig. 9, R, r and L_b over R_w", "variables", "Trends of the design variables"),
+        ("Fig. 10, r_j and r_p over R_w", "variables", "Trends of the design variables"),
+        ("Tab. 1, bounds", "made", "How this report was made"),
         ("Tab. 3, three Pareto-optimal designs", "designs", "Reference designs"),
     ];
     if whole {
-        places.insert(9, ("Tab. 2, the algorithm's parameters", "made", "How this was made"));
+        places.insert(9, ("Tab. 2, the parameters of the algorithm", "made", "How this report was made"));
     }
     html! {
         p {
             "Damien Chablat, Stéphane Caro, Raza Ur-Rehman and Philippe Wenger: "
             em { "Comparison of Planar Parallel Manipulator Architectures based on a Multi-objective Design Optimization Approach" }
             ", ASME IDETC/CIE 2010, DETC2010-28650. "
-            @if whole { "Its study was run again from nothing; here is each of its figures and tables, and " }
-            @else { "This run asks what its study does; below is " }
+            @if whole { "The study of the paper was repeated from scratch. This page has each of its figures and tables, and explains " }
+            @else { "The model, requirements and bounds of this run are those of the paper. A section below explains " }
             a href="#differences" { "where and why the numbers differ" } "."
         }
         details open {
-            summary { "Where each figure and table of the paper is" }
+            summary { "Where to find each figure and table of the paper" }
             table { tbody { @for (paper, id, here) in places { tr { td { (paper) } td { a href={ "#" (id) } { (here) } } } } } }
         }
     }
@@ -44,18 +44,19 @@ pub(super) fn made(report: &Report) -> Markup {
     let study = &report.study;
     html! {
         p {
-            "Made by Kinefront " (env!("CARGO_PKG_VERSION")) " in " (report.taken.as_secs()) " s on "
+            "This report was made by Kinefront " (env!("CARGO_PKG_VERSION")) " in " (report.taken.as_secs()) " s on "
             (rayon::current_num_threads()) " threads. "
-            @if study.optimizer.time_limit_s.is_some() { "Searches may have ended by time: their results depend on the machine." }
-            @else { "One seed gives one result, whatever the number of threads." }
-            " A search is repeated by " code { "kinefront optimize" } " on the study below with its algorithm, seed and architectures."
+            @if study.optimizer.time_limit_s.is_some() { "Searches may have ended at their time limit, so their results depend on the machine." }
+            @else { "The results depend on the random seed but not on the number of threads." }
+            " To repeat a search, run " code { "kinefront optimize" } " on the study below with the algorithm, the "
+            "random seed and the architectures of the search."
         }
         pre { code { (report.options.command) } }
         div.scroll { table {
-            caption { "Searches." }
+            caption { "Searches that this report covers." }
             thead { tr {
-                th { "search" } th { "architectures" } th { "algorithm" } th.number { "seed" }
-                th.number { "evaluations" } th.number { "feasible" } th.number { "search [s]" } th.number { "verification [s]" } th { "version" }
+                th { "search" } th { "architectures" } th { "algorithm" } th.number { "random seed" }
+                th.number { "evaluations" } th.number { "feasible designs" } th.number { "search [s]" } th.number { "verification [s]" } th { "version" }
             } }
             tbody { @for source in &report.sources { tr {
                 td { (source.name) } td { (source.architectures) } td { (source.algorithm) } td.number { (source.seed) }
@@ -63,7 +64,7 @@ pub(super) fn made(report: &Report) -> Markup {
             } } }
         } }
         div.scroll { table {
-            caption { "Bounds [m]." }
+            caption { "Bounds of the design variables [m]." }
             thead { tr { th { "" } @for variable in VARIABLES { th.number { (variable.symbol()) } } } }
             tbody { @for (name, end) in [("lower", 0), ("upper", 1)] { tr {
                 td { (name) } @for variable in VARIABLES { td.number { (study.bounds.range(variable)[end]) } }
@@ -71,7 +72,10 @@ pub(super) fn made(report: &Report) -> Markup {
         } }
         @if report.rivals.is_some() { (parameters(report)) }
         div.scroll { table {
-            caption { "The flexible model of each leg: springs from the base to the platform's centre, joined by rigid bodies; two passive revolutes." }
+            caption {
+                "The flexible model of each leg: a chain of springs from the base to the centre of the platform, "
+                "connected by rigid bodies, with two passive revolute joints."
+            }
             thead { tr { th { "architecture" } th { "actuator" } th { "leg" } th { "platform" } } }
             tbody { @for (architecture, _) in &report.fronts.alone { tr {
                 td { (architecture) } td { (actuator(*architecture)) }
@@ -79,18 +83,18 @@ pub(super) fn made(report: &Report) -> Markup {
             } } }
         } }
         details {
-            summary { "The study" @if report.sources.len() > 1 { ", of the first search but for the architectures" } }
+            summary { "The study" @if report.sources.len() > 1 { ", as in the first search except for the architectures" } }
             pre { code { (toml::to_string(study).unwrap_or_default()) } }
         }
     }
 }
 
-/// The parameters that the paper tabulates for its own algorithm, as its stand-in has them here.
+/// Tabulates the parameters that the paper gives for its algorithm, with the values used by MOGA-II (reimplementation).
 fn parameters(report: &Report) -> Markup {
     let settings = &report.study.optimizer.moga2;
     let generations = report.study.optimizer.evaluations / settings.population.max(1);
     let rows: [(&str, String); 8] = [
-        ("scheduler", "after MOGA-II".to_owned()),
+        ("scheduler", "MOGA-II (reimplementation)".to_owned()),
         ("number of iterations", generations.to_string()),
         (
             "directional cross-over probability",
@@ -109,7 +113,10 @@ fn parameters(report: &Report) -> Markup {
         ),
     ];
     html! { div.scroll { table {
-        caption { "Parameters of the paper's algorithm, as its stand-in has them; those of the others are in the study below." }
+        caption {
+            "Parameters of MOGA-II as tabulated in the paper, with the values used by the reimplementation. The "
+            "parameters of the other algorithms are in the study below."
+        }
         tbody { @for (name, value) in rows { tr { td { (name) } td.number { (value) } } } }
     } } }
 }

@@ -1,4 +1,4 @@
-//! The page: one HTML file that holds everything and loads nothing.
+//! The page of a report: one self-contained HTML file that loads nothing.
 
 mod clearance;
 mod differences;
@@ -15,15 +15,15 @@ use crate::text::number;
 
 const STYLE: &str = include_str!("style.css");
 
-/// The page as text.
+/// Returns the page as text.
 pub(super) fn html(report: &Report) -> String {
     let title = if report.of_paper && report.rivals.is_some() {
-        "Planar parallel manipulators compared: the 2010 paper, reproduced".to_owned()
+        "Comparison of planar parallel manipulators: reproduction of the 2010 paper".to_owned()
     } else {
         format!("Kinefront report: {}", report.study.name)
     };
     let mut sections: Vec<(&str, &str, Markup)> = vec![
-        ("comparison", "What the comparison says", results::comparison(report)),
+        ("comparison", "Comparison of the architectures", results::comparison(report)),
         ("fronts", "Pareto fronts", results::fronts(report)),
     ];
     if !report.references.is_empty() {
@@ -32,22 +32,22 @@ pub(super) fn html(report: &Report) -> String {
     if report.of_paper {
         sections.push((
             "differences",
-            "Where and why this differs from the paper",
+            "Differences from the paper and their causes",
             differences::explained(report),
         ));
     }
-    sections.push(("variables", "Design variables along R_w", results::variables(report)));
-    sections.push(("constraints", "What stops the workspace", results::constraints(report)));
-    sections.push(("clearance", "Bodies that collide", clearance::clearance(report)));
-    sections.push(("pictures", "Designs", results::pictures(report)));
+    sections.push(("variables", "Trends of the design variables with R_w", results::variables(report)));
+    sections.push(("constraints", "Constraints that limit the workspace", results::constraints(report)));
+    sections.push(("clearance", "Clearance between members", clearance::clearance(report)));
+    sections.push(("pictures", "Pictures of designs", results::pictures(report)));
     if !report.variations.is_empty() {
         sections.push((
             "sensitivity",
-            "If it were read otherwise",
+            "Sensitivity to assumptions",
             sensitivity::sensitivity(report),
         ));
     }
-    sections.push(("made", "How this was made", made::made(report)));
+    sections.push(("made", "How this report was made", made::made(report)));
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -76,7 +76,7 @@ pub(super) fn html(report: &Report) -> String {
     page.into_string()
 }
 
-/// The figures whose names begin so, side by side.
+/// Lays out the figures whose names begin with `prefix` side by side.
 fn figures(report: &Report, prefix: &str) -> Markup {
     let found: Vec<&Figure> = report
         .figures
@@ -95,7 +95,7 @@ fn figures(report: &Report, prefix: &str) -> Markup {
     }
 }
 
-/// The figure's SVG, which says what it is to those who cannot see it.
+/// Returns the SVG of a figure, labelled with its caption for screen readers.
 fn drawing(figure: &Figure) -> PreEscaped<String> {
     let label = html! { (figure.caption) }.into_string().replace('"', "&quot;");
     PreEscaped(
@@ -110,12 +110,12 @@ fn image(picture: &Picture) -> Markup {
     html! { img src={ "data:image/png;base64," (data) } alt=(picture.caption); }
 }
 
-/// A number of a table.
+/// Returns a table cell with a number.
 fn cell(value: f64) -> Markup {
     html! { td.number { (number(value)) } }
 }
 
-/// A number of a table that may be missing.
+/// Returns a table cell with a number, or with a dash if there is none.
 fn optional(value: Option<f64>) -> Markup {
     match value {
         Some(value) => cell(value),
@@ -123,7 +123,7 @@ fn optional(value: Option<f64>) -> Markup {
     }
 }
 
-/// A share as text.
+/// Formats a fraction as a percentage.
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     if percent == 0.0 {
@@ -135,7 +135,7 @@ fn percent(share: f64) -> String {
     }
 }
 
-/// A change as text, with its sign.
+/// Formats the change that a ratio means as a percentage with its sign.
 fn change(ratio: f64) -> String {
     let percent = 100.0 * (ratio - 1.0);
     if percent.abs() < 0.05 {

@@ -1,4 +1,4 @@
-//! What was found: which architecture is best where, fronts, trends, constraints, designs.
+//! Results: comparison of the architectures, fronts, trends, active constraints and pictures of designs.
 
 use maud::{Markup, html};
 
@@ -8,10 +8,10 @@ use kinefront_model::mechanism::{VARIABLES, Variable};
 use crate::report::{AT_BOUND, Fit, Front, Report, Trend, lightest_where};
 use crate::text::{number, short};
 
-/// Workspace radii at which architectures are compared, as shares of the largest.
+/// Workspace radii at which architectures are compared, as fractions of the largest radius.
 const LEVELS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95];
 
-/// Radii to compare at, round, up to the largest \[m\].
+/// Returns the radii at which architectures are compared, rounded to two digits of the largest radius \[m\].
 pub(super) fn levels(largest: f64) -> Vec<f64> {
     let decade = libm::pow(10.0, libm::floor(libm::log10(largest.max(f64::MIN_POSITIVE))) - 1.0);
     let round = |share: f64| (share * largest / decade).round() * decade;
@@ -33,12 +33,12 @@ pub(super) fn comparison(report: &Report) -> Markup {
     html! {
         ul.facts {
             @for (architecture, share) in shares {
-                li { b { (percent(share)) } span { "of all workspace radii up to " (number(total)) " m: the " (architecture) " is lightest" } }
+                li { b { (percent(share)) } span { "of the range of workspace radii up to " (number(total)) " m: the " (architecture) " is the lightest" } }
             }
         }
         @if stretches.len() <= 12 {
             p {
-                "From the smallest workspace to the largest: "
+                "The lightest architecture, from the smallest workspace radius to the largest: "
                 @for (index, (architecture, [from, to])) in stretches.iter().enumerate() {
                     @if index > 0 { "; " }
                     (architecture) " from " (number(*from)) " to " (number(*to)) " m"
@@ -47,11 +47,14 @@ pub(super) fn comparison(report: &Report) -> Markup {
             }
         }
         div.scroll { table {
-            caption { "Mass in motion [kg] of the lightest design found with at least this workspace radius, all verified on the fine grid; in brackets how many times the lightest of all." }
+            caption {
+                "Mass in motion [kg] of the lightest design found with at least the given workspace radius, verified "
+                "on the fine grid. In brackets: its ratio to the mass of the lightest design of any architecture."
+            }
             thead { tr {
                 th.number { "R_w [m]" }
                 @for (architecture, _) in &fronts.alone { th.number { (architecture) } }
-                th { "lightest" }
+                th { "lightest architecture" }
             } }
             tbody { @for level in levels {
                 tr {
@@ -86,29 +89,29 @@ pub(super) fn fronts(report: &Report) -> Markup {
     };
     html! {
         p {
-            "Every design drawn is non-dominated and verified on the fine grid ("
+            "All designs drawn are non-dominated and verified on the fine grid ("
             (report.study.grid.fine.phi_step_deg) "° in φ, " (report.study.grid.fine.directions)
             " directions)"
-            @if report.sources.len() > 1 { ", and found by any of the searches with the program's own algorithm" }
-            ". Of each front at most " (report.study.optimizer.front_designs)
-            " evenly spread designs are drawn; they are in " code { "fronts.csv" } "."
+            @if report.sources.len() > 1 { ", and pooled from all searches except those made for comparison with MOGA-II" }
+            ". At most " (report.study.optimizer.front_designs)
+            " evenly spread designs of each front are drawn; they are listed in " code { "fronts.csv" } "."
         }
         (figures(report, "front"))
         div.scroll { table {
             thead { tr {
                 th { "front" } th.number { "designs" }
-                th.number { "lightest [kg]" } th.number { "its R_w [m]" }
-                th.number { "of the largest [kg]" } th.number { "its R_w [m]" }
+                th.number { "mass of the lightest design [kg]" } th.number { "its R_w [m]" }
+                th.number { "mass of the design with the largest R_w [kg]" } th.number { "its R_w [m]" }
             } }
             tbody {
                 @for (architecture, front) in &report.fronts.alone { (row(architecture.to_string(), front)) }
-                (row("together".to_owned(), &report.fronts.together))
+                (row("all architectures".to_owned(), &report.fronts.together))
             }
         } }
     }
 }
 
-/// A polynomial in `R_w` as text.
+/// Formats a polynomial in `R_w`.
 fn polynomial(fit: &Fit) -> String {
     let mut text = String::new();
     for (power, &value) in fit.coefficients.iter().enumerate() {
@@ -125,21 +128,21 @@ fn polynomial(fit: &Fit) -> String {
     text
 }
 
-/// How well a fit holds, in a word and a class.
+/// Returns how well a fit holds, in words and as a CSS class.
 pub(super) fn verdict(r_squared: f64) -> (&'static str, &'static str) {
     match r_squared {
         r if r >= 0.95 => ("holds", "holds"),
-        r if r >= 0.8 => ("roughly", "partly"),
+        r if r >= 0.8 => ("holds roughly", "partly"),
         _ => ("does not hold", "fails"),
     }
 }
 
-/// What the paper says of a variable, and how that holds.
+/// Returns the trend that the paper claims for a variable and the verdict on it.
 fn said(trend: &Trend) -> Markup {
     let (what, word, class) = if trend.variable == Variable::PlatformBarRadius {
         match trend.is_quadratic() {
             Some(true) => ("quadratic", "holds", "holds"),
-            Some(false) => ("quadratic", "a line does as well", "fails"),
+            Some(false) => ("quadratic", "an upward parabola is not clearly better", "fails"),
             None => ("quadratic", unknown(trend), "partly"),
         }
     } else {
@@ -154,10 +157,10 @@ fn said(trend: &Trend) -> Markup {
     html! { (what) ": " span class=(class) { (word) } }
 }
 
-/// Why there is no fit.
+/// Returns the reason why there is no fit.
 pub(super) fn unknown(trend: &Trend) -> &'static str {
     if trend.free.len() < trend.points.len() {
-        "it stands at a bound"
+        "the variable is at a bound"
     } else {
         "too few designs"
     }
@@ -166,17 +169,19 @@ pub(super) fn unknown(trend: &Trend) -> &'static str {
 pub(super) fn variables(report: &Report) -> Markup {
     html! {
         p {
-            "Lengths and bar radii of the designs drawn above, over their workspace radius, with least-squares fits: straight lines, and for r_p "
-            "a parabola. Designs at which a variable is within " (percent(AT_BOUND)) " of its range from one of its bounds are left out of its fits: it may not go on there. "
-            "R² is the share of the variance that a fit explains; the rank correlation is 1 where a variable only grows with R_w."
+            "Lengths and bar radii of the designs drawn above over their workspace radius, with least-squares fits: "
+            "straight lines, and a parabola for r_p. Designs at which a variable is within " (percent(AT_BOUND)) " of "
+            "its range from one of its bounds are excluded from the fits of that variable, because the bound "
+            "determines its value there. R² is the fraction of the variance that a fit explains; the rank correlation "
+            "is 1 if a variable increases monotonically with R_w."
         }
         (figures(report, "lengths"))
         (figures(report, "bars"))
         div.scroll { table {
             thead { tr {
                 th { "architecture" } th { "variable [m]" }
-                th.number { "designs off bounds" } th { "straight line" } th.number { "R²" } th { "parabola" } th.number { "R²" }
-                th.number { "rank correlation" } th { "said to be" }
+                th.number { "designs not at a bound" } th { "straight line" } th.number { "R²" } th { "parabola" } th.number { "R²" }
+                th.number { "rank correlation" } th { "claim of the 2010 paper" }
             } }
             tbody { @for (architecture, trends) in &report.trends { @for trend in trends {
                 tr {
@@ -200,12 +205,12 @@ pub(super) fn constraints(report: &Report) -> Markup {
     let asked: Vec<Constraint> = Constraint::asked(&report.study.model().thresholds).collect();
     html! {
         p {
-            "The constraints that fail first just beyond R_w: what would have to be eased for the workspace to grow. Where several dots stand above "
-            "each other, they fail together."
+            "The active constraints are those that fail first just beyond R_w: they would have to be relaxed for the "
+            "workspace to grow. Dots above each other at the same R_w mark constraints that fail together."
         }
         (figures(report, "active"))
         div.scroll { table {
-            caption { "Share of the designs drawn of each front at which a constraint is active." }
+            caption { "Percentage of the drawn designs of each front at which a constraint is active." }
             thead { tr {
                 th { "architecture" }
                 @for &constraint in &asked { th.number { (constraint.id()) } }
@@ -231,9 +236,10 @@ pub(super) fn constraints(report: &Report) -> Markup {
 pub(super) fn pictures(report: &Report) -> Markup {
     html! {
         p {
-            "The lightest design, the knee and the largest of each front at home, with true bar radii and the regular workspace in green"
+            "The lightest design, the knee and the design with the largest workspace of each front at the home pose, "
+            "with true bar radii and the regular workspace in green"
             @if !report.references.is_empty() { "; then the reference designs" }
-            ". Pictures are cast from the same solids that the recordings and exports hold."
+            ". The pictures are rendered from the same solids as in the recordings and exports."
         }
         div.figures.pictures { @for picture in &report.pictures {
             figure id={ "picture-" (picture.name) } {
@@ -244,7 +250,7 @@ pub(super) fn pictures(report: &Report) -> Markup {
     }
 }
 
-/// A design's numbers.
+/// Lists the variables, objectives, home orientation and active constraints of a design.
 fn numbers(evaluation: &Evaluation) -> Markup {
     let values = evaluation.design.values();
     let active: Vec<&str> = evaluation.active().map(|constraint| constraint.id()).collect();
@@ -255,6 +261,6 @@ fn numbers(evaluation: &Evaluation) -> Markup {
         span { "mass " b { (number(evaluation.mass)) } " kg" }
         span { "R_w " b { (number(evaluation.workspace_radius)) } " m" }
         @if let Some(phi) = evaluation.home_phi_deg { span { "φ_c " b { (number(phi)) } "°" } }
-        span { "stopped by " b { (active.join(", ")) } }
+        span { "active constraints " b { (active.join(", ")) } }
     } }
 }

@@ -1,4 +1,4 @@
-//! How fronts and reference designs move when an assumption is read otherwise.
+//! Sensitivity of fronts and reference designs to assumptions.
 
 use maud::{Markup, html};
 
@@ -21,9 +21,13 @@ pub(super) fn sensitivity(report: &Report) -> Markup {
         .collect();
     html! {
         p {
-            "Every architecture searched anew, alone, with " (evaluations) " evaluations under each reading, and its front verified on the fine grid. "
-            "Other seeds show how much of a difference is chance: changes within their range are grey."
-            @if !left_out.is_empty() { " Not tried, since the study has it so, or rules it out: " (left_out.join(", ")) "." }
+            "Under each alternative assumption, every architecture is searched again on its own with " (evaluations)
+            " evaluations, and its front is verified on the fine grid. Searches with other random seeds show how "
+            "large the differences due to chance are; changes within their range are grey."
+            @if !left_out.is_empty() {
+                " Not tried, because the study already makes the assumption or is invalid with it: "
+                (left_out.join(", ")) "."
+            }
         }
         (figures(report, "sensitivity"))
         @for (architecture, front) in &base.alone { (varied(others, *architecture, front)) }
@@ -31,10 +35,10 @@ pub(super) fn sensitivity(report: &Report) -> Markup {
             h3 { "Reference designs" }
             div.scroll { table {
                 caption { "R_w of the reference designs on the fine grid [m]." }
-                thead { tr { th { "reading" } @for reference in &report.references { th.number { (reference.name) } } } }
+                thead { tr { th { "assumption" } @for reference in &report.references { th.number { (reference.name) } } } }
                 tbody {
                     @if report.references.iter().any(|reference| reference.stated_radius.is_some()) {
-                        tr { td { "what its source states" } @for reference in &report.references { (optional(reference.stated_radius)) } }
+                        tr { td { "stated by the source" } @for reference in &report.references { (optional(reference.stated_radius)) } }
                     }
                     @for variation in report.variations.iter().filter(|variation| variation.moves_designs()) {
                         tr { td { (variation.name()) } @for radius in &variation.references { (cell(*radius)) } }
@@ -45,10 +49,10 @@ pub(super) fn sensitivity(report: &Report) -> Markup {
     }
 }
 
-/// How the front of an architecture moves.
+/// Tabulates how the front of an architecture changes with the assumptions.
 fn varied(variations: &[Variation], architecture: Architecture, base: &Front) -> Markup {
     let levels: Vec<f64> = levels(base.largest()).into_iter().skip(1).step_by(2).collect();
-    // Ratios to the base: of the mass at each level, then of the largest radius.
+    // Ratios to the unchanged study: of the mass at each level, then of the largest radius.
     let ratios = |variation: &Variation| -> Option<Vec<Option<f64>>> {
         let front = variation.of(architecture)?;
         let mass = |&level: &f64| Some(front.lightest(level)?.mass / base.lightest(level)?.mass);
@@ -60,7 +64,7 @@ fn varied(variations: &[Variation], architecture: Architecture, base: &Front) ->
         .filter(|other| other.is_chance())
         .filter_map(ratios)
         .collect();
-    // What the base itself has is within the range of chance.
+    // The range includes 1, the result of the unchanged study.
     let chance: Vec<[f64; 2]> = (0..=levels.len())
         .map(|column| {
             let found = seeds.iter().filter_map(|ratios| ratios[column]);
@@ -72,15 +76,15 @@ fn varied(variations: &[Variation], architecture: Architecture, base: &Front) ->
     html! {
         h3 { (architecture) }
         div.scroll { table {
-            caption { "Mass of the lightest design with at least this R_w, and the largest R_w found, against the study as it is." }
+            caption { "Mass of the lightest design with at least the given R_w, and the largest R_w found, relative to the study as given." }
             thead { tr {
-                th { "reading" }
+                th { "assumption" }
                 @for level in &levels { th.number { "R_w ≥ " (short(*level)) " m" } }
-                th.number { "largest R_w" } th { "what it means" }
+                th.number { "largest R_w" } th { "meaning" }
             } }
             tbody {
                 tr {
-                    td { "the study as it is" }
+                    td { "study as given" }
                     @for level in &levels { td.number { (base.lightest(*level).map(|found| number(found.mass)).unwrap_or_default()) " kg" } }
                     td.number { (number(base.largest())) " m" }
                     td { }
@@ -89,7 +93,7 @@ fn varied(variations: &[Variation], architecture: Architecture, base: &Front) ->
                     tr.chance {
                         td { (seeds.len()) " other seeds" }
                         @for [low, high] in &chance { td.number { (change(*low)) " … " (change(*high)) } }
-                        td { "chance, the yardstick for all others" }
+                        td { "chance alone: the reference for all other changes" }
                     }
                 }
                 @for variation in variations.iter().filter(|variation| !variation.is_chance()) {
@@ -105,7 +109,7 @@ fn varied(variations: &[Variation], architecture: Architecture, base: &Front) ->
                                     None => td.number { "not reached" }
                                 }
                             },
-                            None => td colspan=(levels.len() + 1) { "nothing feasible" }
+                            None => td colspan=(levels.len() + 1) { "no feasible design" }
                         }
                         td { (variation.reading.map(|reading| reading.meaning).unwrap_or_default()) }
                     }

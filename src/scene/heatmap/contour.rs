@@ -1,4 +1,4 @@
-//! Lines on which a field has a value, cut through a mesh.
+//! Contours of a field: the lines in a mesh on which the field has a given value.
 
 use std::collections::BTreeMap;
 
@@ -8,12 +8,13 @@ use rayon::prelude::*;
 use super::Sample;
 use super::mesh::Mesh;
 
-/// Most steps of false position that put a point on its value.
+/// Largest number of steps of false position for a point of a contour.
 const REFINEMENTS: u32 = 120;
-/// A value this small against those at the ends of its side counts as 0.
+/// A difference from the level that is at most this fraction of those at the ends of the side counts as 0.
 const CLOSE: f64 = 1e-14;
 
-/// Polylines on which `pick` of the samples equals `level`, each point put on the field itself by `at`.
+/// Computes the polylines on which `pick` of the samples equals `level`; each point lies on the contour of the field
+/// `at` itself, not of its interpolation.
 pub(super) fn contour(
     mesh: &Mesh,
     level: f64,
@@ -32,7 +33,7 @@ pub(super) fn contour(
         .copied()
         .filter(|&[a, b, c]| is_above(a) != is_above(b) || is_above(a) != is_above(c))
         .collect();
-    // Sides are named by their vertices, the lower first: one point for a side that two triangles share.
+    // A side is identified by its vertices, the lower index first, so two triangles that share a side share its point.
     let crossed = |&[a, b, c]: &[u32; 3]| {
         [(a, b), (b, c), (c, a)]
             .into_iter()
@@ -68,9 +69,10 @@ pub(super) fn contour(
         .collect()
 }
 
-/// Point between two ends with values of unlike sign at which the value is 0: false position on the function itself, and
-/// a halving after each step that did not halve the bracket, for values with kinks. `None` on a chord of a hollow edge of
-/// reach, which leaves what is reachable: the contour ends a cell before it.
+/// Finds the point between two ends with values of opposite sign at which the value is 0, by false position on the
+/// function itself, with a bisection after each step that did not halve the bracket because values may have kinks.
+/// `None` on a chord of a concave edge of reach that passes through unreachable positions: the contour ends one cell
+/// before it.
 fn crossing(
     [(start, at_start), (end, at_end)]: [(DVec2, f64); 2],
     value_at: impl Fn(DVec2) -> Option<f64>,
@@ -100,7 +102,7 @@ fn crossing(
     Some(start.lerp(end, 0.5 * (low + high)))
 }
 
-/// Joins segments that share end points to chains; a closed chain ends where it starts.
+/// Joins segments that share end points into chains; a closed chain ends at its first point.
 pub(super) fn chains(segments: &[[u32; 2]]) -> Vec<Vec<u32>> {
     let mut touching: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (index, segment) in segments.iter().enumerate() {
@@ -128,7 +130,7 @@ pub(super) fn chains(segments: &[[u32; 2]]) -> Vec<Vec<u32>> {
         }
     };
     let mut found = Vec::new();
-    // Open chains from their ends first, then what is left is closed.
+    // Open chains are followed from their ends first; the remaining segments form closed chains.
     for (&point, at) in &touching {
         if at.len() == 1 && !used[at[0]] {
             found.push(follow(at[0], point, &mut used));

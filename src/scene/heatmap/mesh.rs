@@ -1,4 +1,4 @@
-//! Triangles over what is reachable, clipped where reach ends.
+//! A triangle mesh over the reachable positions, clipped at the edge of reach.
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -7,18 +7,19 @@ use super::Sample;
 use kinefront_model::lanes::padded;
 use kinefront_model::mechanism::ReachReason;
 
-/// Halvings along a side that the edge of reach cuts: to 2⁻³² of a cell.
+/// Number of halvings along a side that the edge of reach cuts: an accuracy of 2⁻³² of a cell.
 const HALVINGS: u32 = 32;
 
-/// What is drawn: samples where a position is reached.
+/// The surface to mesh: it has a sample at every reachable position.
 pub(super) trait Surface: Sync {
-    /// Samples at many positions, in columns whose length is a multiple of [`MOST_LANES`](kinefront_model::lanes::MOST_LANES).
+    /// Returns the samples at many positions; the length of the columns is a multiple of
+    /// [`MOST_LANES`](kinefront_model::lanes::MOST_LANES).
     fn row(&self, xs: &[f64], ys: &[f64]) -> Vec<Option<Sample>>;
-    /// The sample at one position.
+    /// Returns the sample at one position.
     fn at(&self, position: DVec2) -> Option<Sample>;
-    /// Whether [`Surface::at`] has a sample.
+    /// Returns whether [`Surface::at`] has a sample.
     fn reaches(&self, position: DVec2) -> bool;
-    /// What keeps a position from being reached; on the very edge there may be nothing to say.
+    /// Returns why a position is unreachable; a position within rounding of the edge may have no reason.
     fn reason(&self, position: DVec2) -> Option<ReachReason>;
 }
 
@@ -36,7 +37,7 @@ impl Layout {
         self.low + DVec2::new(column as f64, row as f64) * self.step
     }
 
-    /// The nodes that sides go to from `node`: to the right, up, and across the cell.
+    /// Returns the nodes that are connected to `node` by a side: to the right, above, and diagonally across the cell.
     fn neighbours(&self, node: usize) -> [Option<usize>; 3] {
         let right = node % self.columns + 1 < self.columns;
         let up = node / self.columns + 1 < self.rows;
@@ -47,7 +48,7 @@ impl Layout {
         ]
     }
 
-    /// Number of the side between two nodes of one triangle.
+    /// Returns the index of the side between two nodes of one triangle.
     fn side(&self, a: usize, b: usize) -> usize {
         let (first, last) = (a.min(b), a.max(b));
         let kind = match last - first {
@@ -59,31 +60,32 @@ impl Layout {
     }
 }
 
-/// A point of the mesh.
+/// A vertex of the mesh.
 #[derive(Clone, Copy)]
 pub(super) struct Vertex {
     pub(super) position: DVec2,
     pub(super) sample: Sample,
 }
 
-/// Where the edge of reach cuts a side.
+/// The point at which the edge of reach cuts a side.
 struct Cut {
     side: usize,
     vertex: Vertex,
     reason: ReachReason,
 }
 
-/// Triangles of reachable vertices.
+/// A mesh of triangles with reachable vertices.
 pub(super) struct Mesh {
     pub(super) vertices: Vec<Vertex>,
     /// Counterclockwise.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Sides of clipped triangles that lie on the edge of reach, and what ends it there.
+    /// Sides of clipped triangles that lie on the edge of reach, with the reason why reach ends there.
     pub(super) outline: Vec<([u32; 2], ReachReason)>,
 }
 
 impl Mesh {
-    /// The mesh of what `surface` reaches. Rows run in parallel; the result does not depend on how.
+    /// Builds the mesh of the reachable part of `surface`. Rows are computed in parallel; the result does not depend on
+    /// their distribution over threads.
     pub(super) fn new(layout: &Layout, surface: &impl Surface) -> Self {
         let count = layout.columns * layout.rows;
         let nodes: Vec<Option<Sample>> = (0..layout.rows)
@@ -158,7 +160,8 @@ impl Mesh {
         mesh
     }
 
-    /// Adds the reachable part of a triangle with one or two reachable corners; `cut` gives the vertex between two.
+    /// Adds the reachable part of a triangle with one or two reachable corners; `cut` returns the vertex on the side
+    /// between two corners.
     fn clip(&mut self, corners: [u32; 3], cut: impl Fn(usize, usize) -> (u32, ReachReason)) {
         let mut polygon: Vec<u32> = Vec::with_capacity(4);
         let mut ends: Vec<(u32, ReachReason)> = Vec::with_capacity(2);
@@ -182,7 +185,7 @@ impl Mesh {
     }
 }
 
-/// Last reachable point on the side from a reachable node to one that is not.
+/// Finds the last reachable point on the side from a reachable node to an unreachable one.
 fn cut(layout: &Layout, surface: &impl Surface, inner: usize, outer: usize, sample: Sample) -> Cut {
     let (mut inside, mut outside) = (layout.position(inner), layout.position(outer));
     for _ in 0..HALVINGS {

@@ -1,10 +1,10 @@
 //! A field over the reachable workspace at one orientation, as triangles with exact edges.
 //!
-//! The plane is laid out in cells of two triangles each. Triangles that the edge of reach cuts are clipped where the
-//! inverse kinematics really ends, found by halving along the triangle's sides, so the edge is a polygon on the true
-//! boundary and not a staircase. Contours are cut through the same triangles, each of their points moved along its side
-//! until the field itself has the value. Both need the field's function between the nodes, which is why no library of
-//! marching squares, which knows the nodes only, does it.
+//! The plane is divided into cells of two triangles each. A triangle that the edge of reach cuts is clipped where the
+//! inverse kinematics ends, found by bisection along the triangle's sides, so the edge is a polygon with its vertices
+//! on the true boundary and not a staircase. Contours run through the same triangles; each of their points is moved
+//! along its side until the field itself has the value. Both steps evaluate the field between the nodes. A
+//! marching-squares library knows the values at the nodes only, so none is used.
 
 mod contour;
 mod mesh;
@@ -20,26 +20,26 @@ use kinefront_model::with_leg;
 use kinefront_model::spatial::{LEGS, Rotation};
 use kinefront_model::workspace::{GridError, PoseChecker, PoseLanes, PoseValues, ValueColumns};
 
-/// How finely a heatmap is laid out.
+/// Resolution of a heatmap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HeatmapSettings {
-    /// Cells along the longer side of the reachable box.
+    /// Number of cells along the longer side of the box that contains the reachable workspace.
     pub cells: usize,
 }
 
-/// A stretch of the edge of the reachable workspace.
+/// A section of the edge of the reachable workspace.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Edge {
-    /// What ends the reach: where a leg is stretched out ([`ReachReason::OutOfReach`]) is a serial singularity.
+    /// Why reach ends here; the end of a leg's reach ([`ReachReason::OutOfReach`]) is a serial singularity.
     pub reason: ReachReason,
-    /// Its points \[m\].
+    /// Points \[m\].
     pub points: Vec<DVec2>,
 }
 
 /// A field over the reachable workspace at one orientation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heatmap {
-    /// What it shows.
+    /// The field shown.
     pub field: Field,
     /// Orientation \[rad\].
     pub phi: f64,
@@ -47,23 +47,24 @@ pub struct Heatmap {
     pub vertices: Vec<DVec2>,
     /// The field's value at each vertex.
     pub values: Vec<f64>,
-    /// Triangles by their vertices, counterclockwise.
+    /// Vertex indices of the triangles, counterclockwise.
     pub triangles: Vec<[u32; 3]>,
-    /// Where the field has its threshold.
+    /// Contours at the field's threshold.
     pub threshold: Vec<Vec<DVec2>>,
-    /// Where `det A` vanishes: parallel singularities.
+    /// Contours on which `det A` vanishes: parallel singularities.
     pub singular: Vec<Vec<DVec2>>,
     /// Edge of the reachable workspace.
     pub edges: Vec<Edge>,
-    /// Cells of the grid.
+    /// Number of cells of the grid.
     pub cells: usize,
 }
 
 impl Heatmap {
-    /// The heatmap of `field` for `design` at orientation `phi` \[rad\].
+    /// Computes the heatmap of `field` for `design` at orientation `phi` \[rad\].
     ///
     /// # Errors
-    /// [`GridError`] when the isotropic characteristic length is asked for and the reference grid is not whole.
+    /// [`GridError`] when the study uses the isotropic characteristic length and the steps of the reference grid do not
+    /// divide the full turn or the rotation range.
     pub fn new(
         model: &Model,
         design: &Design,
@@ -80,7 +81,7 @@ impl Heatmap {
         })
     }
 
-    /// Smallest and largest value; `None` where nothing is reachable.
+    /// Returns the smallest and the largest value; `None` if no position is reachable.
     pub fn range(&self) -> Option<[f64; 2]> {
         let first = *self.values.first()?;
         Some(
@@ -114,7 +115,7 @@ impl<L: Leg> Sampler<'_, L> {
         }
     }
 
-    /// Inlined, so that who asks for less than all has less than all worked out.
+    /// Inlined so that quantities that the caller does not use are not computed.
     #[inline(always)]
     fn lanes(&self, position: DVec2) -> PoseLanes<f64> {
         let [first, second, third] = self.arms;
@@ -147,7 +148,7 @@ impl<L: Leg> Surface for Sampler<'_, L> {
 }
 
 impl<L: Leg> Sampler<'_, L> {
-    /// Box that holds every reachable position.
+    /// Returns a box that contains every reachable position.
     fn reach(&self) -> Option<[DVec2; 2]> {
         let boxes = self.checker.manipulator.legs.iter().zip(&self.arms).map(|(leg, arm)| {
             let [low, high] = leg.reach_box();
@@ -194,7 +195,7 @@ impl<L: Leg> Sampler<'_, L> {
     }
 }
 
-/// Edge of reach as polylines of one reason each.
+/// Returns the edge of reach as polylines, each with a single reason.
 fn edges(mesh: &Mesh) -> Vec<Edge> {
     let mut edges = Vec::new();
     for reason in [

@@ -1,4 +1,4 @@
-//! The bodies of one design, made ready for many poses.
+//! The members of one design, prepared for clearance computations at many poses.
 
 use glam::{DVec2, DVec3};
 
@@ -10,50 +10,50 @@ use crate::lanes::{Planar, Real};
 use crate::mechanism::{Axis, Design, Leg, Manipulator, MemberKind, Members, Posture};
 use crate::spatial::{LEGS, nearest_on_segment};
 
-/// Rows of members: those before the last of each leg, the last ones, and the platform's bars.
+/// Number of rows of members: the proximal members of the legs, the distal members of the legs, and the platform bars.
 const ROWS: usize = 3;
 const PROXIMAL: usize = 0;
 const DISTAL: usize = 1;
 const PLATFORM: usize = 2;
 
-/// Most pairs of members that are not joined: 3 + 3 + 6 among legs, 9 + 6 with the platform's bars.
+/// Largest number of pairs of members that are not joined: 3 + 3 + 6 between legs, 9 + 6 with the platform bars.
 const MOST_PAIRS: usize = 27;
 
-/// Two members that are not joined.
+/// Pair of members that are not joined.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Pair {
-    /// Places of both: `LEGS · row + leg`.
+    /// Indices of both members: `LEGS · row + leg`.
     places: [usize; 2],
     /// Sum of their radii \[m\].
     radii: f64,
-    /// Distance of their layers, squared \[m²\].
+    /// Squared distance between their layers \[m²\].
     layers_squared: f64,
-    /// What their clearance is at least, by their layers alone \[m\].
+    /// Lower bound of their clearance, set by the distance between their layers alone \[m\].
     least: f64,
 }
 
-/// The bodies of a design.
+/// The members of a design, with the pairs of them that are not joined.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bodies {
     kinds: [Option<MemberKind>; ROWS],
     radii: [f64; ROWS],
     heights: [f64; ROWS],
     platform_radius: f64,
-    /// Half of a slider's length, and of its axis \[m\].
+    /// Half the length of a slider, and half the length of its axis \[m\].
     slider: [f64; 2],
-    /// Those that can come nearest first.
+    /// Pairs that are not joined, in increasing order of the lower bound of their clearance.
     pairs: [Pair; MOST_PAIRS],
     count: usize,
 }
 
-/// A pose of which the axes are laid out.
+/// Axes of all members at a pose, indexed by `LEGS · row + leg`.
 type Axes<V> = [Axis<V>; ROWS * LEGS];
 
 impl Bodies {
-    /// The bodies of `design`, whose legs are of type `L`.
+    /// Prepares the members of `design`, whose legs are of type `L`.
     pub fn new<L: Leg>(design: &Design, settings: &BodySettings) -> Self {
         let kinds = [L::PROXIMAL, Some(L::DISTAL), Some(MemberKind::PlatformBar)];
-        // Within the number range, squares and sums too, whatever radii a design has.
+        // The limit keeps squares and sums finite, whatever radii a design has.
         let radii = kinds.map(|kind| kind.map_or(0.0, |kind| settings.radius(kind, design).min(FARTHEST)));
         let height = |kind| settings.height(kind, design).clamp(-FARTHEST, FARTHEST);
         let heights = kinds.map(|kind| kind.map_or(0.0, height));
@@ -77,7 +77,7 @@ impl Bodies {
         bodies
     }
 
-    /// Fills in the pairs that are not joined.
+    /// Fills in the pairs of members that are not joined.
     fn pair_up(&mut self) {
         for first in 0..ROWS * LEGS {
             for second in first + 1..ROWS * LEGS {
@@ -108,7 +108,7 @@ impl Bodies {
         self.pairs[..self.count].sort_by(|a, b| a.least.total_cmp(&b.least));
     }
 
-    /// The axes of all members, those of the legs given.
+    /// Returns the axes of all members, given those of the legs.
     #[inline(always)]
     fn axes<V: Real, L: Leg>(
         &self,
@@ -129,7 +129,8 @@ impl Bodies {
         ]
     }
 
-    /// The axis of the member before the last; of a leg without one the last, which no pair asks for.
+    /// Returns the axis of the proximal member. For a leg without one it returns that of the distal member, which no
+    /// pair uses.
     #[inline(always)]
     fn proximal<V: Real, L: Leg>(&self, members: &Members<V>) -> Axis<V> {
         match (&members.proximal, L::PROXIMAL) {
@@ -155,10 +156,11 @@ impl Bodies {
         (distance + distance.splat(pair.layers_squared)).sqrt() - distance.splat(pair.radii)
     }
 
-    /// The least clearance at several poses at once where it is below `limit`, else `limit`: \[m\].
+    /// Returns the smallest clearance at several poses at once where it is below `limit`, otherwise `limit` \[m\].
     ///
-    /// `directions` are the legs' `u_i`, `arms` as in [`Manipulator::arms`]. Pairs that cannot come below what is found
-    /// already, by their layers or by the circles about them, are passed over.
+    /// `directions` are the unit vectors `u_i` of the legs; `arms` is as in [`Manipulator::arms`]. Pairs are skipped if
+    /// their layers or the circles around their axes show that they cannot be nearer than the smallest clearance found
+    /// so far.
     #[inline(always)]
     pub fn below<V: Real, L: Leg>(
         &self,
@@ -170,7 +172,8 @@ impl Bodies {
     ) -> V {
         let members = members(legs, position, arms, directions);
         let mut least = limit;
-        // Loops over lanes do without closures and adapters: what is not inlined is compiled for the baseline processor.
+        // Loops over lanes avoid closures and iterator adapters: code that is not inlined is compiled for the baseline
+        // processor.
         if let [Some(first), Some(second), Some(third)] = [members[0].rail, members[1].rail, members[2].rail] {
             let lower = first[0].smaller(second[0].smaller(third[0]));
             let upper = first[1].smaller(second[1].smaller(third[1]));
@@ -185,7 +188,7 @@ impl Bodies {
                 break;
             }
             let (a, b) = (&axes[pair.places[0]], &axes[pair.places[1]]);
-            // Lane by lane: what one lane has found must not depend on its neighbours.
+            // The selection is made lane by lane, because the result of one lane must not depend on its neighbours.
             let near = may_be_nearer(a, b, least + limit.splat(pair.radii));
             if V::any(near) {
                 let found = Self::gap(pair, &axes).smaller(least);
@@ -195,7 +198,7 @@ impl Bodies {
         least
     }
 
-    /// The nearest pair at a posture with `P` at `position`.
+    /// Returns the nearest pair at a posture with `P` at `position`.
     pub fn nearest<L: Leg>(&self, manipulator: &Manipulator<L>, position: DVec2, posture: &Posture) -> Clearance {
         enum Found<'a> {
             RailEnd { leg: usize, end: usize, distance: f64 },
@@ -211,7 +214,7 @@ impl Bodies {
             .chain(pairs.map(|pair| (Self::gap(pair, &axes), Found::Pair(pair))))
             .map(|(distance, found)| (distance.clamp(-FARTHEST, FARTHEST), found))
             .reduce(|least, next| if next.0 < least.0 { next } else { least })
-            .expect("a manipulator has bodies");
+            .expect("a manipulator has pairs of members");
         match found {
             Found::RailEnd {
                 leg,
@@ -244,7 +247,7 @@ impl Bodies {
         }
     }
 
-    /// The members at a posture with `P` at `position`.
+    /// Returns the capsules of the members at a posture with `P` at `position`.
     pub fn capsules<L: Leg>(&self, manipulator: &Manipulator<L>, position: DVec2, posture: &Posture) -> Vec<Capsule> {
         let (_, axes) = self.laid_out(manipulator, position, posture);
         (0..ROWS * LEGS)
@@ -279,7 +282,7 @@ impl Bodies {
     fn member(&self, place: usize) -> Member {
         Member {
             leg: place % LEGS,
-            kind: self.kinds[place / LEGS].expect("asked for a member that is there"),
+            kind: self.kinds[place / LEGS].expect("legs of this type have this member"),
         }
     }
 
@@ -288,7 +291,7 @@ impl Bodies {
     }
 }
 
-/// The members of all legs.
+/// Returns the axes of the members of all legs.
 #[inline(always)]
 fn members<V: Real, L: Leg>(
     legs: &[L; LEGS],
@@ -303,7 +306,7 @@ fn members<V: Real, L: Leg>(
     ]
 }
 
-/// The points of two axes that are nearest to each other.
+/// Returns the points of two axes that are nearest to each other.
 fn nearest_points(a: &Capsule, b: &Capsule) -> [DVec3; 2] {
     let flat = |at: DVec3| at.truncate();
     let (way_a, way_b) = (flat(a.to - a.from), flat(b.to - b.from));
@@ -330,5 +333,5 @@ fn nearest_points(a: &Capsule, b: &Capsule) -> [DVec3; 2] {
         let length = |[from, to]: [DVec3; 2]| flat(to - from).length_squared();
         if length(next) < length(best) { next } else { best }
     })
-    .expect("there are four")
+    .expect("the array has four entries")
 }

@@ -1,4 +1,4 @@
-//! Members at one pose, by name.
+//! Named members at one pose, as capsules, and the clearance of a pair of them.
 
 use std::fmt;
 
@@ -9,14 +9,14 @@ use crate::mechanism::MemberKind;
 /// A member of a manipulator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Member {
-    /// Index of the leg, or of the leg that its bar of the platform runs to.
+    /// Index of the leg; for a platform bar, index of the leg to which the bar runs.
     pub leg: usize,
-    /// What it is.
+    /// Kind of the member.
     pub kind: MemberKind,
 }
 
 impl fmt::Display for Member {
-    /// As in `leg1_link` or `platform_bar3`.
+    /// Writes the name, for example `leg1_link` or `platform_bar3`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (number, kind) = (self.leg + 1, self.kind.name());
         match self.kind {
@@ -26,22 +26,22 @@ impl fmt::Display for Member {
     }
 }
 
-/// What a member is near to.
+/// Object to which the clearance of a member is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Neighbour {
     /// Another member.
     Member(Member),
-    /// The end of a slider's rail, at the anchor `A` of this index.
+    /// End of a slider's rail, located at a base joint `A_i`.
     RailEnd {
-        /// The leg whose rail it is.
+        /// Index of the leg to which the rail belongs.
         leg: usize,
-        /// Index of the anchor.
+        /// Index of the base joint at this end of the rail.
         anchor: usize,
     },
 }
 
 impl fmt::Display for Neighbour {
-    /// As in `leg2_link` or `rail1_end_A2`.
+    /// Writes the name, for example `leg2_link` or `rail1_end_A2`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Neighbour::Member(member) => member.fmt(f),
@@ -50,10 +50,10 @@ impl fmt::Display for Neighbour {
     }
 }
 
-/// A member's axis with the radius about it, in the base frame \[m\].
+/// Capsule of a member: its axis with a radius around it, in the base frame \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capsule {
-    /// Which member.
+    /// The member that the capsule represents.
     pub member: Member,
     /// Centre of the sphere at the proximal end.
     pub from: DVec3,
@@ -63,21 +63,21 @@ pub struct Capsule {
     pub radius: f64,
 }
 
-/// The nearest pair of bodies that are not joined.
+/// Clearance of the nearest pair that is not joined: two members, or a slider and an end of its rail.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clearance {
-    /// Distance of their surfaces \[m\]; where they overlap, the depth of penetration, negative.
+    /// Distance between the two surfaces \[m\]; where they overlap, the negative depth of penetration.
     pub distance: f64,
-    /// One of the two.
+    /// First member of the pair.
     pub member: Member,
-    /// The other.
+    /// Second member of the pair, or the end of the rail.
     pub neighbour: Neighbour,
-    /// The points of the members' axes that are nearest to each other, or a slider's end and that of its rail.
+    /// Points of the two axes that are nearest to each other, or the end of a slider and the end of its rail.
     pub between: [DVec3; 2],
 }
 
 impl Clearance {
-    /// Both names, as in `["leg1_link", "leg2_link"]`.
+    /// Returns both names, for example `["leg1_link", "leg2_link"]`.
     pub fn pair(&self) -> [String; 2] {
         [self.member.to_string(), self.neighbour.to_string()]
     }

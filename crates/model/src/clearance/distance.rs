@@ -1,20 +1,20 @@
-//! Distance of two segments in the plane, at several poses at once.
+//! Distance between two segments in the plane, computed at several poses at once.
 //!
-//! Written here because the loops over poses need it over [`Real`]: the same bits on every instruction set. What a library
-//! computes (`parry3d-f64`) is what the tests compare it with.
+//! This is an implementation of its own because the loops over poses need one that is generic over [`Real`], which
+//! gives the same bits on every instruction set. The tests compare it with the result of a library (`parry3d-f64`).
 
 use crate::lanes::Real;
 use crate::mechanism::Axis;
 
-/// Squared distance of two axes \[m²\]; 0 where they cross.
+/// Returns the squared distance between two axes \[m²\]; 0 where they cross.
 ///
-/// Two segments of a plane that do not cross are nearest at an end of one of them.
+/// Two segments in a plane that do not cross are nearest to each other at an end of one of them.
 #[inline(always)]
 pub(super) fn squared<V: Real>(a: &Axis<V>, b: &Axis<V>) -> V {
     let zero = a.length.splat(0.0);
     let way = b.from.minus(a.from);
     let (cos, sin) = (a.direction.dot(b.direction), a.direction.cross(b.direction));
-    // The ends of b along and to the left of a, and those of a along and to the left of b.
+    // Coordinates of the ends of b along a and to the left of a, then those of the ends of a relative to b.
     let near_b = [way.dot(a.direction), a.direction.cross(way)];
     let far_b = [near_b[0] + cos * b.length, near_b[1] + sin * b.length];
     let near_a = [-way.dot(b.direction), -b.direction.cross(way)];
@@ -26,15 +26,16 @@ pub(super) fn squared<V: Real>(a: &Axis<V>, b: &Axis<V>) -> V {
     zero.where_set(cross, of_ends)
 }
 
-/// Squared distance of a point from a segment of a length, the point given along and to the left of it.
+/// Returns the squared distance from a point to a segment of the given length. The coordinates of the point are
+/// measured from the start of the segment, along it and to its left.
 #[inline(always)]
 fn to_segment<V: Real>([along, across]: [V; 2], length: V) -> V {
     let beyond = (-along).larger((along - length).larger(length.splat(0.0)));
     beyond * beyond + across * across
 }
 
-/// Whether two axes could be nearer than `distance` anywhere: by the circles about them, which costs a fifth of
-/// [`squared`].
+/// Returns whether the distance between two axes could be smaller than `distance`. The test compares the circles around
+/// the axes, which costs a fifth of [`squared`].
 #[inline(always)]
 pub(super) fn may_be_nearer<V: Real>(a: &Axis<V>, b: &Axis<V>, distance: V) -> V::Mask {
     let half = distance.splat(0.5);

@@ -1,39 +1,40 @@
-//! What a study says of bodies beyond the design vector: sizes of sliders, and the layers in which members lie.
+//! Settings of a study that describe members beyond the design vector: the sizes of sliders and the layers in which
+//! members lie.
 
 use serde::{Deserialize, Serialize};
 
 use crate::mechanism::{Design, MemberKind};
 
-/// Layers of the members along z, as multiples of the thicker bar's diameter `2·max(r_j, r_p)`.
+/// Heights of the layers of members along z, as multiples of the thicker bar's diameter `2·max(r_j, r_p)`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Layers {
-    /// The platform's bars.
+    /// Layer of the platform bars.
     pub platform: f64,
-    /// Links up to the platform.
+    /// Layer of the links, which end at the platform.
     pub link: f64,
-    /// Telescopic legs.
+    /// Layer of the telescopic legs.
     pub telescopic_leg: f64,
-    /// Cranks.
+    /// Layer of the cranks.
     pub crank: f64,
-    /// Sliders.
+    /// Layer of the sliders.
     pub slider: f64,
 }
 
-/// Sizes and places of bodies that the design vector does not state.
+/// Sizes and layers of members, which the design vector does not specify.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BodySettings {
-    /// Length of a slider along its rail, rounded ends included, as a multiple of `r_j`.
+    /// Length of a slider along its rail, including the rounded ends, as a multiple of `r_j`.
     pub slider_length: f64,
-    /// Half of a slider's width, and of its height, as a multiple of `r_j`; at most half of its length.
+    /// Half the width of a slider, which is also half its height, as a multiple of `r_j`; at most half its length.
     pub slider_half_width: f64,
-    /// Layers.
+    /// Layers in which the members lie.
     pub layers: Layers,
 }
 
 impl Layers {
-    /// All members in one plane.
+    /// Layers that place all members in one plane.
     pub const ONE_PLANE: Layers = Layers {
         platform: 0.0,
         link: 0.0,
@@ -44,8 +45,9 @@ impl Layers {
 }
 
 impl Default for Layers {
-    /// What can be built for every architecture: the members of a leg are stacked on each other, the platform at the
-    /// bottom, so that a joint's pin runs between neighbouring layers and hits nothing in between.
+    /// Returns layers that can be built for every architecture: the members of a leg are stacked on top of each other
+    /// with the platform at the bottom, so that the pin of a joint runs between neighbouring layers and hits no member
+    /// in between.
     fn default() -> Self {
         Self {
             platform: 0.0,
@@ -68,7 +70,7 @@ impl Default for BodySettings {
 }
 
 impl BodySettings {
-    /// Height of a kind of member above `z = 0` \[m\].
+    /// Returns the height of members of `kind` above `z = 0` \[m\].
     pub fn height(&self, kind: MemberKind, design: &Design) -> f64 {
         let layer = match kind {
             MemberKind::Slider => self.layers.slider,
@@ -80,7 +82,7 @@ impl BodySettings {
         layer * 2.0 * design.leg_bar_radius.max(design.platform_bar_radius)
     }
 
-    /// Radius of a kind of member \[m\].
+    /// Returns the radius of members of `kind` \[m\].
     pub fn radius(&self, kind: MemberKind, design: &Design) -> f64 {
         match kind {
             MemberKind::Slider => self.slider_half_width * design.leg_bar_radius,
@@ -89,7 +91,7 @@ impl BodySettings {
         }
     }
 
-    /// Half of a slider's length \[m\].
+    /// Returns half the length of a slider \[m\].
     pub fn slider_half_length(&self, design: &Design) -> f64 {
         0.5 * self.slider_length * design.leg_bar_radius
     }

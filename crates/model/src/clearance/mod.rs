@@ -1,13 +1,15 @@
-//! Do bodies collide? The clearance of g7: the least distance between members that are not joined to each other.
+//! Clearance between members (constraint g7): the smallest distance between members that are not joined to each other
+//! (docs/model.md, section 8).
 //!
-//! A member is a capsule: its axis with a radius about it. All axes are parallel to the plane, each kind of member in a
-//! layer of its own height if the study says so, so that the distance of two axes is that in the plane and that of their
-//! layers, and the clearance is what is left of it without the radii; where members overlap it is negative, the depth of
-//! penetration along the shortest line between the axes. A slider is a block with rounded ends; it must not stick out
-//! beyond the ends of its rail.
+//! A member is modelled as a capsule: its axis with a radius around it. All axes are parallel to the plane of motion.
+//! Each kind of member lies in a layer at a height that the study can set, and the distance between two axes combines
+//! their distance in the plane with the distance between their layers. The clearance is the distance between the axes
+//! minus both radii. Where members overlap it is negative, and its magnitude is the depth of penetration along the
+//! shortest line between the axes. A slider is a block with rounded ends; it must not protrude beyond the ends of its
+//! rail.
 //!
-//! Joined, and therefore not counted: the members of one leg, the last member of a leg with its own bar of the platform,
-//! and the bars of the platform, which are one body.
+//! The following members are joined, and pairs of them are therefore not checked: the members of one leg, the last
+//! member of a leg and the platform bar that it is hinged to, and the platform bars, which form one rigid body.
 
 mod bodies;
 mod capsule;
@@ -18,5 +20,5 @@ pub use bodies::Bodies;
 pub use capsule::{Capsule, Clearance, Member, Neighbour};
 pub use layers::{BodySettings, Layers};
 
-/// Longest distance that is told, and thickest body \[m\].
+/// Largest magnitude of a reported distance, and upper limit for the dimensions of members \[m\].
 pub(crate) const FARTHEST: f64 = 1e100;

@@ -1,4 +1,5 @@
-//! The constraints g1 … g6 and the sign rule, their margins (SPEC section 5), and g7, which a study may ask for.
+//! Constraints g1 … g6, the sign rule, and g7, which a study may require; their values and margins (docs/model.md,
+//! section 6).
 
 use crate::mechanism::Design;
 use crate::spatial::Pose;
@@ -9,7 +10,7 @@ use crate::workspace::{PoseValues, Thresholds};
 pub enum Constraint {
     /// g1: `L_b + r ≥ R/2`.
     Assembly,
-    /// g2: least distance to a joint limit or to the end of reach ≥ 0.
+    /// g2: limit margin (smallest distance to a joint limit or to the end of reach) ≥ 0.
     Reach,
     /// g3: `κ_F⁻¹`.
     Dexterity,
@@ -19,14 +20,14 @@ pub enum Constraint {
     StiffnessZ,
     /// g6: `k_φz`.
     StiffnessPhiZ,
-    /// One sign of `det A` over the workspace.
+    /// Sign rule: `det A` keeps one sign over the workspace.
     DeterminantSign,
-    /// g7: least clearance of bodies that are not joined, where the study asks for one.
+    /// g7: smallest clearance between members that are not joined, if the study requires a clearance.
     Clearance,
 }
 
 impl Constraint {
-    /// All constraints: those of the paper, g1 first, then what a study may ask for besides.
+    /// All constraints: those of the paper, beginning with g1, then the one that a study may require in addition.
     pub const ALL: [Constraint; 8] = [
         Constraint::Assembly,
         Constraint::Reach,
@@ -38,7 +39,7 @@ impl Constraint {
         Constraint::Clearance,
     ];
 
-    /// Short id, as in JSON and CSV.
+    /// Returns the short id, as in JSON and CSV.
     pub fn id(self) -> &'static str {
         match self {
             Constraint::Assembly => "g1",
@@ -52,7 +53,7 @@ impl Constraint {
         }
     }
 
-    /// Name, as in JSON.
+    /// Returns the name, as in JSON.
     pub fn name(self) -> &'static str {
         match self {
             Constraint::Assembly => "assembly",
@@ -66,7 +67,7 @@ impl Constraint {
         }
     }
 
-    /// Unit of its value and threshold; empty for a number without one.
+    /// Returns the unit of the value and the threshold; empty for a dimensionless number.
     pub fn unit(self) -> &'static str {
         match self {
             Constraint::Assembly | Constraint::Reach | Constraint::Clearance => "m",
@@ -76,19 +77,20 @@ impl Constraint {
         }
     }
 
-    /// Whether it is asked for: g7 is by a study that states a clearance, all others are always.
+    /// Returns whether the constraint is required: g7 is required if the study states a clearance, all others always
+    /// are.
     pub fn is_asked(self, thresholds: &Thresholds) -> bool {
         self != Constraint::Clearance || thresholds.clearance.is_some()
     }
 
-    /// Those that are asked for.
+    /// Returns the constraints that are required.
     pub fn asked(thresholds: &Thresholds) -> impl Iterator<Item = Constraint> {
         Self::ALL
             .into_iter()
             .filter(|constraint| constraint.is_asked(thresholds))
     }
 
-    /// The least value allowed; where g7 is not asked for, the 0 at which bodies touch.
+    /// Returns the smallest value allowed; if g7 is not required, its threshold is 0, at which members touch.
     pub fn threshold(self, design: &Design, thresholds: &Thresholds) -> f64 {
         match self {
             Constraint::Assembly => 0.5 * design.base_radius,
@@ -101,8 +103,9 @@ impl Constraint {
         }
     }
 
-    /// Relative margin of a value: `(value − threshold)/threshold`; where the threshold is 0, `det A / ℓ` as it is; the
-    /// distances of g2 and g7 beyond their thresholds as a share of `R`. Negative where the constraint is broken.
+    /// Returns the relative margin of a value, which is negative where the constraint is violated. It is
+    /// `(value − threshold)/threshold`, except for g2 and g7, whose excess over the threshold is divided by `R`, and
+    /// for a threshold of 0, where it is the value itself, such as `det A / ℓ`.
     pub fn margin(self, value: f64, threshold: f64, design: &Design) -> f64 {
         match self {
             Constraint::Reach | Constraint::Clearance => (value - threshold) / design.base_radius,
@@ -111,8 +114,8 @@ impl Constraint {
         }
     }
 
-    /// The value at a reachable pose, with `det A` counted positive in the sign of the home pose; `None` where nobody
-    /// asked for it.
+    /// Returns the value at a reachable pose, with `det A / ℓ` multiplied by `sign`, that of the home pose; `None` for
+    /// a clearance that was not computed because it is not required.
     pub fn value(self, design: &Design, values: &PoseValues, sign: f64) -> Option<f64> {
         let value = match self {
             Constraint::Assembly => design.link_length + design.platform_radius,
@@ -127,7 +130,8 @@ impl Constraint {
         Some(value)
     }
 
-    /// Whether a value satisfies the constraint: `det A` must not vanish, every other value may equal its threshold.
+    /// Returns whether a value satisfies the constraint: `det A` must not vanish, every other value may equal its
+    /// threshold.
     pub fn holds(self, value: f64, threshold: f64) -> bool {
         match self {
             Constraint::DeterminantSign => value > threshold,
@@ -136,28 +140,28 @@ impl Constraint {
     }
 }
 
-/// One constraint of one design: its smallest value over the regular workspace and where that is.
+/// One constraint of one design: its smallest value over the regular workspace, and the pose at which it occurs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConstraintReport {
-    /// Which.
+    /// The constraint.
     pub constraint: Constraint,
-    /// Smallest value; `None` where no pose is reachable at which there is one.
+    /// Smallest value; `None` if no reachable pose has one.
     pub value: Option<f64>,
-    /// Least value allowed.
+    /// Smallest value allowed.
     pub threshold: f64,
-    /// Whether the study asks for it. What is not asked for is never broken and never active.
+    /// Whether the study requires the constraint. A constraint that is not required is never violated and never active.
     pub asked: bool,
-    /// Relative margin ([`Constraint::margin`]); −1 where there is no value.
+    /// Relative margin ([`Constraint::margin`]); −1 if there is no value.
     pub margin: f64,
-    /// Whether it is among those that fail first just beyond `R_w` in the home window; for an infeasible design, those
-    /// that keep the best window from having a workspace.
+    /// Whether the constraint is among those that fail first just beyond `R_w` in the home window; for an infeasible
+    /// design, among those that prevent the best window from having a workspace.
     pub active: bool,
-    /// Where the value was found; `None` for g1, which holds for the design as a whole.
+    /// Pose at which the value occurs; `None` for g1, which applies to the design as a whole.
     pub pose: Option<Pose>,
 }
 
 impl ConstraintReport {
-    /// The margin, where the study asks for the constraint.
+    /// Returns the margin, if the study requires the constraint.
     pub fn asked_margin(&self) -> Option<f64> {
         self.asked.then_some(self.margin)
     }

@@ -1,4 +1,4 @@
-//! Poses of a disc in columns, and where in the disc they lie.
+//! Poses of a disc, stored in columns, and their places in the disc.
 
 use glam::DVec2;
 
@@ -6,21 +6,21 @@ use crate::mechanism::Leg;
 use crate::spatial::LEGS;
 use crate::workspace::{ArmColumns, PoseChecker, Positions, ValueColumns};
 
-/// Where a pose lies in the disc.
+/// Place of a pose in the disc.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     pub orientation: usize,
     pub radius: f64,
     pub angle: f64,
-    /// Distances to the neighbours that it was laid with, along the radius and in angle.
+    /// Distances to the neighbours with which it was laid out: along the radius \[m\] and in angle \[rad\].
     pub spacing: [f64; 2],
     pub refined: bool,
 }
 
-/// Poses in columns.
+/// Poses, stored in columns.
 #[derive(Default)]
 pub(super) struct Layout {
-    /// Poses laid, padding left out.
+    /// Number of poses, without padding.
     pub count: usize,
     pub positions: Positions,
     pub arms: ArmColumns,
@@ -39,14 +39,14 @@ impl Layout {
         self.arms.push(arms);
     }
 
-    /// The same arms at every position.
+    /// Appends poses with the same arms at every position.
     pub fn extend(&mut self, positions: &[DVec2], arms: &[DVec2; LEGS]) {
         self.count += positions.len();
         self.positions.extend(positions);
         self.arms.extend(arms, positions.len());
     }
 
-    /// Takes what pads the columns off.
+    /// Removes the padding of the columns.
     pub fn unpad(&mut self) {
         self.positions.truncate(self.count);
         self.arms.truncate(self.count);
@@ -57,7 +57,7 @@ impl Layout {
         self.arms.pad();
     }
 
-    /// These of its poses, padded.
+    /// Returns the poses with the given indices, padded.
     pub fn chosen(&self, poses: &[usize]) -> Self {
         let mut chosen = Self {
             count: poses.len(),
@@ -68,12 +68,12 @@ impl Layout {
         chosen
     }
 
-    /// Values of the design in `checker` at the poses.
+    /// Computes the values of the design in `checker` at the poses.
     pub fn values<L: Leg>(&self, checker: &PoseChecker<L>, values: &mut ValueColumns) {
         checker.at_poses(&self.positions, &self.arms, values);
     }
 
-    /// Its stiffness at the poses as shares of what is asked for: `k_xy`, `k_z`, `k_φz`.
+    /// Returns the ratios of the stiffness at the poses to the thresholds: `k_xy`, `k_z`, `k_φz`.
     pub fn shares<L: Leg>(&self, checker: &PoseChecker<L>, values: &mut ValueColumns) -> [Vec<f64>; 3] {
         self.values(checker, values);
         values.rigidity_shares(&checker.thresholds, self.count)

@@ -1,67 +1,71 @@
-//! Two radii under constraints that both relieve: least weighted sum of squares by sequential linearisation in logarithms.
+//! Two bar radii of smallest mass under constraints that an increase of either radius relaxes. The mass is a weighted
+//! sum of the squared radii; the method is sequential linearisation in logarithms.
 //!
-//! Stiffness is close to a power law of the radii, and mass is one. In logarithms of the radii the constraints are close
-//! to straight lines and the mass is convex, so that a few linearisations settle it.
+//! Stiffness is close to a power law of the radii, and the mass of the bars of each radius follows one exactly. In
+//! logarithms of the radii the constraints are nearly linear and the mass is convex, so that a few linearisations
+//! suffice.
 
-/// What is asked.
+/// Sizing problem to be solved.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Problem {
-    /// Radii to start from \[m\].
+    /// Radii at which the solution starts \[m\].
     pub start: [f64; 2],
-    /// Their ranges \[m\].
+    /// Ranges of the radii \[m\].
     pub ranges: [[f64; 2]; 2],
     /// Mass per squared radius \[kg/m²\].
     pub mass: [f64; 2],
 }
 
-/// What stiffness there is at some poses as shares of what is asked, a column for each kind.
+/// Ratios of the stiffness to the required stiffness at a set of poses, one column for each kind of stiffness.
 pub(super) trait Shares {
-    /// At all poses.
+    /// Returns the ratios at all poses for bars of the given radii.
     fn of_all(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3];
-    /// Chooses some of them, and may look closer about the weakest: poses that it adds to all are among the chosen.
+    /// Selects some of the poses. It may refine the sampling about the `weakest`; poses that it adds to the set are
+    /// selected too.
     fn choose(&mut self, poses: &[usize], weakest: &[usize]);
-    /// At the poses chosen.
+    /// Returns the ratios at the selected poses for bars of the given radii.
     fn of_chosen(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3];
 }
 
-/// Rounds of choosing poses, and of linearisations on the chosen ones.
+/// Number of rounds that select poses, and number of linearisations on the selected poses in each round.
 const ROUNDS: [usize; 2] = [3, 4];
 
-/// Poses of each kind chosen in a round: the weakest.
+/// Number of poses that a round selects for each kind of stiffness: those with the smallest ratios.
 const CHOSEN: usize = 10;
 
-/// Of them, so many are looked at closer.
+/// Number of the selected poses of each kind about which the sampling is refined.
 const REFINED: usize = 3;
 
 /// Largest change of a logarithm in a linearisation.
 const TRUST: f64 = 0.5;
 
-/// A change of the logarithms below this ends the linearisations: near the optimum the mass changes by its square.
+/// The linearisations end when the logarithms change by less than this: near the optimum the mass changes with the
+/// square of that change.
 const SETTLED: f64 = 2e-3;
 
-/// Shares beyond this are no constraint.
+/// Ratios above this value do not act as constraints.
 const FAR: f64 = 1e6;
 
-/// Step of the difference quotients in a logarithm.
+/// Step in a logarithm for the difference quotients.
 const STEP: f64 = 1e-4;
 
-/// Power of the radii that stiffness is taken to grow with where nothing better is known: between 2, a bar pulled, and
-/// 4, a bar bent.
+/// Assumed exponent of the growth of stiffness with the radii, where nothing better is known: between 2 for a bar in
+/// tension and 4 for a bar in bending.
 const POWER: f64 = 3.5;
 
-/// A lower bound of 0 is taken as this share of the upper one.
+/// Fraction of the upper bound that replaces a lower bound of 0.
 const THINNEST: f64 = 1e-5;
 
-/// Bars whose weakest share exceeds 1 by no more than this are left as they are.
+/// Bars whose smallest ratio exceeds 1 by no more than this are left unchanged.
 const SPARE: f64 = 5e-4;
 
-/// The constraint `share + slopes · change ≥ 0`, all in logarithms.
+/// Linearised constraint `share + slopes · change ≥ 0`, with all quantities in logarithms.
 struct Line {
     share: f64,
     slopes: [f64; 2],
 }
 
-/// The radii of least mass at which every share is at least 1; `None` where the ranges have none.
+/// Returns the radii of smallest mass at which every ratio is at least 1; `None` if the ranges contain no such radii.
 pub(super) fn lightest(problem: &Problem, shares: &mut impl Shares) -> Option<[f64; 2]> {
     let upper = problem.ranges.map(|range| libm::log(range[1]));
     let lower = problem.ranges.map(|[low, high]| libm::log(low.max(THINNEST * high)));
@@ -74,7 +78,7 @@ pub(super) fn lightest(problem: &Problem, shares: &mut impl Shares) -> Option<[f
     for round in 0..ROUNDS[0] {
         let mut all = shares.of_all(at.map(libm::exp));
         if round == 0 {
-            // Near the constraints first: both radii scaled alike.
+            // Both radii are first scaled alike to come close to the constraints.
             at = scaled(at, weakest(&all), &inside);
             all = shares.of_all(at.map(libm::exp));
         } else if weakest(&all) > 1.0 - SPARE {
@@ -107,7 +111,8 @@ pub(super) fn lightest(problem: &Problem, shares: &mut impl Shares) -> Option<[f
             trust *= 0.7;
         }
     }
-    // The linearised optimum may miss by a little: both radii are scaled until all hold, by no more than need be.
+    // The linearised optimum may violate a constraint slightly: both radii are scaled, by no more than necessary, until
+    // all constraints hold.
     let mut held = upper;
     let mut short: Option<[f64; 2]> = None;
     for _ in 0..6 {
@@ -122,14 +127,14 @@ pub(super) fn lightest(problem: &Problem, shares: &mut impl Shares) -> Option<[f
         }
         let next = scaled(at, weakest / (1.0 + 0.5 * SPARE), &inside);
         at = match short {
-            // Between what falls short and what holds, never past either.
+            // The next radii stay between those that violate a constraint and those that satisfy all, and pass neither.
             Some(short) if held != upper && !between(next, short, held) => {
                 [0.5 * (short[0] + held[0]), 0.5 * (short[1] + held[1])]
             }
             _ => next,
         };
     }
-    // The exponential of a bound's logarithm may pass the bound by a bit.
+    // The exponential of the logarithm of a bound may exceed the bound by a rounding error.
     let [low, high] = [0, 1].map(|end| problem.ranges.map(|range| range[end]));
     Some([0, 1].map(|k| libm::exp(held[k]).clamp(low[k], high[k])))
 }
@@ -141,7 +146,7 @@ fn weakest(columns: &[Vec<f64>; 3]) -> f64 {
         .fold(f64::INFINITY, |least, &share| least.min(share))
 }
 
-/// The constraints linearised by difference quotients.
+/// Returns the constraints, linearised by difference quotients.
 fn lines(base: &[Vec<f64>; 3], stepped: &[[Vec<f64>; 3]; 2]) -> Vec<Line> {
     let mut lines = Vec::with_capacity(3 * base[0].len());
     for kind in 0..3 {
@@ -157,7 +162,7 @@ fn lines(base: &[Vec<f64>; 3], stepped: &[[Vec<f64>; 3]; 2]) -> Vec<Line> {
     lines
 }
 
-/// Both logarithms shifted alike, so that the weakest share comes near 1.
+/// Returns both logarithms, shifted alike so that the smallest ratio comes close to 1.
 fn scaled(at: [f64; 2], weakest: f64, inside: &impl Fn([f64; 2]) -> [f64; 2]) -> [f64; 2] {
     let shift = -libm::log(weakest.clamp(1e-12, 1e12)) / POWER;
     inside([at[0] + shift, at[1] + shift])
@@ -167,10 +172,12 @@ fn between(at: [f64; 2], low: [f64; 2], high: [f64; 2]) -> bool {
     (0..2).all(|k| at[k] >= low[k].min(high[k]) && at[k] <= low[k].max(high[k]))
 }
 
-/// The point of least mass within `trust` of `at` that keeps `lines`; nearest to keeping them where none does.
+/// Returns the point of smallest mass within `trust` of `at` that satisfies `lines`; if none does, the point that is
+/// nearest to satisfying them.
 fn change(at: [f64; 2], lines: &[Line], problem: &Problem, trust: f64) -> [f64; 2] {
-    // The second change that a line asks for, `[constant, slope]` in the first; of lines that can fail within reach. One
-    // without a second slope asks for a first change instead.
+    // Smallest change of the second logarithm that a line requires, as `[constant, slope]` in the change of the first,
+    // for lines that can be violated within `trust`. A line without a second slope requires a change of the first
+    // instead.
     let mut asked: Vec<[f64; 2]> = Vec::with_capacity(lines.len());
     let mut low = -trust;
     for line in lines {
@@ -198,7 +205,7 @@ fn change(at: [f64; 2], lines: &[Line], problem: &Problem, trust: f64) -> [f64; 
         }
         problem.mass[0] * libm::exp(2.0 * (at[0] + first)) + problem.mass[1] * libm::exp(2.0 * (at[1] + second))
     };
-    // The mass is convex in the first change, infinite below some value of it: golden section.
+    // A golden-section search is used: the mass is convex in the first change, and infinite below some value of it.
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let mut left = high - GOLDEN * (high - low);
     let mut right = low + GOLDEN * (high - low);

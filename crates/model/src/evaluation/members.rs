@@ -1,4 +1,4 @@
-//! The members of a design at a pose: where they are, what they weigh, and what they give way.
+//! Members of a design at a pose: their positions, their masses, and their contributions to the compliance.
 
 use glam::DVec3;
 
@@ -12,30 +12,32 @@ use crate::stiffness::{Share, StiffnessModel};
 /// A member at a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MemberReport {
-    /// Which.
+    /// The member.
     pub member: Member,
-    /// Proximal end of its axis in the base frame \[m\]: of a telescopic leg where its rod ends, if that sticks out behind
-    /// the base joint; of a slider the middle of an end face.
+    /// Proximal end of the axis in the base frame \[m\]. For a telescopic leg it is the inner end of the rod, if that
+    /// protrudes behind the base joint; for a slider it is the centre of an end face.
     pub from: DVec3,
-    /// Distal end of its axis \[m\].
+    /// Distal end of the axis \[m\].
     pub to: DVec3,
-    /// Radius; half the width of a slider \[m\].
+    /// Radius, or half the width of a slider \[m\].
     pub radius: f64,
-    /// Length of the bar between its joints at the pose, or of the slider \[m\].
+    /// Length of the bar between its joints at the pose, or length of the slider \[m\].
     pub length: f64,
     /// Mass \[kg\]; a slider has none in this model.
     pub mass: f64,
-    /// Its share of the compliance at the pose; `None` where the platform gives way without end.
+    /// Fraction of the compliance at the pose that the member contributes; `None` if the platform is infinitely
+    /// compliant.
     pub share: Option<Share>,
-    /// That of the actuator that drives it, if one does.
+    /// Fraction that the actuator driving the member contributes, if an actuator drives it.
     pub actuator: Option<Share>,
 }
 
 impl Model {
-    /// The members of `design` at `pose`: of each leg from the base outwards, then the platform's bars.
+    /// Returns the members of `design` at `pose`: the proximal members of all legs, if they have one, then the distal
+    /// members, then the platform bars.
     ///
     /// # Errors
-    /// The leg that does not get there.
+    /// Returns the leg that does not reach the pose, and why.
     pub fn members(&self, design: &Design, pose: &Pose) -> Result<Vec<MemberReport>, Unreachable> {
         with_leg!(design.architecture, L => self.members_of::<L>(design, pose))
     }
@@ -55,7 +57,7 @@ impl Model {
             let leg = capsule.member.leg;
             let of_leg_shares = shares.as_ref().map(|shares| &shares[leg]);
             let ends = match (kind, manipulator.legs[leg].actuator_axis(&posture.legs[leg])) {
-                // The capsule's axis ends before the block does.
+                // The axis of a capsule ends before the end faces of the block.
                 (MemberKind::Slider, Some(axis)) => {
                     let middle = 0.5 * (capsule.from + capsule.to);
                     let half = axis.extend(0.0) * self.bodies.slider_half_length(design);

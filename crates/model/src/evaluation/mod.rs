@@ -1,4 +1,4 @@
-//! A design to its objectives, constraints and margins: the one call that everything else makes.
+//! Evaluation of a design: computes its objectives, constraints and margins in the one call that all other code uses.
 //!
 //! ```
 //! use kinefront_model::evaluation::{GridChoice, Model};
@@ -29,10 +29,10 @@ pub use sizing::{BarRanges, Demand};
 use crate::mechanism::Design;
 use crate::spatial::Pose;
 
-/// What is known of a design after one evaluation.
+/// Result of one evaluation of a design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluation {
-    /// The design.
+    /// The evaluated design.
     pub design: Design,
     /// `f1`: mass in motion \[kg\].
     pub mass: f64,
@@ -40,33 +40,34 @@ pub struct Evaluation {
     pub workspace_radius: f64,
     /// Centre and home orientation of the regular workspace; `None` for an infeasible design.
     pub home: Option<Pose>,
-    /// `φ_c` in degrees exactly as it stands on the grid, in \[0, 360).
+    /// Home orientation `φ_c` exactly as on the grid \[deg\], in \[0, 360); `None` for an infeasible design.
     pub home_phi_deg: Option<f64>,
-    /// The constraints, in the order of [`Constraint::ALL`].
+    /// Reports of the constraints, in the order of [`Constraint::ALL`].
     pub constraints: [ConstraintReport; Constraint::ALL.len()],
-    /// How far the design is from having a workspace: 0 for a feasible one, else the least mean over a window of the
-    /// summed relative shortfalls at the centre. For optimizers; without unit.
+    /// Dimensionless measure, for optimizers, of how far the design is from having a workspace: 0 for a feasible
+    /// design, otherwise the smallest mean over a window of the summed relative shortfalls at the centre. A window with
+    /// both signs of `det A` counts 1 more, and the relative shortfall of g1 is added.
     pub violation: f64,
 }
 
 impl Evaluation {
-    /// Whether the design has a regular workspace.
+    /// Returns whether the design has a regular workspace.
     pub fn is_feasible(&self) -> bool {
         self.workspace_radius > 0.0
     }
 
-    /// The report of one constraint.
+    /// Returns the report of one constraint.
     pub fn constraint(&self, constraint: Constraint) -> &ConstraintReport {
         &self.constraints[constraint as usize]
     }
 
-    /// Least clearance of bodies that are not joined over the regular workspace, asked for or not \[m\]; `None` where no pose
-    /// has one.
+    /// Returns the smallest clearance over the regular workspace between members that are not joined \[m\], whether it
+    /// is required or not; `None` if no pose has one.
     pub fn clearance(&self) -> Option<f64> {
         self.constraint(Constraint::Clearance).value
     }
 
-    /// Ids of the active constraints, in order.
+    /// Returns the active constraints, in the order of [`Constraint::ALL`].
     pub fn active(&self) -> impl Iterator<Item = Constraint> + '_ {
         self.constraints
             .iter()

@@ -1,4 +1,4 @@
-//! The physics of a study: material, actuators, thresholds, definitions, workspace and grids.
+//! Physical model of a study: material, actuators, thresholds, definitions, workspace and grids.
 
 use glam::DVec2;
 
@@ -12,18 +12,19 @@ use crate::stiffness::planar::ActuatorStiffness;
 use crate::stiffness::{Material, StiffnessDefinition, StiffnessModel};
 use crate::workspace::{Grid, GridError, PoseChecker, Thresholds, WorkspaceSampling, WorkspaceSpec};
 
-/// Everything but the design that an evaluation depends on. The default is the paper's.
+/// All inputs of an evaluation other than the design. The default is the model of the paper, with the choices of this
+/// program where the paper leaves something open (docs/model.md, section 11).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModelSettings {
     /// Material of every bar.
     pub material: Material,
     /// Actuator stiffness.
     pub actuators: ActuatorStiffness,
-    /// Choices about legs.
+    /// Settings of the legs.
     pub legs: LegSettings,
     /// Sizes of sliders and layers of members.
     pub bodies: BodySettings,
-    /// How many bars of length `r` count in the platform's mass (SPEC section 8, no. 1).
+    /// Number of bars of length `r` that count towards the mass of the platform (docs/model.md, section 11).
     pub platform_bars: u32,
     /// Definition of `k_xy`, `k_z`, `k_φz`.
     pub stiffness_definition: StiffnessDefinition,
@@ -31,11 +32,11 @@ pub struct ModelSettings {
     pub characteristic_length: CharacteristicLength,
     /// Thresholds of g3 … g7.
     pub thresholds: Thresholds,
-    /// Force in the plane that the study asks for \[N\], for displacements; the thresholds already hold it.
+    /// In-plane force of the study's requirement \[N\], used for displacements; the thresholds already account for it.
     pub in_plane_force: f64,
-    /// Centre, home and rotation range of the regular workspace.
+    /// Centre, home orientation and rotation range of the regular workspace.
     pub workspace: WorkspaceSpec,
-    /// Grid on which designs are searched.
+    /// Grid on which designs are evaluated during a search.
     pub reference_grid: Grid,
     /// Grid on which reported designs are verified.
     pub fine_grid: Grid,
@@ -44,9 +45,9 @@ pub struct ModelSettings {
 /// One of the two grids.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GridChoice {
-    /// For searching.
+    /// Reference grid, for searching.
     Reference,
-    /// For verifying what is reported.
+    /// Fine grid, for verifying reported designs.
     Fine,
 }
 
@@ -141,23 +142,24 @@ impl Model {
         }
     }
 
-    /// `f1`: mass in motion \[kg\], `ν·π·(n·r_j²·L_b + 3·r_p²·r)`.
+    /// Returns the objective `f1`, the mass in motion \[kg\]: `ν·π·(n·r_j²·L_b + 3·r_p²·r)`, where 3 is the default
+    /// number of platform bars.
     pub fn mass(&self, design: &Design) -> f64 {
         self.legs_mass(design) + self.platform_mass(design)
     }
 
-    /// Mass of the bars of all legs \[kg\].
+    /// Returns the mass of the bars of all legs \[kg\].
     pub fn legs_mass(&self, design: &Design) -> f64 {
         let bars = (3 * design.architecture.bars_per_leg()) as f64;
         bars * self.bar_mass(design.leg_bar_radius, design.link_length)
     }
 
-    /// Mass of the platform's bars \[kg\].
+    /// Returns the mass of the platform bars \[kg\].
     pub fn platform_mass(&self, design: &Design) -> f64 {
         f64::from(self.platform_bars) * self.bar_mass(design.platform_bar_radius, design.platform_radius)
     }
 
-    /// Mass of one bar \[kg\].
+    /// Returns the mass of one bar \[kg\].
     pub fn bar_mass(&self, radius: f64, length: f64) -> f64 {
         self.material.density * std::f64::consts::PI * radius * radius * length
     }
@@ -167,7 +169,7 @@ impl Model {
         self.evaluate_with(design, grid, InstructionSet::best())
     }
 
-    /// [`Model::evaluate`] with a given set of instructions, which changes no bit of the result.
+    /// Evaluates a design like [`Model::evaluate`], with a given instruction set, which changes no bit of the result.
     pub fn evaluate_with(&self, design: &Design, grid: GridChoice, instructions: InstructionSet) -> Evaluation {
         with_leg!(design.architecture, L => {
             let mut checker = self.checker::<L>(design);
@@ -176,7 +178,7 @@ impl Model {
         })
     }
 
-    /// The design made ready for many poses.
+    /// Prepares the design for evaluation at many poses.
     pub fn checker<L: Leg>(&self, design: &Design) -> PoseChecker<L> {
         let manipulator = Manipulator::new(design, &self.legs);
         PoseChecker {
@@ -190,10 +192,10 @@ impl Model {
         }
     }
 
-    /// `ℓ` of a design \[m\].
+    /// Returns the characteristic length `ℓ` of a design \[m\].
     ///
-    /// The isotropic length looks at the reference grid's orientations whatever grid is evaluated, so that one design
-    /// has one length; a design that reaches none of them with `P` at `O` falls back on `r`.
+    /// The isotropic length uses the orientations of the reference grid, whatever grid is evaluated, so that a design
+    /// has only one length. If the design reaches none of them with `P` at `O`, the length falls back to `r`.
     fn length<L: Leg>(&self, design: &Design, manipulator: &Manipulator<L>) -> f64 {
         match self.characteristic_length {
             CharacteristicLength::PlatformRadius => design.platform_radius,
@@ -221,7 +223,8 @@ impl Model {
         }
     }
 
-    /// Home of an evaluated design, or for an infeasible one the pose that its constraints are reported at.
+    /// Returns the home pose of an evaluated design; for an infeasible design, the pose at which its constraints are
+    /// reported.
     pub fn home(&self, evaluation: &Evaluation) -> Pose {
         let reported = || evaluation.constraints.iter().find_map(|report| report.pose);
         evaluation.home.or_else(reported).unwrap_or(Pose {
@@ -230,12 +233,13 @@ impl Model {
         })
     }
 
-    /// The nearest pair of bodies of an evaluated design, at the pose where its clearance was found to be least; `None`
-    /// where it has none.
+    /// Returns the nearest pair of members of an evaluated design, at the pose of its smallest clearance; `None` if it
+    /// has no clearance.
     pub fn nearest(&self, evaluation: &Evaluation) -> Option<Clearance> {
         let pose = evaluation.constraint(Constraint::Clearance).pose?;
         let design = &evaluation.design;
-        // At the very end of a leg's reach rounding decides whether it gets there; a hair nearer to the centre it does.
+        // At the very end of a leg's reach, rounding decides whether the leg reaches the pose; slightly nearer to the
+        // centre it does.
         let inwards = (self.workspace.centre - pose.position).clamp_length_max(1e-9 * design.base_radius);
         let position = pose.position + inwards;
         let found = self.nearest_at(design, &pose);
@@ -244,10 +248,10 @@ impl Model {
             .ok()
     }
 
-    /// The nearest pair of bodies of a design at a pose.
+    /// Returns the nearest pair of members of a design at a pose.
     ///
     /// # Errors
-    /// The leg that does not get there.
+    /// Returns the leg that does not reach the pose, and why.
     pub fn nearest_at(&self, design: &Design, pose: &Pose) -> Result<Clearance, Unreachable> {
         with_leg!(design.architecture, L => {
             let manipulator = Manipulator::<L>::new(design, &self.legs);
@@ -258,7 +262,7 @@ impl Model {
         })
     }
 
-    /// Whether a turn by 120° about the workspace's centre maps the design on itself.
+    /// Returns whether a rotation by 120° about the centre of the workspace maps the design onto itself.
     pub fn is_symmetric(&self, design: &Design) -> bool {
         self.workspace.centre == DVec2::ZERO && design.working_mode.is_uniform()
     }

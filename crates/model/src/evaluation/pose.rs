@@ -1,4 +1,4 @@
-//! Everything about one design at one pose.
+//! Evaluation of one design at one pose.
 
 use nalgebra::Matrix6;
 
@@ -9,7 +9,7 @@ use crate::mechanism::{Design, Leg, ReachReason, Shortfall};
 use crate::spatial::{LEGS, Pose};
 use crate::stiffness::Rigidity;
 
-/// A design at a pose that it reaches.
+/// Values of a design at a reachable pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseReport {
     /// Actuator values \[m or rad\].
@@ -18,7 +18,7 @@ pub struct PoseReport {
     pub b: [[f64; 2]; LEGS],
     /// `C_i` in the base frame \[m\].
     pub c: [[f64; 2]; LEGS],
-    /// Least distance to a joint limit or to the end of reach \[m\].
+    /// Limit margin: smallest distance to a joint limit or to the end of reach \[m\].
     pub slack: f64,
     /// `κ_F⁻¹`.
     pub inverse_condition: f64,
@@ -26,19 +26,19 @@ pub struct PoseReport {
     pub determinant: f64,
     /// `k_xy`, `k_z`, `k_φz`.
     pub rigidity: Rigidity,
-    /// The nearest pair of bodies that are not joined.
+    /// Clearance of the nearest pair of members that are not joined.
     pub clearance: Clearance,
-    /// `K` at `P`, linear first, base axes.
+    /// Stiffness matrix `K` at `P` in base axes, linear components first.
     pub stiffness: Matrix6<f64>,
 }
 
-/// Why a pose is not reached, in words.
+/// Reason why a pose is unreachable, displayed as a message.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("leg {}: {}", .leg + 1, words(.shortfall))]
 pub struct Unreachable {
     /// Index of the leg, from 0.
     pub leg: usize,
-    /// How far and why.
+    /// Distance by which the leg fails to reach the pose, and the reason.
     pub shortfall: Shortfall,
 }
 
@@ -53,7 +53,7 @@ fn words(shortfall: &Shortfall) -> String {
 }
 
 impl Model {
-    /// The design at `pose`, or why it does not get there.
+    /// Evaluates `design` at `pose`. The inner result states why the pose is unreachable, if it is.
     ///
     /// # Errors
     /// The leg that does not reach the pose, and why.

@@ -1,9 +1,10 @@
-//! The lightest bars for a geometry: how thin they may be for a regular workspace of a given radius.
+//! Sizing of the bars: determines how thin the bars of a geometry may be for a regular workspace of a given radius, and
+//! so the lightest ones (docs/model.md, section 9).
 //!
 //! Mass and stiffness grow with both bar radii, and neither reach nor dexterity depends on them. For a given geometry
-//! and radius of workspace the lightest pair of bar radii is therefore a problem of two variables. It is solved on a few
-//! rings of the disc, some hundred poses of which a few dozen matter, where an evaluation looks at ten thousand: a sized
-//! design is a proposal, to be evaluated.
+//! and workspace radius, finding the lightest pair of bar radii is therefore a problem of two variables. It is solved
+//! on a few rings of the disc, with some hundred poses of which a few dozen matter, whereas an evaluation examines ten
+//! thousand. A sized design is therefore only a proposal that must be evaluated.
 
 use std::f64::consts::TAU;
 
@@ -17,40 +18,41 @@ use crate::spatial::{LEGS, Rotation, unit};
 use crate::stiffness::StiffnessModel;
 use crate::workspace::{PoseChecker, Turn, ValueColumns};
 
-/// Directions of a ring over a sector of 120°.
+/// Number of directions of a ring over a sector of 120°.
 const DIRECTIONS: usize = 16;
 
-/// Rings of the disc on which bars are sized, besides its centre, as shares of its radius.
+/// Radii of the rings on which bars are sized, besides the centre, as fractions of the radius of the disc.
 const RINGS: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 
-/// Halvings in search of the largest radius.
+/// Number of halvings in the search for the largest radius.
 const HALVINGS: usize = 10;
 
-/// Ranges of the bars' radii \[m\].
+/// Ranges of the bar radii \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BarRanges {
-    /// Of `r_j`.
+    /// Range of `r_j`.
     pub leg: [f64; 2],
-    /// Of `r_p`.
+    /// Range of `r_p`.
     pub platform: [f64; 2],
 }
 
-/// The workspace that bars are sized for.
+/// Workspace radius for which bars are sized.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Demand {
-    /// A radius \[m\].
+    /// A given radius \[m\].
     Radius(f64),
-    /// The largest radius that the geometry allows with the strongest bars.
+    /// Largest radius that the geometry allows with the thickest bars.
     Largest,
 }
 
 impl Model {
-    /// `design` with the lightest bars within `ranges` that keep the stiffness asked for on the disc of the workspace
-    /// demanded; its own bars are where the search starts. `None` where the geometry or the ranges do not allow it.
+    /// Returns `design` with the lightest bars within `ranges` that provide the required stiffness on the disc of the
+    /// workspace radius `demand`. The design's own bars are the starting point. Returns `None` if the geometry or the
+    /// ranges do not allow such bars.
     ///
-    /// Disc and orientations are sampled, the latter as on the reference grid; that the poses are good in other respects
-    /// is looked at on the centre and the rim, and for clearance with bodies as thick as the design's own bars. The home orientation is the one in which the design is stiffest before it
-    /// is sized.
+    /// The disc and the orientations are sampled, the latter as on the reference grid. The other constraints are
+    /// checked only at the centre and on the rim, and the clearance with members as thick as the design's own bars. The
+    /// home orientation is the one in which the design is stiffest before it is sized.
     pub fn sized(&self, design: &Design, ranges: &BarRanges, demand: Demand) -> Option<Design> {
         if design.link_length + design.platform_radius < 0.5 * design.base_radius {
             return None;
@@ -63,16 +65,16 @@ struct Sizer<'a, L> {
     model: &'a Model,
     design: Design,
     ranges: &'a BarRanges,
-    /// With the strongest bars until a radius is settled.
+    /// Checker of the design, with the thickest bars until a radius is determined.
     checker: PoseChecker<L>,
-    /// Arms orientation by orientation, as the reference grid has them.
+    /// Arms in every orientation, as on the reference grid.
     arms: Vec<[DVec2; LEGS]>,
     turn: Turn,
     sectors: usize,
     laid: Layout,
     places: Vec<Place>,
     disc_radius: f64,
-    /// The poses of `laid` that matter when bars are sized.
+    /// Poses of `laid` that are selected for sizing.
     chosen: Layout,
     values: ValueColumns,
 }
@@ -102,7 +104,8 @@ impl<'a, L: Leg> Sizer<'a, L> {
 
     fn sized(mut self, demand: Demand) -> Option<Design> {
         self.set_bars([self.ranges.leg[1], self.ranges.platform[1]]);
-        // Orientations whose centre is good; of them, those in a whole window of such.
+        // The candidates are the orientations with a feasible centre that belong to a whole window of such
+        // orientations.
         let all: Vec<usize> = (0..self.arms.len()).collect();
         let centres = self.ring(0.0, &all);
         let candidates = self.windows(&centres);
@@ -134,7 +137,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
         }
     }
 
-    /// What is asked of the stiffness alone needs no look at the bodies.
+    /// Runs `look` without the requirement of a clearance: the stiffness ratios do not depend on it.
     fn without_clearance<T>(&mut self, look: impl FnOnce(&mut Self) -> T) -> T {
         let clearance = self.checker.thresholds.clearance.take();
         let found = look(self);
@@ -147,7 +150,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
         self.checker.stiffness = StiffnessModel::new::<L>(&design, &self.model.material, &self.model.actuators);
     }
 
-    /// Lays the ring of a radius in the given orientations; returns its number of poses.
+    /// Lays out the ring of a radius in the given orientations, and returns the number of poses in each orientation.
     fn lay_ring(&mut self, radius: f64, orientations: &[usize]) -> usize {
         let count = if radius > 0.0 { DIRECTIONS * self.sectors } else { 1 };
         let step = TAU / (LEGS * DIRECTIONS) as f64;
@@ -160,8 +163,8 @@ impl<'a, L: Leg> Sizer<'a, L> {
         count
     }
 
-    /// Lays the disc of a radius, its centre too. A ring is turned by half a step against the one before, so that together
-    /// they see more directions.
+    /// Lays out the disc of a radius, including its centre. Each ring is rotated by half a step relative to the one
+    /// before, so that together they cover more directions.
     fn lay_disc(&mut self, radius: f64, orientations: &[usize]) {
         let step = TAU / (LEGS * DIRECTIONS) as f64;
         let spacing = [radius / RINGS.len() as f64, step];
@@ -202,7 +205,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
         self.model.workspace.centre + unit(angle) * radius
     }
 
-    /// Lays the neighbours of a pose at half its spacing, once.
+    /// Adds the neighbours of a pose at half its spacing, unless they have already been added.
     fn refine(&mut self, pose: usize) {
         let place = self.places[pose];
         if place.refined {
@@ -224,7 +227,8 @@ impl<'a, L: Leg> Sizer<'a, L> {
         }
     }
 
-    /// For each orientation, where it is among the given ones and the whole ring is good: the sign of `det A` there.
+    /// Returns the sign of `det A` on the ring for each orientation; `None` if the orientation is not among the given
+    /// ones or any pose of the ring is infeasible.
     fn ring(&mut self, radius: f64, orientations: &[usize]) -> Vec<Option<f64>> {
         let count = self.lay_ring(radius, orientations);
         self.laid.values(&self.checker, &mut self.values);
@@ -244,12 +248,12 @@ impl<'a, L: Leg> Sizer<'a, L> {
         signs
     }
 
-    /// Homes whose window has one sign throughout.
+    /// Returns the home orientations whose window has one sign throughout.
     fn homes(&self, signs: &[Option<f64>]) -> Vec<usize> {
         self.turn.homes_of_one_sign(|place| signs[place]).collect()
     }
 
-    /// The orientations of the windows of all homes.
+    /// Returns the orientations in the windows of all home orientations.
     fn windows(&self, signs: &[Option<f64>]) -> Vec<usize> {
         let mut inside = vec![false; self.arms.len()];
         for home in self.homes(signs) {
@@ -260,7 +264,8 @@ impl<'a, L: Leg> Sizer<'a, L> {
         (0..inside.len()).filter(|&k| inside[k]).collect()
     }
 
-    /// The largest radius whose ring is good over some window, by doubling and halving.
+    /// Returns the largest radius whose ring is feasible over some window, found by doubling and halving; `None` if no
+    /// ring is.
     fn largest(&mut self, candidates: &[usize]) -> Option<f64> {
         let mut candidates = candidates.to_vec();
         let (mut good, mut bad) = (0.0, None);
@@ -283,7 +288,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
         (good > 0.0).then_some(good)
     }
 
-    /// The home in whose window the rim is stiffest with the design's own bars.
+    /// Returns the home orientation in whose window the rim is stiffest with the design's own bars.
     fn home(&mut self, radius: f64, candidates: &[usize]) -> Option<usize> {
         let signs = self.ring(radius, candidates);
         let homes = self.homes(&signs);

@@ -1,4 +1,5 @@
-//! From a search to a report: smallest values and where they are, active constraints, violation.
+//! Report of an evaluation, derived from the search: smallest values and the poses where they occur, active
+//! constraints, violation.
 
 use super::{Constraint, ConstraintReport, Evaluation, Model};
 use crate::mechanism::{Design, Leg};
@@ -7,13 +8,13 @@ use crate::workspace::{
     Grid, Oriented, PoseChecker, PoseValues, Positions, RegularWorkspace, ValueColumns, WorkspaceSampling, search,
 };
 
-/// Rings of a disc, besides its centre, on which values are looked at; at most: smooth fields need no more.
+/// Largest number of rings of a disc, besides its centre, on which values are evaluated; smooth fields need no more.
 const MOST_RINGS: f64 = 24.0;
 
-/// Smallest violation of an infeasible design: feasible means 0, and nothing else does.
+/// Smallest violation of an infeasible design: 0 is reserved for feasible designs.
 const LEAST_VIOLATION: f64 = 1e-9;
 
-/// Evaluates a design made ready in `checker`.
+/// Evaluates the design that is prepared in `checker`.
 pub(super) fn evaluate<L: Leg>(
     model: &Model,
     checker: &PoseChecker<L>,
@@ -58,7 +59,7 @@ struct Reporter<'a, L> {
 type Reports = [ConstraintReport; Constraint::ALL.len()];
 
 impl<L: Leg> Reporter<'_, L> {
-    /// A report without values yet; g1, which needs no pose, has its own.
+    /// Returns reports without values, except for g1, which needs no pose.
     fn blank(&self) -> Reports {
         Constraint::ALL.map(|constraint| {
             let threshold = constraint.threshold(self.design, &self.checker.thresholds);
@@ -76,7 +77,7 @@ impl<L: Leg> Reporter<'_, L> {
         })
     }
 
-    /// Lowers the reports to the values at one pose, `det A` counted in `sign`.
+    /// Lowers the reports to the values at one pose, with `det A` multiplied by `sign`.
     fn visit(&self, reports: &mut Reports, values: &Result<PoseValues, f64>, pose: impl Fn() -> Pose, sign: f64) {
         for report in reports {
             if let Some(value) = self.value(report.constraint, values, sign) {
@@ -85,7 +86,7 @@ impl<L: Leg> Reporter<'_, L> {
         }
     }
 
-    /// Lowers a report to a value found at a pose.
+    /// Lowers a report to the value at a pose, if that is smaller.
     fn lower(&self, report: &mut ConstraintReport, value: f64, pose: impl FnOnce() -> Pose) {
         if report.value.is_none_or(|smallest| value < smallest) {
             report.value = Some(value);
@@ -94,7 +95,8 @@ impl<L: Leg> Reporter<'_, L> {
         }
     }
 
-    /// Value of a constraint at one pose; `None` for g1, which needs none, and where there is no value out of reach.
+    /// Returns the value of a constraint at one pose; `None` for g1, which needs no pose, and for values that do not
+    /// exist at an unreachable pose.
     #[inline]
     fn value(&self, constraint: Constraint, values: &Result<PoseValues, f64>, sign: f64) -> Option<f64> {
         match (constraint, values) {
@@ -105,10 +107,10 @@ impl<L: Leg> Reporter<'_, L> {
         }
     }
 
-    /// Marks the constraints that fail at one pose.
+    /// Marks as active the constraints that fail at one pose.
     fn mark_failing(&self, reports: &mut Reports, values: &Result<PoseValues, f64>, sign: f64) {
         for report in reports {
-            // Out of reach by nothing at all (a leg at its very end, or without length) is out of reach.
+            // A limit margin of exactly 0 can belong to an unreachable pose (a leg at its very end, or without length).
             let unreached = report.constraint == Constraint::Reach && values.is_err();
             let broken = |value: f64| !report.constraint.holds(value, report.threshold);
             let value = self.value(report.constraint, values, sign);
@@ -116,7 +118,7 @@ impl<L: Leg> Reporter<'_, L> {
         }
     }
 
-    /// Smallest values over the regular workspace; active are the constraints that fail just beyond it.
+    /// Returns the smallest values over the regular workspace. The constraints that fail just beyond it are active.
     fn over_workspace(&self, home: usize, grid: &Grid) -> Reports {
         let found = self.found;
         let centre = self.model.workspace.centre;
@@ -128,7 +130,7 @@ impl<L: Leg> Reporter<'_, L> {
         disc.push(centre);
         for direction in &found.directions {
             for ring in 1..=rings {
-                // The last ring is the rim itself, to the bit.
+                // The radius of the last ring equals that of the rim to the bit.
                 let radius = if ring == rings {
                     found.radius
                 } else {
@@ -159,7 +161,7 @@ impl<L: Leg> Reporter<'_, L> {
         reports
     }
 
-    /// Marks the constraints that fail just beyond what limits the workspace.
+    /// Marks as active the constraints that fail just beyond the workspace radius, in the orientations that limit it.
     fn mark_beyond(&self, reports: &mut Reports, sign: f64) {
         let mut values = ValueColumns::default();
         for &(index, beyond) in &self.found.limits {
@@ -176,10 +178,12 @@ impl<L: Leg> Reporter<'_, L> {
         }
     }
 
-    /// Values at the centre pose of the best orientation of a design without a workspace, and its violation.
+    /// Returns the values at the centre pose of the best orientation of a design without a workspace, and its
+    /// violation.
     ///
-    /// The best orientation is the one with the smallest shortfall at the centre; active are the constraints that fail at
-    /// a centre pose of the best window, which is the one with the smallest mean shortfall.
+    /// The best orientation is the one with the smallest shortfall at the centre, the best window the one with the
+    /// smallest mean shortfall. The constraints that fail at a centre pose of the best window are active; if there are
+    /// none, those that fail just beyond the limits that the search recorded.
     fn at_best_centre(&self) -> (Reports, f64) {
         let found = self.found;
         let centre = self.model.workspace.centre;
@@ -196,7 +200,8 @@ impl<L: Leg> Reporter<'_, L> {
                 count += 1.0;
                 signs[usize::from(sign > 0.0)] |= sign != 0.0;
             }
-            // A window of both signs is cut by a singularity: as bad as a wholly missed constraint.
+            // A window with both signs is cut by a singularity, which counts as much as a constraint that is missed
+            // entirely.
             sum / count + if signs == [true; 2] { 1.0 } else { 0.0 }
         };
         let best_home = homes.start + smallest(homes.clone().map(mean)).unwrap_or(0);
@@ -206,7 +211,7 @@ impl<L: Leg> Reporter<'_, L> {
         let phi = found.orientations[best].phi_deg.to_radians();
         let pose = || Pose::new(centre.x, centre.y, phi);
         self.visit(&mut reports, &found.centres.get(best), pose, sign_of(best));
-        // A search that does not ask for the clearance has not looked at it.
+        // The search has not computed the clearance if it is not required.
         if let Ok(posture) = self
             .checker
             .manipulator
@@ -225,7 +230,8 @@ impl<L: Leg> Reporter<'_, L> {
         (reports, (mean(best_home) + assembly).max(LEAST_VIOLATION))
     }
 
-    /// Sum of the relative shortfalls of g2 … g7 at a pose, and the sign of `det A` (0 where unreachable).
+    /// Returns the sum of the relative shortfalls of g2 … g7 at a pose, and the sign of `det A` (0 if it vanishes or
+    /// the pose is unreachable).
     fn shortfall(&self, values: &Result<PoseValues, f64>) -> (f64, f64) {
         const AT_POSES: [Constraint; 5] = [
             Constraint::Dexterity,
@@ -242,7 +248,7 @@ impl<L: Leg> Reporter<'_, L> {
                     .filter_map(|constraint| {
                         let threshold = constraint.threshold(self.design, thresholds);
                         let value = constraint.value(self.design, values, 1.0)?;
-                        // Wholly missed at most, like what is out of reach.
+                        // The shortfall is at most that of a constraint missed entirely, as at an unreachable pose.
                         Some((-constraint.margin(value, threshold, self.design)).clamp(0.0, 1.0))
                     })
                     .sum();
@@ -255,7 +261,7 @@ impl<L: Leg> Reporter<'_, L> {
                     },
                 )
             }
-            // Out of reach nothing else has a value: every one counts as wholly missed.
+            // At an unreachable pose no other constraint has a value: each counts as missed entirely.
             Err(slack) => {
                 let missed = Constraint::Reach.margin(*slack, 0.0, self.design);
                 (asked().count() as f64 - missed, 0.0)
@@ -264,7 +270,7 @@ impl<L: Leg> Reporter<'_, L> {
     }
 }
 
-/// Index of the smallest number, the first among equals.
+/// Returns the index of the smallest number, the first one among equals.
 fn smallest(numbers: impl Iterator<Item = f64>) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
     for (index, number) in numbers.enumerate() {

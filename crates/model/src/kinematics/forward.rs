@@ -1,4 +1,5 @@
-//! Forward kinematics: actuator values to the pose on the assembly branch of a starting pose.
+//! Forward kinematics: the pose that belongs to given actuator values, in the assembly mode of a starting pose
+//! (docs/model.md, section 2.6).
 
 use nalgebra::Vector3;
 
@@ -6,30 +7,31 @@ use super::Jacobian;
 use crate::mechanism::{Leg, Manipulator};
 use crate::spatial::{LEGS, Pose};
 
-/// Why no pose was found.
+/// Reason why no pose was found.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ForwardError {
-    /// An iterate left the reach of a leg.
-    #[error("leg {} cannot follow: the actuator values lie outside the reach of this assembly mode", .leg + 1)]
+    /// A leg does not reach the pose of an iteration.
+    #[error("leg {} is out of reach in an iteration: the actuator values lie outside this assembly mode", .leg + 1)]
     Unreachable {
         /// Index of the leg, from 0.
         leg: usize,
     },
-    /// `det A` vanished on the way.
-    #[error("the iteration met a parallel singularity")]
+    /// `A` was singular in an iteration (`det A` = 0), or the step was not finite.
+    #[error("the iteration reached a parallel singularity")]
     Singular,
-    /// No convergence.
+    /// The iteration did not converge.
     #[error("no convergence after {0} iterations")]
     NoConvergence(usize),
 }
 
-/// The pose with actuator values `target` (m or rad) that Newton's method reaches from `start`.
+/// Returns the pose with actuator values `target` (m or rad) to which Newton's method converges from `start`.
 ///
-/// The iteration solves `A Δt = B Δq`; it stops when no actuator value is off by more than `tolerance` (m or rad).
-/// A parallel manipulator has up to six assembly modes: `start` chooses the one.
+/// Each iteration solves `A Δt = B Δq`. The method stops when the error of every actuator value is at most `tolerance`
+/// (m or rad). A parallel manipulator has up to six assembly modes; `start` determines which one is found.
 ///
 /// # Errors
-/// [`ForwardError`] when an iterate cannot be reached, is singular, or 50 iterations do not suffice.
+/// Returns a [`ForwardError`] if a leg does not reach the pose of an iteration, if `A` is singular there, or if the
+/// method does not converge within 50 iterations.
 pub fn forward<L: Leg>(
     manipulator: &Manipulator<L>,
     target: [f64; LEGS],

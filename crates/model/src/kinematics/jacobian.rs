@@ -1,4 +1,5 @@
-//! `A t = B q̇` with `t = (vx, vy, ω)`, and the dexterity of its normalised form (SPEC section 2).
+//! The velocity equation `A t = B q̇` with `t = (vx, vy, ω)`, and the dexterity, computed from its normalised form
+//! (docs/model.md, section 3).
 
 use nalgebra::Matrix3;
 
@@ -6,32 +7,34 @@ use crate::lanes::Real;
 use crate::mechanism::Posture;
 use crate::spatial::{LEGS, cross};
 
-/// How the Jacobian's rotational column is made comparable with its translational ones (SPEC section 8, no. 6).
+/// Definition of the characteristic length `ℓ`, which makes the rotational part of the Jacobian comparable with the
+/// translational part (docs/model.md, section 3.3).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CharacteristicLength {
     /// `ℓ = r`.
     PlatformRadius,
-    /// `ℓ = √2·max|w|`, `w` the moment of a leg line about `P` with `P` at `O`, over the grid's φ.
+    /// `ℓ = √2·max|w|`, where `w` is the moment of a leg's line about `P`; the maximum is over the legs and over the
+    /// orientations of the reference grid that are reachable with `P` at `O`.
     Isotropic,
-    /// A length given outright \[m\].
+    /// `ℓ` is the given length \[m\].
     Fixed(f64),
 }
 
-/// Direct (`A`) and inverse (`B`) Jacobian of one pose or of several at once, row per leg.
+/// Direct (`A`) and inverse (`B`) Jacobian at one pose or at several poses at once, with one row per leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jacobian<V = f64> {
-    /// `x` components of `u_i`: first column of `A`.
+    /// First column of `A`: `x` components of `u_i`.
     pub ux: [V; LEGS],
-    /// `y` components of `u_i`: second column of `A`.
+    /// Second column of `A`: `y` components of `u_i`.
     pub uy: [V; LEGS],
-    /// `(C_i − P) × u_i` \[m\]: third column of `A`.
+    /// Third column of `A`: `(C_i − P) × u_i` \[m\].
     pub moment: [V; LEGS],
-    /// Diagonal of `B`.
+    /// Diagonal of `B`: the transmissions.
     pub drive: [V; LEGS],
 }
 
 impl Jacobian {
-    /// The Jacobians at a posture.
+    /// Computes the Jacobians at a posture.
     #[inline]
     pub fn new(posture: &Posture) -> Self {
         let legs = &posture.legs;
@@ -43,21 +46,21 @@ impl Jacobian {
         }
     }
 
-    /// `A` as a matrix, rows `[u_ix, u_iy, (C_i − P) × u_i]`.
+    /// Returns `A` as a matrix with the rows `[u_ix, u_iy, (C_i − P) × u_i]`.
     pub fn direct(&self) -> Matrix3<f64> {
         Matrix3::from_fn(|i, column| [self.ux[i], self.uy[i], self.moment[i]][column])
     }
 }
 
 impl<V: Real> Jacobian<V> {
-    /// `det A` \[m\]: 0 at a parallel singularity.
+    /// Computes `det A` \[m\], which is 0 at a parallel singularity.
     #[inline(always)]
     pub fn determinant(&self) -> V {
         let adjugate = self.adjugate_row_xy();
         self.moment[0] * adjugate[0] + self.moment[1] * adjugate[1] + self.moment[2] * adjugate[2]
     }
 
-    /// `u_j × u_k` for each leg: the third row of `adj A`.
+    /// Computes the third row of `adj A`: `u_j × u_k` for each leg, where `j` and `k` follow the leg in cyclic order.
     #[inline(always)]
     fn adjugate_row_xy(&self) -> [V; LEGS] {
         let (ux, uy) = (&self.ux, &self.uy);
@@ -68,10 +71,12 @@ impl<V: Real> Jacobian<V> {
         ]
     }
 
-    /// `κ_F⁻¹(J)` of `J = diag(1, 1, ℓ) A⁻¹B`, in \[0, 1\]: 1 where isotropic, 0 at any singularity.
+    /// Computes the dexterity `κ_F⁻¹(J)` of `J = diag(1, 1, ℓ) A⁻¹B`, in \[0, 1\]: 1 at an isotropic pose, 0 at any
+    /// singularity (docs/model.md, section 3.2).
     ///
-    /// `length` is `ℓ` \[m\]. Computed as `3 |det A · det B| / √(Σ a_i² Σ b_i²)` with the denominators of `A⁻¹` and
-    /// `B⁻¹` multiplied out, so that a singular posture gives 0 and no division by zero.
+    /// `length` is `ℓ` \[m\]. The value is `3 |det A · det B| / √(Σ a_i² Σ b_i²)`, where `a_i` are the entries of
+    /// `det A · J` and `b_i` those of `det B · J⁻¹`. It contains no inverse of `A` or `B`, so that a singular pose
+    /// gives 0 and no division by zero.
     #[inline(always)]
     pub fn inverse_condition(&self, length: f64) -> V {
         let planar = self.adjugate_row_xy();
@@ -95,7 +100,7 @@ impl<V: Real> Jacobian<V> {
         let serial = d[0] * d[1] * d[2];
         let scale = forward * inverse;
         let condition = like.splat(LEGS as f64) * (determinant * serial).abs() / scale.sqrt();
-        // Rounding may carry an isotropic posture past 1.
+        // At an isotropic pose, rounding may give a value above 1.
         condition.smaller(one).where_set(scale.exceeds(zero), zero)
     }
 }

@@ -1,4 +1,4 @@
-//! First-order kinematics: Jacobians, dexterity and singularities.
+//! Jacobians, dexterity, singularities and forward kinematics.
 
 mod forward;
 mod jacobian;

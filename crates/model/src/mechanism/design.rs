@@ -2,18 +2,18 @@
 
 use super::Architecture;
 
-/// One manipulator: architecture, working mode and the five dimensions, in metres.
+/// Design of one manipulator: architecture, working mode and the five dimensions in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Design {
     /// `d`: the architecture.
     pub architecture: Architecture,
-    /// Branch of the inverse kinematics, leg by leg.
+    /// Branch of the inverse kinematics of each leg.
     pub working_mode: WorkingMode,
     /// `R`: circumradius of the base joints `A_i` \[m\].
     pub base_radius: f64,
     /// `r`: circumradius of the platform joints `C_i` \[m\].
     pub platform_radius: f64,
-    /// `L_b`: length of the links, or the longest reach of a telescopic leg \[m\].
+    /// `L_b`: length of the links, or the largest length of a telescopic leg \[m\].
     pub link_length: f64,
     /// `r_j`: radius of the leg bars \[m\].
     pub leg_bar_radius: f64,
@@ -21,7 +21,7 @@ pub struct Design {
     pub platform_bar_radius: f64,
 }
 
-/// One of the five real design variables, by its symbol in the paper.
+/// One of the five real design variables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Variable {
     /// `R`, [`Design::base_radius`].
@@ -46,7 +46,7 @@ pub const VARIABLES: [Variable; 5] = [
 ];
 
 impl Variable {
-    /// Key in design texts, JSON and CSV: `R`, `r`, `Lb`, `rj`, `rp`.
+    /// Returns the key in design texts, JSON and CSV: `R`, `r`, `Lb`, `rj`, `rp`.
     pub fn key(self) -> &'static str {
         match self {
             Variable::BaseRadius => "R",
@@ -57,7 +57,7 @@ impl Variable {
         }
     }
 
-    /// Symbol in the paper, as text: `R`, `r`, `L_b`, `r_j`, `r_p`.
+    /// Returns the symbol in the paper, as text: `R`, `r`, `L_b`, `r_j`, `r_p`.
     pub fn symbol(self) -> &'static str {
         match self {
             Variable::BaseRadius => "R",
@@ -68,37 +68,38 @@ impl Variable {
         }
     }
 
-    /// Whether zero is a legal value: a bar radius may be 0 (infinitely compliant), a length may not.
+    /// Returns whether zero is a legal value: a bar radius may be 0 (an infinitely compliant bar), any other dimension
+    /// may not.
     pub fn may_be_zero(self) -> bool {
         matches!(self, Variable::LegBarRadius | Variable::PlatformBarRadius)
     }
 }
 
-/// Sign of each leg's solution of the inverse kinematics (SPEC section 1).
+/// Sign of the solution of the inverse kinematics for each leg (docs/model.md, section 2.5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct WorkingMode([bool; 3]);
 
 impl WorkingMode {
-    /// `+++`, the default.
+    /// Default working mode, `+++`.
     pub const ALL_PLUS: WorkingMode = WorkingMode([true; 3]);
 
-    /// The mode with the given signs; `true` is plus.
+    /// Creates the working mode with the given signs; `true` means plus.
     pub fn new(plus: [bool; 3]) -> Self {
         Self(plus)
     }
 
-    /// +1 or −1 for leg `i` = 0, 1, 2.
+    /// Returns the sign of leg `leg` = 0, 1, 2 as +1 or −1.
     pub fn sign(self, leg: usize) -> f64 {
         if self.0[leg] { 1.0 } else { -1.0 }
     }
 
-    /// The three signs as ±1.
+    /// Returns the three signs as ±1.
     pub fn signs(self) -> [i8; 3] {
         self.0.map(|plus| if plus { 1 } else { -1 })
     }
 
-    /// One sign for all legs: the manipulator then has three-fold symmetry about O.
+    /// Returns whether all legs have the same sign, which gives the manipulator three-fold symmetry about O.
     pub fn is_uniform(self) -> bool {
         self.0[0] == self.0[1] && self.0[1] == self.0[2]
     }
@@ -111,25 +112,26 @@ impl std::fmt::Display for WorkingMode {
     }
 }
 
-/// Why five numbers are not a design.
+/// Reason why five numbers do not form a valid design.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DesignError {
-    /// Not a number, infinite, negative, or a zero length.
+    /// The value is NaN, infinite, negative, or a zero for a dimension that must be positive.
     #[error("{key} is {value}; it must be {wanted}")]
     OutOfDomain {
-        /// Variable, as in [`Variable::key`].
+        /// Key of the variable ([`Variable::key`]).
         key: &'static str,
-        /// The value given.
+        /// Value given.
         value: f64,
-        /// What would be right.
+        /// Description of the legal values.
         wanted: &'static str,
     },
-    /// The workspace grid is laid in steps of a share of `R`: beyond this ratio it has no end.
-    #[error("{key} is {ratio:.0} times R; the workspace grid follows R and takes at most 1000 times")]
+    /// The ratio of a length to `R` is too large. The steps of the workspace grid are a fraction of `R`, so that beyond
+    /// this ratio the number of steps is too large.
+    #[error("{key} is {ratio:.0} times R; it must be at most 1000 times R, which sets the step of the grid")]
     OutOfProportion {
-        /// Variable, as in [`Variable::key`].
+        /// Key of the variable ([`Variable::key`]).
         key: &'static str,
-        /// Its ratio to `R`.
+        /// Ratio of the variable to `R`.
         ratio: f64,
     },
 }
@@ -138,10 +140,11 @@ impl Design {
     /// Largest ratio of `r` or `L_b` to `R` that is accepted.
     pub const MAX_RATIO: f64 = 1000.0;
 
-    /// The design with the real variables given in the order of [`VARIABLES`].
+    /// Creates the design with the real variables given in the order of [`VARIABLES`].
     ///
     /// # Errors
-    /// [`DesignError`] when a value is no positive finite length (bar radii may be 0).
+    /// Returns a [`DesignError`] if a value is not a positive finite length (bar radii may be 0), or if `r` or `L_b`
+    /// exceeds [`Design::MAX_RATIO`] times `R`.
     pub fn new(architecture: Architecture, working_mode: WorkingMode, values: [f64; 5]) -> Result<Self, DesignError> {
         for (variable, value) in VARIABLES.into_iter().zip(values) {
             let legal = value.is_finite() && (value > 0.0 || (variable.may_be_zero() && value == 0.0));
@@ -175,7 +178,7 @@ impl Design {
         ] = values;
         Ok(Self {
             architecture,
-            // A mode without meaning is not told apart from another one.
+            // An architecture without working modes always gets the default, so that equal designs compare as equal.
             working_mode: if architecture.has_working_modes() {
                 working_mode
             } else {
@@ -189,7 +192,7 @@ impl Design {
         })
     }
 
-    /// The real variables in the order of [`VARIABLES`] \[m\].
+    /// Returns the real variables in the order of [`VARIABLES`] \[m\].
     pub fn values(&self) -> [f64; 5] {
         [
             self.base_radius,

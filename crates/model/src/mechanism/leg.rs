@@ -1,4 +1,4 @@
-//! What a leg type must tell, and the three legs of a manipulator together.
+//! The interface of a leg type, and the manipulator that consists of three legs.
 
 use glam::DVec2;
 
@@ -9,14 +9,14 @@ use crate::spatial::{ANCHOR_DIRECTIONS, LEGS, Pose, Rotation};
 /// Kind of the actuated joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Actuator {
-    /// Actuator value in metres, stiffness in N/m.
+    /// Prismatic joint, with the actuator value in metres and the stiffness in N/m.
     Prismatic,
-    /// Actuator value in radians, stiffness in N·m/rad.
+    /// Revolute joint, with the actuator value in radians and the stiffness in N·m/rad.
     Revolute,
 }
 
 impl Actuator {
-    /// Unit of the actuator value.
+    /// Returns the unit of the actuator value.
     pub fn unit(self) -> &'static str {
         match self {
             Actuator::Prismatic => "m",
@@ -25,21 +25,21 @@ impl Actuator {
     }
 }
 
-/// What the beam model takes as the length of a telescopic bar (SPEC section 8, no. 9).
+/// Length of a telescopic bar in the beam model (docs/model.md, section 11).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BarLength {
-    /// The leg's current length `ρ_i`.
+    /// Current length `ρ_i` of the leg.
     Current,
-    /// The longest length `L_b`, whatever the pose.
+    /// Largest length `L_b`, independent of the pose.
     Longest,
 }
 
-/// What a study decides about legs beyond the design vector.
+/// Settings of the legs that the study fixes in addition to the design vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LegSettings {
     /// Beam length of a telescopic leg.
     pub telescopic_bar: BarLength,
-    /// Shortest length of a telescopic leg as a share of `L_b`, in \[0, 1).
+    /// Smallest length of a telescopic leg as a fraction of `L_b`, in \[0, 1).
     pub telescopic_shortest: f64,
 }
 
@@ -52,116 +52,116 @@ impl Default for LegSettings {
     }
 }
 
-/// A bar's axis in the plane, from its proximal to its distal end, in the base frame \[m\].
+/// Axis of a bar in the plane, from the proximal to the distal end, in the base frame \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
     /// Proximal end.
     pub from: DVec2,
-    /// Distal end, the tip.
+    /// Distal end (the tip).
     pub to: DVec2,
 }
 
-/// Where a prismatic joint can be, in the base frame \[m\].
+/// Travel of a prismatic joint in the base frame \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Guide {
-    /// Path of a slider over its whole travel.
+    /// Travel of a slider along its rail.
     Rail {
-        /// Lower limit.
+        /// Position at the lower limit.
         from: DVec2,
-        /// Upper limit.
+        /// Position at the upper limit.
         to: DVec2,
     },
-    /// Where the end of a telescopic leg can be along its present direction.
+    /// Travel of the end of a telescopic leg along its current direction.
     Stroke {
-        /// Shortest leg.
+        /// Position at the smallest leg length.
         from: DVec2,
-        /// Longest leg.
+        /// Position at the largest leg length.
         to: DVec2,
     },
 }
 
-/// A member or joint of a leg in the base frame \[m\].
+/// Geometric part or joint of a leg, in the base frame \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LegPart {
     /// Actuated slider.
     Slider {
-        /// Its centre.
+        /// Centre.
         at: DVec2,
-        /// Its axis, a unit vector.
+        /// Unit vector along the rail.
         axis: DVec2,
     },
-    /// Fixed half of a telescopic leg.
+    /// Part of a telescopic leg that is attached to the base.
     Tube {
-        /// At the base.
+        /// End at the base.
         from: DVec2,
-        /// Where the rod comes out.
+        /// End from which the rod protrudes.
         to: DVec2,
     },
-    /// Moving half of a telescopic leg; where the leg is short, part of it is inside the tube.
+    /// Part of a telescopic leg that moves along the tube; if the leg is short, a part of the rod is inside the tube.
     Rod {
-        /// Its inner end.
+        /// End inside or behind the tube.
         from: DVec2,
-        /// At the platform.
+        /// End at the platform.
         to: DVec2,
     },
     /// Bar clamped to a revolute actuator.
     Crank {
-        /// At the base.
+        /// End at the base.
         from: DVec2,
-        /// At the link.
+        /// End at the link.
         to: DVec2,
     },
-    /// Bar up to the platform.
+    /// Bar between the proximal member and the platform.
     Link {
         /// Proximal end.
         from: DVec2,
-        /// At the platform.
+        /// End at the platform.
         to: DVec2,
     },
     /// Joint.
     Joint {
-        /// Where.
+        /// Position.
         at: DVec2,
-        /// Whether it is driven.
+        /// Whether the joint is actuated.
         actuated: bool,
-        /// What it joins; one of them alone where the other is the base.
+        /// Kinds of the two members that it connects; the same kind twice if the second one is the base.
         joins: [MemberKind; 2],
     },
 }
 
-/// How a body moves against the one before it.
+/// Joint between a body and the preceding body of the leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LegJoint {
-    /// About z at the body's origin.
+    /// Passive revolute joint about z at the origin of the body.
     Passive,
-    /// The actuated joint: along or about what its kind says, at the value \[m or rad\].
+    /// Actuated joint: prismatic along the body's axis or revolute about z, according to [`Leg::ACTUATOR`].
     Actuated {
-        /// Actuator value.
+        /// Actuator value \[m or rad\].
         value: f64,
-        /// Least and largest value, where the leg type has limits.
+        /// Smallest and largest actuator value, if the leg type has limits.
         limits: Option<[f64; 2]>,
     },
 }
 
-/// A rigid body of a leg at a posture, in the base frame.
+/// Rigid body of a leg at a posture, in the base frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegBody {
-    /// What it is, as in `crank`.
+    /// Name, for example `crank`.
     pub name: &'static str,
-    /// Kind of its member.
+    /// Kind of the member that the body belongs to.
     pub kind: MemberKind,
-    /// Origin of its frame \[m\].
+    /// Origin of the body's frame \[m\].
     pub origin: DVec2,
-    /// x axis of its frame, a unit vector. The actuator of a prismatic joint works along it.
+    /// Unit vector along the x axis of the body's frame. A prismatic actuator acts along this axis.
     pub axis: DVec2,
-    /// The joint to the body before it, or to the base.
+    /// Joint to the preceding body, or to the base.
     pub joint: LegJoint,
-    /// What it consists of.
+    /// Parts and joints that the body consists of.
     pub parts: Vec<LegPart>,
 }
 
 impl LegBody {
-    /// The link `B_iC_i` between two passive joints, the first to a `proximal` member.
+    /// Creates the link `B_iC_i` between two passive joints, the first of which connects it to a `proximal` member.
     pub(super) fn link(posture: &LegPosture, proximal: MemberKind) -> Self {
         let (b, c) = (posture.b, posture.b + posture.u * posture.length);
         let joint = |at: DVec2, other: MemberKind| LegPart::Joint {
@@ -184,22 +184,23 @@ impl LegBody {
     }
 }
 
-/// One leg at a pose it reaches.
+/// Posture of one leg at a pose that it reaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LegPosture {
-    /// `B_i` in the base frame \[m\]; the proximal passive joint (`A_i` for a telescopic leg).
+    /// `B_i`, the proximal passive joint (`A_i` for a telescopic leg), in the base frame \[m\].
     pub b: DVec2,
-    /// `u_i`, unit vector along the last link, towards `C_i`.
+    /// `u_i`, unit vector along the distal link, towards `C_i`.
     pub u: DVec2,
     /// `|B_iC_i|`: `L_b`, or `ρ_i` of a telescopic leg \[m\].
     pub length: f64,
-    /// `B_ii`: speed of `C_i` along `u_i` per unit of actuator speed; 0 at a serial singularity.
+    /// Transmission `B_ii`: speed of `C_i` along `u_i` per unit of actuator speed; 0 at a serial singularity.
     pub drive: f64,
-    /// Least distance to a joint limit or to the end of reach \[m\], ≥ 0.
+    /// Limit margin: smallest distance to a joint limit or to the end of reach \[m\], ≥ 0.
     pub slack: f64,
 }
 
-/// One leg at several poses at once: what the constraints need of it, in the lanes where it reaches.
+/// Quantities of one leg that the constraints need, at several poses at once; valid in the lanes where the leg reaches
+/// the pose.
 #[derive(Clone, Copy)]
 pub struct LegLanes<V: Real> {
     /// `u_i`.
@@ -208,94 +209,100 @@ pub struct LegLanes<V: Real> {
     pub moment: V,
     /// `(C_i − P) · u_i` \[m\].
     pub along: V,
-    /// `B_ii`.
+    /// Transmission `B_ii`.
     pub drive: V,
-    /// Length of the last bar for the beam model \[m\].
+    /// Length of the distal bar in the beam model \[m\].
     pub distal: V,
-    /// `u_i · (B_i − A_i)` and `u_i × (B_i − A_i)` of the bar before the last, for legs that have one \[m\].
+    /// `u_i · (B_i − A_i)` and `u_i × (B_i − A_i)` of the proximal bar, for leg types that have one \[m\].
     pub proximal: Option<Planar<V>>,
-    /// Least distance to a joint limit or to the end of reach \[m\]; not above 0 where the leg does not reach.
+    /// Limit margin: smallest distance to a joint limit or to the end of reach \[m\]; not above 0 where the leg does
+    /// not reach the pose.
     pub slack: V,
-    /// Where the leg reaches.
+    /// Lanes where the leg reaches the pose.
     pub reachable: V::Mask,
 }
 
-/// Why a leg does not reach a point.
+/// Reason why a leg does not reach a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ReachReason {
-    /// The links are too short: the inverse kinematics has no real solution.
+    /// The links are too short, so that the inverse kinematics has no real solution.
     OutOfReach,
     /// The actuator would be below its lower limit.
     BelowLimit,
     /// The actuator would be above its upper limit.
     AboveLimit,
-    /// Two joints of the leg coincide, and with them the leg's direction is lost.
+    /// Two joints of the leg coincide, so that the direction of the leg is undefined.
     Degenerate,
 }
 
-/// How far a leg is from reaching a point.
+/// Distance by which a leg fails to reach a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shortfall {
-    /// Signed distance to the limit \[m\], ≤ 0.
+    /// Limit margin: signed distance to the violated limit \[m\], ≤ 0.
     pub slack: f64,
-    /// Which limit.
+    /// Violated limit.
     pub reason: ReachReason,
 }
 
-/// A leg type with the constants of one leg of one design.
+/// Leg type; a value holds the constants of one leg of one design.
 pub trait Leg: Copy + Send + Sync {
-    /// The architecture's name in the paper.
+    /// Name of the architecture in the paper.
     const NAME: &'static str;
     /// Kind of the actuated joint.
     const ACTUATOR: Actuator;
     /// Whether the inverse kinematics has two solutions.
     const HAS_WORKING_MODES: bool;
-    /// Number of moving bars.
+    /// Number of moving bars of the leg.
     const BARS: usize;
-    /// The member before the last, for legs that have one.
+    /// Kind of the proximal member (the one before the distal member), for leg types that have one.
     const PROXIMAL: Option<MemberKind>;
-    /// The member up to the platform.
+    /// Kind of the distal member, which is connected to the platform.
     const DISTAL: MemberKind;
 
-    /// Leg `index` (0, 1, 2) of `design`.
+    /// Creates leg `index` (0, 1, 2) of `design`.
     fn new(design: &Design, settings: &LegSettings, index: usize) -> Self;
 
-    /// Inverse kinematics: the posture in which the leg's end is at `c` (base frame, m).
+    /// Solves the inverse kinematics: returns the posture in which the end of the leg is at `c` (base frame, m)
+    /// (docs/model.md, section 2.5).
     ///
     /// # Errors
-    /// [`Shortfall`] when the working mode has no real solution or a joint limit is passed.
+    /// Returns the [`Shortfall`] if the working mode has no real solution, if a joint limit is violated, or if the
+    /// direction of the leg is undefined.
     fn inverse(&self, c: DVec2) -> Result<LegPosture, Shortfall>;
 
-    /// [`Leg::inverse`] at several poses at once, with `C_i` at `position + arm`.
+    /// Solves the inverse kinematics at several poses at once, with `C_i` at `position + arm`.
     ///
-    /// Written for speed, in the leg's own axes; it rounds differently from [`Leg::inverse`] and says no reasons.
+    /// It is optimized for speed and may work in the leg's own axes. It rounds differently from [`Leg::inverse`] and
+    /// does not give the reason why a pose is not reached.
     fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> LegLanes<V>;
 
-    /// The axes of its members where the leg's end is at `c` and its last link points along `u`, at several poses at once.
+    /// Returns the axes of the leg's members at several poses at once, with the end of the leg at `c` and its distal
+    /// member along `u`.
     fn members<V: Real>(&self, c: Planar<V>, u: Planar<V>) -> Members<V>;
 
-    /// Actuator value: `ρ_i` \[m\], or the crank's angle to `Ox` in (−π, π] \[rad\].
+    /// Returns the actuator value: `ρ_i` \[m\], or the crank's angle to `Ox` in (−π, π] \[rad\].
     fn actuator(&self, posture: &LegPosture) -> f64;
 
-    /// Unit vector of a prismatic actuator's axis in the base frame; `None` for a revolute one.
+    /// Returns the unit vector of a prismatic actuator's axis in the base frame; `None` for a revolute actuator.
     fn actuator_axis(&self, posture: &LegPosture) -> Option<DVec2>;
 
-    /// Position of the actuated joint's origin, `A_i` \[m\].
+    /// Returns the position of the base joint `A_i`, the origin of the actuator value \[m\].
     fn anchor(&self) -> DVec2;
 
-    /// Length of the last bar, along `u_i` up to `C_i`, for the beam model \[m\].
+    /// Returns the length in the beam model of the distal bar, which runs along `u_i` to `C_i` \[m\].
     fn distal_length(&self, posture: &LegPosture) -> f64;
 
-    /// Its rigid bodies, from the base to the platform.
+    /// Returns the rigid bodies of the leg, from the base to the platform.
     fn bodies(&self, posture: &LegPosture) -> Vec<LegBody>;
 
-    /// Where its prismatic joint can be.
+    /// Returns the travel of the prismatic joint; `None` for a leg without one.
     fn guide(&self, posture: &LegPosture) -> Option<Guide>;
 
-    /// Corners of an axis-parallel box that holds every point the leg's end can reach \[m\].
+    /// Returns the lower and upper corner of an axis-aligned box that contains every point that the end of the leg can
+    /// reach \[m\].
     fn reach_box(&self) -> [DVec2; 2];
 
-    /// The bar before the last, clamped to the actuator, for legs that have one.
+    /// Returns the proximal bar, which is clamped to the actuator, for leg types that have one.
     fn proximal_bar(&self, posture: &LegPosture) -> Option<Segment>;
 }
 
@@ -308,19 +315,19 @@ pub struct Manipulator<L> {
     pub platform_joints: [DVec2; LEGS],
 }
 
-/// All legs at a pose they reach.
+/// Postures of all legs at a pose that they reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Posture {
     /// `C_i − P` in base axes \[m\].
     pub arms: [DVec2; LEGS],
-    /// The legs.
+    /// Postures of legs 1, 2, 3.
     pub legs: [LegPosture; LEGS],
-    /// Least distance of any leg to a joint limit or to the end of reach \[m\]: the value of g2.
+    /// Limit margin: smallest distance of any leg to a joint limit or to the end of reach \[m\]; the value of g2.
     pub slack: f64,
 }
 
 impl<L: Leg> Manipulator<L> {
-    /// The manipulator of `design`.
+    /// Creates the manipulator of `design`.
     pub fn new(design: &Design, settings: &LegSettings) -> Self {
         Self {
             legs: [0, 1, 2].map(|i| L::new(design, settings, i)),
@@ -328,24 +335,24 @@ impl<L: Leg> Manipulator<L> {
         }
     }
 
-    /// `C_i − P` in base axes \[m\] at platform orientation `rotation`.
+    /// Returns `C_i − P` in base axes \[m\] at the platform orientation `rotation`.
     #[inline]
     pub fn arms(&self, rotation: &Rotation) -> [DVec2; LEGS] {
         self.platform_joints.map(|c| rotation.apply(c))
     }
 
-    /// Inverse kinematics at `pose`.
+    /// Solves the inverse kinematics at `pose`.
     ///
     /// # Errors
-    /// The index of the leg that falls shortest, and by how much.
+    /// Returns the index of the leg with the largest shortfall, and this [`Shortfall`].
     pub fn posture(&self, pose: &Pose) -> Result<Posture, (usize, Shortfall)> {
         self.posture_at(pose.position, &self.arms(&Rotation::new(pose.phi)))
     }
 
-    /// Inverse kinematics with `P` at `position` and the arms of an orientation already at hand.
+    /// Solves the inverse kinematics with `P` at `position` and with `arms` that were computed for an orientation.
     ///
     /// # Errors
-    /// As [`Manipulator::posture`].
+    /// Fails as [`Manipulator::posture`] does.
     #[inline]
     pub fn posture_at(&self, position: DVec2, arms: &[DVec2; LEGS]) -> Result<Posture, (usize, Shortfall)> {
         let solved: [_; LEGS] = [0, 1, 2].map(|i| self.legs[i].inverse(position + arms[i]));
@@ -360,7 +367,7 @@ impl<L: Leg> Manipulator<L> {
     }
 }
 
-/// The leg that misses its target by most, the first among equals.
+/// Returns the index and the shortfall of the leg with the largest shortfall, the first one among equals.
 #[cold]
 fn worst(solved: &[Result<LegPosture, Shortfall>; LEGS]) -> (usize, Shortfall) {
     let mut found: Option<(usize, Shortfall)> = None;
@@ -371,5 +378,5 @@ fn worst(solved: &[Result<LegPosture, Shortfall>; LEGS]) -> (usize, Shortfall) {
             found = Some((index, *shortfall));
         }
     }
-    found.expect("called only when a leg falls short")
+    found.expect("this function is called only if a leg has a shortfall")
 }

@@ -1,24 +1,24 @@
-//! Members of a manipulator as axes: what may collide, and what a pointer may touch.
+//! Axes of the members of a manipulator, used for collision checks and for picking with the pointer.
 
 use crate::lanes::{Planar, Real};
 
 /// Kind of a member.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MemberKind {
-    /// Actuated block on a rail.
+    /// Actuated slider on a rail.
     Slider,
-    /// Tube and rod as one bar.
+    /// Tube and rod of a telescopic leg, treated as one bar.
     TelescopicLeg,
     /// Bar clamped to a revolute actuator.
     Crank,
-    /// Bar up to the platform.
+    /// Bar between the proximal member and the platform.
     Link,
     /// Bar of the platform, from `C_i` to `P`.
     PlatformBar,
 }
 
 impl MemberKind {
-    /// Its name, as in JSON.
+    /// Returns the name that JSON uses.
     pub fn name(self) -> &'static str {
         match self {
             MemberKind::Slider => "slider",
@@ -33,7 +33,7 @@ impl MemberKind {
 /// Axis of a member in the plane, at several poses at once.
 #[derive(Clone, Copy)]
 pub struct Axis<V> {
-    /// Its proximal end \[m\].
+    /// Proximal end \[m\].
     pub from: Planar<V>,
     /// Unit vector towards the distal end.
     pub direction: Planar<V>,
@@ -42,7 +42,7 @@ pub struct Axis<V> {
 }
 
 impl<V: Real> Axis<V> {
-    /// The axis of a length that ends at `tip`.
+    /// Creates the axis of the given direction and length whose distal end is `tip`.
     #[inline(always)]
     pub fn back_from(tip: Planar<V>, direction: Planar<V>, length: V) -> Self {
         Self {
@@ -52,13 +52,13 @@ impl<V: Real> Axis<V> {
         }
     }
 
-    /// Its distal end \[m\].
+    /// Returns the distal end \[m\].
     #[inline(always)]
     pub fn to(&self) -> Planar<V> {
         self.from.plus(self.direction.scaled(self.length))
     }
 
-    /// The same, longer by `by` at either end.
+    /// Returns the axis extended by `by` at both ends.
     #[inline(always)]
     pub fn extended(&self, by: V) -> Self {
         Self {
@@ -72,9 +72,10 @@ impl<V: Real> Axis<V> {
 /// The axes of a leg's members at several poses at once.
 #[derive(Clone, Copy)]
 pub struct Members<V> {
-    /// The member before the last ([`super::Leg::PROXIMAL`]); of a slider its centre, with the rail's direction.
+    /// Axis of the proximal member ([`super::Leg::PROXIMAL`]). For a slider, it starts at the
+    /// centre of the slider, has the direction of the rail and length 0.
     pub proximal: Option<Axis<V>>,
-    /// The member up to the platform.
+    /// Axis of the distal member ([`super::Leg::DISTAL`]).
     pub distal: Axis<V>,
     /// Distance of a slider's centre from the lower and the upper end of its rail \[m\].
     pub rail: Option<[V; 2]>,

@@ -1,8 +1,8 @@
 //! Architectures and designs: joints, joint limits and inverse kinematics, one file per leg type.
 //!
-//! A further architecture is a new file with a type that implements [`Leg`], and one line in the
-//! `architectures!` list below. Nothing outside this module names the single architectures: code that needs
-//! a leg type is written over `L: Leg` and entered through `with_leg!`.
+//! To add an architecture, add a file with a type that implements [`Leg`] and one line in the `architectures!` list
+//! below. No other module of the library names an individual architecture: code that needs a leg type is generic over
+//! `L: Leg` and is called through `with_leg!` (docs/model.md, section 2).
 
 mod design;
 mod leg;
@@ -24,9 +24,9 @@ pub use rrr::RrrLeg;
 pub use text::TextError;
 
 macro_rules! architectures {
-    // `$d` is a literal dollar sign: the list writes a macro that has variables of its own.
+    // `$d` is a literal dollar sign: this macro defines a macro that has metavariables of its own.
     ($d:tt; $($(#[$doc:meta])* $variant:ident => $leg:ident,)+) => {
-        /// Planar parallel architecture: three identical legs, the actuated joint underlined in the paper.
+        /// Planar parallel architecture with three legs of one type; the paper underlines the actuated joint.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
         #[serde(try_from = "String", into = "String")]
         pub enum Architecture {
@@ -34,7 +34,7 @@ macro_rules! architectures {
         }
 
         impl Architecture {
-            /// Every architecture, in the order of the paper.
+            /// All architectures in the order of the paper.
             pub const ALL: &[Architecture] = &[$(Architecture::$variant),+];
         }
 
@@ -54,31 +54,31 @@ macro_rules! architectures {
 }
 
 architectures! { $;
-    /// Actuated slider along the base triangle's side, then a link.
+    /// Actuated slider along a side of the base triangle, followed by a link.
     Prr => PrrLeg,
-    /// Actuated telescopic leg between two passive revolutes.
+    /// Actuated telescopic leg between two passive revolute joints.
     Rpr => RprLeg,
-    /// Actuated crank, then a link.
+    /// Actuated crank, followed by a link.
     Rrr => RrrLeg,
 }
 
 impl Architecture {
-    /// The name the paper uses, as in `3-PRR`.
+    /// Returns the name in the paper, for example `3-PRR`.
     pub fn name(self) -> &'static str {
         with_leg!(self, L => L::NAME)
     }
 
-    /// Whether the inverse kinematics has two solutions per leg to choose from.
+    /// Returns whether the inverse kinematics has two solutions per leg, so that a working mode has to be set.
     pub fn has_working_modes(self) -> bool {
         with_leg!(self, L => L::HAS_WORKING_MODES)
     }
 
-    /// Bars that move in each leg: one (`n` = 3 in the mass) or two (`n` = 6).
+    /// Returns the number of moving bars per leg: one (`n` = 3 in the formula of the mass) or two (`n` = 6).
     pub fn bars_per_leg(self) -> usize {
         with_leg!(self, L => L::BARS)
     }
 
-    /// Kind of the actuated joint.
+    /// Returns the kind of the actuated joint.
     pub fn actuator(self) -> Actuator {
         with_leg!(self, L => L::ACTUATOR)
     }

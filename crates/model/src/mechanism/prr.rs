@@ -1,4 +1,5 @@
-//! 3-PRR: slider `B_i = A_i + ρ_i e_i` on the side `A_iA_{i+1}` of the base triangle, link `B_iC_i` of `L_b`.
+//! 3-PRR: slider at `B_i = A_i + ρ_i e_i` on the side `A_iA_{i+1}` of the base triangle, and link `B_iC_i` of length
+//! `L_b` (docs/model.md, section 2.2).
 
 use glam::DVec2;
 
@@ -9,14 +10,14 @@ use super::{
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, HALF_SQRT_3, LEGS, cross};
 
-/// A leg of the 3-PRR.
+/// Leg of a 3-PRR.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrrLeg {
     anchor: DVec2,
-    /// `e_i`, from `A_i` to `A_{i+1}`.
+    /// `e_i`, the unit vector from `A_i` to `A_{i+1}`.
     axis: DVec2,
     link: f64,
-    /// `√3 R`, the slider's travel.
+    /// Travel `√3 R` of the slider \[m\].
     travel: f64,
     sign: f64,
 }
@@ -52,7 +53,7 @@ impl Leg for PrrLeg {
                 reason: ReachReason::OutOfReach,
             });
         }
-        // (L − h)(L + h) keeps the digits that L² − h² loses near the end of reach.
+        // (L − h)(L + h) avoids the cancellation of L² − h² near the end of reach.
         let foot = (reach * (self.link + height.abs())).sqrt();
         let actuator = along + self.sign * foot;
         if actuator < 0.0 {
@@ -82,7 +83,8 @@ impl Leg for PrrLeg {
     fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> LegLanes<V> {
         let like = position.x;
         let axis = Planar::splat(like, self.axis);
-        // In the slider's axes: along it and to its left. What belongs to the orientation alone is kept apart.
+        // Components in the slider's axes: along `e_i` and to its left. The terms that depend on the orientation alone
+        // are kept separate from those of the position.
         let offset = arm.minus(Planar::splat(like, self.anchor));
         let along = position.dot(axis) + offset.dot(axis);
         let height = axis.cross(position) + axis.cross(offset);
@@ -90,7 +92,7 @@ impl Leg for PrrLeg {
 
         let (zero, link, travel) = (like.splat(0.0), like.splat(self.link), like.splat(self.travel));
         let reach = link - height.abs();
-        // Out of reach this is no number, which no comparison takes for a good one.
+        // Out of reach this is NaN, for which every comparison is false.
         let foot = (reach * (link + height.abs())).sqrt();
         let actuator = along + like.splat(self.sign) * foot;
         let within = reach.smaller(actuator.smaller(travel - actuator));

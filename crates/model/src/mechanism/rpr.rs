@@ -1,4 +1,5 @@
-//! 3-RPR: telescopic leg `A_iC_i` of length `ρ_i` between a share of `L_b` and `L_b`.
+//! 3-RPR: telescopic leg `A_iC_i` whose length `ρ_i` lies between a fraction of `L_b` and `L_b` (docs/model.md,
+//! section 2.3).
 
 use glam::DVec2;
 
@@ -9,7 +10,7 @@ use super::{
 use crate::lanes::{Planar, Real};
 use crate::spatial::ANCHOR_DIRECTIONS;
 
-/// A leg of the 3-RPR.
+/// Leg of a 3-RPR.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RprLeg {
     anchor: DVec2,
@@ -19,8 +20,8 @@ pub struct RprLeg {
 }
 
 impl RprLeg {
-    /// Length of the tube: half of the longest leg, so that a leg may halve its length; one that gets shorter still has a
-    /// shorter tube, out of which the rod sticks behind.
+    /// Returns the length of the tube \[m\]: half of the largest leg length, so that the leg can retract to half of it.
+    /// If the smallest leg length is shorter than that, the tube has this length and the rod can protrude behind it.
     fn tube(&self) -> f64 {
         (0.5 * self.longest).min(self.shortest)
     }
@@ -104,7 +105,7 @@ impl Leg for RprLeg {
         let length = c.minus(anchor).dot(u);
         let rod = self.longest - self.tube();
         let distal = if rod > self.shortest {
-            // What of the rod is behind the joint at the base.
+            // Length by which the rod protrudes behind the joint at the base.
             let behind = (like.splat(rod) - length).larger(like.splat(0.0));
             Axis {
                 from: anchor.minus(u.scaled(behind)),

@@ -1,4 +1,4 @@
-//! 3-RRR: crank `A_iB_i` and link `B_iC_i`, both of length `L_b`.
+//! 3-RRR: crank `A_iB_i` and link `B_iC_i`, both of length `L_b` (docs/model.md, section 2.4).
 
 use glam::DVec2;
 
@@ -9,7 +9,7 @@ use super::{
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, cross};
 
-/// A leg of the 3-RRR.
+/// Leg of a 3-RRR.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RrrLeg {
     anchor: DVec2,
@@ -71,13 +71,13 @@ impl Leg for RrrLeg {
         let chord = position.plus(arm.minus(Planar::splat(like, self.anchor)));
         let square = chord.dot(chord);
         let (zero, quarter, half) = (like.splat(0.0), like.splat(0.25), like.splat(0.5));
-        // The elbow's distance from the chord over the chord's length, squared; negative out of reach, and its root no
-        // number, which no comparison takes for a good one.
+        // Square of the ratio of the elbow's distance from the chord to the chord's length. Out of reach it is negative
+        // and its root is NaN, for which every comparison is false.
         let ratio = (like.splat(self.link * self.link) - quarter * square) / square;
         let elbow = like.splat(self.sign) * ratio.sqrt();
         let to_unit = like.splat(1.0 / self.link);
         let u = chord.scaled(half).minus(chord.perp().scaled(elbow)).scaled(to_unit);
-        // (B − A) × u = (B − A) × (C − A)/L, where only the elbow's part counts.
+        // (B − A) × u = (B − A) × (C − A)/L, to which only the component of B − A normal to the chord contributes.
         let drive = -(elbow * square * to_unit);
 
         let reachable = like.splat(4.0 * self.link * self.link).at_least(square) & square.exceeds(zero);

@@ -1,42 +1,43 @@
-//! One design as text: `3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056`, optionally `mode=++-`.
+//! Text form of a design: `3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056`, optionally with `mode=++-`
+//! (docs/interfaces.md).
 
 use std::str::FromStr;
 
 use super::{Architecture, Design, DesignError, VARIABLES, WorkingMode};
 
-/// Why a text is not a design, an architecture or a working mode.
+/// Reason why a text is not a valid design, architecture or working mode.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TextError {
-    /// Nothing to read.
+    /// The text is empty.
     #[error("the design is empty; expected one like `3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056`")]
     Empty,
-    /// First word is none of the architectures.
+    /// The first word is not the name of an architecture.
     #[error("unknown architecture `{0}`; expected one of {names}", names = architecture_names())]
     UnknownArchitecture(String),
-    /// A word without `=`.
+    /// A word has no `=`.
     #[error("`{0}` is not of the form key=value")]
     NoEquals(String),
-    /// A key that a design has not.
+    /// A key is unknown.
     #[error("unknown key `{0}`; expected R, r, Lb, rj, rp or mode")]
     UnknownKey(String),
-    /// A key given twice.
+    /// A key is given twice.
     #[error("`{0}` is given twice")]
     Repeated(&'static str),
-    /// A key left out.
+    /// A key is missing.
     #[error("`{0}` is missing; a design needs R, r, Lb, rj and rp, in metres")]
     Missing(&'static str),
-    /// A value that is no number.
-    #[error("`{text}` is not a number (key {key}; metres)")]
+    /// A value is not a number.
+    #[error("`{text}` is not a number (key {key}, in metres)")]
     NotANumber {
         /// Key of the value.
         key: &'static str,
-        /// The text found.
+        /// Text of the value.
         text: String,
     },
-    /// A working mode that is not three signs.
+    /// A working mode does not consist of three signs.
     #[error("`{0}` is not a working mode; expected three signs as in `+++` or `+-+`")]
     WorkingMode(String),
-    /// A number out of its domain.
+    /// A number is outside its domain.
     #[error(transparent)]
     Domain(#[from] DesignError),
 }
@@ -75,7 +76,7 @@ impl FromStr for WorkingMode {
     }
 }
 
-/// Text both ways, for study files.
+/// Implements the conversions from and to text that study files need.
 macro_rules! as_text {
     ($type:ty) => {
         impl TryFrom<String> for $type {
@@ -98,10 +99,10 @@ as_text!(Architecture);
 as_text!(WorkingMode);
 
 impl Design {
-    /// Reads a design; `default_mode` holds where the text names no working mode.
+    /// Parses a design; `default_mode` applies if the text has no working mode.
     ///
     /// # Errors
-    /// [`TextError`] with what is wrong and what would be right.
+    /// Returns a [`TextError`] that says what is wrong and what is expected.
     pub fn parse(text: &str, default_mode: WorkingMode) -> Result<Self, TextError> {
         let mut words = text.split_whitespace();
         let architecture: Architecture = words.next().ok_or(TextError::Empty)?.parse()?;

@@ -1,4 +1,4 @@
-//! Cantilever compliance of a bar of circular section (eq. KiL of the paper).
+//! Compliance of a cantilever bar with a circular cross-section (docs/model.md, section 4.1).
 
 use nalgebra::Matrix6;
 
@@ -14,7 +14,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// The paper's steel, with `G` = 80 GPa (SPEC section 6).
+    /// Steel of the paper; `G` is not given there and is set to 80 GPa (docs/model.md, section 11).
     pub const STEEL: Material = Material {
         youngs_modulus: 210e9,
         shear_modulus: 80e9,
@@ -22,20 +22,20 @@ impl Material {
     };
 }
 
-/// The section's part of a bar's compliance; a length completes it.
+/// Compliance constants of the cross-section of a bar; together with a length they determine the bar's compliance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BarCompliance {
-    /// `1/(EA)` \[1/N\].
+    /// Axial compliance per length, `1/(EA)` \[1/N\].
     pub axial: f64,
-    /// `1/(E I_y)` = `1/(E I_z)`, `I = πρ⁴/4` \[1/(N·m²)\].
+    /// Bending compliance per length, `1/(E I_y)` = `1/(E I_z)` with `I_y = I_z = πρ⁴/4` \[1/(N·m²)\].
     pub bending: f64,
-    /// `1/(G I_x)`, `I_x = I_y + I_z` \[1/(N·m²)\].
+    /// Torsional compliance per length, `1/(G I_x)` with `I_x = I_y + I_z` \[1/(N·m²)\].
     pub torsion: f64,
 }
 
 impl BarCompliance {
-    /// The compliance of a bar of `radius` \[m\]; `None` where its section is too thin to carry anything that a
-    /// number can tell (a radius of 0, or one whose inertia or its inverse underflows), or beyond all measure.
+    /// Computes the constants for a bar of `radius` \[m\]. Returns `None` if the bar is too thin (its radius is 0, its
+    /// second moment of area underflows, or a constant exceeds 1e60) or too thick (a constant is below 1e-60).
     pub fn new(material: &Material, radius: f64) -> Option<Self> {
         let area = std::f64::consts::PI * radius * radius;
         let inertia = 0.25 * area * radius * radius;
@@ -44,14 +44,14 @@ impl BarCompliance {
             bending: 1.0 / (material.youngs_modulus * inertia),
             torsion: 1.0 / (material.shear_modulus * (2.0 * inertia)),
         };
-        // Squares and products of these are formed later: keep far from the ends of the number range.
+        // Later computations form squares and products of these values, which must not overflow or underflow.
         let usable = |value: f64| value > 1e-60 && value < 1e60;
         (inertia > 0.0 && usable(compliance.axial) && usable(compliance.bending) && usable(compliance.torsion))
             .then_some(compliance)
     }
 
-    /// The 6×6 compliance \[m/N, rad/N, rad/(N·m)\] at the tip of a cantilever of `length` \[m\], in the bar's
-    /// axes (x along the bar), linear first: eq. KiL.
+    /// Returns the 6×6 compliance matrix \[m/N, rad/N, rad/(N·m)\] at the tip of a cantilever of `length` \[m\], in the
+    /// bar's axes (x along the bar), linear first.
     pub fn matrix(&self, length: f64) -> Matrix6<f64> {
         let l = length;
         let mut c = Matrix6::zeros();

@@ -1,8 +1,8 @@
-//! The general form: a 6×6 virtual-joint model of each leg (eq. kinetstatomodel of the paper).
+//! The general form: a 6×6 virtual-joint model of each leg (docs/model.md, section 4.2).
 //!
-//! `S_i = Σ J_k C_k J_kᵀ` over the springs of the chain, mapped to `P`; `K_i` is the upper-left 6×6 block of the inverse of
-//! `[[S_i, J_q], [J_qᵀ, 0]]`, with the transpose that the paper's print leaves out. It knows nothing of planes: the
-//! closed form is checked against it.
+//! `S_i = Σ J_k C_k J_kᵀ` is the sum over the springs of the chain, mapped to `P`. `K_i` is the upper-left 6×6 block of
+//! the inverse of `[[S_i, J_q], [J_qᵀ, 0]]`; the paper prints `J_q` where its transpose belongs. This form does not use
+//! the decoupling of the in-plane and out-of-plane blocks, so the tests check the closed form against it.
 
 use glam::DVec2;
 use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3, Vector6};
@@ -11,10 +11,10 @@ use super::{BarCompliance, StiffnessModel};
 use crate::mechanism::{Leg, Manipulator, Posture};
 use crate::spatial::LEGS;
 
-/// `K` of the manipulator at `P`, linear first, base axes; `None` where a leg's system is singular.
+/// Computes `K` of the manipulator at `P`, linear first, in base axes. Returns `None` if a leg's system is singular.
 ///
-/// The bordered system mixes entries from 1/(EA) to L³/3EI: for bars thinner than 5 mm it loses digits, and the closed
-/// form is the better one.
+/// The entries of the bordered system range in magnitude from L/(EA) to L³/(3EI). For bars with a radius below 5 mm the
+/// inverse loses digits, and the closed form is more accurate.
 pub fn stiffness<L: Leg>(
     model: &StiffnessModel,
     manipulator: &Manipulator<L>,
@@ -27,7 +27,7 @@ pub fn stiffness<L: Leg>(
     Some(total)
 }
 
-/// `K_i` of leg `index`.
+/// Computes `K_i` of leg `index`, or returns `None` if its system is singular.
 pub fn leg_stiffness<L: Leg>(
     model: &StiffnessModel,
     manipulator: &Manipulator<L>,
@@ -37,7 +37,7 @@ pub fn leg_stiffness<L: Leg>(
     let leg = &manipulator.legs[index];
     let state = &posture.legs[index];
     let p = DVec2::ZERO;
-    // Everything is laid out relative to P.
+    // All positions are relative to P.
     let c = posture.arms[index];
     let b = c - state.u * state.length;
 
@@ -72,11 +72,12 @@ pub fn leg_stiffness<L: Leg>(
     Some(inverse.fixed_view::<6, 6>(0, 0).into_owned())
 }
 
-/// Compliance at `P` of a bar along `direction` whose tip is at `tip` (relative to `P`).
+/// Returns the compliance at `P` of a bar along `direction` whose tip is at `tip` (relative to `P`).
 fn spring(section: &BarCompliance, direction: DVec2, length: f64, tip: DVec2) -> Matrix6<f64> {
     let x = direction / direction.length();
     let rotation = Matrix3::from_columns(&[Vector3::new(x.x, x.y, 0.0), Vector3::new(-x.y, x.x, 0.0), Vector3::z()]);
-    // Twist at P of a rigid body whose point `tip` moves by the spring: v_P = v + ω × (P − tip).
+    // The Jacobian gives the twist at P of a rigid body whose point `tip` moves with the spring:
+    // v_P = v + ω × (P − tip).
     let lever = Vector3::new(-tip.x, -tip.y, 0.0);
     let mut jacobian = Matrix6::zeros();
     jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&rotation);
@@ -87,7 +88,7 @@ fn spring(section: &BarCompliance, direction: DVec2, length: f64, tip: DVec2) ->
     jacobian * section.matrix(length) * jacobian.transpose()
 }
 
-/// Twist at `P` of a unit rotation about z through `joint` (relative to `P`).
+/// Returns the twist at `P` of a unit rotation about the z axis through `joint` (relative to `P`).
 fn revolute(joint: DVec2) -> Vector6<f64> {
     Vector6::new(joint.y, -joint.x, 0.0, 0.0, 0.0, 1.0)
 }

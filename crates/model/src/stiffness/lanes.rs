@@ -1,9 +1,10 @@
-//! The closed form reduced to `k_xy`, `k_z` and `k_φz`, at several poses at once.
+//! The closed form reduced to `k_xy`, `k_z` and `k_φz`, at several poses at once (docs/model.md, sections 4.3 to 4.5).
 //!
-//! Along its line a leg's compliance depends on its drive and on the moment of that line alone. Out of the plane
-//! `K_zz` of a leg is `det S_φφ / det S`, `S` its summed compliance and `S_φφ` the block of the rotations: both are the
-//! same at any point of reference and in any axes, so they are taken at `C_i` along `u_i`, where two bars leave
-//! polynomials in the cosine of the angle between them.
+//! The compliance along a leg's line depends only on the leg's transmission, on the moment of that line about `P` and,
+//! for a telescopic leg, on the length of the leg. Out of the plane, `K_zz` of a leg is `det S_φφ / det S`, where `S`
+//! is the sum of the compliances of its bars and `S_φφ` the block of the rotations. Neither determinant depends on the
+//! reference point or on the axes. They are therefore computed at `C_i` in axes along `u_i`; for a leg with two bars
+//! (platform bar included) they are polynomials in the cosine of the angle between the bars.
 
 use super::planar::{add_bar, in_plane_block, inverse, vertical_schur};
 use super::{BarCompliance, StiffnessDefinition, StiffnessModel};
@@ -12,28 +13,28 @@ use crate::lanes::{Planar, Real};
 use crate::mechanism::{Design, LegLanes};
 use crate::spatial::{LEGS, smaller_eigenvalue};
 
-/// One design's compliances as multiples of two of them, so that their products stay within the number range.
+/// Compliances of one design divided by two reference compliances, so that their products do not overflow or underflow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Reduced {
-    /// The compliance along a leg's line that the others are multiples of \[m/N\].
+    /// Reference for the compliances along a leg's line \[m/N\].
     along_unit: f64,
-    /// Of the actuator, per squared drive.
+    /// Compliance of the actuator, per squared transmission.
     actuator: f64,
-    /// Axial, per metre of bar.
+    /// Axial compliance of a leg bar, per metre of its length.
     leg_axial: f64,
-    /// Axial, of a bar before the last, per squared metre of it along the line.
+    /// Axial compliance of a proximal bar, per square of its component along the line.
     proximal_axial: f64,
-    /// Bending, of a bar before the last, per squared metre of it across the line.
+    /// Bending compliance of a proximal bar, per square of its component normal to the line.
     proximal_bending: f64,
-    /// Of the platform bar where the line runs through `P`.
+    /// Compliance of the platform bar if the line passes through `P`.
     platform_base: f64,
-    /// Of the platform bar, per squared moment of the line.
+    /// Additional compliance of the platform bar, per squared moment of the line about `P`.
     platform_moment: f64,
-    /// The bending compliance that the others are multiples of \[1/(N·m²)\].
+    /// Reference for the bending and torsional compliances \[1/(N·m²)\].
     bend_unit: f64,
-    /// Bending and torsion of a leg bar, per metre.
+    /// Bending and torsional compliance of a leg bar, per metre of its length.
     leg: [f64; 2],
-    /// Bending and torsion of the platform bar of length `r`.
+    /// Bending and torsional compliance of the platform bar of length `r`.
     platform: [f64; 2],
     platform_radius: f64,
     /// 1/L_b \[1/m\].
@@ -61,7 +62,7 @@ impl Reduced {
         }
     }
 
-    /// Compliance along the line of a leg, in multiples of `along_unit`.
+    /// Computes the compliance along the line of a leg, in multiples of `along_unit`.
     #[inline(always)]
     fn along_line<V: Real>(&self, leg: &LegLanes<V>) -> V {
         let like = leg.moment;
@@ -79,13 +80,13 @@ impl Reduced {
         }
     }
 
-    /// `det S_φφ` and `det S` of a leg, whose quotient is its `K_zz` in multiples of 1/`bend_unit`.
+    /// Computes `det S_φφ` and `det S` of a leg, whose quotient is its `K_zz` in multiples of 1/`bend_unit`.
     #[inline(always)]
     fn vertical<V: Real>(&self, leg: &LegLanes<V>) -> [V; 2] {
         let like = leg.moment;
         let radius = self.platform_radius;
         let ([b1, t1], [b2, t2]) = (self.leg, self.platform);
-        // The platform bar in the axes of the last bar: from C to P.
+        // Direction of the platform bar, from C to P, in the axes of the distal bar.
         let to_unit = like.splat(1.0 / radius);
         let cosine = -(leg.along * to_unit);
         let length = leg.distal;
@@ -97,7 +98,7 @@ impl Reduced {
         let square = cosine * cosine;
         match leg.proximal {
             None => {
-                // Constant, linear and quadratic in the cosine; of bars of one length they are the same at every pose.
+                // Coefficients of the polynomials in the cosine, independent of the pose for bars of constant length.
                 let two = like.splat(2.0);
                 let minor = [(twist + b2) * (bend + t2), (twist - bend) * (b2 - t2)];
                 let tilt = [
@@ -130,7 +131,7 @@ impl Reduced {
 }
 
 impl StiffnessModel {
-    /// `k_xy`, `k_z` and `k_φz` by `definition` in the lanes where all legs reach.
+    /// Computes `k_xy`, `k_z` and `k_φz` according to `definition`; valid in the lanes where all legs reach the pose.
     #[inline(always)]
     pub(crate) fn rigidity_lanes<V: Real>(
         &self,
@@ -146,7 +147,7 @@ impl StiffnessModel {
             reduced.along_line(&legs[1]),
             reduced.along_line(&legs[2]),
         ];
-        // One division for three reciprocals.
+        // A single division gives the three reciprocals.
         let pairs = [c[1] * c[2], c[2] * c[0], c[0] * c[1]];
         let one = like.splat(1.0 / reduced.along_unit) / (c[0] * pairs[0]);
         let stiffness = [pairs[0] * one, pairs[1] * one, pairs[2] * one];
@@ -165,13 +166,13 @@ impl StiffnessModel {
                 let [n0, d0] = reduced.vertical(&legs[0]);
                 let [n1, d1] = reduced.vertical(&legs[1]);
                 let [n2, d2] = reduced.vertical(&legs[2]);
-                // One division for three quotients.
+                // A single division gives the sum of the three quotients.
                 let sum = n0 * (d1 * d2) + d0 * (n1 * d2 + n2 * d1);
                 let k_z = like.splat(1.0 / reduced.bend_unit) * sum / (d0 * (d1 * d2));
                 [smaller_eigenvalue(xx, xy, yy), k_z, mm]
             }
             StiffnessDefinition::Compliance => {
-                // Leg by leg: an array that a loop runs over would be kept in memory.
+                // The legs are written out, because an array indexed in a loop would be kept in memory.
                 let in_plane = in_plane_block(jacobian, &stiffness);
                 let k0 = inverse(&self.bending_lanes(&legs[0], arms[0]));
                 let k1 = inverse(&self.bending_lanes(&legs[1], arms[1]));
@@ -186,7 +187,7 @@ impl StiffnessModel {
         }
     }
 
-    /// Out-of-plane compliance of one leg at `P` in base axes, upper triangle.
+    /// Computes the upper triangle of the out-of-plane compliance of one leg at `P` in base axes.
     #[inline(always)]
     fn bending_lanes<V: Real>(&self, leg: &LegLanes<V>, arm: Planar<V>) -> [V; 6] {
         let like = leg.moment;

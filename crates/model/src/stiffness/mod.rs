@@ -1,8 +1,9 @@
-//! Virtual-joint stiffness of the manipulator at `P` (SPEC section 3).
+//! Stiffness of the manipulator at `P` according to the virtual-joint model (docs/model.md, section 4).
 //!
-//! Two forms of one model: [`planar`] is the closed form that everything uses, [`joint_model`] the general 6×6 form
-//! of Pashkevich et al. that serves as its oracle. The closed form is written twice: as it reads, with all of `K`, and
-//! reduced to the numbers that the constraints ask for, at several poses at once (`lanes`).
+//! The model has two forms: [`planar`] is the closed form, which the rest of the program uses; [`joint_model`] is the
+//! general 6×6 form of Pashkevich et al., which serves as the reference in the tests of the closed form. The closed
+//! form is implemented twice: in `planar` for one pose and with all entries of `K`, and in `lanes` for several poses at
+//! once, reduced to the three values that the constraints need.
 
 mod bar;
 pub mod joint_model;
@@ -14,19 +15,21 @@ pub use bar::{BarCompliance, Material};
 pub use planar::{ActuatorStiffness, PlanarStiffness, StiffnessModel};
 pub use shares::{LegShares, Share};
 
-/// Which numbers stand for "the stiffness" along and about an axis (SPEC section 8, no. 5).
+/// Definition of the stiffness along and about an axis (docs/model.md, section 4.5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StiffnessDefinition {
-    /// Entries of `K`: force per displacement with every other displacement held at 0.
+    /// Entries of `K` (for `k_xy`, the smaller eigenvalue of the xy block): force per displacement with all other
+    /// displacements held at 0.
     Stiffness,
-    /// Inverse entries of `K⁻¹`: force per displacement under that force alone.
+    /// Reciprocals of entries of `K⁻¹` (for `k_xy`, of the larger eigenvalue of the xy block): force per displacement
+    /// under that force alone.
     Compliance,
 }
 
 /// The three stiffness values that the accuracy requirements bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rigidity {
-    /// `k_xy`: least translational stiffness in the plane \[N/m\].
+    /// `k_xy`: smallest translational stiffness in the plane \[N/m\].
     pub k_xy: f64,
     /// `k_z`: translational stiffness out of the plane \[N/m\].
     pub k_z: f64,

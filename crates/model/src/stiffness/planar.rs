@@ -1,8 +1,9 @@
-//! The closed planar form: what the general form reduces to when every joint axis is normal to the plane.
+//! The closed form, to which the general form reduces if every joint axis is normal to the plane (docs/model.md,
+//! sections 4.3 and 4.4).
 //!
-//! In the plane a leg with two passive revolutes carries only a force along `u_i`, so its stiffness is
-//! `w wᵀ / c` with `w = (u_i, (C_i − P) × u_i)` and `c` the compliance along that line. Out of the plane the revolutes
-//! do not act, and the leg is the 3×3 inverse of its bars' summed compliance.
+//! In the plane, a leg with two passive revolute joints transmits only a force along `u_i`, so its stiffness is
+//! `w wᵀ / c`, where `w = (u_i, (C_i − P) × u_i)` and `c` is the compliance along that line. Out of the plane, the
+//! revolute joints have no effect, and the stiffness of the leg is the inverse of the 3×3 sum of its bars' compliances.
 
 use glam::DVec2;
 use nalgebra::{Matrix3, Matrix6};
@@ -14,7 +15,7 @@ use crate::lanes::{Planar, Real};
 use crate::mechanism::{Actuator, Design, Leg, LegPosture, Manipulator, Posture};
 use crate::spatial::{LEGS, cross, smaller_eigenvalue};
 
-/// Compliances of one design's bars and actuators; `None` in place of it stands for an infinitely compliant design.
+/// Compliances of the bars and actuators of one design. An infinitely compliant design is represented by `None`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StiffnessModel {
     pub(super) leg_bar: BarCompliance,
@@ -22,11 +23,11 @@ pub struct StiffnessModel {
     pub(super) platform_radius: f64,
     /// Compliance of the actuator \[m/N or rad/(N·m)\].
     pub(super) actuator: f64,
-    /// The same, prepared for several poses at once.
+    /// Compliances in the form that the evaluation of several poses at once needs.
     pub(super) reduced: Reduced,
 }
 
-/// Stiffness of the actuators (SPEC section 8, no. 4).
+/// Stiffness of the actuators, which the paper does not give (docs/model.md, section 11).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ActuatorStiffness {
     /// `K_act` of prismatic actuators \[N/m\].
@@ -36,7 +37,7 @@ pub struct ActuatorStiffness {
 }
 
 impl ActuatorStiffness {
-    /// That of a kind of actuator \[N/m or N·m/rad\].
+    /// Returns the stiffness of the given kind of actuator \[N/m or N·m/rad\].
     pub fn of(&self, actuator: Actuator) -> f64 {
         match actuator {
             Actuator::Prismatic => self.prismatic,
@@ -45,27 +46,27 @@ impl ActuatorStiffness {
     }
 }
 
-/// The stiffness at a pose in its two decoupled blocks, at `P`, base axes.
+/// Stiffness at a pose as two decoupled blocks, at `P` in base axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarStiffness {
-    /// `(x, y, φz)` block, upper triangle: xx, xy, xφ, yy, yφ, φφ.
+    /// Upper triangle of the `(x, y, φz)` block: xx, xy, xφ, yy, yφ, φφ.
     pub in_plane: [f64; 6],
-    /// `(z, φx, φy)` block, upper triangle: zz, zφx, zφy, φxφx, φxφy, φyφy.
+    /// Upper triangle of the `(z, φx, φy)` block: zz, zφx, zφy, φxφx, φxφy, φyφy.
     pub out_of_plane: [f64; 6],
 }
 
-/// A bar of a leg at a posture.
+/// Bar of a leg at a posture.
 pub(super) struct Bar<'a> {
     section: &'a BarCompliance,
-    /// Unit vector towards its tip.
+    /// Unit vector towards the tip of the bar.
     axis: DVec2,
     length: f64,
-    /// From its tip to `P`.
+    /// Vector from the tip of the bar to `P` \[m\].
     to_p: DVec2,
 }
 
 impl Bar<'_> {
-    /// Adds its out-of-plane compliance at `P`.
+    /// Adds the out-of-plane compliance of the bar at `P` to `s`.
     #[inline]
     pub(super) fn add_to(&self, s: &mut [f64; 6]) {
         add_bar(s, self.section, self.axis.into(), self.length, self.to_p.into());
@@ -73,7 +74,8 @@ impl Bar<'_> {
 }
 
 impl StiffnessModel {
-    /// The model of `design`; `None` when a bar is infinitely compliant, which makes every stiffness 0.
+    /// Creates the model of `design`. Returns `None` if a bar is infinitely compliant ([`BarCompliance::new`] returns
+    /// `None`), which makes every stiffness 0.
     pub fn new<L: Leg>(design: &Design, material: &Material, actuators: &ActuatorStiffness) -> Option<Self> {
         let leg_bar = BarCompliance::new(material, design.leg_bar_radius)?;
         let platform_bar = BarCompliance::new(material, design.platform_bar_radius)?;
@@ -87,15 +89,15 @@ impl StiffnessModel {
         })
     }
 
-    /// `c_i`: compliance along the line of leg `index` \[m/N\]: actuator, axial, and bending of the bars that the
-    /// line is not along.
+    /// Computes `c_i`, the compliance along the line of a leg \[m/N\]: the sum of the actuator's compliance, the axial
+    /// compliance of the bars, and the bending compliance of the bars that are not parallel to the line.
     #[inline]
     fn line_compliance<L: Leg>(&self, leg: &L, posture: &LegPosture, arm: DVec2) -> f64 {
         let [actuator, distal, platform, proximal] = self.line_compliances(leg, posture, arm);
         actuator + distal + platform + proximal
     }
 
-    /// Its parts: actuator, last bar, platform's bar, and the bar before the last, 0 where there is none.
+    /// Computes the terms of `c_i` \[m/N\]: actuator, distal bar, platform bar, and proximal bar (0 if there is none).
     #[inline]
     pub(super) fn line_compliances<L: Leg>(&self, leg: &L, posture: &LegPosture, arm: DVec2) -> [f64; 4] {
         let u = posture.u;
@@ -110,7 +112,7 @@ impl StiffnessModel {
         ]
     }
 
-    /// The in-plane block at a posture, upper triangle as in [`PlanarStiffness::in_plane`].
+    /// Computes the upper triangle of the in-plane block at a posture, ordered as in [`PlanarStiffness::in_plane`].
     #[inline]
     pub fn in_plane<L: Leg>(&self, manipulator: &Manipulator<L>, posture: &Posture, jacobian: &Jacobian) -> [f64; 6] {
         let stiffness = [0, 1, 2].map(|i| {
@@ -120,7 +122,7 @@ impl StiffnessModel {
         in_plane_block(jacobian, &stiffness)
     }
 
-    /// Out-of-plane compliance of one leg at `P`: what its bars give way, upper triangle as in
+    /// Computes the out-of-plane compliance of one leg at `P`, the sum over its bars; upper triangle, ordered as in
     /// [`PlanarStiffness::out_of_plane`].
     #[inline]
     fn bending_compliance<L: Leg>(&self, leg: &L, posture: &LegPosture, arm: DVec2) -> [f64; 6] {
@@ -131,7 +133,7 @@ impl StiffnessModel {
         s
     }
 
-    /// The bars of one leg: the platform's, the last one, and the one before it.
+    /// Returns the bars of one leg: the platform bar, the distal bar, and the proximal bar if there is one.
     #[inline]
     pub(super) fn bars<L: Leg>(&self, leg: &L, posture: &LegPosture, arm: DVec2) -> [Option<Bar<'_>>; 3] {
         // The tip of the platform bar is P itself.
@@ -156,7 +158,7 @@ impl StiffnessModel {
         [Some(platform), Some(distal), proximal]
     }
 
-    /// `K_zz` alone \[N/m\]: all that the default definition of `k_z` needs.
+    /// Computes `K_zz` alone \[N/m\], which is `k_z` in the default definition.
     #[inline]
     pub fn vertical<L: Leg>(&self, manipulator: &Manipulator<L>, posture: &Posture) -> f64 {
         let mut k_z = 0.0;
@@ -167,7 +169,7 @@ impl StiffnessModel {
         k_z
     }
 
-    /// Both blocks at a posture.
+    /// Computes both blocks of the stiffness at a posture.
     pub fn stiffness<L: Leg>(
         &self,
         manipulator: &Manipulator<L>,
@@ -187,14 +189,14 @@ impl StiffnessModel {
         }
     }
 
-    /// `k_xy` and `k_φz` by `definition` from an in-plane block.
+    /// Computes `k_xy` and `k_φz` according to `definition` from the upper triangle of an in-plane block.
     #[inline(always)]
     pub fn in_plane_rigidity<V: Real>(k: &[V; 6], definition: StiffnessDefinition) -> (V, V) {
         let [xx, xy, xm, yy, ym, mm] = *k;
         match definition {
             StiffnessDefinition::Stiffness => (smaller_eigenvalue(xx, xy, yy), mm),
             StiffnessDefinition::Compliance => {
-                // Schur complements: the inverse of a block of K⁻¹ is what is left of K when the rest is free.
+                // The inverse of a block of K⁻¹ is a Schur complement in K: the other displacements are free.
                 let (zero, two) = (xx.splat(0.0), xx.splat(2.0));
                 let planar = xx * yy - xy * xy;
                 let rotational = mm - (xm * xm * yy - two * xm * ym * xy + ym * ym * xx) / planar;
@@ -215,7 +217,7 @@ impl PlanarStiffness {
         out_of_plane: [0.0; 6],
     };
 
-    /// `k_xy`, `k_z` and `k_φz` by `definition`.
+    /// Computes `k_xy`, `k_z` and `k_φz` according to `definition`.
     pub fn rigidity(&self, definition: StiffnessDefinition) -> Rigidity {
         let (k_xy, k_phi_z) = StiffnessModel::in_plane_rigidity(&self.in_plane, definition);
         let k_z = match definition {
@@ -225,7 +227,7 @@ impl PlanarStiffness {
         Rigidity { k_xy, k_z, k_phi_z }
     }
 
-    /// The full matrix, linear first, at `P`, base axes.
+    /// Returns the full 6×6 matrix, linear first, at `P` in base axes.
     pub fn matrix(&self) -> Matrix6<f64> {
         let mut k = Matrix6::zeros();
         for (rows, block) in [([0, 1, 5], &self.in_plane), ([2, 3, 4], &self.out_of_plane)] {
@@ -240,8 +242,8 @@ impl PlanarStiffness {
     }
 }
 
-/// `Σ w wᵀ k`, `w` the rows of the direct Jacobian and `k` the stiffness along the legs' lines, upper triangle as in
-/// [`PlanarStiffness::in_plane`].
+/// Computes `Σ w wᵀ k`, where `w` are the rows of the direct Jacobian and `k` the stiffnesses along the legs' lines;
+/// upper triangle, ordered as in [`PlanarStiffness::in_plane`].
 #[inline(always)]
 pub(super) fn in_plane_block<V: Real>(jacobian: &Jacobian<V>, stiffness: &[V; LEGS]) -> [V; 6] {
     let mut k = [stiffness[0].splat(0.0); 6];
@@ -258,27 +260,28 @@ pub(super) fn in_plane_block<V: Real>(jacobian: &Jacobian<V>, stiffness: &[V; LE
     k
 }
 
-/// Displacement along `u` per unit of force on a line along `u` through one end of a bar whose other end is clamped.
+/// Computes the displacement along `u` per unit of force along `u` at one end of a bar whose other end is clamped.
 #[inline]
 fn along_line(section: &BarCompliance, u: DVec2, bar: DVec2, length: f64) -> f64 {
-    // Dot and cross with the bar's full vector carry one power of its length each.
+    // The dot and cross products with the vector of the bar each contain its length as a factor.
     let along = u.dot(bar);
     let across = cross(u, bar);
     (along * along * section.axial + across * across * (length * length / 3.0) * section.bending) / length
 }
 
-/// Adds to `s`, the out-of-plane compliance at `P`, a bar of direction `axis` whose tip lies at `P − to_p`.
+/// Adds the compliance of a bar with direction `axis` and tip at `P − to_p` to `s`, the out-of-plane compliance at `P`.
 #[inline(always)]
 pub(super) fn add_bar<V: Real>(s: &mut [V; 6], section: &BarCompliance, axis: Planar<V>, length: V, to_p: Planar<V>) {
     let (half, twelfth) = (length.splat(0.5), length.splat(1.0 / 12.0));
     let bend = length * length.splat(section.bending);
     let twist = length * length.splat(section.torsion);
     let normal = axis.perp();
-    // A rotation ω at the tip lifts P by ωx·dy − ωy·dx = lever·ω; in the bar's axes that lever has these parts.
+    // A rotation ω at the tip displaces P along z by ωx·dy − ωy·dx = lever·ω; `lever_x` and `lever_y` are its
+    // components in the bar's axes.
     let lever = Planar::new(to_p.y, -to_p.x);
     let lever_x = lever.dot(axis);
     let lever_y = lever.dot(normal);
-    // Bending seen from the bar's middle: a rotation L/EI there and a lift of L³/12EI, no coupling.
+    // At the middle of the bar, the bending compliances are decoupled: L/(EI) for rotation, L³/(12EI) along z.
     let arm = lever_y - half * length;
     s[0] = s[0] + bend * (length * length * twelfth + arm * arm) + twist * lever_x * lever_x;
     let (x, y) = (twist * lever_x, bend * arm);
@@ -293,7 +296,7 @@ pub(super) fn symmetric(k: &[f64; 6]) -> Matrix3<f64> {
     Matrix3::new(k[0], k[1], k[2], k[1], k[3], k[4], k[2], k[4], k[5])
 }
 
-/// First entry of the inverse of a symmetric positive definite 3×3 matrix.
+/// Computes the first entry of the inverse of a symmetric positive definite 3×3 matrix, given as upper triangle.
 #[inline]
 fn first_of_inverse(s: &[f64; 6]) -> f64 {
     let minor = s[3] * s[5] - s[4] * s[4];
@@ -301,7 +304,7 @@ fn first_of_inverse(s: &[f64; 6]) -> f64 {
     minor / determinant
 }
 
-/// Inverse of a symmetric positive definite 3×3 matrix, upper triangle.
+/// Computes the inverse of a symmetric positive definite 3×3 matrix; both are given as upper triangles.
 #[inline(always)]
 pub(super) fn inverse<V: Real>(s: &[V; 6]) -> [V; 6] {
     let [a, b, c, d, e, f] = *s;
@@ -324,7 +327,8 @@ pub(super) fn inverse<V: Real>(s: &[V; 6]) -> [V; 6] {
     ]
 }
 
-/// What is left of `K_zz` when the rotations are free: `1/(K⁻¹)_zz`.
+/// Computes the stiffness along z with free rotations, `1/(K⁻¹)_zz`; it is at least 0, and 0 if the block of the
+/// rotations is singular.
 #[inline(always)]
 pub(super) fn vertical_schur<V: Real>(k: &[V; 6]) -> V {
     let (zero, two) = (k[0].splat(0.0), k[0].splat(2.0));

@@ -1,7 +1,8 @@
-//! What a compliance at `P` is made of, member by member.
+//! Contributions of the actuators and bars to the compliance at `P` (docs/model.md, section 4.6).
 //!
-//! A wrench stores energy in every actuator and bar; a member's share of the compliance along the wrench is its share of
-//! that energy, by which the compliance would grow if the member's own did.
+//! A wrench stores elastic energy in every actuator and bar. The contribution of an actuator or bar to the compliance
+//! along the wrench is its fraction of that energy. If the compliance of the actuator or bar grows by a small relative
+//! amount, the compliance at `P` grows by that amount times the contribution.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -11,33 +12,34 @@ use crate::kinematics::Jacobian;
 use crate::mechanism::{Leg, Manipulator, Posture};
 use crate::spatial::LEGS;
 
-/// Shares of what a force in the plane (the mean over its directions), a force along z and a torque about z displace the
-/// platform by. Those of all members sum to 1.
+/// Contribution of an actuator or bar to three compliances of the platform, as fractions of each compliance. The
+/// contributions of all actuators and bars sum to 1.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Share {
-    /// In the plane.
+    /// Fraction of the compliance to a force in the plane, averaged over the directions of the force.
     pub in_plane: f64,
-    /// Along z.
+    /// Fraction of the compliance to a force along z.
     pub vertical: f64,
-    /// About z.
+    /// Fraction of the compliance to a torque about z.
     pub rotation: f64,
 }
 
-/// Shares of the members of one leg.
+/// Contributions of the actuator and bars of one leg.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LegShares {
-    /// The actuator.
+    /// Contribution of the actuator.
     pub actuator: Share,
-    /// The bar before the last; zero where there is none.
+    /// Contribution of the proximal bar; zero if there is none.
     pub proximal: Share,
-    /// The last bar.
+    /// Contribution of the distal bar.
     pub distal: Share,
-    /// The platform's bar.
+    /// Contribution of the platform bar.
     pub platform: Share,
 }
 
 impl StiffnessModel {
-    /// The shares of all members at a posture; `None` where the platform gives way without end.
+    /// Computes the contributions of all actuators and bars at a posture; returns `None` if the stiffness is singular
+    /// or a compliance is not finite and positive.
     pub fn shares<L: Leg>(
         &self,
         manipulator: &Manipulator<L>,
@@ -62,7 +64,7 @@ impl StiffnessModel {
         for (index, shares) in shares.iter_mut().enumerate() {
             let parts = self.line_compliances(&manipulator.legs[index], &posture.legs[index], posture.arms[index]);
             let line = Vector3::new(jacobian.ux[index], jacobian.uy[index], jacobian.moment[index]);
-            // The force along the leg's line under a unit force along x, along y, and a unit torque.
+            // Components: force along the leg's line for a unit force along x, a unit force along y, and a unit torque.
             let forces = (compliance * line) / parts.iter().sum::<f64>();
             let of = |part: f64| Share {
                 in_plane: part * (forces.x * forces.x + forces.y * forces.y) / in_plane,
@@ -112,7 +114,7 @@ impl StiffnessModel {
     }
 }
 
-/// Whether there is a finite compliance to have a share of.
+/// Returns `Some(())` if all compliances are finite and positive, so that fractions of them are defined.
 fn finite(compliances: &[f64]) -> Option<()> {
     compliances
         .iter()
@@ -128,7 +130,7 @@ mod tests {
     use crate::spatial::Pose;
     use crate::stiffness::BarCompliance;
 
-    /// Mean in-plane, vertical and rotational compliance.
+    /// Returns the in-plane (twice the mean over the directions), vertical and rotational compliance.
     fn compliances<L: Leg>(model: &StiffnessModel, manipulator: &Manipulator<L>, posture: &Posture) -> [f64; 3] {
         let stiffness = model.stiffness(manipulator, posture, &Jacobian::new(posture));
         let in_plane = symmetric(&stiffness.in_plane).try_inverse().expect("a stiffness");
@@ -158,7 +160,7 @@ mod tests {
         for k in 0..3 {
             assert!((actuators[k] + bars[k] + platform[k] - 1.0).abs() < 1e-9, "{text}");
         }
-        // A share is the relative growth of the compliance with that of its members.
+        // A contribution equals the relative growth of the compliance divided by that of its actuators or bars.
         let base = compliances(&model, &checker.manipulator, &posture);
         let softer = |bar: BarCompliance, by: f64| BarCompliance {
             axial: bar.axial * by,

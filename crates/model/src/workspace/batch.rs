@@ -1,7 +1,8 @@
-//! Which of many poses are good, and the smallest values among them, by loops compiled for every instruction set.
+//! Feasibility of many poses and the smallest values over them, computed in loops that are compiled for every
+//! instruction set.
 //!
-//! Positions come as two columns that can be read up to a multiple of [`MOST_LANES`]; what stands past the poses asked
-//! for is computed and not looked at.
+//! Positions are passed as two columns that can be read up to a multiple of [`MOST_LANES`]; entries beyond the
+//! requested poses are computed and ignored.
 
 use glam::DVec2;
 use pulp::{Simd, WithSimd};
@@ -11,12 +12,12 @@ use crate::lanes::{Lanes, MOST_LANES, Planar, Real, padded};
 use crate::mechanism::Leg;
 use crate::spatial::LEGS;
 
-/// An orientation in which poses are asked for.
+/// Orientation in which poses are evaluated.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Oriented<'a> {
     /// `C_i − P` in base axes \[m\].
     pub arms: &'a [DVec2; LEGS],
-    /// Sign that `det A` must have.
+    /// Required sign of `det A`.
     pub sign: f64,
 }
 
@@ -35,7 +36,7 @@ impl Oriented<'_> {
     }
 }
 
-/// Number of poses before the first that is not good; `count` where all are.
+/// Counts the poses before the first infeasible one; the result is `count` if all are feasible.
 struct Leading<'a, L> {
     checker: &'a PoseChecker<L>,
     oriented: Oriented<'a>,
@@ -67,7 +68,7 @@ impl<L: Leg> WithSimd for Leading<'_, L> {
     }
 }
 
-/// Writes 1 for each pose that is good and 0 for each that is not.
+/// Writes 1 for each feasible pose and 0 for each infeasible one.
 struct Good<'a, L> {
     checker: &'a PoseChecker<L>,
     oriented: Oriented<'a>,
@@ -95,17 +96,17 @@ impl<L: Leg> WithSimd for Good<'_, L> {
 /// Smallest value of a quantity over many poses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Minimum {
-    /// The value; infinite where no pose has one.
+    /// The value; infinite if no pose has one.
     pub value: f64,
-    /// The pose, the first among equals.
+    /// Index of the pose, the first one among equals.
     pub index: usize,
 }
 
-/// Quantities of which the smallest value is looked for.
+/// Number of quantities whose smallest value is determined.
 const QUANTITIES: usize = 7;
 
-/// Smallest slack, `κ_F⁻¹`, `k_xy`, `k_z`, `k_φz`, `det A / ℓ` (counted positive in the given sign) and clearance, which
-/// is looked for whether g7 is asked or not.
+/// Smallest limit margin, `κ_F⁻¹`, `k_xy`, `k_z`, `k_φz`, `det A / ℓ` (multiplied by the required sign) and clearance,
+/// which is determined whether g7 is required or not.
 pub(crate) type Minima = [Minimum; QUANTITIES];
 
 struct Smallest<'a, L> {
@@ -113,9 +114,9 @@ struct Smallest<'a, L> {
     oriented: Oriented<'a>,
     xs: &'a [f64],
     ys: &'a [f64],
-    /// 0, 1, 2, … for each pose.
+    /// Indices 0, 1, 2, … of the poses.
     indices: &'a [f64],
-    /// Clearances that are not below this need not be told \[m\].
+    /// Clearances that are not below this value need not be determined \[m\].
     clearance: f64,
 }
 
@@ -135,7 +136,7 @@ impl<L: Leg> WithSimd for Smallest<'_, L> {
             let index = Lanes::load(simd, index);
             let (found, directions) = self.checker.lanes_without_clearance(position, &arms);
             let reachable = found.reachable;
-            // Only what is below the smallest so far is of interest; of a pose that is not reached, nothing.
+            // Only a clearance below the smallest one so far matters, and none matters at an unreachable pose.
             let limit = values[6].where_set(reachable, sign.splat(f64::NEG_INFINITY));
             let clearance = self.checker.clearance_below(position, &arms, &directions, limit);
             macro_rules! lower {
@@ -175,9 +176,10 @@ impl<L: Leg> WithSimd for Smallest<'_, L> {
 }
 
 impl<L: Leg> PoseChecker<L> {
-    /// The poses at the first `count` positions before the first that is not good; `count` where all are.
+    /// Returns the number of poses, among the first `count` positions, before the first infeasible one; `count` if all
+    /// are feasible.
     pub(super) fn leading(&self, oriented: Oriented<'_>, xs: &[f64], ys: &[f64], count: usize) -> usize {
-        // A column that ends early must not pass for one of good poses.
+        // A column that ends early must not be mistaken for one of feasible poses.
         assert!(xs.len() == ys.len() && xs.len() >= padded(count));
         self.instructions.run(Leading {
             checker: self,
@@ -188,7 +190,7 @@ impl<L: Leg> PoseChecker<L> {
         })
     }
 
-    /// Writes 1 for each position at which the pose is good and 0 for each other one.
+    /// Writes 1 for each position at which the pose is feasible and 0 for every other position.
     pub(super) fn mark_good(&self, oriented: Oriented<'_>, xs: &[f64], ys: &[f64], good: &mut [f64]) {
         assert!(xs.len() == ys.len() && xs.len() == good.len() && xs.len().is_multiple_of(MOST_LANES));
         self.instructions.run(Good {
@@ -200,9 +202,9 @@ impl<L: Leg> PoseChecker<L> {
         });
     }
 
-    /// The smallest values over many positions in one orientation, `indices` counting them from 0. The columns are of
-    /// equal length, a multiple of [`MOST_LANES`]. Of clearances those below `clearance` are of interest; where there is
-    /// none, it is what is returned.
+    /// Returns the smallest values over many positions in one orientation; `indices` numbers the positions from 0. The
+    /// columns have equal lengths, a multiple of [`MOST_LANES`]. Only clearances below `clearance` are determined; if
+    /// there are none, `clearance` itself is returned.
     pub(crate) fn smallest(
         &self,
         oriented: Oriented<'_>,

@@ -1,4 +1,4 @@
-//! Is this pose good? Reach, joint limits, sign of `det A`, dexterity, stiffness and clearance (g2 … g7).
+//! Feasibility of a pose: reach, joint limits, sign of `det A`, dexterity, stiffness and clearance (g2 … g7).
 
 use glam::DVec2;
 
@@ -9,23 +9,23 @@ use crate::mechanism::{Leg, Manipulator, Posture};
 use crate::spatial::LEGS;
 use crate::stiffness::{PlanarStiffness, Rigidity, StiffnessDefinition, StiffnessModel};
 
-/// Least values that a good pose must have (g3 … g7).
+/// Smallest values allowed at a feasible pose (g3 … g7).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thresholds {
-    /// `κ_F⁻¹` ≥ this (g3).
+    /// Smallest `κ_F⁻¹` allowed (g3).
     pub inverse_condition: f64,
-    /// `k_xy` ≥ this \[N/m\] (g4).
+    /// Smallest `k_xy` allowed \[N/m\] (g4).
     pub k_xy: f64,
-    /// `k_z` ≥ this \[N/m\] (g5).
+    /// Smallest `k_z` allowed \[N/m\] (g5).
     pub k_z: f64,
-    /// `k_φz` ≥ this \[N·m/rad\] (g6).
+    /// Smallest `k_φz` allowed \[N·m/rad\] (g6).
     pub k_phi_z: f64,
-    /// Clearance ≥ this \[m\] (g7); `None` where bodies may collide.
+    /// Smallest clearance allowed \[m\] (g7); `None` if members may collide.
     pub clearance: Option<f64>,
 }
 
 impl Thresholds {
-    /// Whether a reachable pose has them all.
+    /// Returns whether the values of a reachable pose satisfy all thresholds.
     pub fn hold(&self, values: &PoseValues) -> bool {
         values.inverse_condition >= self.inverse_condition
             && values.rigidity.k_xy >= self.k_xy
@@ -37,23 +37,24 @@ impl Thresholds {
     }
 }
 
-/// Everything the constraints look at, at one reachable pose.
+/// Values that the constraints use, at one reachable pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseValues {
-    /// Least distance to a joint limit or to the end of reach \[m\].
+    /// Limit margin: smallest distance to a joint limit or to the end of reach \[m\].
     pub slack: f64,
-    /// `det A / ℓ`: signed, without unit.
+    /// `det A / ℓ`: signed, dimensionless.
     pub determinant: f64,
     /// `κ_F⁻¹`.
     pub inverse_condition: f64,
     /// `k_xy`, `k_z`, `k_φz`.
     pub rigidity: Rigidity,
-    /// Least clearance of bodies that are not joined \[m\]; `None` where nobody asks for it.
+    /// Smallest clearance between members that are not joined \[m\]; `None` if it is not required.
     pub clearance: Option<f64>,
 }
 
 impl PoseValues {
-    /// The same, with 0 for what has left the number range: nothing that is no number leaves the model.
+    /// Returns the values with 0 in place of infinities and NaN, and with a bounded clearance, so that the model
+    /// returns only finite numbers.
     pub(super) fn finite(mut self) -> Self {
         for value in [
             &mut self.slack,
@@ -75,9 +76,10 @@ impl PoseValues {
 /// [`PoseValues`] at several poses at once.
 #[derive(Clone, Copy)]
 pub struct PoseLanes<V: Real> {
-    /// Where every leg reaches; elsewhere nothing but `slack` has a meaning.
+    /// Mask of the poses that every leg reaches; elsewhere only `slack` is meaningful.
     pub reachable: V::Mask,
-    /// Least distance to a joint limit or to the end of reach \[m\]; not above 0 where a leg does not reach.
+    /// Limit margin: smallest distance to a joint limit or to the end of reach \[m\]; at most 0 where a leg does not
+    /// reach the pose.
     pub slack: V,
     /// `det A / ℓ`.
     pub determinant: V,
@@ -89,12 +91,12 @@ pub struct PoseLanes<V: Real> {
     pub k_z: V,
     /// `k_φz` \[N·m/rad\].
     pub k_phi_z: V,
-    /// Least clearance of bodies that are not joined \[m\]; `None` where nobody asks for it.
+    /// Smallest clearance between members that are not joined \[m\]; `None` if it is not required.
     pub clearance: Option<V>,
 }
 
 impl PoseLanes<f64> {
-    /// The values of a single pose, where it is reached.
+    /// Returns the values of a single pose, if it is reachable.
     pub fn reached(&self) -> Option<PoseValues> {
         let values = PoseValues {
             slack: self.slack,
@@ -111,28 +113,30 @@ impl PoseLanes<f64> {
     }
 }
 
-/// One design, made ready for many poses.
+/// One design, prepared for evaluation at many poses.
 #[derive(Debug, Clone, Copy)]
 pub struct PoseChecker<L> {
     /// Legs and platform.
     pub manipulator: Manipulator<L>,
-    /// Bars and actuators; `None` when the design is infinitely compliant.
+    /// Stiffness model of the bars and actuators; `None` if the design is infinitely compliant.
     pub stiffness: Option<StiffnessModel>,
     /// Definition of the three stiffness values.
     pub definition: StiffnessDefinition,
     /// Characteristic length `ℓ` \[m\].
     pub length: f64,
-    /// What may collide.
+    /// Members that may collide.
     pub bodies: Bodies,
-    /// What a good pose must have.
+    /// Smallest values allowed at a feasible pose.
     pub thresholds: Thresholds,
-    /// What poses are taken several at a time with. Changes no bit of a result.
+    /// Instruction set by which several poses are evaluated at a time. It changes no bit of a result.
     pub instructions: InstructionSet,
 }
 
 impl<L: Leg> PoseChecker<L> {
-    /// Sign of `det A` with `P` at `position`, if the pose is good in every other respect: a pose at a time in the plain
-    /// closed form, which [`PoseChecker::lanes`], what decides in evaluations, is compared with.
+    /// Returns the sign of `det A` with `P` at `position`, if the pose is feasible in every other respect.
+    ///
+    /// It evaluates one pose at a time by the plain closed form. Evaluations use [`PoseChecker::lanes`] instead, which
+    /// is compared with this function.
     #[inline]
     pub fn good_sign(&self, position: DVec2, arms: &[DVec2; LEGS]) -> Option<f64> {
         let posture = self.manipulator.posture_at(position, arms).ok()?;
@@ -150,7 +154,8 @@ impl<L: Leg> PoseChecker<L> {
         (k_z >= self.thresholds.k_z && self.thresholds.clearance.is_none_or(clear)).then(|| determinant.signum())
     }
 
-    /// All values at several poses at once, `arms` as in [`Manipulator::arms`]; the clearance only where g7 asks for it.
+    /// Returns all values at several poses at once, with `arms` as in [`Manipulator::arms`]. The clearance is computed
+    /// only if g7 is required.
     #[inline(always)]
     pub fn lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS]) -> PoseLanes<V> {
         let (mut values, directions) = self.lanes_without_clearance(position, arms);
@@ -161,8 +166,9 @@ impl<L: Leg> PoseChecker<L> {
         values
     }
 
-    /// The least clearance at several poses at once where it is below `limit`, else `limit`, with the legs' directions as
-    /// [`PoseChecker::lanes_without_clearance`] gives them. Of no meaning where a leg does not reach.
+    /// Returns the smallest clearance at several poses at once where it is below `limit`, otherwise `limit` \[m\].
+    /// `directions` are the directions of the legs as [`PoseChecker::lanes_without_clearance`] returns them. The result
+    /// is meaningless where a leg does not reach the pose.
     #[inline(always)]
     pub(super) fn clearance_below<V: Real>(
         &self,
@@ -175,7 +181,7 @@ impl<L: Leg> PoseChecker<L> {
             .below(&self.manipulator.legs, position, arms, directions, limit)
     }
 
-    /// All values but the clearance at several poses at once, and the legs' `u_i`.
+    /// Returns all values except the clearance at several poses at once, and the unit vectors `u_i` of the legs.
     #[inline(always)]
     pub(super) fn lanes_without_clearance<V: Real>(
         &self,
@@ -212,7 +218,7 @@ impl<L: Leg> PoseChecker<L> {
         (values, [legs[0].u, legs[1].u, legs[2].u])
     }
 
-    /// Where the pose is good, with `det A` of the given sign (±1).
+    /// Returns the mask of the feasible poses, at which `det A` has the given sign (±1).
     #[inline(always)]
     pub(super) fn good_lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS], sign: V) -> V::Mask {
         let (values, directions) = self.lanes_without_clearance(position, arms);
@@ -224,7 +230,8 @@ impl<L: Leg> PoseChecker<L> {
             & values.k_phi_z.at_least(sign.splat(least.k_phi_z))
             & values.k_z.at_least(sign.splat(least.k_z));
         match least.clearance {
-            // Where the pose has failed already, nothing is below the limit, and no pair is looked at for its sake.
+            // Where the pose is already infeasible the limit is −∞, so that no clearance is below it and no pair is
+            // examined.
             Some(least) if V::any(good) => {
                 let least = sign.splat(least);
                 let limit = least.where_set(good, sign.splat(f64::NEG_INFINITY));
@@ -234,12 +241,12 @@ impl<L: Leg> PoseChecker<L> {
         }
     }
 
-    /// The nearest pair of bodies that are not joined, at a posture with `P` at `position`.
+    /// Returns the nearest pair of members that are not joined, at a posture with `P` at `position`.
     pub fn nearest(&self, position: DVec2, posture: &Posture) -> Clearance {
         self.bodies.nearest(&self.manipulator, position, posture)
     }
 
-    /// All values at a posture, the clearance left out.
+    /// Returns all values at a posture except the clearance.
     pub fn values_at(&self, posture: &Posture, jacobian: &Jacobian) -> PoseValues {
         let (k_xy, k_phi_z) = self.in_plane_rigidity(&self.in_plane(posture, jacobian));
         PoseValues {
@@ -255,7 +262,8 @@ impl<L: Leg> PoseChecker<L> {
         }
     }
 
-    /// In-plane block of `K`, as [`PlanarStiffness::in_plane`]; zero for an infinitely compliant design.
+    /// Returns the in-plane block of `K`, as [`PlanarStiffness::in_plane`] stores it; zero for an infinitely compliant
+    /// design.
     #[inline]
     pub fn in_plane(&self, posture: &Posture, jacobian: &Jacobian) -> [f64; 6] {
         match &self.stiffness {
@@ -264,13 +272,13 @@ impl<L: Leg> PoseChecker<L> {
         }
     }
 
-    /// `k_xy` and `k_φz` of an in-plane block.
+    /// Returns `k_xy` and `k_φz` of an in-plane block.
     #[inline]
     pub fn in_plane_rigidity(&self, in_plane: &[f64; 6]) -> (f64, f64) {
         StiffnessModel::in_plane_rigidity(in_plane, self.definition)
     }
 
-    /// `k_z`, with no more of the out-of-plane block than its definition needs.
+    /// Returns `k_z`, computing no more of the out-of-plane block than its definition needs.
     #[inline]
     pub fn vertical_rigidity(&self, posture: &Posture, jacobian: &Jacobian) -> f64 {
         match (&self.stiffness, self.definition) {
@@ -283,7 +291,7 @@ impl<L: Leg> PoseChecker<L> {
         }
     }
 
-    /// Both stiffness blocks at a posture, zero for an infinitely compliant design.
+    /// Returns both stiffness blocks at a posture; they are zero for an infinitely compliant design.
     pub fn stiffness_at(&self, posture: &Posture, jacobian: &Jacobian) -> PlanarStiffness {
         self.stiffness.as_ref().map_or(PlanarStiffness::ZERO, |model| {
             model.stiffness(&self.manipulator, posture, jacobian)

@@ -1,4 +1,4 @@
-//! Everything the constraints look at, at many poses, in columns.
+//! Values that the constraints use, at many poses, stored in columns.
 
 use glam::DVec2;
 use pulp::{Simd, WithSimd};
@@ -11,7 +11,7 @@ use crate::mechanism::Leg;
 use crate::spatial::LEGS;
 use crate::stiffness::Rigidity;
 
-/// Positions, a column for each component.
+/// Positions, one column for each component.
 #[derive(Debug, Default)]
 pub(crate) struct Positions {
     pub xs: Vec<f64>,
@@ -29,7 +29,7 @@ impl Positions {
         self.ys.push(position.y);
     }
 
-    /// Those of the given indices.
+    /// Returns the positions with the given indices.
     pub fn chosen(&self, indices: &[usize]) -> Self {
         let [xs, ys] = [&self.xs, &self.ys].map(|column| indices.iter().map(|&index| column[index]).collect());
         Self { xs, ys }
@@ -45,7 +45,8 @@ impl Positions {
         self.ys.truncate(count);
     }
 
-    /// Fills up to what loops read with the first position, which changes no smallest value.
+    /// Pads the columns to the length that loops read. The padding repeats the first position, which changes no
+    /// smallest value.
     pub fn pad(&mut self) {
         let length = padded(self.xs.len());
         for column in [&mut self.xs, &mut self.ys] {
@@ -54,10 +55,10 @@ impl Positions {
     }
 }
 
-/// Values at many poses, a column each, padded.
+/// Values at many poses, one padded column for each quantity.
 #[derive(Debug, Clone, Default)]
 pub struct ValueColumns {
-    /// 1 where every leg reaches, 0 elsewhere: there only the slack has a meaning.
+    /// 1 where every leg reaches the pose, 0 elsewhere; there only `slack` is meaningful.
     reachable: Vec<f64>,
     slack: Vec<f64>,
     determinant: Vec<f64>,
@@ -65,7 +66,7 @@ pub struct ValueColumns {
     k_xy: Vec<f64>,
     k_z: Vec<f64>,
     k_phi_z: Vec<f64>,
-    /// Empty where nobody asks for it.
+    /// Empty if no clearance is required.
     clearance: Vec<f64>,
 }
 
@@ -85,13 +86,13 @@ impl ValueColumns {
         }
     }
 
-    /// Values of pose `index`.
+    /// Returns the values of pose `index`.
     ///
     /// # Errors
-    /// The distance to the nearest limit that is passed \[m\], ≤ 0, where a leg does not reach.
+    /// Returns the limit margin \[m\], which is at most 0, if a leg does not reach the pose.
     pub fn get(&self, index: usize) -> Result<PoseValues, f64> {
         if self.reachable[index] == 0.0 {
-            // Far beyond the number range there is no distance to tell; it is long.
+            // Where the distance is beyond the number range, `-FARTHEST` is reported instead.
             let slack = self.slack[index];
             return Err(if slack > -FARTHEST { slack.min(0.0) } else { -FARTHEST });
         }
@@ -109,8 +110,9 @@ impl ValueColumns {
         .finite())
     }
 
-    /// `k_xy`, `k_z` and `k_φz` of the first `count` poses as shares of what is asked, a column each; boundless where
-    /// a leg does not reach: there it is not the stiffness that is missing.
+    /// Returns the ratios of `k_xy`, `k_z` and `k_φz` to their thresholds at the first `count` poses, one column each.
+    /// A ratio is `f64::MAX` where a leg does not reach the pose, because it is not the stiffness that is insufficient
+    /// there.
     pub(crate) fn rigidity_shares(&self, thresholds: &Thresholds, count: usize) -> [Vec<f64>; 3] {
         [
             (&self.k_xy, thresholds.k_xy),
@@ -123,7 +125,7 @@ impl ValueColumns {
                 .zip(&self.reachable)
                 .take(count)
                 .map(|(value, reachable)| {
-                    // `max` takes the number of a pair with none.
+                    // If one operand is NaN, `max` returns the other one.
                     let share = (value / threshold.max(f64::MIN_POSITIVE)).max(0.0);
                     if *reachable > 0.0 {
                         share.min(f64::MAX)
@@ -150,7 +152,7 @@ impl ValueColumns {
     }
 }
 
-/// What one step of a loop reads or writes of a column.
+/// Part of a column that one step of a loop reads or writes.
 type Group<S> = [<S as Simd>::f64s; 2];
 
 struct Writer<'a, S: Simd> {
@@ -181,7 +183,7 @@ impl<S: Simd> Writer<'_, S> {
     }
 }
 
-/// Values at many positions in one orientation.
+/// Computes the values at many positions in one orientation.
 struct AtPositions<'a, L> {
     checker: &'a PoseChecker<L>,
     oriented: Oriented<'a>,
@@ -205,12 +207,12 @@ impl<L: Leg> WithSimd for AtPositions<'_, L> {
     }
 }
 
-/// Arms of many poses, a column for each component, padded.
+/// Arms of many poses, one padded column for each component.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ArmColumns([Vec<f64>; 2 * LEGS]);
 
 impl ArmColumns {
-    /// The columns of `arms`.
+    /// Returns the padded columns of `arms`.
     pub fn new(arms: impl ExactSizeIterator<Item = [DVec2; LEGS]>) -> Self {
         let mut columns = Self::default();
         for arms in arms {
@@ -231,7 +233,7 @@ impl ArmColumns {
         }
     }
 
-    /// Those of the given indices.
+    /// Returns the arms with the given indices, without padding.
     pub fn chosen(&self, indices: &[usize]) -> Self {
         Self(
             self.0
@@ -240,7 +242,7 @@ impl ArmColumns {
         )
     }
 
-    /// The same arms `count` times.
+    /// Appends the same arms `count` times.
     pub fn extend(&mut self, arms: &[DVec2; LEGS], count: usize) {
         for (leg, arm) in arms.iter().enumerate() {
             for (column, value) in [(2 * leg, arm.x), (2 * leg + 1, arm.y)] {
@@ -254,7 +256,8 @@ impl ArmColumns {
         self.0.iter_mut().for_each(|column| column.truncate(count));
     }
 
-    /// Fills up to what loops read with the first arms, which changes no smallest value.
+    /// Pads the columns to the length that loops read. The padding repeats the first arms, which changes no smallest
+    /// value.
     pub fn pad(&mut self) {
         for column in &mut self.0 {
             column.resize(padded(column.len()), column.first().copied().unwrap_or(0.0));
@@ -262,7 +265,7 @@ impl ArmColumns {
     }
 }
 
-/// Values at many poses.
+/// Computes the values at many poses.
 struct AtPoses<'a, L> {
     checker: &'a PoseChecker<L>,
     xs: &'a [f64],
@@ -295,7 +298,7 @@ impl<L: Leg> WithSimd for AtPoses<'_, L> {
 }
 
 impl<L: Leg> PoseChecker<L> {
-    /// Values at many positions in one orientation. The columns are of equal length, a multiple of
+    /// Computes the values at many positions in one orientation. The columns have equal lengths, a multiple of
     /// [`MOST_LANES`].
     pub fn at_positions(&self, arms: &[DVec2; LEGS], xs: &[f64], ys: &[f64], values: &mut ValueColumns) {
         assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MOST_LANES));
@@ -309,7 +312,7 @@ impl<L: Leg> PoseChecker<L> {
         });
     }
 
-    /// Values at many poses, one for each of `positions` and of `arms`, both padded.
+    /// Computes the values at many poses, one for each entry of `positions` and `arms`, both padded.
     pub(crate) fn at_poses(&self, positions: &Positions, arms: &ArmColumns, values: &mut ValueColumns) {
         assert!(arms.0.iter().all(|column| column.len() == positions.xs.len()));
         values.resize(positions.xs.len(), self.thresholds.clearance.is_some());
@@ -322,7 +325,7 @@ impl<L: Leg> PoseChecker<L> {
         });
     }
 
-    /// Values at one position in many orientations.
+    /// Returns the values at one position in many orientations.
     pub(crate) fn in_orientations(&self, position: DVec2, arms: &ArmColumns) -> ValueColumns {
         let count = arms.0[0].len();
         let positions = Positions {

@@ -10,18 +10,18 @@ pub struct Grid {
     halvings: u32,
 }
 
-/// Why a grid cannot be laid.
+/// Reason why a grid cannot be laid out.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum GridError {
-    /// 360° is no multiple of the step.
+    /// 360° is not a multiple of the step.
     #[error("a step of {0}° does not divide the full turn into whole steps")]
     TurnNotWhole(f64),
     /// The home window does not start and end on the grid.
-    #[error("half the rotation range, {half_range_deg}°, is no whole number of steps of {step_deg}°")]
+    #[error("half the rotation range, {half_range_deg}°, is not a whole number of steps of {step_deg}°")]
     WindowNotWhole {
         /// Half of `Δφ` \[deg\].
         half_range_deg: f64,
-        /// Step \[deg\].
+        /// Spacing of the orientations \[deg\].
         step_deg: f64,
     },
     /// A grid without a direction or a step has no pose besides the centre.
@@ -30,7 +30,7 @@ pub enum GridError {
 }
 
 impl Grid {
-    /// The grid that `R_w` is defined on.
+    /// Grid on which `R_w` is defined.
     pub const REFERENCE: Grid = Grid {
         phi_step_deg: 2.5,
         orientations: 144,
@@ -39,7 +39,7 @@ impl Grid {
         halvings: 12,
     };
 
-    /// The grid that a reported design is verified on.
+    /// Grid on which reported designs are verified.
     pub const FINE: Grid = Grid {
         phi_step_deg: 0.5,
         orientations: 720,
@@ -84,7 +84,7 @@ impl Grid {
         self.phi_step_deg
     }
 
-    /// Number of orientations over the full turn.
+    /// Returns the number of orientations over the full turn.
     pub fn orientations(&self) -> usize {
         self.orientations
     }
@@ -94,20 +94,20 @@ impl Grid {
         self.directions
     }
 
-    /// Steps of a ray per base radius `R`.
+    /// Number of steps of a ray per base radius `R`.
     pub fn ray_steps(&self) -> usize {
         self.ray_steps
     }
 
-    /// Halvings of the step in which a ray fails.
+    /// Number of halvings of the step in which a ray fails.
     pub fn halvings(&self) -> u32 {
         self.halvings
     }
 
-    /// Steps from a home orientation to the end of its window, `Δφ/2` away.
+    /// Returns the number of steps from a home orientation to the end of its window, `Δφ/2` away.
     ///
     /// # Errors
-    /// [`GridError::WindowNotWhole`].
+    /// [`GridError::WindowNotWhole`] when `Δφ/2` is not a multiple of the step.
     pub fn half_window(&self, rotation_range_deg: f64) -> Result<usize, GridError> {
         let half_range_deg = 0.5 * rotation_range_deg;
         whole(half_range_deg / self.phi_step_deg).ok_or(GridError::WindowNotWhole {
@@ -117,7 +117,7 @@ impl Grid {
     }
 }
 
-/// `ratio` as a whole number, if it is one to within rounding.
+/// Returns `ratio` as a whole number, if it is one to within rounding.
 fn whole(ratio: f64) -> Option<usize> {
     let nearest = ratio.round();
     ((0.0..=1e6).contains(&nearest) && (ratio - nearest).abs() <= 1e-9 * nearest.max(1.0)).then_some(nearest as usize)

@@ -1,8 +1,8 @@
-//! Regular dexterous workspace of a design (SPEC section 4).
+//! Regular dexterous workspace of a design (docs/model.md, section 7).
 //!
-//! [`PoseChecker`] says whether one pose is good, [`Grid`] which poses are asked, [`search`] finds the largest disc of
-//! good poses and the home orientation. Poses are taken several at a time ([`PoseChecker::lanes`]); [`plain`] is the
-//! definition as it reads, which that and the search are compared with.
+//! [`PoseChecker`] determines whether a pose is feasible, [`Grid`] defines which poses are examined, and [`search`]
+//! finds the largest disc of feasible poses and its home orientation. Several poses are evaluated at a time
+//! ([`PoseChecker::lanes`]). [`plain`] follows the definition literally; the lanes and the search are compared with it.
 
 mod batch;
 mod checker;

@@ -1,7 +1,8 @@
-//! The regular workspace by its definition (SPEC section 4): every ray of every orientation marched, a pose at a time.
+//! Regular workspace computed literally by its definition (docs/model.md, section 7.1): every ray of every orientation
+//! is marched, one pose at a time.
 //!
-//! What the search is compared with, in tests and in benches; it says which poses are good by a function that it is
-//! given, so that every form of the stiffness can take part.
+//! Tests and benchmarks compare the search with this implementation. The feasibility of a pose is determined by a
+//! function that the caller passes, so that every form of the stiffness can be used.
 
 use glam::DVec2;
 
@@ -9,17 +10,20 @@ use super::{Grid, GridError, WorkspaceSpec};
 use crate::mechanism::{Leg, Manipulator};
 use crate::spatial::{LEGS, Rotation, unit};
 
-/// Radii of all windows.
+/// Workspace radius and the radii of all windows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlainWorkspace {
-    /// `R_w` \[m\]; 0 where no window has a workspace.
+    /// Workspace radius `R_w` \[m\]; 0 if no window has a workspace.
     pub radius: f64,
-    /// Radius of the window about each orientation of the grid over the full turn, 0 where it has none \[m\].
+    /// Radius of the window about each orientation of the grid over the full turn \[m\]; 0 if the window has no
+    /// workspace.
     pub windows: Vec<f64>,
 }
 
-/// Marches all rays. `good_sign` gives the sign of `det A` with `P` at a position and the arms of an orientation where
-/// the pose is good; `step_base` is `R`, which the steps are a share of.
+/// Marches all rays and returns the radii of all windows.
+///
+/// `good_sign` returns the sign of `det A` for a position of `P` and the arms of an orientation if the pose is
+/// feasible, otherwise `None`. `step_base` is the base radius `R`, of which the ray step is a fraction.
 ///
 /// # Errors
 /// [`GridError::WindowNotWhole`].

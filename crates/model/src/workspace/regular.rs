@@ -1,10 +1,12 @@
-//! Largest disc of good poses over a window of orientations, and the home orientation that has it.
+//! Search for the largest disc of feasible poses over a window of orientations, and for its home orientation
+//! (docs/model.md, section 7.3).
 //!
-//! `R(φ)` costs some thousand poses, and most orientations cannot be the ones that decide: windows are taken best
-//! first, by the smallest bound of `R(φ)` known so far of their orientations. Of the window that leads, single rings are
-//! probed first, which lowers its bound cheaply where it is too high; what withstands that is marched ring by ring, no
-//! farther than the bound; and only the orientations that set the bound are worked out to the last halving. The result
-//! is the defined maximum, not an estimate of it.
+//! Computing `R(φ)` takes some thousand poses, and most orientations cannot be the ones that determine the result.
+//! Windows are therefore examined best first, in the order of the smallest upper bound of `R(φ)` known so far over
+//! their orientations. In the leading window, single rings are probed first, which lowers its bound cheaply where it is
+//! too high. Orientations that this does not rule out are marched ring by ring, no farther than the bound. Only the
+//! orientations that set the bound are computed to the last halving. The result is the maximum as defined, not an
+//! estimate of it.
 
 use glam::DVec2;
 
@@ -14,14 +16,14 @@ use super::{ArmColumns, Grid, PoseChecker, Turn, ValueColumns, WorkspaceSampling
 use crate::mechanism::Leg;
 use crate::spatial::{LEGS, Rotation, unit};
 
-/// Where and over what turn the workspace is asked for (SPEC section 8, no. 7).
+/// Centre, rotation range and home orientation of the regular workspace (docs/model.md, sections 7.1 and 11).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorkspaceSpec {
-    /// `Δφ` \[deg\].
+    /// Rotation range `Δφ` \[deg\].
     pub rotation_range_deg: f64,
     /// Centre of the disc in the base frame \[m\].
     pub centre: DVec2,
-    /// Home orientation `φ_c` \[deg\] where it is given; the best one otherwise.
+    /// Home orientation `φ_c` \[deg\] if it is prescribed; `None` selects the best one.
     pub home_phi_deg: Option<f64>,
 }
 
@@ -32,31 +34,32 @@ pub struct Orientation {
     pub phi_deg: f64,
     /// `C_i − P` in base axes \[m\].
     pub arms: [DVec2; LEGS],
-    /// Sign of `det A` at the centre where the centre pose is good.
+    /// Sign of `det A` at the centre if the centre pose is feasible.
     pub centre_sign: Option<f64>,
 }
 
-/// Outcome of the search.
+/// Result of the search.
 #[derive(Debug, Clone)]
 pub struct RegularWorkspace {
-    /// `R_w` \[m\]; 0 where no window has a disc.
+    /// Workspace radius `R_w` \[m\]; 0 if no window has a disc of feasible poses.
     pub radius: f64,
-    /// Index in `orientations` of the home orientation, where `radius` > 0.
+    /// Index of the home orientation in `orientations`; `None` if `radius` is 0.
     pub home: Option<usize>,
-    /// The grid's orientations.
+    /// Orientations of the grid.
     pub orientations: Vec<Orientation>,
-    /// How they are spaced, and the windows over them.
+    /// Spacing of the orientations, and the windows over them.
     pub turn: Turn,
-    /// The orientations of the home window that `radius` is the `R(φ)` of, and for each a radius just beyond, at which
-    /// a pose fails in some direction \[m\]. Without a home, one such of a window that came out empty, if there was one.
+    /// Orientations of the home window whose `R(φ)` equals `radius`, each with a radius just beyond it at which a pose
+    /// is infeasible in some direction \[m\]. Without a home orientation, one such orientation of a window that turned
+    /// out to be empty, if there was one.
     pub limits: Vec<(usize, f64)>,
-    /// Values at the centre, orientation by orientation.
+    /// Values at the centre for every orientation.
     pub centres: ValueColumns,
-    /// The directions marched.
+    /// Directions in which rays are marched.
     pub directions: Vec<DVec2>,
 }
 
-/// The orientations that a search looks at, with what is known of their centres.
+/// Returns the orientations that the search examines, and the values at their centre poses.
 fn orientations<L: Leg>(
     checker: &PoseChecker<L>,
     spec: &WorkspaceSpec,
@@ -86,8 +89,8 @@ fn orientations<L: Leg>(
 
 /// Finds the regular workspace of the design in `checker`.
 ///
-/// `step_base` is `R`, which the ray steps are a share of; `symmetric` says that a turn by 120° maps the design on
-/// itself, so that one sector of directions suffices.
+/// `step_base` is the base radius `R`, of which the ray step is a fraction. `symmetric` states that a rotation by 120°
+/// maps the design onto itself, so that one sector of directions suffices.
 pub fn search<L: Leg>(
     checker: &PoseChecker<L>,
     sampling: &WorkspaceSampling,
@@ -132,11 +135,11 @@ struct Search<'a, L> {
     checker: &'a PoseChecker<L>,
     grid: &'a Grid,
     rings: Rings,
-    /// Orientation by orientation.
+    /// Known rings of every orientation.
     reaches: Vec<Reach>,
-    /// A ring near which orientations lately failed.
+    /// Ring near which the orientations examined last failed.
     hint: usize,
-    /// The order in which a window's orientations are looked at.
+    /// Order in which the orientations of a window are examined.
     order: Vec<usize>,
     found: &'a mut RegularWorkspace,
 }
@@ -163,13 +166,14 @@ impl<L: Leg> Search<'_, L> {
                         .collect();
                     return;
                 };
-                // The windows that hold an orientation are those about the orientations of the window about it.
+                // An orientation belongs to the windows of exactly those home orientations that lie in the window about
+                // it.
                 let bound = self.rings.bound(&self.reaches[changed]);
                 for affected in turn.window(changed) {
                     bounds[affected] = bounds[affected].min(bound);
                 }
                 if bounds[home] == 0.0 && self.found.limits.is_empty() {
-                    // What keeps the first of the windows that came out empty from having a workspace.
+                    // This orientation prevents the first empty window from having a workspace.
                     let beyond = self.reaches[changed].bracket.map(|bracket| (changed, bracket.beyond));
                     self.found.limits.extend(beyond);
                 }
@@ -180,8 +184,8 @@ impl<L: Leg> Search<'_, L> {
         }
     }
 
-    /// Learns more of an orientation of the leading window that may lower its bound, by the cheapest means that has not
-    /// been tried, and gives it; `None` when the window's bound is its radius.
+    /// Examines an orientation of the leading window that may lower its bound, by the cheapest means not yet tried, and
+    /// returns the index of that orientation. Returns `None` when the bound of the window is its radius.
     fn lower(&mut self, window: &[usize]) -> Option<usize> {
         let Self {
             checker,
@@ -194,7 +198,7 @@ impl<L: Leg> Search<'_, L> {
         } = self;
         let oriented = |k: usize| Oriented {
             arms: &found.orientations[k].arms,
-            // A leading window has good centres of one sign.
+            // The centres of a leading window are feasible and have one sign.
             sign: found.orientations[k].centre_sign.unwrap_or(1.0),
         };
         let last = window.iter().map(|&k| reaches[k].failing).min().unwrap_or(usize::MAX);
@@ -232,7 +236,8 @@ impl<L: Leg> Search<'_, L> {
     }
 }
 
-/// The window with the largest bound above 0, the first among equals, and the largest bound of the others.
+/// Returns the window with the largest bound above 0 (the first one among equals), and the largest bound of the other
+/// windows.
 fn leader(bounds: &[f64]) -> Option<(usize, f64)> {
     let (mut best, mut largest, mut rival) = (None, 0.0, 0.0);
     for (home, &bound) in bounds.iter().enumerate() {
@@ -246,7 +251,8 @@ fn leader(bounds: &[f64]) -> Option<(usize, f64)> {
     best.map(|home| (home, rival))
 }
 
-/// The numbers 0 … `count` − 1, ends first, then ever finer in between: a window falls soonest by its ends.
+/// Returns the numbers 0 … `count` − 1, beginning with both ends and then in steps that become ever finer: the ends of
+/// a window lower its bound soonest.
 fn spread(count: usize) -> Vec<usize> {
     let mut order = vec![0];
     let mut stride = count.next_power_of_two();

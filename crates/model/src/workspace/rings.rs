@@ -1,8 +1,10 @@
-//! The rays of one orientation, in all directions at once: which rings of poses about the centre are good.
+//! Rays of one orientation, marched in all directions at once: determines which rings of poses about the centre are
+//! feasible.
 //!
-//! Ring `k` holds the poses of all directions at `k` steps from the centre. `R(φ)` lies in the step that ends at the
-//! first ring with a pose that fails; where in it, halvings tell. A ring that fails bounds `R(φ)` from above whatever the
-//! rings before it do, so bounds are had for a few rings where the value costs all of them.
+//! Ring `k` consists of the poses in all directions at `k` steps from the centre. A ring is feasible if all its poses
+//! are; otherwise it fails. `R(φ)` lies in the step that ends at the first failing ring, and halvings locate it within
+//! that step. A failing ring bounds `R(φ)` from above whether the rings before it fail or not, so that a bound costs a
+//! few rings, whereas the value costs all of them.
 
 use glam::DVec2;
 
@@ -10,38 +12,38 @@ use super::batch::Oriented;
 use super::{Grid, PoseChecker, Positions};
 use crate::mechanism::Leg;
 
-/// The directions and steps of all rays, and room for the positions of a few rings.
+/// Directions and step of all rays, with a buffer for the positions of a few rings.
 #[derive(Debug)]
 pub(super) struct Rings {
     centre: DVec2,
-    /// The directions marched.
+    /// Directions in which rays are marched.
     pub directions: Vec<DVec2>,
     step: f64,
     positions: Positions,
 }
 
-/// Positions laid out at a time on a march.
+/// Approximate number of positions that a march evaluates at a time.
 const BLOCK: usize = 256;
 
-/// Where the disc of one orientation ends.
+/// Bracket of the radius at which the disc of one orientation ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bracket {
     /// `R(φ)`: the lower end of the last bracket \[m\].
     pub radius: f64,
-    /// The upper end: a pose at this radius fails in some direction \[m\].
+    /// Upper end of the last bracket: a pose at this radius is infeasible in some direction \[m\].
     pub beyond: f64,
 }
 
-/// What is known of the rings of one orientation.
+/// Known feasible and failing rings of one orientation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reach {
-    /// Rings 1 to this are good.
+    /// Rings 1 to `good` are feasible.
     pub good: usize,
-    /// The farthest single ring known to be good.
+    /// Farthest single ring known to be feasible.
     pub probed: usize,
-    /// The nearest ring known to fail; `usize::MAX` while none is.
+    /// Nearest ring known to fail; `usize::MAX` while none is known.
     pub failing: usize,
-    /// `R(φ)`, once it is worked out.
+    /// Bracket of `R(φ)`, once it has been computed.
     pub bracket: Option<Bracket>,
 }
 
@@ -64,7 +66,7 @@ impl Rings {
         }
     }
 
-    /// Upper bound of `R(φ)` \[m\], its value once that is known.
+    /// Returns an upper bound of `R(φ)` \[m\], which is its value once that is known.
     pub fn bound(&self, reach: &Reach) -> f64 {
         match (reach.bracket, reach.failing) {
             (Some(bracket), _) => bracket.radius,
@@ -73,7 +75,8 @@ impl Rings {
         }
     }
 
-    /// The poses of rings `first` to `last`, ring after ring, before the first that is not good.
+    /// Returns the number of poses of rings `first` to `last`, counted ring after ring, before the first infeasible
+    /// one.
     fn leading<L: Leg>(
         &mut self,
         checker: &PoseChecker<L>,
@@ -93,7 +96,7 @@ impl Rings {
         checker.leading(oriented, &self.positions.xs, &self.positions.ys, count)
     }
 
-    /// Whether all poses of one ring are good; lowers `reach` where one is not.
+    /// Returns whether one ring is feasible, and records the result in `reach`.
     fn probe<L: Leg>(
         &mut self,
         checker: &PoseChecker<L>,
@@ -113,8 +116,9 @@ impl Rings {
         good
     }
 
-    /// Looks for a failing ring as near to the centre as can be had by bisection, from `hint`, a likely one, outwards to
-    /// `farthest`. For an orientation of which no failing ring is known.
+    /// Searches for the failing ring that is nearest to the centre, as far as bisection can find it. The search starts
+    /// at `hint`, a ring likely to fail, and goes outwards to `farthest` at most. It is meant for an orientation
+    /// without a known failing ring up to `farthest`.
     pub fn estimate<L: Leg>(
         &mut self,
         checker: &PoseChecker<L>,
@@ -123,7 +127,7 @@ impl Rings {
         hint: usize,
         farthest: usize,
     ) {
-        // Outwards until a ring fails. Ends: the reach of every leg is bounded.
+        // Step outwards until a ring fails. The loop ends because the reach of every leg is bounded.
         let mut ring = hint.clamp(1, farthest);
         while self.probe(checker, oriented, reach, ring) {
             if ring == farthest {
@@ -131,7 +135,7 @@ impl Rings {
             }
             ring = (ring + ring.div_ceil(4)).min(farthest);
         }
-        // Inwards in growing strides until one is good, then between the two.
+        // Step inwards in growing strides until a ring is feasible, then bisect between the two.
         let mut good = reach.probed;
         let mut stride = 1;
         while reach.failing > good + 2 * stride {
@@ -150,7 +154,7 @@ impl Rings {
         }
     }
 
-    /// Marches from the last ring known to be good to ring `last`, or to the first that fails.
+    /// Marches outwards from ring `reach.good` to ring `last`, or to the first ring that fails.
     pub fn march<L: Leg>(&mut self, checker: &PoseChecker<L>, oriented: Oriented<'_>, reach: &mut Reach, last: usize) {
         let count = self.directions.len();
         while reach.good < last {
@@ -165,12 +169,13 @@ impl Rings {
         }
     }
 
-    /// `R(φ)` of an orientation whose rings are good up to the failing one: halvings of that step, in the directions
-    /// that fail.
+    /// Computes `R(φ)` of an orientation whose rings are feasible up to the failing one, by halving the last step in
+    /// the directions that fail.
     ///
-    /// Rays that pass where another fails reach farther than it, so they are left behind at once; the smallest radius
-    /// over the directions is the same as if each were marched to its own end. One halving waits for the one before, so
-    /// where few directions are left, all the middles that the next ones could ask for are looked at together.
+    /// A ray that is feasible at a radius where another one fails reaches farther than that one, so it is dropped at
+    /// once; the smallest radius over the directions is the same as if every ray were marched to its own end. Each
+    /// halving depends on the one before. Where few directions are left, all midpoints that the next halvings could
+    /// need are therefore evaluated together.
     pub fn halve<L: Leg>(&mut self, checker: &PoseChecker<L>, oriented: Oriented<'_>, reach: &mut Reach, grid: &Grid) {
         let mut bracket = [(reach.failing - 1) as f64 * self.step, reach.failing as f64 * self.step];
         let mut middles = Middles::new(&self.directions);
@@ -184,7 +189,7 @@ impl Rings {
                 _ => 1,
             }
             .min(left);
-            // A tree: the halves of bracket k are brackets 2k (near) and 2k + 1 (far).
+            // The brackets form a tree: the halves of bracket k are brackets 2k (near) and 2k + 1 (far).
             let mut brackets = [bracket; 1 << Self::MOST_HALVINGS];
             let mut radii = [0.0; 1 << Self::MOST_HALVINGS];
             for k in 1..1 << depth {
@@ -214,15 +219,15 @@ impl Rings {
         });
     }
 
-    /// Most halvings whose middles are looked at together.
+    /// Largest number of halvings whose midpoints are evaluated together.
     const MOST_HALVINGS: usize = 3;
 }
 
 /// Poses at several radii in the directions that still fail.
 struct Middles {
-    /// The directions looked at.
+    /// Directions that are evaluated.
     directions: Vec<DVec2>,
-    /// Those of them, by index, that fail at every radius at which one did.
+    /// Indices of the directions that fail at every radius examined so far at which any direction fails.
     failing: Vec<usize>,
     positions: Positions,
     good: Vec<f64>,
@@ -238,7 +243,7 @@ impl Middles {
         }
     }
 
-    /// Looks at all poses of the failing directions at `radii`.
+    /// Evaluates the poses of the failing directions at all `radii`.
     fn look<L: Leg>(&mut self, checker: &PoseChecker<L>, oriented: Oriented<'_>, centre: DVec2, radii: &[f64]) {
         self.directions = self.failing.iter().map(|&index| self.directions[index]).collect();
         self.failing = (0..self.directions.len()).collect();
@@ -253,7 +258,8 @@ impl Middles {
         checker.mark_good(oriented, &self.positions.xs, &self.positions.ys, &mut self.good);
     }
 
-    /// Leaves behind the directions that do not fail at the radius of index `radius`, if one fails there, and says so.
+    /// Returns whether any direction fails at the radius of index `radius`; if so, drops the directions that do not
+    /// fail there.
     fn keep_failing(&mut self, radius: usize) -> bool {
         let good = &self.good[radius * self.directions.len()..];
         let any = self.failing.iter().any(|&direction| good[direction] == 0.0);

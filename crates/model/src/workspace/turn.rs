@@ -1,23 +1,23 @@
-//! The orientations that a search looks at, and the windows over them.
+//! Orientations that a search examines, and the windows over them.
 
 use std::ops::Range;
 
 use super::{Grid, GridError, WorkspaceSpec};
 
-/// Evenly spaced orientations: the full turn of a grid, or the one window of a given home.
+/// Evenly spaced orientations: the full turn of a grid, or the single window of a prescribed home orientation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
     first_deg: f64,
     step_deg: f64,
     /// Number of orientations.
     pub count: usize,
-    /// Steps from a home orientation to either end of its window.
+    /// Number of steps from a home orientation to either end of its window.
     pub half_window: usize,
     home_is_given: bool,
 }
 
 impl Turn {
-    /// The orientations of `grid` that `spec` requires.
+    /// Returns the orientations of `grid` that `spec` requires.
     ///
     /// # Errors
     /// [`GridError::WindowNotWhole`].
@@ -36,18 +36,19 @@ impl Turn {
         })
     }
 
-    /// Orientation of a place \[deg\]; with a given home it may lie outside of [0, 360).
+    /// Returns the orientation of index `place` \[deg\]; with a prescribed home orientation it may lie outside
+    /// \[0, 360).
     pub fn phi_deg(&self, place: usize) -> f64 {
         self.first_deg + place as f64 * self.step_deg
     }
 
-    /// Places of the window about `home`.
+    /// Returns the indices of the orientations in the window about `home`.
     pub fn window(&self, home: usize) -> impl Iterator<Item = usize> + use<> {
         let (count, half) = (self.count, self.half_window);
         (0..=2 * half).map(move |offset| (home + count - half + offset) % count)
     }
 
-    /// Places at which a window can have its centre.
+    /// Returns the indices of the orientations that can be the centre of a window.
     pub fn homes(&self) -> Range<usize> {
         if self.home_is_given {
             self.half_window..self.half_window + 1
@@ -56,7 +57,7 @@ impl Turn {
         }
     }
 
-    /// Homes in whose window every orientation has a sign, and all the same.
+    /// Returns the home orientations in whose window every orientation has a sign and all signs are equal.
     pub fn homes_of_one_sign(&self, sign: impl Fn(usize) -> Option<f64>) -> impl Iterator<Item = usize> {
         self.homes().filter(move |&home| {
             let first = sign(home);

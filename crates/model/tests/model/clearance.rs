@@ -2,9 +2,10 @@
 //! segments in space.
 
 use kinefront_model::clearance::{BodySettings, Layers};
-use kinefront_model::evaluation::{Model, PoseReport};
-use kinefront_model::mechanism::{Architecture, Design, Leg, PrrLeg, RprLeg, RrrLeg, WorkingMode};
+use kinefront_model::evaluation::{Model, ModelSettings, PoseReport};
+use kinefront_model::mechanism::{Architecture, Design, Leg, WorkingMode};
 use kinefront_model::spatial::{Pose, Rotation};
+use kinefront_model::with_leg;
 use parry3d_f64::math::Vector;
 use parry3d_f64::query::details::closest_points_segment_segment_with_locations_nD;
 use parry3d_f64::shape::Segment;
@@ -207,8 +208,8 @@ impl Random {
     }
 
     /// A study's choices about bodies and legs, and a design of an architecture.
-    fn subject(&mut self, architecture: Architecture) -> (Model, Design) {
-        let mut model = Model::default();
+    fn subject(&mut self, architecture: Architecture) -> (ModelSettings, Design) {
+        let mut model = ModelSettings::default();
         let half_width = self.between(0.5, 3.0);
         // Layers as they come, in one plane, or as they are built.
         let layers = match self.0.next_u32() % 3 {
@@ -252,20 +253,15 @@ impl Random {
 /// The clearance as evaluations see it: the loop over poses, for one.
 fn in_lanes(model: &Model, design: &Design, pose: &Pose) -> Option<f64> {
     fn of<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Option<f64> {
-        let mut model = *model;
-        model.thresholds.clearance = Some(0.0);
-        let checker = model.checker::<L>(design).expect("a whole grid");
+        let mut checker = model.checker::<L>(design);
+        checker.thresholds.clearance = Some(0.0);
         let [a, b, c] = checker.manipulator.arms(&Rotation::new(pose.phi));
         checker
             .lanes::<f64>(pose.position.into(), &[a.into(), b.into(), c.into()])
             .reached()?
             .clearance
     }
-    match design.architecture {
-        Architecture::Prr => of::<PrrLeg>(model, design, pose),
-        Architecture::Rpr => of::<RprLeg>(model, design, pose),
-        Architecture::Rrr => of::<RrrLeg>(model, design, pose),
-    }
+    with_leg!(design.architecture, L => of::<L>(model, design, pose))
 }
 
 /// Looks at random poses of random designs; returns how many overlap, and how often each fault of the oracle shows.
@@ -273,10 +269,11 @@ fn compare(architecture: Architecture, poses: usize, faults: &[Fault]) -> (usize
     let mut random = Random(ChaCha8Rng::seed_from_u64(7));
     let (mut done, mut overlapping, mut shown) = (0, 0, vec![0; faults.len()]);
     while done < poses {
-        let (model, design) = random.subject(architecture);
+        let (settings, design) = random.subject(architecture);
+        let model = Model::new(settings).expect("the grids fit the rotation range");
         for _ in 0..20 {
             let pose = random.pose();
-            let Ok(report) = model.pose(&design, &pose).expect("a whole grid") else {
+            let Ok(report) = model.pose(&design, &pose) else {
                 continue;
             };
             // Within rounding of a singularity of a leg its own directions are lost, and with them the last digits.
@@ -375,14 +372,15 @@ fn touching_is_zero() {
     for &architecture in Architecture::ALL {
         let mut touched = 0;
         for _ in 0..400_000 {
-            let (mut model, mut design) = random.subject(architecture);
-            model.bodies.layers = Layers::ONE_PLANE;
+            let (mut settings, mut design) = random.subject(architecture);
+            settings.bodies.layers = Layers::ONE_PLANE;
             // Small ones: as legs are made thicker, sliders are to stay out of the way.
-            (model.bodies.slider_half_width, model.bodies.slider_length) = (0.2, 0.4);
+            (settings.bodies.slider_half_width, settings.bodies.slider_length) = (0.2, 0.4);
+            let model = Model::new(settings).expect("the grids fit the rotation range");
             let pose = random.pose();
             design.leg_bar_radius = 0.01;
             let clearance = |design: &Design| {
-                let report = model.pose(design, &pose).expect("a whole grid").ok()?;
+                let report = model.pose(design, &pose).ok()?;
                 Some(report.clearance)
             };
             // Legs against legs: both radii are r_j, and as it grows no other pair may come first.

@@ -4,16 +4,17 @@ use glam::DVec2;
 use kinefront_model::evaluation::{GridChoice, Model};
 use kinefront_model::kinematics::{CharacteristicLength, Jacobian};
 use kinefront_model::lanes::{InstructionSet, Planar};
-use kinefront_model::mechanism::{Architecture, BarLength, Design, Leg, PrrLeg, RprLeg, RrrLeg};
+use kinefront_model::mechanism::{BarLength, Design, Leg};
 use kinefront_model::spatial::{Pose, Rotation};
 use kinefront_model::stiffness::StiffnessDefinition;
 use kinefront_model::workspace::PoseChecker;
+use kinefront_model::with_leg;
 use proptest::prelude::*;
 
-use super::strategies::{design, pose};
+use super::strategies::{design, model, pose};
 
 fn compare<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<(), TestCaseError> {
-    let checker: PoseChecker<L> = model.checker(design).expect("a whole grid");
+    let checker: PoseChecker<L> = model.checker(design);
     let arms = checker.manipulator.arms(&Rotation::new(pose.phi));
     let found = checker.lanes::<f64>(pose.position.into(), &arms.map(|arm: DVec2| Planar::from(arm)));
     match checker.manipulator.posture_at(pose.position, &arms) {
@@ -69,7 +70,6 @@ fn bits(model: &Model, design: &Design, instructions: InstructionSet) -> String 
         "{:?}",
         model
             .evaluate_with(design, GridChoice::Reference, instructions)
-            .expect("a whole grid")
     )
 }
 
@@ -80,15 +80,16 @@ proptest! {
     fn every_instruction_set_gives_the_same_bits(
         design in design(0.0), compliance: bool, x in -0.1..0.1, isotropic: bool,
     ) {
-        let mut model = Model::default();
-        if compliance {
-            model.stiffness_definition = StiffnessDefinition::Compliance;
-        }
-        if isotropic {
-            model.characteristic_length = CharacteristicLength::Isotropic;
-        } else {
-            model.workspace.centre = DVec2::new(x, 0.5 * x);
-        }
+        let model = model(|settings| {
+            if compliance {
+                settings.stiffness_definition = StiffnessDefinition::Compliance;
+            }
+            if isotropic {
+                settings.characteristic_length = CharacteristicLength::Isotropic;
+            } else {
+                settings.workspace.centre = DVec2::new(x, 0.5 * x);
+            }
+        });
         let best = bits(&model, &design, InstructionSet::best());
         for instructions in InstructionSet::available() {
             prop_assert_eq!(&bits(&model, &design, instructions), &best, "{}", instructions.name());
@@ -120,18 +121,15 @@ proptest! {
     fn the_reduced_form_gives_the_values_of_the_plain_one(
         design in design(1e-3), pose in pose(), compliance: bool, longest: bool, shortest in 0.0..0.6,
     ) {
-        let mut model = Model::default();
-        model.legs.telescopic_shortest = if shortest < 0.1 { 0.0 } else { shortest };
-        if longest {
-            model.legs.telescopic_bar = BarLength::Longest;
-        }
-        if compliance {
-            model.stiffness_definition = StiffnessDefinition::Compliance;
-        }
-        match design.architecture {
-            Architecture::Prr => compare::<PrrLeg>(&model, &design, &pose)?,
-            Architecture::Rpr => compare::<RprLeg>(&model, &design, &pose)?,
-            Architecture::Rrr => compare::<RrrLeg>(&model, &design, &pose)?,
-        }
+        let model = model(|settings| {
+            settings.legs.telescopic_shortest = if shortest < 0.1 { 0.0 } else { shortest };
+            if longest {
+                settings.legs.telescopic_bar = BarLength::Longest;
+            }
+            if compliance {
+                settings.stiffness_definition = StiffnessDefinition::Compliance;
+            }
+        });
+        with_leg!(design.architecture, L => compare::<L>(&model, &design, &pose))?;
     }
 }

@@ -3,15 +3,16 @@
 use glam::DVec2;
 use kinefront_model::evaluation::{Constraint, GridChoice, Model};
 use kinefront_model::lanes::InstructionSet;
-use kinefront_model::mechanism::{Architecture, Design, Leg, PrrLeg, RprLeg, RrrLeg, WorkingMode};
+use kinefront_model::mechanism::{Architecture, Design, Leg, WorkingMode};
 use kinefront_optimize::{Variable, sobol};
 use kinefront_model::spatial::LEGS;
 use kinefront_model::workspace::plain::{PlainWorkspace, plain};
 use kinefront_model::workspace::{Grid, PoseChecker};
+use kinefront_model::with_leg;
 use proptest::prelude::*;
 use rayon::prelude::*;
 
-use super::strategies::{bodies, clearance, design};
+use super::strategies::{bodies, clearance, design, model};
 
 /// Which form says what poses are good.
 #[derive(Clone, Copy)]
@@ -23,7 +24,7 @@ enum Form {
 }
 
 fn plain_of<L: Leg>(model: &Model, design: &Design, grid: &Grid, form: Form) -> PlainWorkspace {
-    let checker: PoseChecker<L> = model.checker(design).expect("a whole grid");
+    let checker: PoseChecker<L> = model.checker(design);
     let good = |position: DVec2, arms: &[DVec2; LEGS]| match form {
         Form::Plain => checker.good_sign(position, arms),
         Form::Reduced => {
@@ -34,15 +35,11 @@ fn plain_of<L: Leg>(model: &Model, design: &Design, grid: &Grid, form: Form) -> 
             (values.determinant != 0.0 && checker.thresholds.hold(&values)).then(|| values.determinant.signum())
         }
     };
-    plain(&checker.manipulator, &model.workspace, grid, design.base_radius, good).expect("a whole grid")
+    plain(&checker.manipulator, &model.workspace, grid, design.base_radius, good).expect("the grid fits")
 }
 
 fn plain_in(model: &Model, design: &Design, grid: &Grid, form: Form) -> PlainWorkspace {
-    match design.architecture {
-        Architecture::Prr => plain_of::<PrrLeg>(model, design, grid, form),
-        Architecture::Rpr => plain_of::<RprLeg>(model, design, grid, form),
-        Architecture::Rrr => plain_of::<RrrLeg>(model, design, grid, form),
-    }
+    with_leg!(design.architecture, L => plain_of::<L>(model, design, grid, form))
 }
 
 pub fn plain_search(model: &Model, design: &Design, grid: &Grid) -> PlainWorkspace {
@@ -60,8 +57,7 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
     let assembled = design.link_length + design.platform_radius >= 0.5 * design.base_radius;
     for instructions in InstructionSet::available() {
         let found = model
-            .evaluate_with(design, GridChoice::Reference, instructions)
-            .expect("a whole grid");
+            .evaluate_with(design, GridChoice::Reference, instructions);
         if !assembled {
             prop_assert_eq!(found.workspace_radius, 0.0);
             continue;
@@ -75,7 +71,7 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
         );
         prop_assert_eq!(
             found.home_phi_deg,
-            first.map(|home| home as f64 * grid.phi_step_deg),
+            first.map(|home| home as f64 * grid.phi_step_deg()),
             "{}: {}",
             design,
             instructions.name()
@@ -87,7 +83,7 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
 
 /// Same radius; the same home, or one as good.
 fn same(model: &Model, design: &Design) -> Result<(), String> {
-    let found = model.evaluate(design, GridChoice::Reference).expect("a whole grid");
+    let found = model.evaluate(design, GridChoice::Reference);
     let wanted = plain_search(model, design, &model.reference_grid);
     let close = |radius: f64| (found.workspace_radius - radius).abs() <= 1e-9 * wanted.radius;
     if !close(wanted.radius) {
@@ -97,7 +93,7 @@ fn same(model: &Model, design: &Design) -> Result<(), String> {
         ));
     }
     if let Some(phi_deg) = found.home_phi_deg {
-        let home = (phi_deg / model.reference_grid.phi_step_deg).round() as usize;
+        let home = (phi_deg / model.reference_grid.phi_step_deg()).round() as usize;
         if !close(wanted.windows[home]) {
             return Err(format!(
                 "{design}: at {phi_deg}° the radius is {}",
@@ -155,15 +151,16 @@ proptest! {
 
     #[test]
     fn also_about_another_centre(design in design(0.01), x in -0.3..0.3, y in -0.3..0.3) {
-        let mut model = Model::default();
-        model.workspace.centre = DVec2::new(x, y);
+        let model = model(|settings| settings.workspace.centre = DVec2::new(x, y));
         same(&model, &design).map_err(TestCaseError::fail)?;
     }
 
     #[test]
     fn also_where_bodies_must_not_collide(design in design(0.01), bodies in bodies(), clearance in 0.0..0.05) {
-        let mut model = Model { bodies, ..Model::default() };
-        model.thresholds.clearance = Some(clearance);
+        let model = model(|settings| {
+            settings.bodies = bodies;
+            settings.thresholds.clearance = Some(clearance);
+        });
         same(&model, &design).map_err(TestCaseError::fail)?;
     }
 
@@ -180,26 +177,25 @@ proptest! {
         bodies in bodies(),
         clearance in clearance(),
     ) {
-        let mut model = Model {
-            reference_grid: Grid { phi_step_deg, directions, ray_steps, halvings },
-            bodies,
-            ..Model::default()
-        };
-        model.thresholds.clearance = clearance;
-        model.workspace.rotation_range_deg = 2.0 * f64::from(half_window) * phi_step_deg;
-        if off_centre {
-            model.workspace.centre = DVec2::new(0.1, -0.05);
-        }
+        let model = model(|settings| {
+            settings.reference_grid = Grid::new(phi_step_deg, directions, ray_steps, halvings).expect("a grid");
+            settings.bodies = bodies;
+            settings.thresholds.clearance = clearance;
+            settings.workspace.rotation_range_deg = 2.0 * f64::from(half_window) * phi_step_deg;
+            if off_centre {
+                settings.workspace.centre = DVec2::new(0.1, -0.05);
+            }
+        });
         exactly(&model, &design)?;
     }
 
     /// A given home is the one window of the definition.
     #[test]
     fn a_given_home_is_the_window_of_the_definition(design in design(0.01), home in 0..144usize) {
-        let mut model = Model::default();
-        let wanted = plain_in(&model, &design, &model.reference_grid, Form::Reduced).windows[home];
-        model.workspace.home_phi_deg = Some(home as f64 * 2.5);
-        let found = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+        let paper = Model::default();
+        let wanted = plain_in(&paper, &design, &paper.reference_grid, Form::Reduced).windows[home];
+        let model = model(|settings| settings.workspace.home_phi_deg = Some(home as f64 * 2.5));
+        let found = model.evaluate(&design, GridChoice::Reference);
         prop_assume!(design.link_length + design.platform_radius >= 0.5 * design.base_radius);
         prop_assert_eq!(found.workspace_radius, wanted);
     }
@@ -207,9 +203,11 @@ proptest! {
     /// A report speaks of the workspace it reports.
     #[test]
     fn reports_are_consistent(design in design(0.0), bodies in bodies(), clearance in clearance()) {
-        let mut model = Model { bodies, ..Model::default() };
-        model.thresholds.clearance = clearance;
-        let found = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+        let model = model(|settings| {
+            settings.bodies = bodies;
+            settings.thresholds.clearance = clearance;
+        });
+        let found = model.evaluate(&design, GridChoice::Reference);
         prop_assert_eq!(found.is_feasible(), found.violation == 0.0);
         prop_assert_eq!(found.is_feasible(), found.home.is_some());
         prop_assert!(found.violation.is_finite() && found.mass.is_finite());
@@ -237,12 +235,10 @@ fn a_given_home_is_kept() {
         .parse()
         .expect("a design");
     let best = Model::default()
-        .evaluate(&design, GridChoice::Reference)
-        .expect("a whole grid");
+        .evaluate(&design, GridChoice::Reference);
     for (home, equal) in [(30.0, true), (-330.0, true), (20.0, false)] {
-        let mut model = Model::default();
-        model.workspace.home_phi_deg = Some(home);
-        let found = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+        let model = model(|settings| settings.workspace.home_phi_deg = Some(home));
+        let found = model.evaluate(&design, GridChoice::Reference);
         assert_eq!(found.workspace_radius == best.workspace_radius, equal, "home {home}");
         assert!(found.workspace_radius <= best.workspace_radius && found.is_feasible());
         assert_eq!(found.home_phi_deg, Some(if equal { 30.0 } else { home }));
@@ -264,13 +260,13 @@ fn lifting_the_active_constraint_enlarges_the_workspace() {
     ];
     for (text, constraint) in cases {
         let design: Design = text.parse().expect("a design");
-        let model = Model::default();
-        let before = model.evaluate(&design, GridChoice::Fine).expect("a whole grid");
+        let before = Model::default().evaluate(&design, GridChoice::Fine);
         assert!(before.active().any(|active| active == constraint), "{text}");
-        let mut eased = model;
-        eased.thresholds.inverse_condition *= 0.5;
-        eased.thresholds.k_xy *= 0.5;
-        let after = eased.evaluate(&design, GridChoice::Fine).expect("a whole grid");
+        let eased = model(|settings| {
+            settings.thresholds.inverse_condition *= 0.5;
+            settings.thresholds.k_xy *= 0.5;
+        });
+        let after = eased.evaluate(&design, GridChoice::Fine);
         assert!(after.workspace_radius > before.workspace_radius + 1e-5, "{text}");
     }
 }
@@ -282,8 +278,7 @@ fn a_zero_radius_is_infeasible_and_finite() {
         "3-RRR R=3 r=1.2 Lb=1.9 rj=0.05 rp=0",
     ] {
         let found = Model::default()
-            .evaluate(&text.parse().expect("a design"), GridChoice::Reference)
-            .expect("a whole grid");
+            .evaluate(&text.parse().expect("a design"), GridChoice::Reference);
         assert!(!found.is_feasible());
         assert!(found.mass > 0.0 && found.violation > 0.0);
         assert_eq!(found.constraint(Constraint::StiffnessXy).value, Some(0.0));
@@ -294,8 +289,7 @@ fn a_zero_radius_is_infeasible_and_finite() {
 /// Nothing that is no number leaves, however far the input lies beyond what can be built.
 #[test]
 fn sizes_beyond_measure_stay_finite() {
-    let mut far = Model::default();
-    far.workspace.centre = DVec2::new(1e200, 0.0);
+    let far = model(|settings| settings.workspace.centre = DVec2::new(1e200, 0.0));
     for architecture in Architecture::ALL {
         for (model, lengths) in [
             (Model::default(), "R=1e160 r=1e159 Lb=1e160 rj=0.1 rp=0.1"),
@@ -306,7 +300,7 @@ fn sizes_beyond_measure_stay_finite() {
             (far, "R=2 r=1 Lb=2 rj=0.05 rp=0.05"),
         ] {
             let design: Design = format!("{architecture} {lengths}").parse().expect("a design");
-            let found = model.evaluate(&design, GridChoice::Reference).expect("a whole grid");
+            let found = model.evaluate(&design, GridChoice::Reference);
             assert!(
                 found.workspace_radius.is_finite() && found.violation.is_finite(),
                 "{design}"
@@ -327,8 +321,7 @@ fn sizes_beyond_measure_stay_finite() {
 fn a_disc_of_many_base_radii_is_searched() {
     let design: Design = "3-RRR R=0.001 r=1 Lb=1 rj=0.1 rp=0.1".parse().expect("a design");
     let found = Model::default()
-        .evaluate(&design, GridChoice::Reference)
-        .expect("a whole grid");
+        .evaluate(&design, GridChoice::Reference);
     assert!(
         found.workspace_radius > 100.0 * design.base_radius,
         "{}",

@@ -12,12 +12,12 @@ const RANGES: BarRanges = BarRanges {
 };
 
 fn sized(model: &Model, design: &Design, demand: Demand) -> Option<Design> {
-    model.sized(design, &RANGES, demand).expect("the grid fits")
+    model.sized(design, &RANGES, demand)
 }
 
 fn radius(model: &Model, design: &Design) -> f64 {
     let evaluation = model.evaluate(design, GridChoice::Reference);
-    evaluation.expect("the grid fits").workspace_radius
+    evaluation.workspace_radius
 }
 
 /// No pair of radii on a fine lattice is lighter by more than 1 % and has the workspace too.
@@ -75,7 +75,7 @@ fn what_cannot_be_had_is_none() {
         leg: [0.0, 0.01],
         platform: [0.0, 0.01],
     };
-    let found = model.sized(&design, &thin, Demand::Radius(1.0)).expect("the grid fits");
+    let found = model.sized(&design, &thin, Demand::Radius(1.0));
     assert_eq!(found, None, "beyond the bars");
     let apart = Design {
         base_radius: 8.0,
@@ -88,16 +88,16 @@ fn what_cannot_be_had_is_none() {
     let found = sized(&model, &centre, Demand::Largest).expect("bars");
     assert!(radius(&model, &found) > 0.15);
     // A working mode without symmetry, a centre away from O, a given home: all are sized for what is asked.
-    let mut model = Model::default();
-    model.workspace.centre = glam::DVec2::new(0.1, -0.05);
-    model.workspace.home_phi_deg = Some(10.0);
+    let model = super::strategies::model(|settings| {
+        settings.workspace.centre = glam::DVec2::new(0.1, -0.05);
+        settings.workspace.home_phi_deg = Some(30.0);
+    });
     let design = Design {
         working_mode: WorkingMode::new([true, true, false]),
         ..design
     };
-    if let Some(found) = sized(&model, &design, Demand::Largest) {
-        assert!(radius(&model, &found) > 0.0);
-    }
+    let found = sized(&model, &design, Demand::Largest).expect("bars");
+    assert!(radius(&model, &found) > 0.0);
 }
 
 proptest! {
@@ -107,16 +107,18 @@ proptest! {
     #[test]
     fn sized_designs_hold_what_they_were_sized_for(design in design(0.0)) {
         let model = Model::default();
-        if let Some(found) = sized(&model, &design, Demand::Largest) {
-            for bar in [found.leg_bar_radius, found.platform_bar_radius] {
-                prop_assert!(bar.is_finite() && bar > 0.0 && bar <= 0.1);
-            }
-            let strongest = Design { leg_bar_radius: 0.1, platform_bar_radius: 0.1, ..design };
-            let most = radius(&model, &strongest);
-            let reached = radius(&model, &found);
-            prop_assert!(model.mass(&found) <= model.mass(&strongest) * (1.0 + 1e-12));
-            // Narrow spots between the poses looked at cost some; most often there are none.
-            prop_assert!(reached > 0.0 || most < 0.05 * design.base_radius, "{} of {}", reached, most);
+        let strongest = Design { leg_bar_radius: 0.1, platform_bar_radius: 0.1, ..design };
+        let most = radius(&model, &strongest);
+        let Some(found) = sized(&model, &design, Demand::Largest) else {
+            prop_assert!(most < 0.05 * design.base_radius, "the strongest bars have a workspace of {}", most);
+            return Ok(());
+        };
+        for bar in [found.leg_bar_radius, found.platform_bar_radius] {
+            prop_assert!(bar.is_finite() && bar > 0.0 && bar <= 0.1);
         }
+        let reached = radius(&model, &found);
+        prop_assert!(model.mass(&found) <= model.mass(&strongest) * (1.0 + 1e-12));
+        // Narrow regions between the sampled poses reduce the radius of a few designs.
+        prop_assert!(reached > 0.0 || most < 0.05 * design.base_radius, "{} of {}", reached, most);
     }
 }

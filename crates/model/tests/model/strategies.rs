@@ -2,8 +2,26 @@
 
 use kinefront_model::clearance::{BodySettings, Layers};
 use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
+use kinefront_model::evaluation::{Model, ModelSettings};
 use kinefront_model::spatial::Pose;
 use proptest::prelude::*;
+
+/// A property over the part of the design space where it applies: `cases` designs and poses that it applies to, or the test
+/// fails.
+pub fn applicable_cases(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        max_global_rejects: 200 * cases,
+        ..ProptestConfig::default()
+    }
+}
+
+/// The paper's model with some settings changed.
+pub fn model(change: impl FnOnce(&mut ModelSettings)) -> Model {
+    let mut settings = ModelSettings::default();
+    change(&mut settings);
+    Model::new(settings).expect("the grids fit the rotation range")
+}
 
 pub fn architecture() -> impl Strategy<Value = Architecture> {
     prop::sample::select(Architecture::ALL)

@@ -1,10 +1,10 @@
-//! An axis of the scatter: its quantity, range, ticks.
+//! An axis of the scatter: its quantity, range and ticks.
 
 use egui_plot::{GridInput, GridMark, PlotBounds};
 
 use crate::explorer::{Better, Quantity, Store};
 
-/// A quantity on an axis.
+/// Quantity and scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(from = "(String, bool)", into = "(String, bool)")]
 pub struct Axis {
@@ -12,7 +12,7 @@ pub struct Axis {
     pub(super) log: bool,
 }
 
-/// Two axes, the first logarithmic or not.
+/// Returns a pair of axes; the first is logarithmic if `log` is true.
 pub fn axes(x: Quantity, y: Quantity, log: bool) -> [Axis; 2] {
     [
         Axis { quantity: x, log },
@@ -53,7 +53,7 @@ impl Axis {
     }
 }
 
-/// Range of the feasible designs, as far as it was looked at.
+/// Range of the feasible designs on both axes, updated with those that were added to the store.
 #[derive(Default)]
 pub(super) struct Extent {
     axes: Option<[Axis; 2]>,
@@ -112,7 +112,7 @@ pub(super) fn tick(axis: Axis, mark: GridMark) -> String {
         if !(1e-3..1e5).contains(&value) {
             format!("{value:.0e}")
         } else {
-            // Without the rounding error of the power.
+            // Rounding removes the rounding error of the power.
             format!("{}", (value * 1e6).round() / 1e6)
         }
     } else {
@@ -121,7 +121,7 @@ pub(super) fn tick(axis: Axis, mark: GridMark) -> String {
     }
 }
 
-/// Decades, and twos and fives between them where there is room.
+/// Returns grid marks at 1, 2 and 5 times the powers of ten; those at 2 and 5 show only where there is room.
 pub(super) fn decades(input: GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let mut marks = Vec::new();

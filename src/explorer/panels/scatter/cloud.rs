@@ -1,7 +1,7 @@
-//! A million designs as a picture: drawn into pixels once, then only what is new.
+//! A picture of up to a million designs: they are drawn into pixels once, and later only new designs are added.
 //!
-//! Shapes would be built and sent to the graphics card anew in every frame. The picture is stretched while the view moves,
-//! and drawn again behind it, a few milliseconds a frame.
+//! Shapes, in contrast, would be built and sent to the graphics card again in every frame. While the view moves, the
+//! picture is stretched, and a new one is drawn off screen for a few milliseconds per frame.
 
 use std::time::{Duration, Instant};
 
@@ -10,58 +10,58 @@ use egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
 use crate::explorer::filter::Sieve;
 use crate::explorer::{Store, theme};
 
-/// What a picture shows; another view is another picture.
+/// View that a picture shows; a different view requires a new picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {
-    /// Pixels across and down.
+    /// Width and height \[pixels\].
     pub size: [usize; 2],
     /// Smallest coordinates shown.
     pub low: [f64; 2],
     /// Largest coordinates shown.
     pub high: [f64; 2],
-    /// Everything else that decides which pixels are painted how.
+    /// Everything else that determines the pixels.
     pub style: Style,
 }
 
-/// What decides on the painting of a point.
+/// Settings that determine which designs are drawn and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Style {
-    /// Axes, with whether they are logarithmic.
+    /// Quantities of the axes, and whether each axis is logarithmic.
     pub axes: [(super::Quantity, bool); 2],
-    /// The store that ids belong to.
+    /// Number of the store that the ids belong to.
     pub era: u64,
     /// Text of the filter.
     pub filter: String,
-    /// Dark ground.
+    /// Whether the background is dark.
     pub dark: bool,
 }
 
-/// No design.
+/// Id of a pixel that shows no design.
 const NOBODY: u32 = u32::MAX;
 
-/// Designs drawn between two looks at the clock.
+/// Number of designs drawn between two checks of the deadline.
 const BATCH: usize = 4096;
 
-/// Marks 5 pixels wide, a row of bits each: disc, square, triangle, diamond.
+/// Marks of 5 × 5 pixels, one byte per row: disc, square, triangle, diamond.
 const MARKS: [[u8; 5]; 4] = [
     [0b01110, 0b11111, 0b11111, 0b11111, 0b01110],
     [0b11111, 0b11111, 0b11111, 0b11111, 0b11111],
     [0b00100, 0b00100, 0b01110, 0b01110, 0b11111],
     [0b00100, 0b01110, 0b11111, 0b01110, 0b00100],
 ];
-/// Marks of infeasible and dimmed designs, and of crowds.
+/// Mark of infeasible and dimmed designs, and of every design if there are more than [`CROWD`].
 const SMALL: [u8; 5] = [0, 0b01110, 0b01110, 0b01110, 0];
-/// Designs beyond which marks are small.
+/// Number of designs above which all marks are small.
 const CROWD: usize = 100_000;
 
 struct Picture {
     view: View,
     pixels: Vec<Color32>,
-    /// What stands at a pixel, the higher the more it matters.
+    /// Rank of the design that each pixel shows; a design never covers one of a higher rank.
     rank: Vec<u8>,
-    /// Whose pixel it is.
+    /// Id of the design that each pixel shows.
     ids: Vec<u32>,
-    /// Designs drawn so far.
+    /// Number of designs drawn so far.
     drawn: usize,
 }
 
@@ -77,7 +77,7 @@ impl Picture {
         }
     }
 
-    /// Draws designs until `deadline`; tells whether any was drawn.
+    /// Draws designs until `deadline`; returns whether any was drawn.
     fn draw(&mut self, store: &Store, sieve: &Sieve<'_>, deadline: Instant) -> bool {
         let before = self.drawn;
         let [(x, x_log), (y, y_log)] = self.view.style.axes;
@@ -97,7 +97,7 @@ impl Picture {
             for id in self.drawn..end {
                 let column = (place(xs[id], x_log) - low[0]) * scale[0];
                 let row = (high[1] - place(ys[id], y_log)) * scale[1];
-                // Not a number is not inside either.
+                // Negated, so that NaN counts as outside.
                 if !(column >= 0.0 && row >= 0.0 && column < size[0] as f64 && row < size[1] as f64) {
                     continue;
                 }
@@ -141,7 +141,7 @@ impl Picture {
     }
 }
 
-/// The picture on screen, and the one that will take its place.
+/// The picture on screen, and the one that will replace it.
 #[derive(Default)]
 pub struct Cloud {
     shown: Option<Picture>,
@@ -150,7 +150,7 @@ pub struct Cloud {
 }
 
 impl Cloud {
-    /// Draws what `view` shows of the store, for at most `budget`; tells whether all is drawn.
+    /// Draws the designs of the store that `view` shows, for at most `budget`; returns whether all of them are drawn.
     pub fn advance(&mut self, ctx: &Context, store: &Store, sieve: &Sieve<'_>, view: &View, budget: Duration) -> bool {
         let deadline = Instant::now() + budget;
         if let Some(shown) = self.shown.as_mut().filter(|shown| shown.view == *view) {
@@ -168,7 +168,7 @@ impl Cloud {
         };
         coming.draw(store, sieve, deadline);
         let done = coming.drawn == store.len();
-        // Another store, filter or axes: half a picture of what is asked is better than a whole one of what is not.
+        // After a change of store, filter, axes or theme, an incomplete new picture is better than a complete old one.
         let stale = self.shown.as_ref().is_none_or(|shown| shown.view.style != view.style);
         if done || stale {
             self.shown = self.coming.take();
@@ -188,13 +188,13 @@ impl Cloud {
         }
     }
 
-    /// The picture with the coordinates of its corners.
+    /// Returns the picture with its smallest and largest coordinates.
     pub fn picture(&self) -> Option<(&TextureHandle, [f64; 2], [f64; 2])> {
         let shown = self.shown.as_ref()?;
         Some((self.texture.as_ref()?, shown.view.low, shown.view.high))
     }
 
-    /// The design nearest to a place, at most `reach` pixels away.
+    /// Returns the id of the design nearest to `place`, at most `reach` pixels away along each axis.
     pub fn at(&self, place: [f64; 2], reach: isize) -> Option<usize> {
         let Picture { view, ids, .. } = self.shown.as_ref()?;
         let View { size, low, high, .. } = view;

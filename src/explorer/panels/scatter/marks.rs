@@ -1,4 +1,4 @@
-//! What stands over the cloud: the front, its knee, references, and the design in the light.
+//! Marks drawn over the cloud: the front, its knee, the references, and the selected design.
 
 use egui::{Align2, Color32};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points, Text};
@@ -8,7 +8,8 @@ use crate::explorer::{Quantity, Row, Session, theme};
 use kinefront_optimize::knee;
 
 impl Scatter {
-    /// The front as a staircase, its designs, the knee, the design in the light and the references.
+    /// Returns the lines and marks of the front (a staircase), its designs, the knee, the references and the selected
+    /// design.
     pub(super) fn front<'a>(&self, session: &Session, dark: bool) -> (Vec<Line<'a>>, Vec<(Points<'a>, Option<Text>)>) {
         let ink = if dark {
             Color32::from_gray(235)

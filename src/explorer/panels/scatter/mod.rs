@@ -1,4 +1,4 @@
-//! The scatter: any two numbers of a design against each other, at first mass against `R_w`.
+//! The scatter: a plot of any two quantities of the designs, by default `R_w` over mass.
 
 mod axis;
 mod cloud;
@@ -14,7 +14,7 @@ use self::axis::{Extent, decades, tick};
 use self::cloud::{Cloud, Style, View};
 use crate::explorer::{Better, Quantity, Row, Session, theme};
 
-/// Time a frame may spend on the cloud.
+/// Time that a frame may spend on drawing the cloud.
 const BUDGET: Duration = Duration::from_millis(4);
 
 /// The scatter with its axes and view.
@@ -22,7 +22,7 @@ pub struct Scatter {
     axes: [Axis; 2],
     cloud: Cloud,
     extent: Extent,
-    /// Whether the view follows the designs.
+    /// Whether the view is fitted to the designs in every frame.
     fitted: bool,
     transform: Option<PlotTransform>,
 }
@@ -43,7 +43,7 @@ impl Default for Scatter {
 }
 
 impl Scatter {
-    /// A scatter with these axes.
+    /// Creates a scatter with the given axes.
     pub fn new(axes: [Axis; 2]) -> Self {
         Self {
             axes,
@@ -54,12 +54,12 @@ impl Scatter {
         }
     }
 
-    /// Its axes.
+    /// Returns the axes.
     pub fn axes(&self) -> [Axis; 2] {
         self.axes
     }
 
-    /// Where a design stood on screen in the last frame.
+    /// Returns the position of a design on screen in the last frame.
     pub fn screen_position(&self, row: &Row) -> Option<Pos2> {
         let [x, y] = self.place(row);
         Some(self.transform?.position_from_point(&PlotPoint::new(x, y)))
@@ -69,7 +69,7 @@ impl Scatter {
         self.axes.map(|axis| axis.place(axis.quantity.of(row)))
     }
 
-    /// The panel.
+    /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         self.controls(ui, session);
         let store = session.store();
@@ -175,7 +175,7 @@ impl Scatter {
                     self.fitted = true;
                 }
             }
-            if ui.button("Fit").on_hover_text("double click does the same").clicked() {
+            if ui.button("Fit").on_hover_text("fit the view to the feasible designs (or double-click)").clicked() {
                 self.fitted = true;
             }
             ui.separator();
@@ -190,9 +190,9 @@ impl Scatter {
                 let mark = ["●", "■", "▲", "◆"][theme::index(architecture) % 4];
                 let text = egui::RichText::new(format!("{mark} {architecture}")).color(color);
                 let text = if hidden { text.strikethrough() } else { text };
-                let hover = "click to dim or light this architecture everywhere";
+                let hover = "click to exclude this architecture (dimmed in all panels) or to include it again";
                 let button = ui.add(egui::Button::new(text).frame(false)).on_hover_text(hover);
-                let label = format!("{architecture} in the light");
+                let label = format!("include {architecture}");
                 button.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, !hidden, label.clone()));
                 if button.clicked() {
                     session.history.edit(|document| {
@@ -207,7 +207,7 @@ impl Scatter {
         });
     }
 
-    /// Hover tells the numbers, a click chooses.
+    /// Shows the values of the design under the pointer, and selects the design when it is clicked.
     fn pointed(&self, response: &Response, session: &mut Session) {
         let Some((pointer, transform)) = response.hover_pos().zip(self.transform) else {
             return;
@@ -287,7 +287,7 @@ impl Scatter {
         }
     }
 
-    /// An arrow to where both axes are better.
+    /// Draws an arrow in the direction in which both quantities improve.
     fn arrows(&self, ui: &Ui) {
         let Some(transform) = self.transform else {
             return;
@@ -316,12 +316,12 @@ impl Scatter {
     }
 }
 
-/// The numbers of a design.
+/// Shows the values of a design.
 pub fn hover(ui: &mut Ui, id: usize, row: &Row, session: &Session) {
     let verified = session
         .place_on_front(id)
         .is_some_and(|place| session.front()[place].verified);
-    let grid = if verified { "fine grid" } else { "search grid" };
+    let grid = if verified { "fine grid" } else { "reference grid" };
     ui.strong(format!("#{id}  {}", row.design.architecture));
     ui.label(format!(
         "{} kg, R_w {} m ({grid})",
