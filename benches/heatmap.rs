@@ -1,11 +1,12 @@
-//! How fast a heatmap is drawn: `cargo bench --no-default-features --bench heatmap`.
+//! Measures how fast a heatmap is drawn: `cargo bench --no-default-features --bench heatmap`.
 //!
-//! About 10⁵ cells of the paper's design II, its edges and contours included, on one thread and on two.
+//! The heatmap has about 10⁵ cells of the paper's design II and includes edges and contours; it is drawn on one thread
+//! and on two.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use kinefront::scene::{Field, Heatmap, HeatmapSettings};
 use kinefront_model::evaluation::Model;
 use kinefront_model::mechanism::Design;
-use kinefront::scene::{Field, Heatmap, HeatmapSettings};
 
 fn heatmaps(criterion: &mut Criterion) {
     let model = Model::default();

@@ -1,41 +1,43 @@
-//! Reference fronts of the paper's study: the best that is known, for optimizers to be measured against.
+//! Computes reference fronts of the paper's study: the best known fronts, against which optimizers are measured.
 //!
 //! ```text
 //! cargo bench --no-default-features --bench reference_fronts -- make [DIRECTORY]
 //! ```
 //!
-//! Writes `3-PRR.csv`, `3-RPR.csv`, `3-RRR.csv` and `combined.csv` (default: `assets/reference_fronts`), every radius from
-//! the fine grid, by a search that no optimizer's budget could afford. What a file there already holds is taken up, so the
-//! command may be repeated. For each architecture:
+//! Writes `3-PRR.csv`, `3-RPR.csv`, `3-RRR.csv` and `combined.csv` (default: `assets/reference_fronts`), with every
+//! radius from the fine grid, by a search far beyond the budget of a usual run. The designs that a file already
+//! contains are kept, so the command may be repeated. The search for each architecture consists of:
 //!
-//! 1. the program's own optimizer, two long runs on the reference grid and one on the fine grid;
-//! 2. NSGA-II, a long run on the reference grid, which knows nothing of the problem's structure;
-//! 3. a ladder of radii: at each the mass is minimised over the geometry by differential evolution, the bars sized for it;
-//! 4. the same ladder, all five lengths at once by an evolution strategy that knows no sizing, from the best so far.
+//! 1. the program's own optimizer: two long runs on the reference grid and one on the fine grid;
+//! 2. NSGA-II, which does not use the structure of the problem: a long run on the reference grid;
+//! 3. a ladder of radii: at each radius, differential evolution minimises the mass over the geometry, with bars sized
+//!    for the radius;
+//! 4. the same ladder with an evolution strategy that varies all five lengths at once without sizing, starting from
+//!    the best designs so far.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use kinefront::study::{BUILTIN, DesignProblem, Study};
 use kinefront_model::evaluation::{BarRanges, Demand, Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{Architecture, Design, VARIABLES};
 use kinefront_optimize::{
     Archive, Evaluated, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, drive, hypervolume, spread,
 };
-use kinefront::study::{BUILTIN, DesignProblem, Study};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
-/// Designs kept in a file: so many lose 0.03 % of the hypervolume.
+/// Number of designs kept in a file; thinning a front to this number loses 0.03 % of the hypervolume.
 const KEPT: usize = 2000;
 
-/// Steps of the ladder of radii.
+/// Number of steps of the ladder of radii.
 const LADDER: usize = 96;
 
-/// Designs that a step of the ladder starts from, and generations of them.
+/// Number of designs from which a step of the ladder starts, and number of its generations.
 const STEP: [usize; 2] = [12, 14];
 
-/// Trials of the evolution strategy at a step of the ladder.
+/// Number of trials of the evolution strategy at a step of the ladder.
 const TRIALS: usize = 240;
 
 fn main() {
@@ -55,7 +57,7 @@ fn main() {
         }
     };
     fs::create_dir_all(&directory).expect("the folder can be made");
-    let study = BUILTIN[0].study().expect("the built-in study is sound");
+    let study = BUILTIN[0].study().expect("the built-in study is valid");
     let mut combined = Front::default();
     for &architecture in Architecture::ALL {
         let path = directory.join(format!("{architecture}.csv"));
@@ -66,7 +68,7 @@ fn main() {
     }
 }
 
-/// Designs that nothing known dominates, on the fine grid.
+/// Designs that no known design dominates, with values from the fine grid.
 #[derive(Default, Clone)]
 struct Front(Archive);
 
@@ -114,7 +116,7 @@ impl Front {
             .collect()
     }
 
-    /// What a file holds, evaluated anew.
+    /// Reads the designs of a file and evaluates them again; returns an empty front if there is no file.
     fn read(path: &Path, study: &Study) -> Self {
         let mut front = Self::default();
         let Ok(mut reader) = csv::Reader::from_path(path) else {
@@ -126,7 +128,7 @@ impl Front {
             Design::new(fields[0].parse().expect("an architecture"), study.working_mode, lengths).expect("a design")
         });
         let designs = designs.collect();
-        front.evaluate(&study.model(), designs);
+        front.evaluate(&study.model().expect("a valid study"), designs);
         front
     }
 
@@ -191,7 +193,7 @@ impl Search {
         };
         let ranges = VARIABLES.map(|variable| study.bounds.range(variable));
         Self {
-            model: study.model(),
+            model: study.model().expect("a valid study"),
             ranges,
             bars: BarRanges {
                 leg: ranges[3],
@@ -202,7 +204,7 @@ impl Search {
         }
     }
 
-    /// Improves a front step by step, and keeps it in a file after each.
+    /// Improves a front step by step, and writes it to a file after each step.
     fn improve(&self, front: &mut Front, path: &Path) {
         let name = self.architecture;
         let keep = |front: &Front, what: &str| {
@@ -221,14 +223,15 @@ impl Search {
     }
 
     fn long_runs(&self, front: &mut Front) {
-        let coarse = DesignProblem::new(&self.study);
+        let coarse = DesignProblem::new(&self.study).expect("a valid study");
         let fine = DesignProblem::new(&Study {
             grid: kinefront::study::Grids {
                 reference: self.study.grid.fine.clone(),
                 ..self.study.grid.clone()
             },
             ..self.study.clone()
-        });
+        })
+        .expect("a valid study");
         let settings = FrontDeSettings {
             most: 300,
             ..FrontDeSettings::default()
@@ -260,7 +263,7 @@ impl Search {
         }
     }
 
-    /// The radii at which the mass is minimised: spread over those of the front and a little beyond.
+    /// Returns the radii at which the mass is minimised: spread over those of the front and slightly beyond.
     fn levels(&self, front: &Front, round: usize) -> Vec<f64> {
         let radii: Vec<f64> = front.0.iter().map(|member| -member.objectives[1]).collect();
         let (Some(least), Some(most)) = (radii.first(), radii.last()) else {
@@ -283,7 +286,8 @@ impl Search {
         found.iter().flatten().for_each(|evaluation| front.take(evaluation));
     }
 
-    /// Differential evolution of the geometry at one radius; everything feasible that it met.
+    /// Minimises the mass at one radius by differential evolution of the geometry; returns every evaluation on the
+    /// fine grid.
     fn step(&self, known: &[(Design, [f64; 2])], level: f64, seed: u64) -> Vec<Evaluation> {
         let mut random = ChaCha8Rng::seed_from_u64(1000 + seed);
         let mut near = known.to_vec();
@@ -304,7 +308,7 @@ impl Search {
                 for j in 0..3 {
                     let at = |i: usize| members[i].0.values()[j];
                     let moved = next[j] + 0.5 * (at(best) - next[j]) + 0.7 * (at(a) - at(b));
-                    // A little noise, so that members that have met can part again.
+                    // A little noise lets members of the population that have become equal separate again.
                     next[j] = (moved * (1.0 + 2e-3 * (uniform(&mut random) - 0.5)))
                         .clamp(self.ranges[j][0], self.ranges[j][1]);
                 }
@@ -320,16 +324,15 @@ impl Search {
         met
     }
 
-    /// Mass of a geometry with bars sized for a radius, infinite where the fine grid does not confirm nearly all of it.
+    /// Returns the mass of a geometry with bars sized for a radius; it is infinite if the fine grid confirms less than
+    /// 90 % of that radius.
     fn sized_mass(&self, design: &Design, level: f64, met: &mut Vec<Evaluation>) -> f64 {
-        let sized = self
-            .model
-            .sized(design, &self.bars, Demand::Radius(level));
+        let sized = self.model.sized(design, &self.bars, Demand::Radius(level));
         let Some(sized) = sized else { return f64::INFINITY };
         let evaluation = self.model.evaluate(&sized, GridChoice::Fine);
         let radius = evaluation.workspace_radius;
         let mass = if radius >= 0.9 * level {
-            // What is missing is paid for as if mass grew with the cube of the radius.
+            // A radius that is too small is penalised as if the mass grew with the cube of the radius.
             evaluation.mass * (level / radius.min(level)).powi(3)
         } else {
             f64::INFINITY
@@ -354,7 +357,8 @@ impl Search {
         found.iter().flatten().for_each(|evaluation| front.take(evaluation));
     }
 
-    /// Evolution strategy of one parent and one child (Rechenberg's rule of one fifth) on all five lengths.
+    /// Minimises the mass at one radius by a (1+1) evolution strategy with Rechenberg's one-fifth rule on all five
+    /// lengths.
     fn shrink(&self, mut design: Design, mut mass: f64, level: f64, seed: u64) -> Vec<Evaluation> {
         let mut random = ChaCha8Rng::seed_from_u64(9000 + seed);
         let mut met = Vec::new();
@@ -368,10 +372,7 @@ impl Search {
                 continue;
             };
             let lighter = self.model.mass(&candidate) < mass;
-            let evaluation = lighter.then(|| {
-                self.model
-                    .evaluate(&candidate, GridChoice::Fine)
-            });
+            let evaluation = lighter.then(|| self.model.evaluate(&candidate, GridChoice::Fine));
             match evaluation {
                 Some(evaluation) if evaluation.workspace_radius >= level => {
                     (design, mass) = (candidate, evaluation.mass);

@@ -1,37 +1,37 @@
-//! The window with a million designs: frame times of our panels, from a click to the scene, memory, and how many designs a
-//! second stream in before the optimizer has to wait.
+//! Measures the window with a million designs: frame times of the panels, the time from a click to the scene, memory,
+//! and how many designs per second can be received before the optimizer has to wait.
 //!
-//! `cargo bench --bench window` prints a table. Not criterion's: what matters is the slowest frame in a hundred, and what
-//! happens while designs stream in.
+//! `cargo bench --bench window` prints a table. Criterion is not used, because the slowest frame in a hundred matters,
+//! and the behaviour while designs are received.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
-use kinefront_model::evaluation::{Evaluation, GridChoice};
 use kinefront::explorer::{Explorer, Session, StudyEditor, Subject};
-use kinefront_optimize::{Archive, Evaluated, sobol};
 use kinefront::recording::LiveScene;
 use kinefront::study::{
     BUILTIN, Batch, DesignProblem, Event, FrontMember, GenerationSummary, Outcome, RunSummary, RunTimes, Started,
     Study, Subscriber,
 };
+use kinefront_model::evaluation::{Evaluation, GridChoice};
+use kinefront_optimize::{Archive, Evaluated, sobol};
 
 const DESIGNS: usize = 1_000_000;
 const GENERATION: usize = 500;
 
-/// Designs that were really evaluated, over and over with other numbers, as fast as they are taken.
+/// A stream of designs from a pool of evaluated ones, repeated with other masses and radii.
 struct Stream {
     pool: Vec<Evaluation>,
     count: usize,
-    /// Designs a second; as fast as they are taken where it is left out.
+    /// Designs per second; as fast as they are received if `None`.
     rate: Option<f64>,
 }
 
 impl Stream {
     fn new(study: &Study, count: usize, rate: Option<f64>) -> Self {
-        let problem = DesignProblem::new(study);
+        let problem = DesignProblem::new(study).expect("a valid study");
         let pool = sobol(&problem.variables(), 1500, 1)
             .iter()
             .filter_map(|x| problem.evaluation(x).ok())
@@ -39,7 +39,7 @@ impl Stream {
         Self { pool, count, rate }
     }
 
-    /// Design `id`: one of the pool, a little lighter or heavier.
+    /// Returns design `id`: one of the pool with another mass and a smaller radius.
     fn evaluation(&self, id: usize) -> Evaluation {
         let mut evaluation = self.pool[id % self.pool.len()].clone();
         let chance = (id as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40;
@@ -49,7 +49,7 @@ impl Stream {
         evaluation
     }
 
-    /// Sends all designs to the subscribers; tells the time spent on handing them over.
+    /// Sends all designs to the subscribers; returns the time spent on sending.
     fn send(&self, study: Study, subscribers: &[Subscriber]) -> Duration {
         let tell = |event: Event| {
             let event = Arc::new(event);
@@ -128,7 +128,7 @@ impl Stream {
 }
 
 fn study() -> Study {
-    BUILTIN[0].study().expect("sound")
+    BUILTIN[0].study().expect("a valid study")
 }
 
 fn window() -> Harness<'static, Explorer> {
@@ -145,7 +145,7 @@ fn window() -> Harness<'static, Explorer> {
         })
 }
 
-/// Median and 99th percentile in milliseconds.
+/// Returns the median and the 99th percentile as text, in milliseconds.
 fn percentiles(times: &mut [f64]) -> String {
     times.sort_by(f64::total_cmp);
     let at = |share: f64| 1e3 * times[((times.len() - 1) as f64 * share) as usize];
@@ -157,7 +157,7 @@ fn percentiles(times: &mut [f64]) -> String {
     )
 }
 
-/// Memory of this process \[MB\], where the system tells.
+/// Returns the memory of this process \[MB\], or NaN if the operating system does not report it.
 fn memory() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with("VmRSS:"));
@@ -171,7 +171,8 @@ fn frame(window: &mut Harness<'static, Explorer>) -> f64 {
     since.elapsed().as_secs_f64()
 }
 
-/// Streams `count` designs through the listeners that `keep` picks; tells how long, and the frame times meanwhile.
+/// Streams `count` designs through the listeners that `keep` selects; returns the duration, the time spent on sending
+/// and the frame times meanwhile, all in seconds.
 fn stream(
     window: &mut Harness<'static, Explorer>,
     count: usize,
@@ -194,7 +195,7 @@ fn stream(
     let mut times = Vec::new();
     while told.lock().expect("a lock").is_none() || window.state().session().is_running() {
         times.push(frame(window));
-        // A screen shows sixty a second.
+        // A screen shows 60 frames per second.
         let left = (1.0 / 60.0 - times[times.len() - 1]).max(0.0);
         std::thread::sleep(Duration::from_secs_f64(left));
     }
@@ -203,7 +204,7 @@ fn stream(
 }
 
 fn main() {
-    // `cargo test --benches` and the like only want to know that it builds.
+    // `cargo test --benches` and similar commands only check that the benchmark builds.
     if !std::env::args().any(|argument| argument == "--bench") {
         return;
     }
@@ -215,10 +216,10 @@ fn main() {
         subscribers.into_iter().skip(2).collect()
     });
     println!(
-        "{DESIGNS} designs to the window alone: {took:.1} s, of which {waited:.2} s handing over: {:.2} M designs/s",
+        "{DESIGNS} designs to the window alone: {took:.1} s, of which {waited:.2} s sending: {:.2} M designs/s",
         DESIGNS as f64 / waited.max(1e-9) / 1e6
     );
-    println!("frames while they stream in: {}", percentiles(&mut times));
+    println!("frames while designs arrive: {}", percentiles(&mut times));
     assert_eq!(window.state().session().store().len(), DESIGNS);
     for _ in 0..120 {
         frame(&mut window);
@@ -240,7 +241,7 @@ fn main() {
         .collect();
     println!("frames with {DESIGNS} designs, zooming: {}", percentiles(&mut times));
     println!(
-        "memory with {DESIGNS} designs: {:.0} MB, {:.0} MB of it the designs",
+        "memory with {DESIGNS} designs: {:.0} MB, of which {:.0} MB for the designs",
         memory(),
         window.state().session().store().bytes() as f64 / 1048576.0
     );
@@ -249,18 +250,21 @@ fn main() {
     let mut all = self::window();
     let (took, waited, mut times) = stream(&mut all, 100_000, None, |subscribers| subscribers);
     println!(
-        "100000 designs to window, tables and recording: {took:.1} s, of which {waited:.1} s handing over: {:.0} designs/s",
+        "100000 designs to window, tables and recording: {took:.1} s, of which {waited:.1} s sending: {:.0} designs/s",
         1e5 / waited.max(1e-9)
     );
     println!("frames meanwhile: {}", percentiles(&mut times));
     let (_, _, mut times) = stream(&mut all, 50_000, Some(5000.0), |subscribers| subscribers);
-    println!("frames while 5000 designs a second come: {}", percentiles(&mut times));
+    println!(
+        "frames while 5000 designs per second arrive: {}",
+        percentiles(&mut times)
+    );
     drop(all);
-    clicks("of any size, for which the view is set up anew", [0.5, 4.0]);
-    clicks("of like size", [2.8, 4.0]);
+    clicks("of any size, for which the view is set up again", [0.5, 4.0]);
+    clicks("of similar size", [2.8, 4.0]);
 }
 
-/// From a click to the last row of the scene handed to the viewer.
+/// Measures the time from a click until the last row of the scene is sent to the viewer.
 fn clicks(of: &str, base_radius: [f64; 2]) {
     let sent = Arc::new(AtomicU64::new(0));
     let counting = Arc::clone(&sent);
@@ -272,8 +276,8 @@ fn clicks(of: &str, base_radius: [f64; 2]) {
     let scene = LiveScene::new(Box::new(sink), &study).expect("a scene");
     let mut session =
         Session::new(StudyEditor::new(study.clone(), None), Some(scene), Arc::new(|| {})).expect("a session");
-    let problem = DesignProblem::new(&study);
-    let model = study.model();
+    let problem = DesignProblem::new(&study).expect("a valid study");
+    let model = study.model().expect("a valid study");
     let mut times = Vec::new();
     for x in sobol(&problem.variables(), 150, 1) {
         let Ok(design) = problem.design(&x) else { continue };
@@ -291,7 +295,7 @@ fn clicks(of: &str, base_radius: [f64; 2]) {
             session.update();
         }
         times.push(since.elapsed().as_secs_f64());
-        // A person looks before clicking again; the design is verified meanwhile.
+        // A user looks at the design before clicking again; it is verified meanwhile.
         while !session.known().is_some_and(|known| known.verified) {
             std::thread::sleep(Duration::from_millis(5));
             session.update();

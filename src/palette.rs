@@ -1,7 +1,7 @@
 //! The colours of architectures, parts and clearances in every view, as red, green and blue.
 
-use kinefront_model::mechanism::Architecture;
 use crate::scene::Part;
+use kinefront_model::mechanism::Architecture;
 
 /// Returns the colour of an architecture. The colours can be distinguished with any type of colour vision (Okabe and
 /// Ito).

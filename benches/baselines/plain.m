@@ -1,7 +1,7 @@
-% The plain form in Octave, as its user would write it: 6x6 virtual-joint stiffness by matrix algebra, a pose at a time,
-% ray after ray of the reference grid.
+% The evaluation in Octave, as a user of Octave would write it: 6x6 virtual-joint stiffness by matrix algebra, one pose
+% at a time, ray by ray of the reference grid.
 %
-%   octave-cli benches/baselines/plain.m            % time of a pose, and R_w of one design (minutes)
+%   octave-cli benches/baselines/plain.m            % time per pose, and R_w of one design (minutes)
 
 1;
 
@@ -124,7 +124,7 @@ for k = 1:3
     radius = 0.2 * sqrt((m + 0.5) / n); angle = 2.399963 * m;
     count = count + pose(designs{k}, radius * cos(angle), radius * sin(angle), 30 * pi / 180);
   end
-  printf('%s: %.0f us a pose (%d of %d good)\n', designs{k}.kind, toc(t) / n * 1e6, count, n);
+  printf('%s: %.0f us per pose (%d of %d feasible)\n', designs{k}.kind, toc(t) / n * 1e6, count, n);
 end
 t = tic;
 [radius, poses] = workspace_radius(designs{1});

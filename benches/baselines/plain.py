@@ -1,7 +1,7 @@
-"""The plain form in NumPy, as its user would write it: 6x6 virtual-joint stiffness by matrix algebra, all rays of all
-orientations of the reference grid marched side by side.
+"""The evaluation in NumPy, as a user of NumPy would write it: 6x6 virtual-joint stiffness by matrix algebra, with all
+rays of all orientations of the reference grid marched in parallel.
 
-    python benches/baselines/plain.py            # poses a second, and the designs of the paper
+    python benches/baselines/plain.py            # time per pose, and R_w of five designs
 """
 
 import math
@@ -26,7 +26,8 @@ def cross(a, b):
 
 
 def legs(design, x, y, phi):
-    """Anchors, elbows and ends of the legs, the last links' unit vectors, the drives, and where all legs reach."""
+    """Return anchors, elbows and ends of the legs, the unit vectors of the last links, the transmissions, and the
+    poses that all legs reach."""
     kind, R, r, L, _, _ = design
     a = R * np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=-1)
     turned = phi[:, None] + ANGLES
@@ -60,7 +61,7 @@ def legs(design, x, y, phi):
 
 
 def bar(radius, length):
-    """Compliance at the tip of a cantilever, in its axes."""
+    """Return the compliance at the tip of a cantilever, in the axes of the cantilever."""
     area, inertia = math.pi * radius**2, math.pi * radius**4 / 4
     L = np.asarray(length, dtype=float)
     C = np.zeros(L.shape + (6, 6))
@@ -74,7 +75,7 @@ def bar(radius, length):
 
 
 def spring(C, axis, tip, p):
-    """A tip spring's compliance at P."""
+    """Return the compliance at P of a spring at the tip of a bar."""
     n = axis.shape[:-1]
     rotation = np.zeros(n + (3, 3))
     rotation[..., 0, 0], rotation[..., 1, 0] = axis[..., 0], axis[..., 1]
@@ -98,7 +99,7 @@ def revolute(joint, p):
 
 
 def stiffness(design, a, b, c, arm, u, p):
-    """The 6x6 stiffness at P."""
+    """Return the 6x6 stiffness at P."""
     kind, R, r, L, rj, rp = design
     K = np.zeros(p.shape[:1] + (6, 6))
     for i in range(3):
@@ -123,7 +124,7 @@ def stiffness(design, a, b, c, arm, u, p):
 
 
 def values(design, x, y, phi):
-    """Where the poses are good, and the sign of det A."""
+    """Return which poses are feasible, and the sign of det A."""
     a, b, c, arm, u, drive, reach = legs(design, x, y, phi)
     good, sign = np.zeros(x.shape, bool), np.zeros(x.shape)
     if not reach.any():
@@ -137,7 +138,7 @@ def values(design, x, y, phi):
         inverse[..., 2] /= design[2]
         M = np.swapaxes(inverse, -1, -2) @ inverse
         trace = np.trace(M, axis1=-2, axis2=-1)
-        # The cofactors' trace over the determinant is the trace of the inverse.
+        # The trace of the cofactor matrix divided by the determinant is the trace of the inverse.
         second = 0.5 * (trace**2 - np.trace(M @ M, axis1=-2, axis2=-1)) / np.linalg.det(M)
         condition = 3 / np.sqrt(trace * second)
     K = stiffness(design, a, b, c, arm, u, p)
@@ -153,7 +154,7 @@ def values(design, x, y, phi):
 
 
 def workspace_radius(design):
-    """R_w on the reference grid, and the number of poses it took."""
+    """Return R_w on the reference grid and the number of poses evaluated."""
     phi = np.radians(np.arange(144) * 2.5)
     angle = np.radians(np.arange(36) * 10.0)
     step = design[1] / 50
@@ -203,7 +204,7 @@ def main():
         start = time.perf_counter()
         good, _ = values(design, radius * np.cos(angle), radius * np.sin(angle), np.full(count, math.radians(30)))
         elapsed = time.perf_counter() - start
-        print(f"{design[0]}: {elapsed / count * 1e6:.1f} us a pose ({good.sum()} of {count} good)")
+        print(f"{design[0]}: {elapsed / count * 1e6:.1f} us per pose ({good.sum()} of {count} feasible)")
     for name, design in DESIGNS.items():
         start = time.perf_counter()
         radius, poses = workspace_radius(design)

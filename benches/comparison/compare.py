@@ -1,4 +1,5 @@
-"""Kinefront's optimizers beside pymoo's and fcmaes-core's on the paper's study, all on Kinefront's evaluator.
+"""Compares Kinefront's optimizers with those of pymoo and fcmaes-core on the paper's study, all on Kinefront's
+evaluator.
 
     python -m pip install -r benches/comparison/requirements.txt
     cargo build --release --no-default-features
@@ -7,12 +8,13 @@
         [--evaluations 6000] [--from 0] [--seeds 11] [--architectures 3-PRR,3-RPR,3-RRR] [--only NAME,NAME]
     python benches/comparison/compare.py table OUT [--plot screenshots/comparison.png]
 
-A run's quality after N evaluations is the hypervolume of what is non-dominated among its first N designs, every radius
-taken from the fine grid, as a share of the reference front's (`assets/reference_fronts`), from 2000 kg and a radius of 0;
-and the same with the logarithm of the mass. Hypervolumes are moocore's. The candidates of other programs are evaluated
-through `kinefront evaluate --stdin`; to them the architecture is a number cut into equal parts. A run that is in OUT
-already is not repeated. No optimizer here looks at its budget, so a longer run goes on from a shorter one: with `--from`
-only what comes later is measured, and the table puts both together.
+The quality of a run after N evaluations is the hypervolume of the non-dominated designs among its first N designs,
+with every radius from the fine grid, as a fraction of the hypervolume of the reference front
+(`assets/reference_fronts`), with the reference point at 2000 kg and a radius of 0; it is also computed with the
+logarithm of the mass. moocore computes the hypervolumes. The candidates of other programs are evaluated through
+`kinefront evaluate --stdin`; for these programs the architecture is a real variable whose range is divided into equal
+parts. A run that is already in OUT is not repeated. The search of an optimizer does not depend on its budget, so a
+longer run continues a shorter one: with `--from`, only the later part is measured, and the table combines both.
 """
 
 import argparse
@@ -40,14 +42,14 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 class Evaluator:
-    """`kinefront evaluate --stdin`: designs as text in, answers out, in order."""
+    """A process of `kinefront evaluate --stdin`: takes designs as text and returns the answers in order."""
 
     def __init__(self, program, *more):
         command = [program, "evaluate", "--stdin", *more]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def __call__(self, designs):
-        # Answers come while lines still go in: a thread writes, so that neither pipe fills up.
+        # Answers arrive while lines are still being sent: a thread writes them, so that neither pipe fills up.
         def write():
             self.process.stdin.write("".join(design + "\n" for design in designs))
             self.process.stdin.flush()
@@ -68,7 +70,7 @@ def design_text(architecture, values):
 
 
 def own(algorithm):
-    """One of Kinefront's own, as its users run it."""
+    """Return a function that runs one of Kinefront's algorithms as its users run it."""
 
     def run(job):
         with tempfile.TemporaryDirectory() as folder:
@@ -89,7 +91,7 @@ def own(algorithm):
 
 
 def pymoo_algorithm(make):
-    """One of pymoo's with its own defaults but the population."""
+    """Return a function that runs one of pymoo's algorithms with its defaults, except for the population."""
 
     def run(job):
         from pymoo.core.problem import Problem
@@ -149,7 +151,7 @@ def c_taea():
 
 
 def mode(job):
-    """MODE of fcmaes-core with its own defaults."""
+    """Run MODE of fcmaes-core with its defaults."""
     arguments = [job["kinefront"], job["architectures"], job["evaluations"], job["seed"], 64]
     printed = subprocess.run([job["mode"], *map(str, arguments)], check=True, capture_output=True, text=True)
     designs = printed.stdout.splitlines()[: job["evaluations"]]
@@ -162,7 +164,7 @@ def mode(job):
 ALGORITHMS = {
     "Kinefront front-de": own("front-de"),
     "Kinefront NSGA-II": own("nsga2"),
-    "Kinefront after MOGA-II": own("moga2"),
+    "Kinefront MOGA-II (reimplementation)": own("moga2"),
     "pymoo NSGA-II, population 30": pymoo_algorithm(lambda: nsga2(30)),
     "pymoo NSGA-II, population 100": pymoo_algorithm(lambda: nsga2(100)),
     "pymoo GDE3, population 60": pymoo_algorithm(gde3),
@@ -173,7 +175,7 @@ ALGORITHMS = {
 
 
 def hypervolume(points, logarithmic=False):
-    """Of (mass, radius) pairs from 2000 kg and 0 m."""
+    """Return the hypervolume of (mass, radius) pairs with the reference point (2000 kg, 0 m)."""
     points = [(mass, -radius) for mass, radius in points if mass < 2000.0]
     if not points:
         return 0.0
@@ -186,7 +188,7 @@ def hypervolume(points, logarithmic=False):
 
 
 def front(designs):
-    """What is feasible and not dominated of (design, mass, radius)."""
+    """Return the feasible and non-dominated designs among tuples (design, mass, radius)."""
     kept, largest = [], 0.0
     for design in sorted(designs, key=lambda design: (design[1], -design[2])):
         if design[2] > largest:
@@ -265,7 +267,7 @@ def table(arguments):
     for architectures, algorithms in sorted(cases.items(), key=lambda case: -len(case[0])):
         reference = reference_front(architectures)
         whole = [hypervolume(reference), hypervolume(reference, logarithmic=True)]
-        print(f"\n{architectures}: median (worst) share of the reference front's hypervolume\n")
+        print(f"\n{architectures}: median (worst) fraction of the reference front's hypervolume\n")
         budgets = [1000, 6000, 30_000]
         heads = [f"{budget}, {seeds_of(algorithms, budget)} seeds | with log mass" for budget in budgets]
         print("| | " + " | ".join(heads) + " | 90 / 95 / 99 % after |")
@@ -291,7 +293,7 @@ def seeds_of(algorithms, budget):
 
 
 def curve(results, whole):
-    """Marks and the shares there, one for each seed that has the mark."""
+    """Return the marks and, for each, the fractions reached by the random seeds that have the mark."""
     shares = {
         mark: [result["hypervolumes"][str(mark)][0] / whole for result in results if str(mark) in result["hypervolumes"]]
         for mark in MARKS
@@ -300,7 +302,7 @@ def curve(results, whole):
 
 
 def evaluations_to(results, share, whole):
-    """The mark by which the median seed has reached a share."""
+    """Return the first mark at which the median over the random seeds has reached a fraction."""
     for mark, shares in zip(*curve(results, whole)):
         if statistics.median(shares) >= share:
             return str(mark)
@@ -313,7 +315,7 @@ def plot(path, cases):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    # Where there is something to compare.
+    # Only cases with several algorithms are plotted.
     cases = {architectures: algorithms for architectures, algorithms in cases.items() if len(algorithms) > 1}
     figure, axes = plt.subplots(1, len(cases), figsize=(2.5 + 5.5 * len(cases), 5.2), squeeze=False, layout="constrained")
     for axis, (architectures, algorithms) in zip(axes[0], sorted(cases.items(), key=lambda case: -len(case[0]))):
@@ -327,7 +329,7 @@ def plot(path, cases):
                 marks, [100 * (1 - min(at)) for at in shares], [100 * (1 - max(at)) for at in shares], color=f"C{index}", alpha=0.12
             )
         axis.set(xscale="log", yscale="log", title=architectures.replace(",", ", "), xlabel="evaluations")
-        axis.set_ylabel("missing of the reference front's hypervolume [%]")
+        axis.set_ylabel("missing part of the reference front's hypervolume [%]")
         ticks = [0.3, 1, 3, 10, 30]
         axis.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
         ticks = [250, 1000, 6000, 30_000]

@@ -1,4 +1,5 @@
-//! Counts the floating-point operations of a formula, each distinct one once, as a compiler shares them.
+//! Counts the floating-point operations of a formula; each distinct operation counts once, as a compiler shares its
+//! result.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -6,7 +7,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use kinefront_model::lanes::Real;
 
-/// Operations of one pose.
+/// Numbers of operations for one pose.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Operations {
     pub sums_and_products: usize,
@@ -15,12 +16,12 @@ pub struct Operations {
     pub comparisons_and_choices: usize,
 }
 
-/// A number that counts what is done with it; what does not depend on the position is done once an orientation and not
-/// counted.
+/// A number that counts the operations on it. Operations that do not depend on the position are done once per
+/// orientation and are not counted.
 #[derive(Clone, Copy)]
 pub struct Counted {
     value: f64,
-    /// Number of a result; `None` for what does not depend on the position.
+    /// Number of the result; `None` if it does not depend on the position.
     id: Option<usize>,
 }
 
@@ -38,14 +39,14 @@ enum Operation {
     Choice,
 }
 
-/// An operand: a result by its number, anything else by its bits.
+/// An operand, identified by its number if it is a result, otherwise by its bits.
 type Operand = Result<usize, u64>;
 
 thread_local! {
     static DONE: RefCell<BTreeMap<(Operation, Operand, Operand), usize>> = const { RefCell::new(BTreeMap::new()) };
 }
 
-/// What `formula` does with the coordinates that it is given.
+/// Counts the operations of `formula` on the coordinates of a position.
 pub fn operations(x: f64, y: f64, formula: impl FnOnce(Counted, Counted)) -> Operations {
     DONE.take();
     formula(
@@ -109,7 +110,7 @@ impl Sub for Counted {
 impl Mul for Counted {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        // A factor of 1 (the drive of a telescopic leg) is known to the compiler.
+        // A factor of 1 (the transmission of a telescopic leg) is known to the compiler.
         let one = |operand: Self| operand.id.is_none() && operand.value == 1.0;
         if one(self) {
             other

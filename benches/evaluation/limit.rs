@@ -1,12 +1,13 @@
-//! The least time the machine can take for the operations of a pose: as many of each kind, none waiting for another.
+//! The smallest time that the machine can take for the operations of a pose: as many operations of each kind, none of
+//! which waits for another.
 
 use pulp::{Arch, Simd, WithSimd};
 
 use super::counted::Operations;
 
-/// Operations of one kind in flight: more than any latency lasts.
+/// Number of independent operations of one kind in flight, more than any latency requires.
 const CHAINS: usize = 12;
-/// Of the kinds that take long.
+/// Number of independent operations in flight of the kinds that take long.
 const SLOW: usize = 4;
 
 /// Runs the operations of [`poses`] poses on the widest registers.
@@ -14,7 +15,7 @@ pub fn run(operations: Operations, start: f64) -> f64 {
     Arch::new().dispatch(Mix { operations, start })
 }
 
-/// Poses whose operations [`run`] does.
+/// Returns the number of poses whose operations [`run`] does.
 pub fn poses() -> usize {
     struct Lanes;
     impl WithSimd for Lanes {
@@ -47,15 +48,15 @@ impl WithSimd for Mix {
         let mut limit = factor;
         let mut chains = [factor; CHAINS];
         let mut slow = [factor; SLOW];
-        // A round is an operation on every chain; quotients and roots are strewn evenly among the rounds, one at a time, so
-        // that they go on beside the others.
+        // A round is an operation on every chain. Quotients and roots are distributed evenly over the rounds, one at a
+        // time, so that they run in parallel with the others.
         let rounds = sums_and_products + comparisons_and_choices;
         let (mut quotients_due, mut roots_due) = (0, 0);
         let mut round = 0;
         macro_rules! round {
             ($($slow:literal)+) => {$(
                 if round >= sums_and_products {
-                    // The limit moves, so that no round can be left out.
+                    // The limit changes, so that the compiler cannot omit a round.
                     limit = simd.sub_f64s(limit, small);
                     for chain in &mut chains[..CHAINS / 2] {
                         *chain = simd.select_f64s(simd.greater_than_f64s(*chain, limit), limit, *chain);

@@ -1,14 +1,16 @@
-//! How fast designs and poses are evaluated: `cargo bench --no-default-features`.
+//! Measures how fast designs and poses are evaluated: `cargo bench --no-default-features`.
 //!
-//! - `pose`: everything the constraints look at, at one reachable pose: the general 6×6 stiffness, the closed form, and
-//!   the closed form at several poses at once with every instruction set that the machine has, all values written.
-//! - `design`: one evaluation on the reference grid, of a Sobol sample of the paper's bounds and of designs of a converged
-//!   front: the definition ray after ray in either form, and the search; its fine grid last.
+//! - `pose`: all values that the constraints need at one reachable pose: by the general 6×6 stiffness, by the closed
+//!   form, and by the closed form at several poses at once with every instruction set that the machine has, with all
+//!   values written to memory.
+//! - `design`: one evaluation on the reference grid, of a Sobol sample of the paper's bounds and of designs of a
+//!   converged front: by the definition, ray by ray, in either form, and by the search; finally by the search on the
+//!   fine grid.
 //! - `threads`: the front's designs on one thread and on two.
-//! - `clearance`: searches where bodies may collide, and where they must not.
+//! - `clearance`: optimizer runs in which members may collide, and in which they must not.
 //!
-//! A pose's operations are counted, and `pose/limit` is the time that the machine takes for as many of each kind of which
-//! none waits for another.
+//! The operations of a pose are counted, and `pose/limit` is the time that the machine takes for as many operations of
+//! each kind, none of which waits for another.
 
 mod counted;
 mod limit;
@@ -17,33 +19,33 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec2;
+use kinefront::study::{DesignProblem, Study};
 use kinefront_model::clearance::Layers;
 use kinefront_model::evaluation::{GridChoice, Model};
 use kinefront_model::kinematics::Jacobian;
 use kinefront_model::lanes::{InstructionSet, Planar};
 use kinefront_model::mechanism::{Architecture, Design, Leg, PrrLeg, RprLeg, RrrLeg};
-use kinefront_optimize::{FrontDe, FrontDeSettings, drive, sobol};
 use kinefront_model::spatial::{LEGS, Rotation, smaller_eigenvalue};
 use kinefront_model::stiffness::joint_model;
-use kinefront::study::{DesignProblem, Study};
 use kinefront_model::workspace::plain::plain;
 use kinefront_model::workspace::{PoseChecker, ValueColumns};
+use kinefront_optimize::{FrontDe, FrontDeSettings, drive, sobol};
 use rayon::prelude::*;
 
 use self::counted::{Operations, operations};
 
-/// Designs of one architecture, spread over the paper's bounds.
+/// Returns designs of one architecture, spread over the paper's bounds.
 fn sample(architecture: Architecture, count: usize) -> Vec<Design> {
     let study = Study {
         architectures: vec![architecture],
         ..Study::default()
     };
-    let problem = DesignProblem::new(&study);
+    let problem = DesignProblem::new(&study).expect("a valid study");
     let sample = sobol(&problem.variables(), count, 1);
     sample.iter().map(|x| problem.design(x).expect("a design")).collect()
 }
 
-/// Designs of a converged front.
+/// Returns the designs of a converged front.
 fn front() -> Vec<Design> {
     include_str!("../front.txt")
         .lines()
@@ -60,7 +62,7 @@ struct Batch<L> {
     ys: Vec<f64>,
 }
 
-/// What one pose costs in floating-point operations.
+/// Counts and prints the floating-point operations of one pose.
 fn count_operations<L: Leg>(architecture: Architecture, batch: &Batch<L>) -> Operations {
     let counts = operations(batch.xs[1], batch.ys[1], |x, y| {
         let arms = batch.arms.map(|arm| Planar::splat(x, arm));
@@ -70,10 +72,10 @@ fn count_operations<L: Leg>(architecture: Architecture, batch: &Batch<L>) -> Ope
     counts
 }
 
-/// Positions in a batch.
+/// Number of positions in a batch.
 const BATCH: usize = 64;
 
-/// Designs of a Sobol sample, each with positions spread evenly over a disc that it reaches.
+/// Returns the feasible designs of a Sobol sample, each with positions spread evenly over a disc that it reaches.
 fn batches<L: Leg>(architecture: Architecture) -> Vec<Batch<L>> {
     let model = Model::default();
     let mut found = Vec::new();
@@ -85,7 +87,7 @@ fn batches<L: Leg>(architecture: Architecture) -> Vec<Batch<L>> {
         let [xs, ys] = [0, 1].map(|axis| {
             (0..BATCH)
                 .map(|k| {
-                    // A sunflower: even in area.
+                    // The positions form a sunflower pattern, which is even in area.
                     let radius = evaluation.workspace_radius * ((k as f64 + 0.5) / BATCH as f64).sqrt();
                     let angle = 2.399_963 * k as f64;
                     radius * if axis == 0 { angle.cos() } else { angle.sin() }
@@ -162,7 +164,8 @@ fn poses(criterion: &mut Criterion) {
     poses_of::<RrrLeg>(criterion, Architecture::Rrr);
 }
 
-/// The definition, ray after ray, a pose at a time in the given form of the stiffness.
+/// Returns the workspace radius by its definition, ray by ray and one pose at a time, in the given form of the
+/// stiffness.
 fn plainly(model: &Model, design: &Design, general: bool) -> f64 {
     fn of<L: Leg>(model: &Model, design: &Design, general: bool) -> f64 {
         let checker = model.checker::<L>(design);
@@ -231,7 +234,7 @@ fn designs(criterion: &mut Criterion) {
 
 fn threads(criterion: &mut Criterion) {
     let model = Model::default();
-    // Enough that no thread waits long for the other's last design.
+    // There are enough designs that no thread waits long for the last design of the other.
     let designs = front().repeat(10);
     let of = |design: &Design| evaluate(&model, design, GridChoice::Reference, InstructionSet::best());
     let mut group = criterion.benchmark_group("threads");
@@ -248,8 +251,8 @@ fn threads(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Searches of the paper's study where bodies may collide, where they keep 5 mm, and where they keep it with all members in
-/// one plane.
+/// Measures optimizer runs of the paper's study in which members may collide, in which they keep a clearance of 5 mm,
+/// and in which they keep it with all members in one plane.
 fn clearance(criterion: &mut Criterion) {
     const EVALUATIONS: usize = 600;
     let mut group = criterion.benchmark_group("clearance");
@@ -267,7 +270,7 @@ fn clearance(criterion: &mut Criterion) {
             };
             study.requirements.clearance_min_m = least;
             study.bodies.layers = layers;
-            let problem = DesignProblem::new(&study);
+            let problem = DesignProblem::new(&study).expect("a valid study");
             group.bench_function(BenchmarkId::new(name, architecture), |bencher| {
                 bencher.iter(|| {
                     let mut algorithm = FrontDe::new(problem.variables(), FrontDeSettings::default(), 1);

@@ -2,8 +2,8 @@
 
 use std::io::{BufRead, Write};
 
-use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront::export::EvaluationJson;
+use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{Design, WorkingMode};
 use miette::miette;
 
@@ -31,7 +31,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
     let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
     let server = Server {
-        model: study.model(),
+        model: study.model().map_err(Failure::runtime)?,
         mode: study.working_mode,
         grid: arguments.grid.into(),
     };
@@ -65,9 +65,7 @@ struct Server {
 impl Server {
     fn evaluate(&self, text: &str) -> Result<Evaluation, String> {
         let design = Design::parse(text, self.mode).map_err(|error| error.to_string())?;
-        self.model
-            .evaluate(&design, self.grid)
-            .map_err(|error| error.to_string())
+        Ok(self.model.evaluate(&design, self.grid))
     }
 
     /// Writes one line for each line read, in order. For an invalid line it writes an error object and continues.

@@ -3,10 +3,10 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use kinefront_model::evaluation::GridChoice;
 use kinefront::export::{ExportError, Format, Subject, export, front_to_parquet};
-use kinefront_model::spatial::Pose;
 use kinefront::study::write_whole;
+use kinefront_model::evaluation::GridChoice;
+use kinefront_model::spatial::Pose;
 use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
 
 use super::subject::SubjectArguments;
@@ -134,10 +134,8 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
 
 fn design(arguments: &Arguments, format: Format) -> Result<Vec<u8>, Failure> {
     let (study, design, _) = arguments.subject.read().map_err(Failure::Input)?;
-    let evaluation = study
-        .model()
-        .evaluate(&design, GridChoice::Fine)
-        .map_err(Failure::runtime)?;
+    let model = study.model().map_err(Failure::runtime)?;
+    let evaluation = model.evaluate(&design, GridChoice::Fine);
     let subject = Subject {
         study: &study,
         evaluation: &evaluation,
@@ -145,7 +143,7 @@ fn design(arguments: &Arguments, format: Format) -> Result<Vec<u8>, Failure> {
     };
     export(&subject, format).map_err(|error| match error {
         ExportError::Unreachable(_) | ExportError::NoBar(_) => Failure::Input(Report::from_err(error)),
-        ExportError::Format { .. } => Failure::runtime(error),
+        ExportError::Grid(_) | ExportError::Format { .. } => Failure::runtime(error),
     })
 }
 

@@ -17,8 +17,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use kinefront_model::evaluation::GridChoice;
 use kinefront::study::{BUILTIN, Builtin, Study};
+use kinefront_model::evaluation::GridChoice;
 use miette::{IntoDiagnostic, Report, Result, miette};
 
 /// Design explorer for planar parallel manipulators.

@@ -7,9 +7,9 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, OnceLock};
 use std::thread::{Builder, JoinHandle};
 
-use kinefront_model::mechanism::Architecture;
 use kinefront::recording::Recorder;
 use kinefront::study::{AlgorithmName, Event, Outcome, RunControl, RunFolder, RunReport, RunSummary, Study, spawn};
+use kinefront_model::mechanism::Architecture;
 use miette::{Report, miette};
 
 use super::progress::Progress;

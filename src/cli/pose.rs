@@ -33,7 +33,7 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
         .pose
         .parse()
         .map_err(|message: String| Failure::Input(miette!("{message}")))?;
-    let outcome = study.model().pose(&design, &pose).map_err(Failure::runtime)?;
+    let outcome = study.model().map_err(Failure::runtime)?.pose(&design, &pose);
     let mut out = std::io::stdout().lock();
     if arguments.json {
         writeln!(

@@ -3,9 +3,9 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use kinefront_model::evaluation::GridChoice;
 use kinefront::recording::record_design;
 use kinefront::scene::Field;
+use kinefront_model::evaluation::GridChoice;
 use miette::Report;
 
 use super::subject::SubjectArguments;
@@ -32,10 +32,8 @@ fn field(text: &str) -> Result<Field, String> {
 
 pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
     let (study, design, heading) = arguments.subject.read().map_err(Failure::Input)?;
-    let evaluation = study
-        .model()
-        .evaluate(&design, GridChoice::Fine)
-        .map_err(Failure::runtime)?;
+    let model = study.model().map_err(Failure::runtime)?;
+    let evaluation = model.evaluate(&design, GridChoice::Fine);
     let occupied = arguments.record.exists();
     record_design(&arguments.record, &study, &evaluation, &heading, arguments.field).map_err(|error| {
         let report = Report::from_err(error);

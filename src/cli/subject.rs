@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use kinefront_model::mechanism::Design;
 use kinefront::study::Study;
+use kinefront_model::mechanism::Design;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use super::load_study;

@@ -2,11 +2,11 @@
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{CellAlignment, Table};
+use kinefront::study::{FrontMember, RunSummary};
+use kinefront::text::{self, number};
 use kinefront_model::evaluation::{Evaluation, Model, PoseReport, Unreachable};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
-use kinefront::study::{FrontMember, RunSummary};
-use kinefront::text::number;
 
 fn table<const N: usize>(header: [&str; N], right: &[usize]) -> Table {
     let mut table = Table::new();
@@ -63,7 +63,10 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         } else {
             "at the centre in the best orientation"
         };
-        facts.add_row(["clearance".to_owned(), format!("{}, {where_least}", text::clearance(&nearest))]);
+        facts.add_row([
+            "clearance".to_owned(),
+            format!("{}, {where_least}", text::clearance(&nearest)),
+        ]);
     }
     let mut constraints = table(
         [

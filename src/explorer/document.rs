@@ -1,52 +1,52 @@
-//! What a person has chosen, pinned, noted and filtered: everything that undo restores.
+//! The user's selection, pins, kept designs, stars, notes and filter: everything that undo restores.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Filter;
 use kinefront_model::mechanism::Design;
 
-/// Where a design comes from.
+/// Origin of a design.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Origin {
-    /// Evaluated by the run, with this id.
+    /// Evaluated by the run under this id.
     Evaluated(usize),
-    /// Changed by hand from another, or pasted.
+    /// Modified by hand from another design, or pasted as text.
     WhatIf {
-        /// What it was changed from.
+        /// Id of the design of the run that it was modified from, if there is one.
         from: Option<usize>,
     },
-    /// Kept earlier; its place in [`Document::kept`].
+    /// Kept earlier; the value is its index in [`Document::kept`].
     Kept(usize),
-    /// Comes with the study; its place among the references.
+    /// A reference design of the study; the value is its index among the references.
     Reference(usize),
 }
 
-/// The design in the light.
+/// The selected design and its origin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chosen {
     /// The design.
     pub design: Design,
-    /// Where it comes from.
+    /// Its origin.
     pub origin: Origin,
 }
 
-/// A design by a name.
+/// A design with a name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Named {
-    /// What it is called.
+    /// Name of the design.
     pub name: String,
     /// The design.
     pub design: Design,
 }
 
-/// What a person has chosen, pinned, noted and filtered.
+/// The user's selection, pins, kept designs, stars, notes and filter.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Document {
-    /// The design in the light.
+    /// The selected design.
     pub chosen: Option<Chosen>,
-    /// Designs to compare.
+    /// Pinned designs, which are compared.
     pub pins: Vec<Named>,
-    /// What-if designs that were kept.
+    /// Modified designs that the user has kept.
     pub kept: Vec<Named>,
     /// Starred designs of the run, by id.
     pub stars: BTreeSet<usize>,
@@ -56,21 +56,21 @@ pub struct Document {
     pub filter: Filter,
 }
 
-/// A document with its past and what was undone of it.
+/// A document with its earlier states, for undo, and its undone states, for redo.
 #[derive(Debug, Default)]
 pub struct History {
     present: Document,
     past: Vec<Document>,
     undone: Vec<Document>,
-    /// What the gesture under way changes: its steps are one.
+    /// Name of the gesture in progress; all its changes are one step.
     gesture: Option<&'static str>,
 }
 
-/// Steps that can be undone.
+/// Largest number of steps that can be undone.
 const DEPTH: usize = 200;
 
 impl History {
-    /// The document.
+    /// Returns the current document.
     pub fn present(&self) -> &Document {
         &self.present
     }
@@ -81,7 +81,7 @@ impl History {
         self.change(change);
     }
 
-    /// Changes the document as part of a gesture, such as dragging a slider: all changes of one `name` up to
+    /// Changes the document as part of a gesture, such as dragging a slider: all changes with the same `name` up to
     /// [`History::end_gesture`] are undone together.
     pub fn drag(&mut self, name: &'static str, change: impl FnOnce(&mut Document)) {
         if self.gesture == Some(name) {
@@ -97,7 +97,7 @@ impl History {
         self.gesture = None;
     }
 
-    /// Changes the document without a step: what a run does by itself is not for a person to undo.
+    /// Changes the document without recording a step: the user cannot undo what a run does by itself.
     pub fn follow(&mut self, change: impl FnOnce(&mut Document)) {
         change(&mut self.present);
     }
@@ -114,17 +114,17 @@ impl History {
         }
     }
 
-    /// Whether there is something to undo.
+    /// Returns whether there is a step to undo.
     pub fn can_undo(&self) -> bool {
         !self.past.is_empty()
     }
 
-    /// Whether there is something to redo.
+    /// Returns whether there is a step to redo.
     pub fn can_redo(&self) -> bool {
         !self.undone.is_empty()
     }
 
-    /// Goes a step back.
+    /// Undoes the last step.
     pub fn undo(&mut self) {
         self.gesture = None;
         if let Some(before) = self.past.pop() {
@@ -132,7 +132,7 @@ impl History {
         }
     }
 
-    /// Goes a step forward again.
+    /// Redoes the step undone last.
     pub fn redo(&mut self) {
         self.gesture = None;
         if let Some(after) = self.undone.pop() {
@@ -140,7 +140,7 @@ impl History {
         }
     }
 
-    /// Begins anew with `document`; nothing before it can be undone.
+    /// Starts a new history with `document`; no earlier step can be undone.
     pub fn restart(&mut self, document: Document) {
         *self = Self {
             present: document,
@@ -178,7 +178,7 @@ mod tests {
         history.undo();
         assert_eq!(*history.present(), Document::default());
         assert!(!history.can_undo());
-        // What changes nothing is no step.
+        // An edit that changes nothing is not recorded as a step.
         history.edit(|_| {});
         assert!(!history.can_undo() && history.can_redo());
     }

@@ -1,54 +1,54 @@
-//! Files: asking for one without holding up the window, and writing one whole or not at all.
+//! File dialogs that do not block the window, and atomic writing of files.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 
 use super::running::Writing;
 use super::{Phase, Session};
-use kinefront_model::evaluation::GridChoice;
 use crate::export::{ExportError, Format, Subject, export, front_to_parquet};
 use crate::recording::{record_design, save_copy};
 use crate::report::{Options, Report, Source};
+use kinefront_model::evaluation::GridChoice;
 
-/// Writes a file; what stood there is replaced whole or not at all.
+/// Writes a file atomically: an existing file is either replaced completely or left unchanged.
 ///
 /// # Errors
-/// What went wrong, in words.
+/// Returns a message that says why the file cannot be written.
 pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), String> {
     crate::study::write_whole(path, contents).map_err(|error| error.to_string())
 }
 
-/// What a chosen file is for.
+/// Purpose of a file selected in a dialog.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
-    /// A study, a run folder's table or a recording to open.
+    /// A study, a table of a run folder or a recording to open.
     Open,
     /// A run folder to open.
     OpenFolder,
-    /// Where the study goes.
+    /// Destination of the study.
     SaveStudy,
-    /// Where the session's recording goes.
+    /// Destination of the session's recording.
     SaveRecording,
-    /// Where the run's folder goes.
+    /// Destination of the run folder.
     SaveRun,
-    /// Where the run's report goes.
+    /// Destination folder of the report on the run.
     Report,
-    /// Where the front's table goes.
+    /// Destination of the table of the front.
     ExportFront,
-    /// Where the recording of the design in the light goes.
+    /// Destination of the recording of the selected design.
     RecordDesign,
-    /// Where the design in the light goes, for other programs.
+    /// Destination of the selected design in a format of other programs.
     ExportDesign(Format),
-    /// Where a picture of the window goes.
+    /// Destination of a picture of the window.
     SavePicture,
-    /// Where the filter goes.
+    /// Destination of the filter.
     SaveFilter,
     /// A filter to read.
     OpenFilter,
 }
 
 impl Purpose {
-    /// Title of the dialog, a name to begin with, and the kinds of files.
+    /// Returns the title of the dialog, the default file name, and the types of file.
     fn dialog(
         self,
     ) -> (
@@ -65,8 +65,8 @@ impl Purpose {
             Purpose::OpenFolder => ("Open a run folder", "", &[]),
             Purpose::SaveStudy => ("Save the study", "study.toml", &[("study", &["toml"])]),
             Purpose::SaveRecording => ("Save the recording", "session.rrd", &[("recording", &["rrd"])]),
-            Purpose::SaveRun => ("Save the run's folder", "run", &[]),
-            Purpose::Report => ("Report on the run: a folder", "report", &[]),
+            Purpose::SaveRun => ("Save the run folder", "run", &[]),
+            Purpose::Report => ("Folder for the report", "report", &[]),
             Purpose::ExportFront => (
                 "Export the front",
                 "front.csv",
@@ -80,12 +80,12 @@ impl Purpose {
         }
     }
 
-    /// Title of the dialog.
+    /// Returns the title of the dialog.
     pub fn title(self) -> &'static str {
         self.dialog().0
     }
 
-    /// A name to begin with.
+    /// Returns the default file name.
     pub fn name(self) -> &'static str {
         self.dialog().1
     }
@@ -95,14 +95,14 @@ impl Purpose {
     }
 }
 
-/// A dialog of the system, open on a thread of its own.
+/// A dialog of the operating system, open on its own thread.
 pub struct Dialog {
     purpose: Purpose,
     answer: Receiver<Option<PathBuf>>,
 }
 
 impl Dialog {
-    /// Opens the system's dialog.
+    /// Opens the dialog of the operating system.
     pub fn open(purpose: Purpose, wake: impl Fn() + Send + 'static) -> Self {
         let (sender, answer) = channel();
         let (title, name, kinds) = purpose.dialog();
@@ -116,23 +116,23 @@ impl Dialog {
                 _ if purpose.is_saving() => dialog.set_file_name(name).save_file(),
                 _ => dialog.pick_file(),
             };
-            // The window may be gone.
+            // The send fails only if the window is already closed.
             let _ = sender.send(path);
             wake();
         });
         Self { purpose, answer }
     }
 
-    /// The choice, once made; `None` within where there was none.
+    /// Returns the purpose and the selected path once the dialog is closed; the path is `None` if the user cancelled.
     pub fn choice(&self) -> Option<(Purpose, Option<PathBuf>)> {
         self.answer.try_recv().ok().map(|path| (self.purpose, path))
     }
 }
 
-/// Work on files that a window does not wait for; it ends with words to tell.
+/// Work on files that does not block the window; it returns a message for the user.
 pub type Job = Box<dyn FnOnce() -> Result<String, String> + Send>;
 
-/// What is to be done with the file that was chosen; `None` where it was done at once.
+/// Handles the selected file; returns the work that remains to be done in the background, or `None` if there is none.
 pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job> {
     match purpose {
         Purpose::Open | Purpose::OpenFolder => session.open(&path),
@@ -182,7 +182,7 @@ fn tell(session: &mut Session, outcome: Result<String, String>) {
 
 fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
     let Some(folder) = session.run_folder() else {
-        session.tell_error("there is no run to save: an opened one lies where it was opened from".to_owned());
+        session.tell_error("there is no run to save; an opened run is already on disk".to_owned());
         return None;
     };
     let writing = session.writing();
@@ -201,20 +201,21 @@ fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
     }))
 }
 
-/// The design in the light as it stands: at the pose that is shown.
+/// Exports the selected design at the pose that is shown.
 fn export_design(session: &mut Session, format: Format, path: PathBuf) -> Option<Job> {
     let Some(known) = session.known().cloned() else {
-        session.tell_error("no design is chosen".to_owned());
+        session.tell_error("no design is selected".to_owned());
         return None;
     };
     let study = session.study().clone();
     let pose = session.staging.pose;
     Some(Box::new(move || {
-        // What is exported is what was verified.
-        let fine = study.model().evaluate(&known.evaluation.design, GridChoice::Fine);
+        // The export contains the values from the fine grid, as verified.
+        let model = study.model().map_err(|error| error.to_string())?;
+        let fine = model.evaluate(&known.evaluation.design, GridChoice::Fine);
         let subject = Subject {
             study: &study,
-            evaluation: &fine.map_err(|error| error.to_string())?,
+            evaluation: &fine,
             pose,
         };
         let bytes = export(&subject, format).map_err(|error| match error {
@@ -222,14 +223,14 @@ fn export_design(session: &mut Session, format: Format, path: PathBuf) -> Option
             other => other.to_string(),
         })?;
         write_whole(&path, &bytes)?;
-        let lost = format.lost().map(|lost| format!("; not in it: {lost}"));
+        let lost = format.lost().map(|lost| format!("; not in the file: {lost}"));
         Ok(format!("exported {}{}", path.display(), lost.unwrap_or_default()))
     }))
 }
 
 fn record(session: &mut Session, path: PathBuf) -> Option<Job> {
     let Some((known, name)) = session.known().cloned().zip(session.chosen_name()) else {
-        session.tell_error("no design is chosen".to_owned());
+        session.tell_error("no design is selected".to_owned());
         return None;
     };
     let study = session.study().clone();
@@ -246,10 +247,10 @@ fn record(session: &mut Session, path: PathBuf) -> Option<Job> {
     }))
 }
 
-/// The run's folder with a whole recording; `path` must not hold a run.
+/// Saves the run folder with a complete recording; `path` must not contain a run.
 fn save_run(session: &mut Session, path: PathBuf) -> Option<Job> {
     let Some(folder) = session.run_folder() else {
-        session.tell_error("there is no run to save: an opened one lies where it was opened from".to_owned());
+        session.tell_error("there is no run to save; an opened run is already on disk".to_owned());
         return None;
     };
     let writing = session.writing();
@@ -261,7 +262,7 @@ fn save_run(session: &mut Session, path: PathBuf) -> Option<Job> {
         let names: Vec<std::ffi::OsString> = entries.flatten().map(|entry| entry.file_name()).collect();
         if let Some(taken) = names.iter().find(|name| path.join(name).exists()) {
             let taken = path.join(taken);
-            return Err(format!("{} is there already; choose another folder", taken.display()));
+            return Err(format!("{} already exists; choose another folder", taken.display()));
         }
         for name in names {
             let target = path.join(&name);
@@ -275,18 +276,18 @@ fn save_run(session: &mut Session, path: PathBuf) -> Option<Job> {
     }))
 }
 
-/// The page of the run in the window, without searches of its own: these would take minutes.
+/// Writes the report on the run in the window, without the report's own searches, which would take minutes.
 fn report(session: &mut Session, path: PathBuf) -> Option<Job> {
     let opened = match session.phase() {
         Phase::Opened(path) if path.is_dir() => Some(path.clone()),
         _ => None,
     };
     let Some(folder) = session.run_folder().or(opened) else {
-        session.tell_error("there is no run to report on: expected one of this window, or an opened folder".to_owned());
+        session.tell_error("there is no run to report on; start a run or open a run folder".to_owned());
         return None;
     };
     let writing = session.writing();
-    session.tell("making the report, which takes some seconds".to_owned());
+    session.tell("writing the report; this takes several seconds".to_owned());
     Some(Box::new(move || {
         writing.iter().for_each(Writing::wait);
         let options = Options {
@@ -295,7 +296,7 @@ fn report(session: &mut Session, path: PathBuf) -> Option<Job> {
         };
         let make = || {
             let mut source = Source::read(&folder)?;
-            // Its folder is one of the window's own, whose name says nothing.
+            // The window runs in a temporary folder whose name means nothing, so the report has the name of the study.
             source.name.clone_from(&source.study.name);
             Report::make(&[source], options, &mut |_| {})?.write(&path, false)
         };
@@ -304,7 +305,7 @@ fn report(session: &mut Session, path: PathBuf) -> Option<Job> {
     }))
 }
 
-/// Writes a recording beside its place and moves it there.
+/// Writes a recording to a temporary folder beside `path` and then moves it to `path`.
 fn replacing(path: &Path, write: impl FnOnce(&Path) -> Result<(), String>) -> Result<(), String> {
     let folder = path
         .parent()
@@ -319,7 +320,7 @@ fn replacing(path: &Path, write: impl FnOnce(&Path) -> Result<(), String>) -> Re
     std::fs::rename(&part, path).map_err(|error| format!("cannot write {}: {error}", path.display()))
 }
 
-/// The front as a table: the columns that every table of ours begins with.
+/// Returns the front as a CSV table, which begins with the columns common to all tables of designs.
 fn front_table(session: &Session) -> Result<Vec<u8>, String> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let header = crate::study::TABLE_HEADER

@@ -1,4 +1,4 @@
-//! The one filter that holds in every panel, and its text.
+//! The filter that applies to all panels, and its text format.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -6,19 +6,19 @@ use std::collections::BTreeMap;
 use super::{Quantity, Store};
 use kinefront_model::mechanism::Architecture;
 
-/// Which designs are in the light; the others are dimmed.
+/// Criteria for designs; those that do not pass the filter are dimmed.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Filter {
-    /// Only feasible designs.
+    /// Whether only feasible designs pass.
     pub feasible_only: bool,
-    /// Architectures left out.
+    /// Architectures whose designs do not pass.
     pub hidden: Vec<Architecture>,
-    /// Ranges by the quantity's key, both ends included.
+    /// Permitted range of a quantity, by the quantity's key; both ends are included.
     pub ranges: BTreeMap<String, [f64; 2]>,
 }
 
-/// A filter made ready to be asked many times.
+/// A filter prepared for testing many designs.
 pub struct Sieve<'a> {
     store: &'a Store,
     feasible_only: bool,
@@ -27,17 +27,17 @@ pub struct Sieve<'a> {
 }
 
 impl Filter {
-    /// Whether it lets everything through.
+    /// Returns whether the filter has no criterion, so that every design passes.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Range of a quantity.
+    /// Returns the range of a quantity, if the filter has one.
     pub fn range(&self, quantity: Quantity) -> Option<[f64; 2]> {
         self.ranges.get(&quantity.key()).copied()
     }
 
-    /// Sets or lifts the range of a quantity.
+    /// Sets or removes the range of a quantity.
     pub fn set_range(&mut self, quantity: Quantity, range: Option<[f64; 2]>) {
         match range {
             Some([low, high]) => self.ranges.insert(quantity.key(), [low.min(high), low.max(high)]),
@@ -45,7 +45,7 @@ impl Filter {
         };
     }
 
-    /// The filter over the designs of a store.
+    /// Prepares the filter for the designs of a store.
     pub fn sieve<'a>(&self, store: &'a Store) -> Sieve<'a> {
         Sieve {
             store,
@@ -59,29 +59,29 @@ impl Filter {
         }
     }
 
-    /// The filter as text.
+    /// Returns the filter as TOML.
     pub fn to_text(&self) -> String {
-        // A filter holds nothing that TOML cannot say.
+        // Every filter can be written as TOML, so this does not fail.
         toml::to_string(self).unwrap_or_default()
     }
 
-    /// Reads a filter.
+    /// Reads a filter from TOML.
     ///
     /// # Errors
-    /// What is wrong with the text, and what would be right.
+    /// Returns a message that says what is wrong with the text and what would be right.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let filter: Filter = toml::from_str(text).map_err(|error| format!("this is no filter: {}", error.message()))?;
+        let filter: Filter = toml::from_str(text).map_err(|error| format!("not a filter: {}", error.message()))?;
         for (key, [low, high]) in &filter.ranges {
             if Quantity::find(key).is_none() {
                 let known: Vec<String> = Quantity::all().into_iter().map(Quantity::key).collect();
                 return Err(format!(
-                    "a filter has no range of `{key}`; there are {}",
+                    "the filter has a range of the unknown quantity `{key}`; expected one of {}",
                     known.join(", ")
                 ));
             }
             if low.is_nan() || high.is_nan() || low > high {
                 return Err(format!(
-                    "the range of `{key}` is [{low}, {high}]; the lower end comes first"
+                    "the range of `{key}` is [{low}, {high}]; expected two numbers, the lower one first"
                 ));
             }
         }
@@ -90,7 +90,7 @@ impl Filter {
 }
 
 impl Sieve<'_> {
-    /// Whether design `id` is there and in the light.
+    /// Returns whether design `id` exists and passes the filter.
     pub fn passes(&self, id: usize) -> bool {
         id < self.store.len()
             && (!self.feasible_only || self.store.is_feasible(id))

@@ -1,15 +1,15 @@
 //! The front as the window shows it.
 
 use super::Row;
-use kinefront_optimize::{Archive, Evaluated, Outcome};
 use crate::study::FrontMember;
+use kinefront_optimize::{Archive, Evaluated, Outcome};
 
 /// A non-dominated design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrontEntry {
     /// Id of its evaluation.
     pub id: usize,
-    /// Its numbers; from the fine grid where `verified`.
+    /// Its values; from the fine grid if `verified`.
     pub row: Row,
     /// `R_w` on the reference grid \[m\].
     pub reference_radius: f64,
@@ -18,7 +18,7 @@ pub struct FrontEntry {
 }
 
 impl FrontEntry {
-    /// A member of a run's front.
+    /// Makes the entry of a member of a run's front.
     pub fn new(member: &FrontMember, verified: bool) -> Self {
         Self {
             id: member.id,
@@ -28,13 +28,13 @@ impl FrontEntry {
         }
     }
 
-    /// Both objectives, minimised.
+    /// Returns both objectives, as they are minimised.
     pub fn objectives(&self) -> [f64; 2] {
         self.row.objectives()
     }
 }
 
-/// The non-dominated designs of a store, by mass, as its grid found them.
+/// Returns the non-dominated designs of a store, sorted by mass, with the values in the store.
 pub fn front_of(store: &super::Store) -> Vec<FrontEntry> {
     let mut archive = Archive::default();
     for id in (0..store.len()).filter(|&id| store.is_feasible(id)) {

@@ -1,4 +1,4 @@
-//! From the run's thread to the window: news are put together between two frames, so that neither waits for the other.
+//! Collects messages of the run's thread between two frames of the window, so that neither waits for the other.
 
 use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -6,35 +6,35 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::{FrontEntry, Row, Store};
 use crate::study::{Event, GenerationSummary, RunSummary};
 
-/// What a run told since it was last asked.
+/// Messages of a run since the last call of [`Intake::take`].
 #[derive(Debug, Default)]
 pub struct News {
-    /// Designs.
+    /// Designs that were evaluated.
     pub rows: Store,
-    /// The front as it stands, if it changed.
+    /// The current front, if it has changed.
     pub front: Option<Vec<FrontEntry>>,
-    /// Generations done.
+    /// Summaries of the completed generations.
     pub history: Vec<GenerationSummary>,
-    /// Worker threads, told once.
+    /// Number of worker threads, reported once per run.
     pub threads: Option<usize>,
-    /// Designs verified, and how many there are.
+    /// Number of designs verified so far, and number of designs to verify.
     pub verifying: Option<(usize, usize)>,
-    /// The end.
+    /// Summary of the run, once it has finished.
     pub finished: Option<Box<RunSummary>>,
-    /// Why the run broke off.
+    /// Reason why the run failed.
     pub failed: Option<String>,
-    /// What went wrong beside the run.
+    /// Errors that do not stop the run, such as a table that cannot be written.
     pub troubles: Vec<String>,
 }
 
-/// Where news are put and fetched.
+/// Collects the messages of a run until the window takes them.
 pub struct Intake {
     news: Mutex<News>,
     wake: Box<dyn Fn() + Send + Sync>,
 }
 
 impl Intake {
-    /// An intake that calls `wake` when there are news.
+    /// Makes an intake that calls `wake` at every new message.
     pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
         Self {
             news: Mutex::default(),
@@ -42,7 +42,7 @@ impl Intake {
         }
     }
 
-    /// Everything since the last call.
+    /// Takes all messages since the last call.
     pub fn take(&self) -> News {
         std::mem::take(&mut *self.news.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -52,12 +52,12 @@ impl Intake {
         (self.wake)();
     }
 
-    /// Tells of something that went wrong beside the run.
+    /// Reports an error that does not stop the run.
     pub fn trouble(&self, words: String) {
         self.put(|news| news.troubles.push(words));
     }
 
-    /// Takes in what a run tells until it ends.
+    /// Collects the events of a run until it ends.
     pub fn follow(&self, events: &Receiver<Arc<Event>>) {
         for event in events {
             match &*event {

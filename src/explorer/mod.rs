@@ -1,4 +1,4 @@
-//! The window: a run as it goes, its designs, and any one of them in 3-D.
+//! The window, which shows a run in progress, its designs, and the selected design in 3-D.
 //!
 //! ```text
 //!  run thread ──events──► collector ──News──┐
@@ -9,9 +9,9 @@
 //!                                        panels                         └──► verify thread (fine grid)
 //! ```
 //!
-//! No frame waits for a thread and no thread for a frame: news are put together until a frame fetches them, and of the
-//! requests only the latest counts. [`Session`] is everything the window knows, without a window; a panel reads it, and
-//! calls it to change something. No panel computes what a design is worth.
+//! No frame waits for a thread and no thread for a frame: messages are collected until a frame takes them, and only
+//! the latest request is processed. [`Session`] is the complete state of the window, independent of any window; a
+//! panel reads it and calls its methods to change it. No panel evaluates designs.
 
 mod app;
 mod document;

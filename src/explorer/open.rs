@@ -1,4 +1,4 @@
-//! Opening what a run left: its folder, one of its tables, or its recording.
+//! Opens the results of a run: its folder, one of its tables, or its recording.
 
 use std::path::{Path, PathBuf};
 
@@ -9,32 +9,32 @@ use super::{FrontEntry, Store};
 use crate::recording;
 use crate::study::{GenerationSummary, Row, Study, TableError, read_table};
 
-/// A run that was read back.
+/// A run that was read from its files.
 #[derive(Debug)]
 pub struct Opened {
-    /// The study as run.
+    /// The study of the run.
     pub study: Study,
     /// Every evaluated design.
     pub store: Store,
-    /// The front, verified where the run got that far.
+    /// The front; verified if the run completed the verification.
     pub front: Vec<FrontEntry>,
-    /// State after each generation, where it was kept.
+    /// Summary of each generation; empty if it was not recorded.
     pub history: Vec<GenerationSummary>,
 }
 
 /// Why a run cannot be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    /// Neither a folder of a run nor a recording.
-    #[error("{} is no run: expected a folder with study.toml and designs.csv, or a recording (.rrd)", .0.display())]
+    /// The path is neither a run folder nor a recording.
+    #[error("{} is not a run: expected a folder with study.toml and designs.csv or a recording (.rrd)", .0.display())]
     NoRun(PathBuf),
-    /// Its study.
+    /// The study of the run cannot be read.
     #[error("{0}")]
     Study(String),
-    /// A table.
+    /// A table of the run cannot be read.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// Its recording.
+    /// The recording of the run cannot be read.
     #[error(transparent)]
     Recording(#[from] recording::ReadError),
 }
@@ -42,11 +42,11 @@ pub enum OpenError {
 /// Reads the run at `path`.
 ///
 /// # Errors
-/// [`OpenError`] with the file and what is wrong in it.
+/// Returns an [`OpenError`] that names the file and says what is wrong in it.
 pub fn open(path: &Path) -> Result<Opened, OpenError> {
     if path.extension().is_some_and(|extension| extension == "rrd") {
         let inside = path.with_file_name("designs.csv");
-        // Beside its tables a recording is the same run, which they tell more exactly.
+        // A recording beside tables is of the same run, and the tables are more exact.
         return match path.parent() {
             Some(folder) if inside.exists() && folder.join("study.toml").exists() => open_folder(folder),
             _ => open_recording(path),
@@ -112,7 +112,7 @@ fn open_recording(path: &Path) -> Result<Opened, OpenError> {
     })
 }
 
-/// Curves are a nicety: a run without them opens all the same.
+/// Reads the summaries of the generations; a run without them can be opened, because only the curves need them.
 fn history(path: &Path) -> Vec<GenerationSummary> {
     #[derive(Deserialize)]
     struct Report {

@@ -1,39 +1,39 @@
-//! Numbers of a design that can stand on an axis, in a column or in a filter.
+//! Quantities of a design that can be shown on an axis or in a column, or limited by a filter.
 
 use super::Row;
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::{VARIABLES, Variable};
 
-/// A number of a design.
+/// A numerical quantity of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Quantity {
     /// Mass in motion.
     Mass,
-    /// `R_w`.
+    /// Workspace radius `R_w`.
     Radius,
     /// One of the five dimensions.
     Variable(Variable),
-    /// `φ_c`.
+    /// Home orientation `φ_c`.
     Phi,
     /// Relative margin of a constraint.
     Margin(Constraint),
-    /// Least clearance of bodies that are not joined, whether the study asks for it or not.
+    /// Smallest clearance between members that are not joined, whether or not the study requires a clearance.
     Clearance,
-    /// How far from feasible.
+    /// Constraint violation; 0 for a feasible design.
     Violation,
 }
 
-/// Which way a quantity is better.
+/// Direction in which a quantity is better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Better {
-    /// Less is better.
+    /// Smaller values are better.
     Lower,
-    /// More is better.
+    /// Larger values are better.
     Higher,
 }
 
 impl Quantity {
-    /// All of them: objectives, variables, margins, the rest.
+    /// Returns all quantities: objectives, variables, margins, then the others.
     pub fn all() -> Vec<Quantity> {
         let mut all = vec![Quantity::Mass, Quantity::Radius];
         all.extend(VARIABLES.map(Quantity::Variable));
@@ -42,7 +42,7 @@ impl Quantity {
         all
     }
 
-    /// Name in tables and files, as the columns of `designs.csv`.
+    /// Returns the name in tables and files, which is that of the column of `designs.csv`.
     pub fn key(self) -> String {
         match self {
             Quantity::Mass => "mass_kg".to_owned(),
@@ -55,12 +55,12 @@ impl Quantity {
         }
     }
 
-    /// The quantity of a key.
+    /// Returns the quantity with a given key.
     pub fn find(key: &str) -> Option<Quantity> {
         Self::all().into_iter().find(|quantity| quantity.key() == key)
     }
 
-    /// Name for people, with its unit.
+    /// Returns the name to display, with the unit.
     pub fn title(self) -> String {
         match self {
             Quantity::Mass => "mass in motion [kg]".to_owned(),
@@ -73,7 +73,7 @@ impl Quantity {
         }
     }
 
-    /// Short name for the head of a narrow axis.
+    /// Returns a short name for the heading of a narrow axis.
     pub fn short(self) -> String {
         match self {
             Quantity::Mass => "mass".to_owned(),
@@ -87,7 +87,7 @@ impl Quantity {
         }
     }
 
-    /// Which way is better, where one is.
+    /// Returns the direction in which the quantity is better, if it has one.
     pub fn better(self) -> Option<Better> {
         match self {
             Quantity::Mass | Quantity::Violation => Some(Better::Lower),
@@ -96,12 +96,12 @@ impl Quantity {
         }
     }
 
-    /// Whether its differences are orders of magnitude.
+    /// Returns whether the values differ by orders of magnitude, so that a logarithmic axis suits them.
     pub fn is_logarithmic(self) -> bool {
         matches!(self, Quantity::Mass | Quantity::Violation)
     }
 
-    /// Its value of a stored design; not a number where there is none.
+    /// Returns the value of a stored design; NaN if the design has none.
     pub fn of(self, row: &Row) -> f64 {
         match self {
             Quantity::Mass => row.mass,

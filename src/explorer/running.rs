@@ -1,4 +1,4 @@
-//! A run under way in the window, with the files it leaves.
+//! A run in progress in the window, with the files that it writes.
 
 use std::path::PathBuf;
 use std::sync::mpsc::sync_channel;
@@ -12,19 +12,19 @@ use super::Intake;
 use crate::recording::Recorder;
 use crate::study::{RunControl, RunFolder, Study, Subscriber};
 
-/// Events that may wait in a channel before the run waits too.
+/// Number of events that a channel can hold; the run waits while one is full.
 const CHANNEL: usize = 64;
 
-/// A run under way, or at its end.
+/// A run in progress or ended.
 ///
-/// It writes the same folder as a run without a window, to a place of its own, from where it can be saved. Dropping it
-/// ends the run and removes that place.
+/// It writes the same files as a run without a window, to a temporary folder from which they can be saved. Dropping it
+/// ends the run and removes that folder.
 pub struct Running {
-    /// The study as run.
+    /// The study of the run.
     pub study: Arc<Study>,
-    /// Pauses, steps and stops it.
+    /// Pauses, steps and stops the run.
     pub control: Arc<RunControl>,
-    /// Its news.
+    /// Collects the messages of the run.
     pub intake: Arc<Intake>,
     folder: Arc<TempDir>,
     writing: Writing,
@@ -32,7 +32,7 @@ pub struct Running {
     clock: Clock,
 }
 
-/// The run's files that are still being written.
+/// Counts the files of the run that are still being written.
 #[derive(Debug, Clone, Default)]
 pub struct Writing(Arc<(Mutex<usize>, Condvar)>);
 
@@ -41,13 +41,13 @@ impl Writing {
         self.0.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// One more, until what is returned is dropped.
+    /// Counts one more file until the returned guard is dropped.
     fn begin(&self) -> BeingWritten {
         *self.count() += 1;
         BeingWritten(self.clone())
     }
 
-    /// Waits until all are whole: a recording draws its front for a while after the run has ended.
+    /// Waits until all files are complete: the recorder still draws the front for some time after the run has ended.
     pub fn wait(&self) {
         let mut count = self.count();
         while *count > 0 {
@@ -65,7 +65,7 @@ impl Drop for BeingWritten {
     }
 }
 
-/// Time that a run has worked, pauses left out.
+/// Measures the working time of a run, without pauses.
 #[derive(Debug)]
 struct Clock {
     worked: Duration,
@@ -73,10 +73,10 @@ struct Clock {
 }
 
 impl Running {
-    /// Starts the run of a study, whose events come from `source`; `wake` is called when it has news.
+    /// Starts the run of a study, whose events come from `source`; `wake` is called at every new message.
     ///
     /// # Errors
-    /// No folder for its files could be made, or no thread started.
+    /// Returns a message if the folder for the files cannot be created or a thread cannot be started.
     pub fn start(
         study: Study,
         source: impl FnOnce(Study, Arc<RunControl>, Vec<Subscriber>) -> std::io::Result<JoinHandle<()>>,
@@ -84,7 +84,7 @@ impl Running {
     ) -> Result<Self, String> {
         let place = |error: std::io::Error| {
             format!(
-                "cannot start the run: no folder for its files below {}: {error}",
+                "cannot start the run: cannot create a folder for its files in {}: {error}",
                 std::env::temp_dir().display()
             )
         };
@@ -106,7 +106,7 @@ impl Running {
                 .map(|thread| threads.push(thread))
                 .map_err(|error| format!("cannot start the run: {error}"))
         };
-        // Each keeps the folder until it is done with its file.
+        // Each listener keeps the folder until its file is complete.
         let writing = Writing::default();
         let (held, told, as_run) = (
             (Arc::clone(&folder), writing.begin()),
@@ -117,7 +117,9 @@ impl Running {
             "tables",
             Box::new(move |events| {
                 if let Err(error) = tables.follow(events, &as_run) {
-                    told.trouble(format!("the tables stop here, the run goes on: {error}"));
+                    told.trouble(format!(
+                        "the run continues, but its tables are no longer written: {error}"
+                    ));
                 }
                 drop(held);
             }),
@@ -127,7 +129,9 @@ impl Running {
             "recorder",
             Box::new(move |events| {
                 if let Err(error) = recorder.follow(events) {
-                    told.trouble(format!("the recording stops here, the run goes on: {error}"));
+                    told.trouble(format!(
+                        "the run continues, but its recording is no longer written: {error}"
+                    ));
                 }
                 drop(held);
             }),
@@ -151,7 +155,7 @@ impl Running {
         })
     }
 
-    /// Ends the run and waits a moment for its files to be closed, so that none is left behind.
+    /// Ends the run and waits up to 3 s for its files to be closed, so that none is left behind.
     pub fn close(self) {
         const PATIENCE: Duration = Duration::from_secs(3);
         self.control.abandon();
@@ -161,22 +165,22 @@ impl Running {
         }
     }
 
-    /// Folder with the run's files; whole once the run has ended.
+    /// Returns the run folder; its files are complete once the run has ended and [`Writing::wait`] has returned.
     pub fn folder(&self) -> PathBuf {
         self.folder.path().join("run")
     }
 
-    /// Its files that are still being written.
+    /// Returns the counter of the files that are still being written.
     pub fn writing(&self) -> &Writing {
         &self.writing
     }
 
-    /// Time worked so far.
+    /// Returns the working time so far.
     pub fn elapsed(&self) -> Duration {
         self.clock.worked + self.clock.since.map_or(Duration::ZERO, |since| since.elapsed())
     }
 
-    /// Stops or starts the clock.
+    /// Starts the clock if `counting`, otherwise stops it.
     pub fn count_time(&mut self, counting: bool) {
         match (self.clock.since, counting) {
             (Some(since), false) => {

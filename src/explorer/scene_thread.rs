@@ -1,4 +1,4 @@
-//! The thread that evaluates and draws the design in the light, so that no frame waits for it.
+//! The thread that evaluates and draws the selected design, so that no frame waits for it.
 //!
 //! ```text
 //! window ──Request──► [latest] ─► scene thread ─► LiveScene ─► viewer
@@ -7,69 +7,69 @@
 //!    └──────── Answer ◄──── [latest] verify thread (fine grid)
 //! ```
 //!
-//! Only the latest request counts: while a slider is dragged, those in between are left out.
+//! Only the latest request is processed: while a slider is dragged, intermediate requests are skipped.
 
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::Duration;
 
+use crate::recording::{FrontPoint, Layers, LiveScene, Pinned, Shown};
+use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, GridChoice};
 use kinefront_model::mechanism::Design;
-use crate::recording::{FrontPoint, Layers, LiveScene, Pinned, Shown};
 use kinefront_model::spatial::Pose;
-use crate::study::Study;
 
-/// Time after which a design is taken to stay.
+/// Time without a newer design after which a design is verified.
 const RESTING: Duration = Duration::from_millis(150);
 
-/// What is to be shown.
+/// Request to show a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
-    /// The study whose physics hold.
+    /// The study whose model applies.
     pub study: Arc<Study>,
-    /// The design in the light.
+    /// The selected design.
     pub design: Option<Design>,
-    /// Pose of the manipulator; home where it is left out.
+    /// Pose of the manipulator; the home pose if `None`.
     pub pose: Option<Pose>,
-    /// Orientation of the heatmap \[rad\]; home where it is left out.
+    /// Orientation of the heatmap \[rad\]; the home orientation if `None`.
     pub heatmap_phi: Option<f64>,
-    /// What is drawn.
+    /// Layers that are drawn.
     pub layers: Layers,
-    /// Designs to compare, by name.
+    /// Pinned designs with their names.
     pub pins: Vec<(String, Design)>,
-    /// Whether the pinned designs are in front.
+    /// Whether the view of the pinned designs is in front of that of the selected design.
     pub comparing: bool,
-    /// Whether the viewer's colours are light.
+    /// Whether the viewer uses light colours.
     pub light: bool,
-    /// Whether the design is known from the fine grid: then it is drawn again with those numbers.
+    /// Whether the design is verified: it is then drawn again with the values from the fine grid.
     pub verified: bool,
-    /// The front as it stands.
+    /// The current front.
     pub front: Arc<Vec<FrontPoint>>,
 }
 
-/// What is known of the design in the light.
+/// Evaluation of the selected design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Known {
     /// Its evaluation.
     pub evaluation: Evaluation,
-    /// Whether that is from the fine grid.
+    /// Whether the evaluation is from the fine grid.
     pub verified: bool,
 }
 
-/// What came of the latest requests.
+/// Results of the latest requests.
 #[derive(Debug, Clone, Default)]
 pub struct Answer {
-    /// The design in the light.
+    /// Evaluation of the selected design, once it is known.
     pub known: Option<Known>,
-    /// The pinned designs.
+    /// Evaluations of the pinned designs.
     pub pins: Vec<Evaluation>,
-    /// Number of the last request that is drawn.
+    /// Number of the last request that was drawn.
     pub drawn: u64,
-    /// What went wrong.
+    /// Message about the last request that failed.
     pub trouble: Option<String>,
 }
 
-/// A place for one thing; a later one takes its place.
+/// Holds at most one item; a later item replaces an earlier one.
 struct Mailbox<T> {
     state: Mutex<(Option<T>, bool)>,
     changed: Condvar,
@@ -93,7 +93,7 @@ impl<T> Mailbox<T> {
         self.changed.notify_all();
     }
 
-    /// Waits a while for a thing.
+    /// Waits for an item for at most `time`.
     fn wait(&self, time: Duration) -> Option<T> {
         let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         let empty = |state: &mut (Option<T>, bool)| state.0.is_none() && !state.1;
@@ -104,7 +104,7 @@ impl<T> Mailbox<T> {
         state.0.take()
     }
 
-    /// Waits for a thing; `None` once closed.
+    /// Waits for an item; returns `None` once the mailbox is closed.
     fn take(&self) -> Option<T> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         loop {
@@ -124,14 +124,14 @@ type Wake = Arc<dyn Fn() + Send + Sync>;
 struct Shared {
     requests: Mailbox<(u64, Request)>,
     to_verify: Mailbox<(Arc<Study>, Design)>,
-    /// The last design that was verified, which the scene then shows with its fine numbers.
+    /// The design verified last, which the scene shows with its values from the fine grid.
     verified: Mutex<Option<(Arc<Study>, Evaluation)>>,
     answer: Mutex<Answer>,
     wake: Wake,
 }
 
 impl Shared {
-    /// The design as it was verified last, if it is this one.
+    /// Returns the verified evaluation of `design`, if it is the design verified last.
     fn verified(&self, study: &Arc<Study>, design: &Design) -> Option<Known> {
         let verified = self.verified.lock().unwrap_or_else(PoisonError::into_inner);
         let (_, evaluation) = verified
@@ -149,7 +149,7 @@ impl Shared {
     }
 }
 
-/// Evaluates and draws designs on threads of its own.
+/// Evaluates and draws designs on its own threads.
 pub struct SceneThread {
     shared: Arc<Shared>,
     sent: u64,
@@ -157,10 +157,10 @@ pub struct SceneThread {
 }
 
 impl SceneThread {
-    /// Starts the threads; without a viewer there is no `scene`.
+    /// Starts the threads; `scene` is `None` if there is no viewer.
     ///
     /// # Errors
-    /// A thread could not be started.
+    /// Returns an error if a thread cannot be started.
     pub fn start(scene: Option<LiveScene>, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
         let shared = Arc::new(Shared {
             requests: Mailbox::new(),
@@ -184,7 +184,7 @@ impl SceneThread {
         })
     }
 
-    /// Asks for what is to be shown; the same request twice is one. Returns its number.
+    /// Sends a request, unless it equals the last one. Returns the number of the request.
     pub fn ask(&mut self, request: Request) -> u64 {
         if self.last.as_ref() != Some(&request) {
             self.last = Some(request.clone());
@@ -194,7 +194,7 @@ impl SceneThread {
         self.sent
     }
 
-    /// What is known so far.
+    /// Returns the results so far.
     pub fn answer(&self) -> Answer {
         self.shared
             .answer
@@ -213,12 +213,13 @@ impl Drop for SceneThread {
 
 fn verify_requests(shared: &Shared) {
     while let Some(mut wanted) = shared.to_verify.take() {
-        // A slider that is dragged passes many designs: the one it rests at is verified.
+        // Dragging a slider passes through many designs; only the one at which it rests is verified.
         while let Some(newer) = shared.to_verify.wait(RESTING) {
             wanted = newer;
         }
         let (study, design) = wanted;
-        if let Ok(evaluation) = study.model().evaluate(&design, GridChoice::Fine) {
+        if let Ok(model) = study.model() {
+            let evaluation = model.evaluate(&design, GridChoice::Fine);
             *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) = Some((study, evaluation.clone()));
             shared.answer(|answer| {
                 if let Some(known) = &mut answer.known
@@ -234,14 +235,14 @@ fn verify_requests(shared: &Shared) {
     }
 }
 
-/// What stands on the stage.
+/// Current state of the scene.
 #[derive(Default)]
 struct Standing {
     scene: Option<LiveScene>,
     request: Option<Request>,
     known: Option<Known>,
     pins: Vec<Evaluation>,
-    /// The design handed over last to be verified.
+    /// The design sent last to the verify thread.
     verifying: Option<Design>,
 }
 
@@ -252,17 +253,17 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
     };
     while let Some((number, request)) = shared.requests.take() {
         let trouble = step(&mut standing, shared, &request).err();
-        // Drawn first: both would like the processor.
+        // Verification starts after drawing, because both compete for the processor.
         if let Some(known) = standing.known.as_ref().filter(|known| !known.verified) {
             let design = known.evaluation.design;
-            // Once: a pose that moves on, as a tour's, asks for nothing new.
+            // A design is sent only once: a change of the pose, as in a tour, needs no new verification.
             if standing.verifying.replace(design) != Some(design) {
                 shared.to_verify.put((Arc::clone(&request.study), design));
             }
         }
         let (known, pins) = (standing.known.clone(), standing.pins.clone());
         shared.answer(|answer| {
-            // The verify thread may have been faster, and have found another design in the answer.
+            // The verify thread may have finished earlier, while the answer still held another design.
             let finer = known
                 .as_ref()
                 .and_then(|known| shared.verified(&request.study, &known.evaluation.design));
@@ -290,12 +291,8 @@ fn step(standing: &mut Standing, shared: &Shared, request: &Request) -> Result<(
         *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }
     let before = before.filter(|_| !new_study);
-    let model = request.study.model();
-    let evaluate = |design: &Design| {
-        model
-            .evaluate(design, GridChoice::Reference)
-            .map_err(|error| error.to_string())
-    };
+    let model = request.study.model().map_err(|error| error.to_string())?;
+    let evaluate = |design: &Design| model.evaluate(design, GridChoice::Reference);
 
     let verified = request
         .design
@@ -305,17 +302,13 @@ fn step(standing: &mut Standing, shared: &Shared, request: &Request) -> Result<(
         (Some(_), Some(known), _) => Some(known),
         (Some(design), None, Some(known)) if known.evaluation.design == *design => Some(known),
         (Some(design), None, _) => Some(Known {
-            evaluation: evaluate(design)?,
+            evaluation: evaluate(design),
             verified: false,
         }),
     };
     let new_pins = before.as_ref().is_none_or(|before| before.pins != request.pins);
     if new_pins {
-        standing.pins = request
-            .pins
-            .iter()
-            .map(|(_, design)| evaluate(design))
-            .collect::<Result<_, _>>()?;
+        standing.pins = request.pins.iter().map(|(_, design)| evaluate(design)).collect();
     }
 
     let Some(scene) = &mut standing.scene else {

@@ -1,26 +1,26 @@
-//! A script that works the window as a person would: for pictures, measurements and demonstrations.
+//! A script that operates the window as a user would, for pictures, measurements and demonstrations.
 //!
-//! A step a line; empty lines and what follows `#` are left out:
+//! Each line is a step. Empty lines, lines that begin with `#`, and text from `# ` to the end of a line are ignored:
 //!
 //! | step | does |
 //! |---|---|
 //! | `wait finished` | waits for the end of the run |
 //! | `wait evaluations N` | waits until N designs are evaluated |
-//! | `wait drawn` | waits until the design is verified and everything asked of the scene is drawn |
+//! | `wait drawn` | waits until the design is verified and everything requested of the scene is drawn |
 //! | `wait frames N` | waits N frames |
-//! | `choose knee`, `choose #ID`, `choose DESIGN` | puts a design in the light |
-//! | `walk N` | walks along the front |
-//! | `pin`, `keep`, `star` | as the buttons |
-//! | `what-if KEY=VALUE` | changes a dimension \[m\] |
-//! | `heatmap FIELD`, `ellipsoids KIND` | layers; `none` takes one away |
-//! | `pose x=… y=… phi_deg=…`, `worst ID` | moves the platform; to the worst pose of a constraint |
+//! | `choose knee`, `choose #ID`, `choose DESIGN` | selects a design |
+//! | `walk N` | moves the selection by N designs along the front |
+//! | `pin`, `keep`, `star` | do what the buttons do |
+//! | `what-if KEY=VALUE` | changes a dimension \[m\] of the selected design |
+//! | `heatmap FIELD`, `ellipsoids KIND` | shows a layer; `none` hides it |
+//! | `pose x=… y=… phi_deg=…`, `worst ID` | moves the platform to a pose, or to the worst pose of a constraint |
 //! | `show PANEL` | brings a panel to the front, by its title |
-//! | `compare on`, `compare off` | pinned designs in 3-D |
-//! | `theme dark`, `theme light` | colours |
-//! | `pause`, `resume`, `stop` | the run |
-//! | `filter KEY LOW HIGH` | a range of the filter |
-//! | `picture FILE.png`, `save FILE.rrd` | writes a file, and waits for it |
-//! | `frames FILE.csv` | writes the time of every frame from here on |
+//! | `compare on`, `compare off` | shows or hides the pinned designs in 3-D |
+//! | `theme dark`, `theme light` | sets the colours |
+//! | `pause`, `resume`, `stop` | control the run |
+//! | `filter KEY LOW HIGH` | sets a range of the filter |
+//! | `picture FILE.png`, `save FILE.rrd` | writes a file and waits until it is written |
+//! | `frames FILE.csv` | records the duration of every frame from here on, written at `quit` |
 //! | `quit` | closes the window |
 
 use std::path::{Path, PathBuf};
@@ -31,15 +31,15 @@ use egui::{Context, ViewportCommand};
 use super::files::Purpose;
 use super::panels::Panel;
 use super::{Explorer, Phase, Quantity};
+use crate::scene::{EllipsoidKind, Field};
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::VARIABLES;
-use crate::scene::{EllipsoidKind, Field};
 use kinefront_model::spatial::Pose;
 
-/// A script under way.
+/// A script in progress.
 #[derive(Debug)]
 pub struct Script {
-    /// Steps with their lines, the next first.
+    /// Remaining steps with their line numbers, in order.
     steps: std::vec::IntoIter<(usize, Step)>,
     current: Option<Step>,
     frames: usize,
@@ -81,18 +81,18 @@ impl Script {
     /// Reads a script.
     ///
     /// # Errors
-    /// The line that is no step, in words.
+    /// Returns a message that names the line that is not a step.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut steps = Vec::new();
         for (index, line) in text.lines().enumerate() {
-            // A `#` that begins an id stands behind a space and before a digit.
+            // A `#` before a digit begins an id; a `#` before a space begins a comment.
             let line = match line.find("# ").or_else(|| line.starts_with('#').then_some(0)) {
                 Some(end) => &line[..end],
                 None => line,
             };
             let line = line.trim();
             if !line.is_empty() {
-                let step = step(line).ok_or_else(|| format!("line {}: `{line}` is no step of a script", index + 1))?;
+                let step = step(line).ok_or_else(|| format!("line {}: `{line}` is not a script step", index + 1))?;
                 let file = matches!(step, Step::File(..));
                 steps.push((index + 1, step));
                 if file {
@@ -111,20 +111,20 @@ impl Script {
     /// Reads a script file.
     ///
     /// # Errors
-    /// As [`Script::parse`], with the file.
+    /// Returns the message of [`Script::parse`] with the name of the file, or says why the file cannot be read.
     pub fn read(path: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
         Self::parse(&text).map_err(|words| format!("{}, {words}", path.display()))
     }
 
-    /// Does what is due; called once a frame.
+    /// Performs the step that is due; called once per frame.
     pub(super) fn advance(&mut self, explorer: &mut Explorer, ctx: &Context) {
         self.frames += 1;
         if let Some((_, times, last)) = &mut self.times {
             times.push(last.elapsed().as_secs_f64());
             *last = Instant::now();
         }
-        // One step a frame: what it changes is seen before the next.
+        // Only one step per frame, so that its effect is visible before the next step.
         if self.current.is_none() {
             self.current = self.steps.next().map(|(_, step)| step);
             self.frames = 0;
@@ -137,7 +137,7 @@ impl Script {
         ctx.request_repaint();
     }
 
-    /// Does a step; tells whether it is done.
+    /// Performs a step; returns whether it is complete.
     fn take(&mut self, explorer: &mut Explorer, ctx: &Context, step: &Step) -> bool {
         let busy = explorer.is_busy();
         let session = explorer.session_mut();
@@ -149,11 +149,11 @@ impl Script {
             Step::WaitDrawn => {
                 let verified =
                     session.document().chosen.is_none() || session.known().is_some_and(|known| known.verified);
-                // The viewer has it a few frames later.
+                // The viewer shows the scene a few frames later.
                 return verified && session.is_drawn() && self.frames > 12;
             }
             Step::WaitFrames(count) => return self.frames >= *count,
-            // A picture comes back some frames after it was asked for.
+            // A picture arrives some frames after its request.
             Step::WaitBusy => return !busy && self.frames > 6,
             Step::ChooseKnee => session.choose_knee(),
             Step::Choose(id) => session.choose(*id),
@@ -177,7 +177,7 @@ impl Script {
                 .history
                 .edit(|document| document.filter.set_range(*quantity, Some(*range))),
             Step::File(purpose, path) => {
-                // What was saved before is nothing to see in a picture.
+                // Messages about files saved earlier must not appear in a picture.
                 session.notices.retain(|notice| notice.is_error);
                 explorer.act(ctx, *purpose, path.clone());
             }

@@ -1,42 +1,42 @@
-//! Every evaluated design of a run, in columns: about 200 bytes each, so that a million fit in memory.
+//! All evaluated designs of a run, stored in columns: about 200 bytes per design, so that a million fit in memory.
 
+use crate::study::Row;
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::{Architecture, Design, VARIABLES, WorkingMode};
-use crate::study::Row;
 
-/// Evaluated designs in the order of their ids, which begin at 0 and leave none out.
+/// Evaluated designs in the order of their ids, which are consecutive from 0.
 #[derive(Debug, Clone, Default)]
 pub struct Store {
-    /// Place of the architecture in [`Architecture::ALL`].
+    /// Index of the architecture in [`Architecture::ALL`].
     architecture: Vec<u8>,
     mode: Vec<WorkingMode>,
     generation: Vec<u32>,
     values: [Vec<f64>; VARIABLES.len()],
     mass: Vec<f64>,
     radius: Vec<f64>,
-    /// `φ_c` \[deg\]; not a number for an infeasible design.
+    /// Home orientation `φ_c` \[deg\]; NaN for an infeasible design.
     phi: Vec<f64>,
     violation: Vec<f64>,
-    /// Not a number where the study does not ask for the constraint.
+    /// Relative margins; NaN where the study does not require the constraint.
     margins: [Vec<f64>; Constraint::ALL.len()],
-    /// Not a number where there is none.
+    /// Clearance \[m\]; NaN where there is none.
     clearance: Vec<f64>,
-    /// A bit for each active constraint.
+    /// One bit per constraint, set if the constraint is active.
     active: Vec<u8>,
 }
 
 impl Store {
-    /// Number of designs.
+    /// Returns the number of designs.
     pub fn len(&self) -> usize {
         self.mass.len()
     }
 
-    /// Whether there is none.
+    /// Returns whether there are no designs.
     pub fn is_empty(&self) -> bool {
         self.mass.is_empty()
     }
 
-    /// Adds a design; its id is the number of those before it.
+    /// Adds a design; its id is the number of designs before it.
     pub fn push(&mut self, row: &Row) {
         let index = Architecture::ALL
             .iter()
@@ -59,7 +59,7 @@ impl Store {
         self.active.push(row.active);
     }
 
-    /// Moves the designs of `other` behind these.
+    /// Moves the designs of `other` to the end of this store.
     pub fn append(&mut self, other: &mut Store) {
         self.architecture.append(&mut other.architecture);
         self.mode.append(&mut other.mode);
@@ -78,7 +78,7 @@ impl Store {
         self.active.append(&mut other.active);
     }
 
-    /// One design.
+    /// Returns all values of design `id`, if it exists.
     pub fn row(&self, id: usize) -> Option<Row> {
         let design = self.design(id)?;
         Some(Row {
@@ -94,7 +94,7 @@ impl Store {
         })
     }
 
-    /// The design of an id.
+    /// Returns design `id`, if it exists.
     pub fn design(&self, id: usize) -> Option<Design> {
         if id >= self.len() {
             return None;
@@ -103,17 +103,17 @@ impl Store {
         Design::new(self.architecture(id), self.mode[id], values).ok()
     }
 
-    /// The architecture of design `id`, which must be there.
+    /// Returns the architecture of design `id`, which must exist.
     pub fn architecture(&self, id: usize) -> Architecture {
         Architecture::ALL[usize::from(self.architecture[id])]
     }
 
-    /// Whether design `id`, which must be there, is feasible.
+    /// Returns whether design `id`, which must exist, is feasible.
     pub fn is_feasible(&self, id: usize) -> bool {
         self.radius[id] > 0.0
     }
 
-    /// All values of a quantity, in the order of ids.
+    /// Returns all values of a quantity, in the order of the ids.
     pub fn column(&self, quantity: super::Quantity) -> &[f64] {
         use super::Quantity as Q;
         match quantity {
@@ -127,7 +127,7 @@ impl Store {
         }
     }
 
-    /// Memory in use \[bytes\].
+    /// Returns the memory in use \[bytes\].
     pub fn bytes(&self) -> usize {
         let per_row = 1 + size_of::<WorkingMode>() + 4 + 1 + 8 * (VARIABLES.len() + 5 + Constraint::ALL.len());
         self.mass.capacity() * per_row

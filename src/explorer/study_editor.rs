@@ -1,4 +1,4 @@
-//! A study being edited: its text is what counts, and it is checked as it is typed.
+//! A study being edited: its text is authoritative and is checked as it is typed.
 
 use std::path::{Path, PathBuf};
 
@@ -7,19 +7,19 @@ use crate::study::{BUILTIN, Builtin, Fault, Study, StudyError};
 /// A study being edited.
 #[derive(Debug, Clone)]
 pub struct StudyEditor {
-    /// Its text, comments and all.
+    /// Its text, including comments.
     text: String,
-    /// The study of the text, or the last sound one.
+    /// The study that the text describes, or the last valid one.
     study: Study,
-    /// What is wrong with the text.
+    /// Faults in the text.
     faults: Vec<Fault>,
-    /// Where it was read from or saved to.
+    /// File that it was read from or saved to.
     path: Option<PathBuf>,
     changed: bool,
 }
 
 impl StudyEditor {
-    /// An editor of a sound study.
+    /// Makes an editor for a valid study.
     pub fn new(study: Study, path: Option<PathBuf>) -> Self {
         let text = toml::to_string(&study).unwrap_or_default();
         Self {
@@ -31,10 +31,10 @@ impl StudyEditor {
         }
     }
 
-    /// An editor of a study that comes with the program.
+    /// Makes an editor for a built-in study.
     ///
     /// # Errors
-    /// None for a file that passed the tests.
+    /// Returns a [`StudyError`] if the built-in study is invalid, which the tests exclude.
     pub fn builtin(builtin: &Builtin) -> Result<Self, StudyError> {
         Ok(Self {
             text: builtin.text.to_owned(),
@@ -42,15 +42,15 @@ impl StudyEditor {
         })
     }
 
-    /// An editor of the paper's study.
+    /// Makes an editor for the paper's study.
     pub fn paper() -> Self {
         Self::builtin(&BUILTIN[0]).unwrap_or_else(|_| Self::new(Study::default(), None))
     }
 
-    /// An editor of a study file.
+    /// Makes an editor for a study file.
     ///
     /// # Errors
-    /// [`StudyError`].
+    /// Returns a [`StudyError`] if the file cannot be read or the study is invalid.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         let study = Study::read(path)?;
         let text = std::fs::read_to_string(path).map_err(|source| StudyError::Read {
@@ -63,10 +63,10 @@ impl StudyEditor {
         })
     }
 
-    /// Writes the text; a file that stands there is replaced whole or not at all.
+    /// Saves the text atomically: an existing file is either replaced completely or left unchanged.
     ///
     /// # Errors
-    /// What went wrong, in words.
+    /// Returns a message that says why the file cannot be written.
     pub fn save(&mut self, path: &Path) -> Result<(), String> {
         super::files::write_whole(path, self.text.as_bytes())?;
         self.path = Some(path.to_owned());
@@ -74,32 +74,32 @@ impl StudyEditor {
         Ok(())
     }
 
-    /// The text.
+    /// Returns the text.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The study: of the text if it is sound, else the last one that was.
+    /// Returns the study that the text describes if it is valid, otherwise the last valid one.
     pub fn study(&self) -> &Study {
         &self.study
     }
 
-    /// What is wrong with the text; empty for a sound study.
+    /// Returns the faults in the text; there are none for a valid study.
     pub fn faults(&self) -> &[Fault] {
         &self.faults
     }
 
-    /// Where it was read from or saved to.
+    /// Returns the file that the study was read from or saved to, if there is one.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
 
-    /// Whether it differs from the file.
+    /// Returns whether the study was changed since it was read or saved.
     pub fn is_changed(&self) -> bool {
         self.changed
     }
 
-    /// Takes a text as typed.
+    /// Sets the text as typed and checks it.
     pub fn set_text(&mut self, text: String) {
         self.changed |= text != self.text;
         self.text = text;
@@ -122,7 +122,7 @@ impl StudyEditor {
         }
     }
 
-    /// Changes the study by hand; a change that cannot be is told and not made.
+    /// Changes the study by hand; an invalid change is reported as faults and not applied.
     pub fn change(&mut self, change: impl FnOnce(&mut Study)) {
         let mut study = self.study.clone();
         change(&mut study);
@@ -131,7 +131,7 @@ impl StudyEditor {
         }
         self.faults = study.faults();
         if self.faults.is_empty() {
-            // The text is written anew: what a person wrote beside the values is kept by editing the text itself.
+            // The text is generated anew and loses its comments; only editing the text itself preserves them.
             self.text = toml::to_string(&study).unwrap_or_default();
             self.study = study;
         }

@@ -1,40 +1,40 @@
-//! Colours and marks of the window: one per architecture, the same as in recordings.
+//! Colours and markers of the window: one per architecture, the same as in recordings.
 
 use egui::{Color32, Context, Ui};
 use egui_plot::MarkerShape;
 
-use kinefront_model::mechanism::Architecture;
 use crate::palette;
 use crate::scene::Part;
 pub use crate::text::number;
+use kinefront_model::mechanism::Architecture;
 
-/// The design in the light.
+/// Colour of the selected design.
 pub const CHOSEN: Color32 = Color32::from_rgb(255, 70, 60);
-/// What is changed by hand.
+/// Colour of a modified design.
 pub const WHAT_IF: Color32 = Color32::from_rgb(230, 110, 230);
-/// A constraint that is broken.
+/// Colour of a violated constraint and of an error.
 pub const BROKEN: Color32 = Color32::from_rgb(230, 70, 60);
-/// A constraint that is active.
+/// Colour of an active constraint.
 pub const ACTIVE: Color32 = Color32::from_rgb(240, 160, 40);
-/// Something that holds.
+/// Colour of a satisfied constraint and of a message that is not an error.
 pub const SOUND: Color32 = Color32::from_rgb(90, 180, 110);
 
-/// Fonts and colours, the embedded viewer's: one look for all.
+/// Applies the fonts and colours of the embedded viewer, so that the whole window has one style.
 pub fn dress(ctx: &Context) {
     re_viewer::external::re_ui::apply_style_and_install_loaders(ctx);
 }
 
-/// Colour of an architecture, dark enough to be read on a light ground.
+/// Returns the colour of an architecture, darkened on a light background to be legible.
 pub fn architecture(architecture: Architecture, dark: bool) -> Color32 {
     readable(palette::architecture(architecture), dark)
 }
 
-/// Colour of a part, dark enough to be seen on a light ground.
+/// Returns the colour of a part, darkened on a light background to be visible.
 pub fn part(part: Part, dark: bool) -> Color32 {
     readable(palette::part(part), dark)
 }
 
-/// Colour of the nearest pair of bodies.
+/// Returns the colour of the nearest pair of members.
 pub fn nearest(too_near: bool, dark: bool) -> Color32 {
     readable(palette::nearest(too_near), dark)
 }
@@ -48,7 +48,7 @@ fn readable([r, g, b]: [u8; 3], dark: bool) -> Color32 {
     }
 }
 
-/// Place of an architecture among all, which gives its mark.
+/// Returns the index of an architecture in [`Architecture::ALL`], which determines its marker.
 pub fn index(architecture: Architecture) -> usize {
     Architecture::ALL
         .iter()
@@ -56,7 +56,7 @@ pub fn index(architecture: Architecture) -> usize {
         .unwrap_or(0)
 }
 
-/// Mark of an architecture in a plot.
+/// Returns the marker of an architecture in a plot.
 pub fn mark(architecture: Architecture) -> MarkerShape {
     const MARKS: [MarkerShape; 4] = [
         MarkerShape::Circle,
@@ -67,7 +67,7 @@ pub fn mark(architecture: Architecture) -> MarkerShape {
     MARKS[index(architecture) % MARKS.len()]
 }
 
-/// The ground that designs are drawn on.
+/// Returns the background colour on which designs are drawn.
 pub fn ground(dark: bool) -> Color32 {
     if dark {
         Color32::from_gray(16)
@@ -76,7 +76,7 @@ pub fn ground(dark: bool) -> Color32 {
     }
 }
 
-/// Infeasible designs.
+/// Returns the colour of infeasible designs.
 pub fn infeasible(dark: bool) -> Color32 {
     if dark {
         Color32::from_gray(88)
@@ -85,12 +85,12 @@ pub fn infeasible(dark: bool) -> Color32 {
     }
 }
 
-/// Lines and words that stand out from the ground.
+/// Returns the colour of lines and text that contrast with the background.
 pub fn ink(ui: &Ui) -> Color32 {
     ui.visuals().strong_text_color()
 }
 
-/// `share` of a colour over the ground.
+/// Blends a colour over the background; `share` is the fraction of the colour.
 pub fn mix(color: Color32, ground: Color32, share: f32) -> Color32 {
     let part = |a: u8, b: u8| (f32::from(a) * share + f32::from(b) * (1.0 - share)) as u8;
     Color32::from_rgb(

@@ -1,4 +1,5 @@
-//! The embedded Rerun viewer: a pane of the window, fed in-process, whose panels are ours.
+//! The embedded Rerun viewer: a pane of the window that receives its data in-process. Its own panels are hidden,
+//! because the window has panels of its own.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -18,19 +19,19 @@ use re_viewer::{
 use crate::recording::{APPLICATION_ID, LiveScene, Picked};
 use crate::study::Study;
 
-/// Memory that the scene may take before its oldest data go.
+/// Memory \[bytes\] that the scene may use before its oldest data are dropped.
 const MEMORY: u64 = 2 << 30;
 
 /// The embedded viewer.
 pub struct Viewer {
     app: re_viewer::App,
     events: Rc<RefCell<Vec<ViewerEvent>>>,
-    /// Whether keys belong to the viewer: the last click was inside.
+    /// Whether key presses go to the viewer, that is, whether the last click was inside it.
     owns_keys: Arc<AtomicBool>,
     _runtime: tokio::runtime::Runtime,
 }
 
-/// Keys held back from the viewer.
+/// Removes the events of keys from the input and returns them, so that the viewer does not receive them.
 fn take_keys(ctx: &Context) -> Vec<Event> {
     ctx.input_mut(|input| {
         let (keys, rest) = std::mem::take(&mut input.events)
@@ -42,10 +43,10 @@ fn take_keys(ctx: &Context) -> Vec<Event> {
 }
 
 impl Viewer {
-    /// The viewer and the scene that it shows.
+    /// Makes the viewer and the scene that it shows.
     ///
     /// # Errors
-    /// The graphics card cannot draw it, or its threads cannot be started.
+    /// Returns an error if the graphics card cannot draw the viewer or its threads cannot be started.
     pub fn new(
         cc: &eframe::CreationContext<'_>,
         study: &Study,
@@ -59,10 +60,10 @@ impl Viewer {
         let queue = Rc::clone(&events);
         let mut options = StartupOptions {
             persist_state: false,
-            // It would ask the net for examples.
+            // The welcome screen would load examples from the internet.
             hide_welcome_screen: true,
             expect_data_soon: Some(true),
-            // Called while the renderer is locked: nothing but taking note of the event may happen here.
+            // This is called while the renderer is locked, so it must do nothing but store the event.
             on_event: Some(Rc::new(move |event| queue.borrow_mut().push(event))),
             ..StartupOptions::default()
         };
@@ -71,8 +72,8 @@ impl Viewer {
         options.panel_state_overrides.selection = Some(PanelState::Hidden);
         options.panel_state_overrides.time = Some(PanelState::Hidden);
 
-        // The viewer takes keys at the begin of each pass. They are put aside before that and given back after it, unless
-        // the last click was inside.
+        // The viewer processes keys at the beginning of each pass. They are removed before that and restored after it,
+        // unless the last click was inside the viewer.
         let owns_keys = Arc::new(AtomicBool::new(false));
         let aside: Arc<Mutex<Vec<Event>>> = Arc::default();
         let (owned, put) = (Arc::clone(&owns_keys), Arc::clone(&aside));
@@ -90,7 +91,7 @@ impl Viewer {
             AppEnvironment::Custom(APPLICATION_ID.to_owned()),
             options,
             cc,
-            // Of its own, so that no credentials are looked for.
+            // With its own registry, the viewer does not look for stored credentials.
             Some(re_redap_client::ConnectionRegistry::new_without_stored_credentials()),
             AsyncRuntimeHandle::new_native(runtime.handle().clone()),
         );
@@ -112,7 +113,7 @@ impl Viewer {
         app.add_log_receiver(receiver);
         let sink = rerun::sink::CallbackSink::new(move |messages| {
             for message in messages {
-                // A viewer that is gone needs nothing more.
+                // The send fails only if the viewer is already closed.
                 let _ = sender.send(message.clone().into());
             }
         });
@@ -128,7 +129,7 @@ impl Viewer {
         ))
     }
 
-    /// Takes in what was sent; to be called before each frame.
+    /// Processes the received data; must be called before each frame.
     pub fn logic(&mut self, ctx: &Context, frame: &mut eframe::Frame) {
         self.app.logic(ctx, frame);
     }
@@ -139,19 +140,19 @@ impl Viewer {
         if let Some(press) = ui.input(|input| input.pointer.press_origin()) {
             self.owns_keys.store(pane.contains(press), Ordering::Relaxed);
         }
-        // Of its shortcuts some close the program, wipe its storage or open a port: none gets through.
+        // Some shortcuts of the viewer close the program, erase its storage or open a port, so none is passed on.
         let keys = take_keys(ui.ctx());
         ui.push_id("scene", |ui| self.app.ui(ui, frame));
         ui.ctx().input_mut(|input| input.events.extend(keys));
     }
 
-    /// What was clicked since the last call.
+    /// Returns the design that was clicked since the last call, if there is one.
     pub fn picked(&mut self) -> Option<Picked> {
         let mut picked = None;
         for event in self.events.borrow_mut().drain(..) {
             if let ViewerEventKind::SelectionChange { items } = event.kind {
                 picked = items.iter().find_map(|item| match item {
-                    // A selection that was not clicked has no place.
+                    // A selection without a position was not made by a click.
                     SelectionChangeItem::Entity {
                         entity_path,
                         instance_id,
@@ -166,7 +167,7 @@ impl Viewer {
     }
 }
 
-/// Index of the instance; a batch of one is selected as a whole.
+/// Returns the index of the instance: 0 for a whole batch, because a batch of one is selected as a whole.
 fn instance_of(instance: Instance) -> Option<u64> {
     Some(instance.specific_index().map_or(0, |index| index.get()))
 }

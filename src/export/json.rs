@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use super::Prepared;
+use crate::scene::{Body, Frame, Linkage};
 use kinefront_model::evaluation::{Evaluation, Model, PoseReport, Unreachable};
 use kinefront_model::mechanism::{Actuator, Design};
-use crate::scene::{Body, Frame, Linkage};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::Material;
 
@@ -323,7 +323,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
         ..
     } = subject;
     let design = &evaluation.design;
-    let at = |pose: &Pose| model.pose(design, pose).map_err(|error| error.to_string());
+    let at = |pose: &Pose| model.pose(design, pose);
     let actuator = design.architecture.actuator();
     let tour = subject.tour.iter().flat_map(|tour| &tour.poses);
     let document = ExportJson {
@@ -332,7 +332,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
         design: subject.title(),
         evaluation: EvaluationJson::new(model, evaluation),
         pose: PoseJson::new(pose, pose.phi.to_degrees()),
-        at_pose: (&at(pose)?).into(),
+        at_pose: (&at(pose)).into(),
         material: (&model.material).into(),
         actuator: ActuatorJson {
             kind: kind(actuator),
@@ -352,13 +352,11 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
             })
             .collect(),
         tour: tour
-            .map(|pose| {
-                Ok(TourJson {
-                    pose: PoseJson::new(pose, pose.phi.to_degrees()),
-                    actuators: at(pose)?.ok().map(|report| report.actuators),
-                })
+            .map(|pose| TourJson {
+                pose: PoseJson::new(pose, pose.phi.to_degrees()),
+                actuators: at(pose).ok().map(|report| report.actuators),
             })
-            .collect::<Result<_, String>>()?,
+            .collect(),
     };
     let mut bytes = serde_json::to_vec_pretty(&document).map_err(|error| error.to_string())?;
     bytes.push(b'\n');

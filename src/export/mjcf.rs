@@ -3,8 +3,8 @@
 
 use super::xml::Element;
 use super::{Format, Prepared, inertial, joint_axis, joint_name, rgba};
-use kinefront_model::mechanism::Actuator;
 use crate::scene::{Body, Solid, SolidShape};
+use kinefront_model::mechanism::Actuator;
 
 pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
     let linkage = &subject.linkage;

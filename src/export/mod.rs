@@ -22,14 +22,15 @@ mod xml;
 
 use glam::DVec3;
 
-use kinefront_model::evaluation::{Evaluation, Model, Unreachable};
-use kinefront_model::mechanism::Actuator;
 use crate::palette;
 use crate::scene::{
     Body, Linkage, Part, RegularCylinder, Scene, Solid, SolidShape, Tour, linkage, manipulator, regular_workspace, tour,
 };
-use kinefront_model::spatial::{LEGS, Pose};
 use crate::study::Study;
+use kinefront_model::evaluation::{Evaluation, Model, Unreachable};
+use kinefront_model::mechanism::Actuator;
+use kinefront_model::spatial::{LEGS, Pose};
+use kinefront_model::workspace::GridError;
 
 pub use json::{DesignJson, EvaluationJson, PoseReportJson};
 pub use table::front_to_parquet;
@@ -145,6 +146,9 @@ pub enum ExportError {
     /// The design does not reach the pose.
     #[error("the design does not reach the pose")]
     Unreachable(#[from] Unreachable),
+    /// A grid of the study does not fit.
+    #[error(transparent)]
+    Grid(#[from] GridError),
     /// A bar has radius 0, but the format requires masses and shapes; contains the format's short name.
     #[error("a bar of radius 0 has no mass and no shape; {0} needs r_j and r_p above 0")]
     NoBar(&'static str),
@@ -298,7 +302,7 @@ pub fn export(subject: &Subject, format: Format) -> Result<Vec<u8>, ExportError>
         evaluation,
         pose,
     } = *subject;
-    let model = study.model();
+    let model = study.model()?;
     let design = &evaluation.design;
     let pose = pose.unwrap_or_else(|| model.home(evaluation));
     let linkage = linkage(&model, design, &pose)?;

@@ -2,8 +2,8 @@
 
 use super::xml::{Element, numbers};
 use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, text};
-use kinefront_model::mechanism::Actuator;
 use crate::scene::{Body, Frame, Joint, Solid, SolidShape};
+use kinefront_model::mechanism::Actuator;
 
 /// Value that means "no limit" where the format requires a number.
 const UNLIMITED: f64 = 1e16;

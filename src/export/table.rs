@@ -24,10 +24,12 @@ impl Column {
         fn read<T: std::str::FromStr>(name: &str, texts: &[&str]) -> Result<Vec<Option<T>>, String> {
             let parse = |(row, text): (usize, &&str)| match *text {
                 "" => Ok(None),
-                text => text
-                    .parse()
-                    .map(Some)
-                    .map_err(|_| format!("line {}: `{text}` is not a valid value for the column `{name}`", row + 2)),
+                text => text.parse().map(Some).map_err(|_| {
+                    format!(
+                        "line {}: `{text}` is not a valid value for the column `{name}`",
+                        row + 2
+                    )
+                }),
             };
             texts.iter().enumerate().map(parse).collect()
         }

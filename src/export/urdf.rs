@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use super::xml::{Element, numbers};
 use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, text};
-use kinefront_model::mechanism::Actuator;
 use crate::scene::{Body, Solid, SolidShape};
+use kinefront_model::mechanism::Actuator;
 
 /// Limits of force or torque and of speed for all joints: the format requires them and the study does not define them.
 const EFFORT: f64 = 1e4;

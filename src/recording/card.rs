@@ -1,9 +1,9 @@
 //! The numbers of a design as a card, in markdown.
 
+use crate::scene::{EllipsoidSet, Tour};
+use crate::text::{self, short};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::VARIABLES;
-use crate::scene::{EllipsoidSet, Tour};
-use crate::text::short;
 
 /// Returns the card of a design; `heading` names the design.
 pub(super) fn card(

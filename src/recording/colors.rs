@@ -2,9 +2,9 @@
 
 use rerun::Color;
 
-use kinefront_model::mechanism::{Architecture, ReachReason};
 use crate::palette;
 use crate::scene::{Part, Scale};
+use kinefront_model::mechanism::{Architecture, ReachReason};
 
 /// Returns the colour of an architecture.
 pub(super) fn architecture(architecture: Architecture) -> Color {

@@ -7,10 +7,10 @@ use super::draw::Canvas;
 use super::subject::Subject;
 use super::writer::{ALWAYS, Moment, RecordingError, Writer};
 use super::{blueprint, paths, timelines};
-use kinefront_model::evaluation::{Evaluation, Model};
 use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour};
-use kinefront_model::spatial::Pose;
 use crate::study::Study;
+use kinefront_model::evaluation::{Evaluation, Model};
+use kinefront_model::spatial::Pose;
 
 /// Number of cells along the longer side of a heatmap: of a single design, of a layer over φ, of a step of a front, and
 /// of an outline over φ.
@@ -33,7 +33,7 @@ pub fn record_design(
     heading: &str,
     field: Field,
 ) -> Result<(), RecordingError> {
-    let model = &study.model();
+    let model = &study.model().map_err(RecordingError::encode)?;
     let writer = Writer::create(path, heading)?;
     let subject = Subject { model, evaluation };
     let cylinder = regular_workspace(evaluation, model.workspace.rotation_range_deg);
@@ -47,14 +47,14 @@ pub fn record_design(
 
     let mut sets = Vec::new();
     for kind in EllipsoidKind::ALL {
-        if let Some(set) = ellipsoids(model, evaluation, kind).map_err(RecordingError::encode)? {
+        if let Some(set) = ellipsoids(model, evaluation, kind) {
             let entity = format!("{}/{}", paths::ELLIPSOIDS, kind.key());
             canvas.ellipsoids(&entity, &set, 0.0, subject.note())?;
             sets.push(set);
         }
     }
     for field in Field::ALL {
-        let heatmap = Heatmap::new(model, &evaluation.design, field, home.phi, FINE).map_err(RecordingError::encode)?;
+        let heatmap = Heatmap::new(model, &evaluation.design, field, home.phi, FINE);
         subject.heatmap(&canvas, &heatmap, floor)?;
     }
     subject.workspace(&canvas)?;
@@ -100,10 +100,9 @@ pub(super) fn record_step(
     if let Ok(scene) = manipulator(model, &evaluation.design, &home) {
         canvas.manipulator(paths::MANIPULATOR, &scene)?;
     }
-    let heatmap = Heatmap::new(model, &evaluation.design, Field::InverseCondition, home.phi, STEP)
-        .map_err(RecordingError::encode)?;
+    let heatmap = Heatmap::new(model, &evaluation.design, Field::InverseCondition, home.phi, STEP);
     subject.heatmap(&canvas, &heatmap, subject.floor())?;
-    let set = ellipsoids(model, evaluation, EllipsoidKind::Stiffness).map_err(RecordingError::encode)?;
+    let set = ellipsoids(model, evaluation, EllipsoidKind::Stiffness);
     if let Some(set) = &set {
         canvas.ellipsoids(&format!("{}/stiffness", paths::ELLIPSOIDS), set, 0.0, subject.note())?;
     }

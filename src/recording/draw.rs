@@ -12,13 +12,13 @@ use rerun::{
 use super::colors::{self, ColorMap, rgb};
 use super::stage::Rows;
 use super::writer::{Moment, RecordingError, Writer};
-use kinefront_model::evaluation::{ConstraintReport, Evaluation};
 use crate::palette;
 use crate::scene::{
     ConfigurationSpace, EllipsoidSet, Field, Heatmap, Nearest, Part, RegularCylinder, Scene, Solid, SolidShape,
 };
-use kinefront_model::spatial::unit;
 use crate::text::short;
+use kinefront_model::evaluation::{ConstraintReport, Evaluation};
+use kinefront_model::spatial::unit;
 
 type Outcome = Result<(), RecordingError>;
 

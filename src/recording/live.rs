@@ -12,10 +12,10 @@ use super::stage::{Rows, Stage};
 use super::subject::Subject;
 use super::writer::{RecordingError, Writer};
 use super::{blueprint, colors, paths};
-use kinefront_model::evaluation::{Evaluation, Model};
 use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Scene, ellipsoids, manipulator};
-use kinefront_model::spatial::Pose;
 use crate::study::Study;
+use kinefront_model::evaluation::{Evaluation, Model};
+use kinefront_model::spatial::Pose;
 
 /// Number of cells along the longer side of a heatmap, and of an outline over φ.
 const HEATMAP: HeatmapSettings = HeatmapSettings { cells: 96 };
@@ -306,8 +306,7 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<(), RecordingError> {
     if layers.heatmap.is_some() || layers.singularities {
         let field = layers.heatmap.unwrap_or(Field::InverseCondition);
         let phi = shown.heatmap_phi.unwrap_or(home.phi);
-        let mut heatmap =
-            Heatmap::new(model, &evaluation.design, field, phi, HEATMAP).map_err(RecordingError::encode)?;
+        let mut heatmap = Heatmap::new(model, &evaluation.design, field, phi, HEATMAP);
         if !layers.singularities {
             heatmap.singular.clear();
             heatmap.edges.clear();
@@ -323,7 +322,7 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<(), RecordingError> {
         }
     }
     if let Some(kind) = layers.ellipsoids
-        && let Some(set) = ellipsoids(model, evaluation, kind).map_err(RecordingError::encode)?
+        && let Some(set) = ellipsoids(model, evaluation, kind)
     {
         canvas.ellipsoids(
             &format!("{}/{}", paths::ELLIPSOIDS, kind.key()),

@@ -9,9 +9,9 @@ use rerun::{Scalars, SeriesLines, TimeColumn};
 use super::scatter::{Frame, FrontPoint, INFEASIBLE_COLOR, front_points, points, selected, staircase};
 use super::writer::{ALWAYS, Moment, RecordingError, Writer};
 use super::{blueprint, colors, columns, design, paths, timelines};
+use crate::study::{Batch, Event, GenerationSummary, RunSummary, Study};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Architecture;
-use crate::study::{Batch, Event, GenerationSummary, RunSummary, Study};
 
 /// Number of rows of `/designs` written at a time, large enough to keep the file's index small.
 const ROWS: usize = 300;
@@ -73,7 +73,7 @@ impl Recorder {
         writer.text(paths::STUDY, ALWAYS, &study_text(study)?)?;
         Ok(Self {
             writer,
-            model: study.model(),
+            model: study.model().map_err(RecordingError::encode)?,
             architectures: study.architectures.clone(),
             frame,
             pending: Vec::new(),

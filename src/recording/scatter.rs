@@ -8,9 +8,9 @@ use rerun::datatypes::{Range1D, Range2D};
 use rerun::{Color, LineStrips2D, Points2D, Radius, Transform3D};
 
 use super::colors;
+use crate::study::{FrontMember, Study};
 use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::Architecture;
-use crate::study::{FrontMember, Study};
 
 /// Height of the `R_w` axis in the view, as a multiple of the width of one decade of mass.
 const HEIGHT: f32 = 2.5;

@@ -6,9 +6,9 @@ use super::colors::ColorMap;
 use super::draw::Canvas;
 use super::paths;
 use super::writer::RecordingError;
+use crate::scene::{ConfigurationSpace, Field, Heatmap, HeatmapSettings, SolidShape, manipulator, regular_workspace};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Design;
-use crate::scene::{ConfigurationSpace, Field, Heatmap, HeatmapSettings, SolidShape, manipulator, regular_workspace};
 use kinefront_model::spatial::Pose;
 
 /// Orientations of the layers, relative to the home orientation \[deg\].
@@ -170,8 +170,7 @@ impl Subject<'_> {
         let map = ColorMap::new(field.scale(), [0.0, 1.0], field.threshold(self.model));
         for (index, turn) in LAYERS_DEG.into_iter().enumerate() {
             let phi = space.origin + turn.to_radians();
-            let heatmap =
-                Heatmap::new(self.model, self.design(), field, phi, settings).map_err(RecordingError::encode)?;
+            let heatmap = Heatmap::new(self.model, self.design(), field, phi, settings);
             let root = format!("{}/layers/{index}", paths::CONFIGURATION);
             let place = |p: DVec2| space.place(p, phi);
             if filled {

@@ -3,9 +3,9 @@
 use super::fronts::Front;
 use super::source::Source;
 use super::{Fronts, ReportError};
+use crate::study::{LengthChoice, StiffnessChoice, Study, TelescopicBar};
 use kinefront_model::evaluation::GridChoice;
 use kinefront_model::mechanism::Architecture;
-use crate::study::{LengthChoice, StiffnessChoice, Study, TelescopicBar};
 
 /// An alternative to one assumption of a study.
 #[derive(Debug, Clone, Copy)]
@@ -241,7 +241,7 @@ pub(super) fn vary(
             tell(&format!("sensitivity: {name}, {architecture}"));
             let mut single = study.clone();
             single.architectures = vec![architecture];
-            let model = single.model();
+            let model = single.model()?;
             let source = Source::run(name, single)?;
             match Fronts::new(&[source], &model, study.optimizer.front_designs) {
                 Ok(fronts) => alone.extend(fronts.alone),
@@ -249,13 +249,13 @@ pub(super) fn vary(
                 Err(error) => return Err(error),
             }
         }
-        let model = study.model();
+        let model = study.model()?;
         let references = study
             .references
             .iter()
             .filter_map(|reference| reference.parse(study.working_mode).ok())
-            .map(|design| Ok(model.evaluate(&design, GridChoice::Fine)?.workspace_radius))
-            .collect::<Result<_, ReportError>>()?;
+            .map(|design| model.evaluate(&design, GridChoice::Fine).workspace_radius)
+            .collect();
         variations.push(Variation {
             reading,
             alone,

@@ -4,10 +4,10 @@ use super::chart::{Axis, Chart, Mark, Series};
 use super::fits::Trend;
 use super::fronts::Front;
 use super::{ClearanceCost, Figure, Report, ReportError, slug};
-use kinefront_model::evaluation::Constraint;
-use kinefront_model::mechanism::{Architecture, Variable};
 use crate::palette;
 use crate::text::short;
+use kinefront_model::evaluation::Constraint;
+use kinefront_model::mechanism::{Architecture, Variable};
 use kinefront_model::workspace::Thresholds;
 
 const MASS: &str = "mass in motion [kg]";
@@ -78,19 +78,17 @@ pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
         }
         let front = report.fronts.of(*architecture);
         if let Some(front) = front {
-            let words =
-                format!("Active constraints, which limit the workspace, along the front of the {architecture}");
+            let words = format!("Active constraints, which limit the workspace, along the front of the {architecture}");
             figures.add(
                 format!("active-{slug}"),
                 words,
-                (active(*architecture, front, &report.study.model().thresholds), 0),
+                (active(*architecture, front, &report.model.thresholds), 0),
             )?;
         }
     }
     if let Some(cost) = ClearanceCost::of(&report.study, &report.variations) {
         for &(architecture, _) in &report.fronts.alone {
-            let words =
-                format!("Fronts of the {architecture} without and with a required clearance between members");
+            let words = format!("Fronts of the {architecture} without and with a required clearance between members");
             let name = format!("clearance-{}", slug(architecture.name()));
             figures.add(name, words, clearance(&cost, architecture))?;
         }

@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::Front;
-use kinefront_model::mechanism::{VARIABLES, Variable};
 use crate::study::Bounds;
+use kinefront_model::mechanism::{VARIABLES, Variable};
 
 /// A polynomial in `R_w` fitted to a design variable.
 #[derive(Debug, Clone, PartialEq)]

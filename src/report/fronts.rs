@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use super::{ReportError, Source};
+use crate::study::{DesignProblem, Study};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{Architecture, Design};
 use kinefront_optimize::{Archive, Evaluated, Outcome, knee, spread};
-use crate::study::{DesignProblem, Study};
 
 /// A front: non-dominated evaluations on the fine grid in ascending order of mass, and hence of `R_w`.
 #[derive(Debug, Clone, Default)]
@@ -98,7 +98,7 @@ impl Fronts {
             let evaluations: Vec<Evaluation> = candidates
                 .par_iter()
                 .map(|design| model.evaluate(design, GridChoice::Fine))
-                .collect::<Result<_, _>>()?;
+                .collect();
             let front = Front::new(evaluations, most);
             if !front.members.is_empty() {
                 alone.push((architecture, front));
@@ -158,7 +158,7 @@ fn of_search(sources: &[Source], architectures: &[Architecture], study: &Study) 
         return Ok(None);
     };
     let most = study.optimizer.front_designs;
-    match Fronts::new(std::slice::from_ref(source), &study.model(), most) {
+    match Fronts::new(std::slice::from_ref(source), &study.model()?, most) {
         Ok(fronts) => Ok(Some(fronts)),
         Err(ReportError::NothingFeasible) => Ok(None),
         Err(error) => Err(error),

@@ -29,9 +29,9 @@ pub use reference::Reference;
 pub use source::Source;
 pub use write::free;
 
-use kinefront_model::evaluation::Evaluation;
-use kinefront_model::mechanism::Architecture;
 use crate::study::{AlgorithmName, BUILTIN, Study};
+use kinefront_model::evaluation::{Evaluation, Model};
+use kinefront_model::mechanism::Architecture;
 
 /// Options of a report.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,6 +80,7 @@ struct Picture {
 #[derive(Debug, Clone)]
 pub struct Report {
     study: Study,
+    model: Model,
     options: Options,
     /// Summaries of the searches that the report covers, without their designs.
     sources: Vec<Made>,
@@ -180,7 +181,7 @@ impl Report {
         start: Instant,
     ) -> Result<Self, ReportError> {
         let study = common(sources)?;
-        let model = study.model();
+        let model = study.model()?;
         let most = study.optimizer.front_designs;
         tell("verifying the fronts");
         let fronts = Fronts::new(sources, &model, most)?;
@@ -193,7 +194,7 @@ impl Report {
             [] => None,
             _ => Some(Single::new(rivals, &study)?),
         };
-        let references = reference::all(&study, &fronts)?;
+        let references = reference::all(&study, &model, &fronts);
         let trends: Vec<_> = fronts
             .alone
             .iter()
@@ -207,6 +208,7 @@ impl Report {
         let of_paper = is_paper(&study);
         let mut report = Self {
             study,
+            model,
             options,
             sources: sources.iter().chain(rivals).map(Made::new).collect(),
             fronts,
@@ -227,7 +229,7 @@ impl Report {
     }
 
     fn draw_pictures(&self) -> Result<Vec<Picture>, ReportError> {
-        let model = self.study.model();
+        let model = &self.model;
         let marked = self.fronts.alone.iter().flat_map(|(architecture, front)| {
             front.marked().into_iter().map(move |(mark, evaluation)| {
                 let name = format!("{}-{mark}", architecture.name().to_lowercase());
@@ -247,7 +249,7 @@ impl Report {
             .map(|(name, caption, evaluation)| {
                 let [width, height] = self.options.picture;
                 let range = self.study.workspace.rotation_range_deg;
-                let png = picture::picture(&model, evaluation, range, [width, height])
+                let png = picture::picture(model, evaluation, range, [width, height])
                     .and_then(|pixels| chart::pixels_to_png(width, height, &pixels))
                     .map_err(|message| ReportError::Figure {
                         name: name.clone(),

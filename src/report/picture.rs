@@ -7,9 +7,9 @@ use parry3d_f64::query::{Ray, RayCast};
 use parry3d_f64::shape::{Cuboid, Cylinder, SharedShape};
 use rayon::prelude::*;
 
-use kinefront_model::evaluation::{Evaluation, Model};
 use crate::palette;
 use crate::scene::{SolidShape, manipulator, regular_workspace};
+use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::spatial::unit;
 
 /// Colours of the ground and of the workspace.

@@ -1,10 +1,10 @@
 //! The reference designs of a study: the values that their source states, the values that this model computes, and the
 //! lightest design that replaces each of them.
 
-use super::{Fronts, ReportError};
+use super::Fronts;
+use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{Design, VARIABLES};
-use crate::study::Study;
 
 /// A reference design of the study.
 #[derive(Debug, Clone)]
@@ -27,30 +27,26 @@ pub struct Reference {
 }
 
 /// Evaluates the reference designs of the study.
-///
-/// # Errors
-/// [`ReportError::Grid`] if the step of a grid does not divide the full turn or half the rotation range.
-pub(super) fn all(study: &Study, fronts: &Fronts) -> Result<Vec<Reference>, ReportError> {
-    let model = study.model();
+pub(super) fn all(study: &Study, model: &Model, fronts: &Fronts) -> Vec<Reference> {
     study
         .references
         .iter()
         // The study was validated when it was read, so every reference can be parsed.
         .filter_map(|reference| Some((reference, reference.parse(study.working_mode).ok()?)))
         .map(|(reference, design)| {
-            let fine = model.evaluate(&design, GridChoice::Fine)?;
+            let fine = model.evaluate(&design, GridChoice::Fine);
             let beaten_by = fronts.together.lightest(fine.workspace_radius);
-            Ok(Reference {
+            Reference {
                 name: reference.name.clone(),
                 stated_mass: reference.mass_kg,
                 stated_radius: reference.workspace_radius_m,
-                coarse: model.evaluate(&design, GridChoice::Reference)?,
-                mass_range: [-1.0, 1.0].map(|side| mass_of(&model, &design, side * 0.0005)),
+                coarse: model.evaluate(&design, GridChoice::Reference),
+                mass_range: [-1.0, 1.0].map(|side| mass_of(model, &design, side * 0.0005)),
                 beaten_by: beaten_by
                     .filter(|found| fine.is_feasible() && found.mass < fine.mass)
                     .cloned(),
                 fine,
-            })
+            }
         })
         .collect()
 }

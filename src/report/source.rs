@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::sync::mpsc::sync_channel;
 
 use super::ReportError;
-use kinefront_model::evaluation::Evaluation;
 use crate::study::{Event, Row, RunControl, RunTimes, Study, read_table, spawn};
+use kinefront_model::evaluation::Evaluation;
 
 /// A search with all the designs that it evaluated.
 #[derive(Debug, Clone)]

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::{Report, ReportError, chart, page};
-use kinefront_model::evaluation::Evaluation;
 use crate::study::{FolderError, front_table, write_whole};
+use kinefront_model::evaluation::Evaluation;
 
 impl Report {
     /// Writes the report to a folder; with `replace`, the files of a report that is already there are replaced.

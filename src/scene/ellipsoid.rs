@@ -5,10 +5,9 @@ use glam::{DVec2, DVec3};
 use super::field::free_stiffness;
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::kinematics::Jacobian;
-use kinefront_model::with_leg;
 use kinefront_model::spatial::{Pose, smaller_eigenvalue, unit};
 use kinefront_model::stiffness::PlanarStiffness;
-use kinefront_model::workspace::GridError;
+use kinefront_model::with_leg;
 
 /// Meaning of the axes of an ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,15 +73,8 @@ const LARGEST: f64 = 0.24;
 
 /// Computes ellipsoids at the centre and on two rings of the regular workspace, at the home orientation; `None` for a
 /// design without a regular workspace.
-///
-/// # Errors
-/// [`GridError`], as for [`Model::checker`].
-pub fn ellipsoids(
-    model: &Model,
-    evaluation: &Evaluation,
-    kind: EllipsoidKind,
-) -> Result<Option<EllipsoidSet>, GridError> {
-    let Some(home) = evaluation.home else { return Ok(None) };
+pub fn ellipsoids(model: &Model, evaluation: &Evaluation, kind: EllipsoidKind) -> Option<EllipsoidSet> {
+    let home = evaluation.home?;
     let radius = evaluation.workspace_radius;
     let points = std::iter::once(DVec2::ZERO)
         .chain((0..6).map(|k| unit(f64::from(k) * std::f64::consts::FRAC_PI_3) * 0.5 * radius))
@@ -92,7 +84,7 @@ pub fn ellipsoids(
         phi: home.phi,
     });
     let ellipsoids: Vec<Ellipsoid> = with_leg!(evaluation.design.architecture, L => {
-        let checker = model.checker::<L>(&evaluation.design)?;
+        let checker = model.checker::<L>(&evaluation.design);
         poses
             .filter_map(|pose| {
                 let posture = checker.manipulator.posture(&pose).ok()?;
@@ -102,11 +94,11 @@ pub fn ellipsoids(
             .collect()
     });
     let largest = ellipsoids.iter().map(|e| e.values.max_element()).fold(0.0, f64::max);
-    Ok((largest > 0.0).then(|| EllipsoidSet {
+    (largest > 0.0).then(|| EllipsoidSet {
         kind,
         scale: LARGEST * radius / largest,
         ellipsoids,
-    }))
+    })
 }
 
 fn ellipsoid(pose: Pose, stiffness: &PlanarStiffness, kind: EllipsoidKind) -> Option<Ellipsoid> {

@@ -6,8 +6,8 @@ use super::Solid;
 use super::manipulator::Sizes;
 use kinefront_model::evaluation::{Model, Unreachable};
 use kinefront_model::mechanism::{Actuator, Design, Leg, LegJoint, LegPart, Manipulator, MemberKind};
-use kinefront_model::with_leg;
 use kinefront_model::spatial::{LEGS, Pose, Rotation};
+use kinefront_model::with_leg;
 
 /// A planar frame, given in the base frame or in the frame of another body.
 #[derive(Debug, Clone, Copy, PartialEq)]

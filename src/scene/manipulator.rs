@@ -3,12 +3,12 @@
 use glam::{DVec2, DVec3};
 
 use super::{Label, Line, Nearest, Part, Scene, Solid, SolidShape};
+use crate::text::number;
 use kinefront_model::clearance::{Bodies, BodySettings, Clearance, Neighbour};
 use kinefront_model::evaluation::{Model, Unreachable};
 use kinefront_model::mechanism::{Design, Guide, Leg, LegPart, Manipulator, MemberKind};
-use kinefront_model::with_leg;
 use kinefront_model::spatial::{ANCHOR_DIRECTIONS, Pose, unit};
-use crate::text::number;
+use kinefront_model::with_leg;
 
 /// Distance from a member's axis to the end of a pin, as a multiple of the member's radius.
 const PIN: f64 = 1.2;

@@ -4,8 +4,8 @@ use super::RegularCylinder;
 use kinefront_model::evaluation::Model;
 use kinefront_model::kinematics::forward;
 use kinefront_model::mechanism::{Actuator, Design, Leg, Manipulator};
-use kinefront_model::with_leg;
 use kinefront_model::spatial::{Pose, unit};
+use kinefront_model::with_leg;
 
 /// Poses along the regular workspace.
 #[derive(Debug, Clone, PartialEq)]

@@ -196,25 +196,22 @@ impl Study {
 
         for (name, section) in [("reference", &self.grid.reference), ("fine", &self.grid.fine)] {
             let key = |key: &str| format!("grid.{name}.{key}");
-            let grid = Grid::from(section);
-            let step = grid.phi_step_deg;
+            let step = section.phi_step_deg;
             let sound = step.is_finite() && (0.01..=120.0).contains(&step);
             check.that(
                 &key("phi_step_deg"),
                 sound,
                 format!("is {step}; it must be in [0.01, 120]"),
             );
-            if sound {
-                for error in [grid.orientations().err(), grid.half_window(range).err()]
-                    .into_iter()
-                    .flatten()
-                {
+            check.range(&key("directions"), section.directions, 3, 3600);
+            check.range(&key("ray_steps"), section.ray_steps, 1, 10_000);
+            check.range(&key("halvings"), section.halvings as usize, 0, 40);
+            if sound && section.directions > 0 && section.ray_steps > 0 {
+                let grid = Grid::try_from(section);
+                if let Err(error) = grid.and_then(|grid| grid.half_window(range)) {
                     check.that(&key("phi_step_deg"), false, format!("is invalid: {error}"));
                 }
             }
-            check.range(&key("directions"), grid.directions, 3, 3600);
-            check.range(&key("ray_steps"), grid.ray_steps, 1, 10_000);
-            check.range(&key("halvings"), grid.halvings as usize, 0, 40);
         }
 
         let o = &self.optimizer;

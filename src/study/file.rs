@@ -12,11 +12,11 @@ use super::sections::{
     StiffnessChoice, TelescopicBar, WorkspaceSection,
 };
 use kinefront_model::clearance::BodySettings;
-use kinefront_model::evaluation::Model;
+use kinefront_model::evaluation::{Model, ModelSettings};
 use kinefront_model::kinematics::CharacteristicLength;
 use kinefront_model::mechanism::{Architecture, BarLength, LegSettings, WorkingMode};
 use kinefront_model::stiffness::{ActuatorStiffness, Material, StiffnessDefinition};
-use kinefront_model::workspace::{Thresholds, WorkspaceSpec};
+use kinefront_model::workspace::{GridError, Thresholds, WorkspaceSpec};
 
 /// A study: the requirements, the manipulators to search, and the settings of the search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -78,11 +78,14 @@ impl Default for Study {
 }
 
 impl Study {
-    /// Converts the study into the settings of the model, in SI units.
-    pub fn model(&self) -> Model {
-        let requirements = &self.requirements;
+    /// Builds the model that evaluates the designs of this study, in SI units.
+    ///
+    /// # Errors
+    /// [`GridError`] when a grid does not divide the full turn or the rotation range into whole steps; a study that was
+    /// read without faults has none.
+    pub fn model(&self) -> Result<Model, GridError> {
         let model = &self.model;
-        Model {
+        Model::new(ModelSettings {
             material: Material {
                 youngs_modulus: self.material.youngs_modulus_pa,
                 shear_modulus: self.material.shear_modulus_pa,
@@ -111,27 +114,33 @@ impl Study {
                 // A study that was read without faults has this length.
                 LengthChoice::Fixed => CharacteristicLength::Fixed(model.characteristic_length_m.unwrap_or(1.0)),
             },
-            thresholds: Thresholds {
-                inverse_condition: requirements.inverse_condition_min,
-                k_xy: requirements
-                    .k_xy_min_n_per_m
-                    .unwrap_or(requirements.in_plane_force_n / requirements.in_plane_displacement_m),
-                k_z: requirements
-                    .k_z_min_n_per_m
-                    .unwrap_or(requirements.vertical_force_n / requirements.vertical_displacement_m),
-                k_phi_z: requirements
-                    .k_phi_z_min_nm_per_rad
-                    .unwrap_or(requirements.torque_z_nm / requirements.rotation_z_deg.to_radians()),
-                clearance: requirements.clearance_min_m,
-            },
-            in_plane_force: requirements.in_plane_force_n,
+            thresholds: self.thresholds(),
+            in_plane_force: self.requirements.in_plane_force_n,
             workspace: WorkspaceSpec {
                 rotation_range_deg: self.workspace.rotation_range_deg,
                 centre: DVec2::from_array(self.workspace.centre_m),
                 home_phi_deg: self.workspace.home_phi_deg,
             },
-            reference_grid: (&self.grid.reference).into(),
-            fine_grid: (&self.grid.fine).into(),
+            reference_grid: (&self.grid.reference).try_into()?,
+            fine_grid: (&self.grid.fine).try_into()?,
+        })
+    }
+
+    /// Derives the thresholds of the constraints from the requirements.
+    pub fn thresholds(&self) -> Thresholds {
+        let requirements = &self.requirements;
+        Thresholds {
+            inverse_condition: requirements.inverse_condition_min,
+            k_xy: requirements
+                .k_xy_min_n_per_m
+                .unwrap_or(requirements.in_plane_force_n / requirements.in_plane_displacement_m),
+            k_z: requirements
+                .k_z_min_n_per_m
+                .unwrap_or(requirements.vertical_force_n / requirements.vertical_displacement_m),
+            k_phi_z: requirements
+                .k_phi_z_min_nm_per_rad
+                .unwrap_or(requirements.torque_z_nm / requirements.rotation_z_deg.to_radians()),
+            clearance: requirements.clearance_min_m,
         }
     }
 

@@ -22,7 +22,7 @@ pub use faults::Fault;
 pub use file::Study;
 pub use folder::{FolderError, RunFolder, RunReport, TABLE_HEADER, front_table, write_whole};
 pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnation};
-pub use problem::{CandidateError, DesignProblem};
+pub use problem::DesignProblem;
 pub use run::spawn;
 pub use sections::{
     ActuatorSection, Bounds, GridSection, Grids, LengthChoice, MaterialSection, ModelSection, ReferenceDesign,

@@ -3,8 +3,8 @@
 use super::Study;
 use kinefront_model::evaluation::{BarRanges, Demand, Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{Architecture, Design, DesignError, VARIABLES, Variable, WorkingMode};
-use kinefront_optimize::{Aim, Outcome, Problem, Variable as Unknown};
 use kinefront_model::workspace::GridError;
+use kinefront_optimize::{Aim, Outcome, Problem, Variable as Unknown};
 
 /// The optimization problem of a study, with designs encoded as vectors of values.
 ///
@@ -18,26 +18,15 @@ pub struct DesignProblem {
     ranges: [[f64; 2]; VARIABLES.len()],
 }
 
-/// Reason why a candidate cannot be evaluated; the candidates of a study that was read without faults have none.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum CandidateError {
-    /// The values are not a valid design.
-    #[error(transparent)]
-    Design(#[from] DesignError),
-    /// The grid does not divide the full turn or the home window into whole steps.
-    #[error(transparent)]
-    Grid(#[from] GridError),
-}
-
 impl DesignProblem {
     /// Creates the optimization problem of a study.
-    pub fn new(study: &Study) -> Self {
-        Self {
-            model: study.model(),
+    pub fn new(study: &Study) -> Result<Self, GridError> {
+        Ok(Self {
+            model: study.model()?,
             architectures: study.architectures.clone(),
             working_mode: study.working_mode,
             ranges: VARIABLES.map(|variable| study.bounds.range(variable)),
-        }
+        })
     }
 
     /// Returns the model with which designs are evaluated.
@@ -57,9 +46,9 @@ impl DesignProblem {
     /// Evaluates the design that `x` encodes on the reference grid.
     ///
     /// # Errors
-    /// [`CandidateError`].
-    pub fn evaluation(&self, x: &[f64]) -> Result<Evaluation, CandidateError> {
-        Ok(self.model.evaluate(&self.design(x)?, GridChoice::Reference)?)
+    /// [`DesignError`] when the values are no design.
+    pub fn evaluation(&self, x: &[f64]) -> Result<Evaluation, DesignError> {
+        Ok(self.model.evaluate(&self.design(x)?, GridChoice::Reference))
     }
 
     /// Converts an evaluation into the outcome that the optimizer uses: mass and −`R_w`, both minimised, and the
@@ -96,7 +85,7 @@ impl Problem for DesignProblem {
             leg: range(Variable::LegBarRadius),
             platform: range(Variable::PlatformBarRadius),
         };
-        let sized = |demand| self.model.sized(&design, &ranges, demand).ok().flatten();
+        let sized = |demand| self.model.sized(&design, &ranges, demand);
         let sized = match aim {
             Aim::Level(level) if level < 0.0 => sized(Demand::Radius(-level)).or_else(|| sized(Demand::Largest)),
             Aim::Level(_) | Aim::Best => sized(Demand::Largest),

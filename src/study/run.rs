@@ -73,7 +73,7 @@ impl Publisher {
 
 fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<(), String> {
     let start = Instant::now();
-    let problem = DesignProblem::new(&study);
+    let problem = DesignProblem::new(&study).map_err(|error| error.to_string())?;
     let mut pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("kinefront-evaluate-{index}"));
     if let Some(threads) = study.optimizer.threads {
         pool = pool.num_threads(threads);
@@ -185,7 +185,7 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
 
     let found = members.len();
     let verifying = Instant::now();
-    let Some(verified) = verify(members.into_values().collect(), &problem, &pool, control, publisher)? else {
+    let Some(verified) = verify(members.into_values().collect(), &problem, &pool, control, publisher) else {
         return Ok(());
     };
     times.verification_s = verifying.elapsed().as_secs_f64();
@@ -222,23 +222,21 @@ fn verify(
     pool: &rayon::ThreadPool,
     control: &RunControl,
     publisher: &mut Publisher,
-) -> Result<Option<Vec<FrontMember>>, String> {
+) -> Option<Vec<FrontMember>> {
     let total = front.len();
     let mut archive = Archive::default();
     let mut verified: BTreeMap<usize, FrontMember> = BTreeMap::new();
     let mut done = 0;
     for part in front.chunks(4 * pool.current_num_threads()) {
         if control.is_abandoned() {
-            return Ok(None);
+            return None;
         }
         publisher.send(Event::Verifying { done, total });
-        let evaluations: Vec<Evaluation> = pool
-            .install(|| {
-                part.par_iter()
-                    .map(|member| problem.model().evaluate(&member.evaluation.design, GridChoice::Fine))
-                    .collect::<Result<_, _>>()
-            })
-            .map_err(|error| error.to_string())?;
+        let evaluations: Vec<Evaluation> = pool.install(|| {
+            part.par_iter()
+                .map(|member| problem.model().evaluate(&member.evaluation.design, GridChoice::Fine))
+                .collect()
+        });
         for (member, evaluation) in part.iter().zip(evaluations) {
             let candidate = Evaluated {
                 x: Vec::new(),
@@ -257,5 +255,5 @@ fn verify(
     }
     // On a front, the order by mass is also the order by R_w.
     let front = archive.iter().filter_map(|member| verified.remove(&member.id));
-    Ok(Some(front.collect()))
+    Some(front.collect())
 }

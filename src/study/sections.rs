@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use kinefront_model::evaluation::Model;
 use kinefront_model::mechanism::{Design, TextError, VARIABLES, Variable, WorkingMode};
 use kinefront_model::stiffness::Material;
-use kinefront_model::workspace::Grid;
+use kinefront_model::workspace::{Grid, GridError};
 
 /// Material of every bar.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -253,22 +253,24 @@ pub struct GridSection {
 impl From<Grid> for GridSection {
     fn from(grid: Grid) -> Self {
         Self {
-            phi_step_deg: grid.phi_step_deg,
-            directions: grid.directions,
-            ray_steps: grid.ray_steps,
-            halvings: grid.halvings,
+            phi_step_deg: grid.phi_step_deg(),
+            directions: grid.directions(),
+            ray_steps: grid.ray_steps(),
+            halvings: grid.halvings(),
         }
     }
 }
 
-impl From<&GridSection> for Grid {
-    fn from(section: &GridSection) -> Self {
-        Self {
-            phi_step_deg: section.phi_step_deg,
-            directions: section.directions,
-            ray_steps: section.ray_steps,
-            halvings: section.halvings,
-        }
+impl TryFrom<&GridSection> for Grid {
+    type Error = GridError;
+
+    fn try_from(section: &GridSection) -> Result<Self, GridError> {
+        Grid::new(
+            section.phi_step_deg,
+            section.directions,
+            section.ray_steps,
+            section.halvings,
+        )
     }
 }
 

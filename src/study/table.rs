@@ -70,7 +70,7 @@ impl Row {
             *value = wanted(variable.key())?;
         }
         let design = Design::new(architecture, mode, values).map_err(|error| error.to_string())?;
-        let asked = study.model().thresholds;
+        let asked = study.thresholds();
         let mut margins = [None; Constraint::ALL.len()];
         for (margin, constraint) in margins.iter_mut().zip(Constraint::ALL) {
             if constraint.is_asked(&asked) {

@@ -21,7 +21,7 @@ fn a_level_that_the_geometry_does_not_allow_becomes_its_largest() {
         architectures: vec!["3-PRR".parse().expect("an architecture")],
         ..BUILTIN[0].study().expect("sound")
     };
-    let problem = DesignProblem::new(&study);
+    let problem = DesignProblem::new(&study).expect("a valid study");
     assert_eq!(problem.variables()[0], Variable::Categorical { choices: 1 });
     let x = [0.0, 3.066, 1.283, 1.896, 0.036, 0.056];
     let best = problem.complete(&x, Aim::Best).expect("bars");
@@ -38,7 +38,7 @@ fn a_level_that_the_geometry_does_not_allow_becomes_its_largest() {
 #[test]
 fn the_papers_designs_are_dominated() {
     let study = BUILTIN[0].study().expect("sound");
-    let problem = DesignProblem::new(&study);
+    let problem = DesignProblem::new(&study).expect("a valid study");
     let mut algorithm = FrontDe::new(problem.variables(), FrontDeSettings::default(), 1);
     let archive = drive(&problem, &mut algorithm, 1000);
     let model = problem.model();
@@ -76,14 +76,14 @@ fn a_front_with_clearance_has_no_overlap_on_a_million_poses() {
     };
     let front = |study: &Study| {
         let source = Source::run("a run", study.clone()).expect("a run");
-        let fronts = Fronts::new(&[source], &study.model(), 100).expect("a front");
+        let fronts = Fronts::new(&[source], &study.model().expect("a valid study"), 100).expect("a front");
         let of_each = fronts.alone.into_iter().flat_map(|(_, front)| front.members);
         of_each.collect::<Vec<_>>()
     };
     let clearance = |evaluation: &Evaluation| evaluation.constraint(Constraint::Clearance).value.expect("a clearance");
 
     let with = study(true);
-    let model = with.model();
+    let model = with.model().expect("a valid study");
     let least = with.requirements.clearance_min_m.expect("asked");
     let members = front(&with);
     assert!(

@@ -1,4 +1,4 @@
-//! What a module may use, as ARCHITECTURE.md states it: by what its source does not mention.
+//! Checks the rules of ARCHITECTURE.md on what a module may use: its source does not mention anything else.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ fn sources(module: &str) -> Vec<(PathBuf, String)> {
     assert!(!found.is_empty(), "no module {module}");
     let read = |path: PathBuf| {
         let text = fs::read_to_string(&path).expect("a source");
-        // Documentation may speak of anything.
+        // Comments may mention anything.
         let code: Vec<&str> = text
             .lines()
             .filter(|line| !line.trim_start().starts_with("//"))
@@ -69,25 +69,26 @@ fn only_the_recording_knows_rerun() {
 fn a_panel_shows_what_others_computed() {
     let physics = ["crate::kinematics", "crate::stiffness", "crate::workspace", ".checker"];
     absent(&["explorer"], &physics);
-    // The one place that knows the embedded viewer, and none but the recording names entities.
+    // Only these files use the embedded viewer, and only the recording names entities.
     for (path, code) in sources("explorer") {
         let knows = ["viewer.rs", "app/mod.rs", "theme.rs"]
             .iter()
             .any(|file| path.ends_with(file));
         assert!(
             knows || !code.contains("re_viewer"),
-            "{} knows the viewer",
+            "{} uses the embedded viewer",
             path.display()
         );
         assert!(
             !code.contains("rerun::Points") && !code.contains("\"/design"),
-            "{}",
+            "{} names entities of a recording",
             path.display()
         );
     }
 }
 
-/// One place knows registers, and one the loops over them: everything else is written over `Real`.
+/// Only `lanes` uses vector registers and only `workspace` loops over them: everything else is written in terms of
+/// `Real`.
 #[test]
 fn instruction_sets_are_known_to_the_lanes() {
     let outside = [
@@ -102,7 +103,7 @@ fn instruction_sets_are_known_to_the_lanes() {
     ];
     absent(&outside, &["pulp"]);
     for module in ["lanes", "workspace"] {
-        // Fused, approximate, or summed over lanes: what would make a result depend on the processor.
+        // Fused or approximate operations and sums over lanes would make a result depend on the processor.
         absent(
             &[module],
             &["mul_add", "approx", "reduce_sum", "reduce_product", "relaxed"],
@@ -143,7 +144,7 @@ fn the_model_does_no_input_or_output_and_reads_no_clock() {
             "mul_add",
         ],
     );
-    // One result on every machine: no transcendental of the platform's own library.
+    // For the same result on every machine, the platform's own transcendental functions are not used.
     let platform = [
         ".sin()",
         ".cos()",

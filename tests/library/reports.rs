@@ -1,9 +1,9 @@
 //! The computations of reports: fits, fronts, and the ranges in which each architecture is the lightest.
 
-use kinefront_model::evaluation::{GridChoice, Model};
-use kinefront_model::mechanism::{Architecture, Design, VARIABLES};
 use kinefront::report::{Fit, Front, Fronts, Source, lightest_where, trends};
 use kinefront::study::{BUILTIN, Row, Study};
+use kinefront_model::evaluation::{GridChoice, Model};
+use kinefront_model::mechanism::{Architecture, Design, VARIABLES};
 use proptest::prelude::*;
 
 proptest! {
@@ -57,7 +57,7 @@ fn small(architectures: &[Architecture]) -> Study {
 #[test]
 fn fronts_are_what_they_are_called() {
     let study = small(Architecture::ALL);
-    let model = study.model();
+    let model = study.model().expect("a valid study");
     let source = Source::run("all", study).expect("a run");
     let fronts = Fronts::new(std::slice::from_ref(&source), &model, 20).expect("fronts");
     assert_eq!(fronts.alone.len(), Architecture::ALL.len());
@@ -99,7 +99,7 @@ fn fronts_are_what_they_are_called() {
 #[test]
 fn trends_leave_out_what_stands_at_its_bounds() {
     let study = small(&[Architecture::ALL[0]]);
-    let model = study.model();
+    let model = study.model().expect("a valid study");
     let designs = [1.0, 2.0, 3.0, 4.0].map(|radius| {
         let text = format!(
             "3-PRR R={radius} r={} Lb={} rj=0.05 rp=0.06",
@@ -128,8 +128,7 @@ fn rows_keep_what_is_active() {
     let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
         .parse()
         .expect("a design");
-    let evaluation = Model::default()
-        .evaluate(&design, GridChoice::Reference);
+    let evaluation = Model::default().evaluate(&design, GridChoice::Reference);
     let row = Row::new(3, &evaluation);
     assert_eq!(
         row.active_constraints().collect::<Vec<_>>(),

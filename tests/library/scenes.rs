@@ -1,17 +1,17 @@
-//! Scenes: what is drawn is what is computed.
+//! Checks that scenes show what the model computes.
 
 use glam::{DVec2, DVec3};
-use kinefront_model::evaluation::{Evaluation, GridChoice, Model, PoseReport};
-use kinefront_model::mechanism::{Design, MemberKind};
 use kinefront::scene::{
     Body, EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Solid, SolidShape, ellipsoids, linkage, manipulator,
     regular_workspace, tour,
 };
+use kinefront_model::evaluation::{Evaluation, GridChoice, Model, ModelSettings, PoseReport};
+use kinefront_model::mechanism::{Design, MemberKind};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::StiffnessDefinition;
 use nalgebra::{Matrix3, Vector3};
 
-/// The paper's designs, and a feasible one of each other architecture and mode.
+/// The paper's designs, and feasible designs of the other architectures, one of them in another working mode.
 const DESIGNS: [&str; 8] = [
     "3-PRR R=1.412 r=0.319 Lb=0.620 rj=0.026 rp=0.023",
     "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
@@ -19,7 +19,7 @@ const DESIGNS: [&str; 8] = [
     "3-RPR R=2.2462 r=1.2453 Lb=3.5382 rj=0.0224 rp=0.083",
     "3-RRR R=3.3658 r=0.2537 Lb=1.9157 rj=0.0787 rp=0.0891",
     "3-RRR R=1.2777 r=1.5205 Lb=3.8009 rj=0.0528 rp=0.0821 mode=---",
-    // Of Pareto fronts: so small a platform that another assembly mode is near.
+    // From Pareto fronts; the platform is so small that another assembly mode is near.
     "3-RPR R=1.3439 r=0.1172 Lb=1.9493 rj=0.01577 rp=0.01891",
     "3-RRR R=0.6373 r=0.1184 Lb=0.6471 rj=0.03206 rp=0.02846",
 ];
@@ -37,7 +37,7 @@ fn each(check: impl Fn(&Model, &Evaluation)) {
 fn ends(solid: &Solid) -> (DVec3, DVec3) {
     match solid.shape {
         SolidShape::Bar { from, to, .. } => (from, to),
-        SolidShape::Block { .. } => panic!("{solid:?} is no bar"),
+        SolidShape::Block { .. } => panic!("{solid:?} is not a bar"),
     }
 }
 
@@ -63,7 +63,7 @@ fn joints_close_along_every_tour() {
             tour.forward_error
         );
         assert_eq!(tour.poses.first(), tour.poses.last());
-        // Both ends of Δφ and the rim are visited.
+        // The tour visits both ends of Δφ and the rim.
         let turned = |sign: f64| {
             tour.poses
                 .iter()
@@ -83,7 +83,7 @@ fn joints_close_along_every_tour() {
                         "{design}: {what} is {value}, not {wanted}"
                     );
                 };
-                // Members are joined by pins, from layer to layer.
+                // Pins join members in different layers, so only distances in the plane are compared.
                 let apart = |a: DVec3, b: DVec3| a.truncate().distance(b.truncate());
                 let platform = part(Part::PlatformBar).expect("a platform bar");
                 near(platform.0.distance(platform.1), design.platform_radius, "platform bar");
@@ -101,15 +101,15 @@ fn joints_close_along_every_tour() {
                         near(tube.0.distance(rod.1), actuators[leg], "telescopic leg");
                         let (tube_length, rod_length) = (tube.0.distance(tube.1), rod.0.distance(rod.1));
                         near(tube_length + rod_length, design.link_length, "tube and rod");
-                        // The rod's inner end is in the tube.
+                        // The inner end of the rod is inside the tube.
                         near(
                             rod.0.distance(tube.0) + rod.0.distance(tube.1),
                             tube_length,
-                            "way along the tube",
+                            "length along the tube",
                         );
                         rod
                     }
-                    other => panic!("{design}: a leg of {other:?}"),
+                    other => panic!("{design}: unexpected parts in a leg: {other:?}"),
                 };
                 near(apart(last.1, platform.0), 0.0, "gap at C");
             }
@@ -117,11 +117,12 @@ fn joints_close_along_every_tour() {
     });
 }
 
-/// True radii, every joint of the field's list, and the paper's labels.
+/// The manipulator has the true bar radii, every joint of its architecture, and the paper's labels.
 #[test]
 fn the_manipulator_is_complete_and_to_scale() {
     let model = Model::default();
-    // links and tubes, platform bars, actuated, passive, labels (A, B, C, O, P; B of a 3-RPR is A)
+    // Numbers of links, cranks, tubes and rods; of platform bars; of actuated joints; of passive joints; and of labels
+    // (A, B, C, O, P; B of a 3-RPR is A).
     let wanted = [
         ("3-PRR", [3, 3, 3, 6, 11]),
         ("3-RPR", [6, 3, 3, 6, 8]),
@@ -156,8 +157,8 @@ fn the_manipulator_is_complete_and_to_scale() {
     }
 }
 
-/// What is drawn is what is looked at for clearance: each member in its layer, with its radius; the line between the nearest
-/// two is as long as they are apart.
+/// Members are drawn as they are modelled for the clearance: each in its layer, with its radius. The line between the
+/// nearest pair is as long as their clearance.
 #[test]
 fn bodies_are_drawn_where_they_are_looked_for() {
     each(|model, evaluation| {
@@ -206,19 +207,19 @@ fn bodies_are_drawn_where_they_are_looked_for() {
         assert!(sum.iter().all(|sum| (sum - 1.0).abs() < 1e-9), "{design}: {sum:?}");
 
         let clearance = report(model, design, home.position, home.phi).clearance;
-        let nearest = scene.nearest.expect("always drawn");
+        let nearest = scene.nearest.expect("the nearest pair is always drawn");
         assert_eq!(nearest.too_near, clearance.distance < 0.0);
         if clearance.distance > 0.0 {
             let length = nearest.line[0].distance(nearest.line[1]);
             assert!(
                 (length - clearance.distance).abs() < 1e-9,
-                "{design}: {length} for {clearance}"
+                "{design}: a line of length {length} for {clearance:?}"
             );
         }
     });
 }
 
-/// The field from a pose's own report.
+/// Returns the value of a field, computed from the report of a pose.
 fn field_value(model: &Model, design: &Design, field: Field, report: &PoseReport) -> f64 {
     match field {
         Field::InverseCondition => report.inverse_condition,
@@ -259,11 +260,11 @@ fn heatmaps_hold_the_values_of_their_poses_and_contours_lie_on_the_threshold() {
             let value_at = |position: DVec2| field_value(model, design, field, &report(model, design, position, phi));
             for (&position, &value) in heatmap.vertices.iter().zip(&heatmap.values).step_by(7) {
                 let stiff = report(model, design, position, phi).inverse_condition > 1e-3;
-                // Beside a singularity the inverse that the displacement is compared with has no digits.
+                // Near a singularity, the inverse that the displacement is compared with has no correct digits.
                 if field != Field::Displacement || stiff {
                     let wanted = value_at(position);
                     let off = (value - wanted).abs();
-                    // At the edge of reach the dexterity is the root of a difference that rounding makes.
+                    // At the end of reach, the dexterity is the square root of a difference that is a rounding error.
                     let root = matches!(field, Field::InverseCondition | Field::WorstMargin);
                     let least = if root && on_edge(position) { 1e-6 } else { 1e-12 };
                     assert!(
@@ -290,19 +291,19 @@ fn heatmaps_hold_the_values_of_their_poses_and_contours_lie_on_the_threshold() {
                     let slack = report(model, design, position, phi).slack;
                     assert!(
                         (0.0..1e-9).contains(&slack),
-                        "{design}: an edge has {slack:e} m of reach left"
+                        "{design}: the limit margin at an edge is {slack:e} m"
                     );
                 }
             }
             for triangle in &heatmap.triangles {
                 let [a, b, c] = triangle.map(|vertex| heatmap.vertices[vertex as usize]);
-                assert!((b - a).perp_dot(c - a) > -1e-12, "{design}: a triangle is turned over");
+                assert!((b - a).perp_dot(c - a) > -1e-12, "{design}: a triangle is inverted");
             }
         }
     });
 }
 
-/// The triangles cover what is reachable, no more and no less.
+/// The triangles cover the reachable area, no more and no less.
 #[test]
 fn heatmaps_cover_the_reachable_workspace() {
     each(|model, evaluation| {
@@ -341,8 +342,7 @@ fn heatmaps_cover_the_reachable_workspace() {
 fn ellipsoid_axes_are_the_eigenvectors_of_their_block() {
     each(|model, evaluation| {
         for kind in [EllipsoidKind::Stiffness, EllipsoidKind::Displacement] {
-            let set = ellipsoids(model, evaluation, kind)
-                .expect("a set");
+            let set = ellipsoids(model, evaluation, kind).expect("a set");
             assert_eq!(set.ellipsoids.len(), 19);
             let mut largest = 0.0f64;
             for ellipsoid in &set.ellipsoids {
@@ -367,7 +367,7 @@ fn ellipsoid_axes_are_the_eigenvectors_of_their_block() {
                 }
                 largest = largest.max(ellipsoid.values.max_element());
             }
-            // One scale for all, such that neighbours stay apart.
+            // All ellipsoids have one scale, at which neighbours do not overlap.
             assert!(largest * set.scale <= 0.25 * evaluation.workspace_radius);
             assert!(set.scale_text().contains("0.1 m ="));
         }
@@ -377,12 +377,12 @@ fn ellipsoid_axes_are_the_eigenvectors_of_their_block() {
 #[test]
 fn a_displacement_matches_the_definition_by_compliance() {
     let design: Design = DESIGNS[1].parse().expect("a design");
-    let model = Model {
+    let settings = ModelSettings {
         stiffness_definition: StiffnessDefinition::Compliance,
-        ..Model::default()
+        ..ModelSettings::default()
     };
-    let heatmap =
-        Heatmap::new(&model, &design, Field::Displacement, 0.5, HeatmapSettings { cells: 40 });
+    let model = Model::new(settings).expect("the grids fit");
+    let heatmap = Heatmap::new(&model, &design, Field::Displacement, 0.5, HeatmapSettings { cells: 40 });
     for (&position, &value) in heatmap.vertices.iter().zip(&heatmap.values).step_by(11) {
         let k_xy = report(&model, &design, position, 0.5).rigidity.k_xy;
         if k_xy > 1.0 {
@@ -391,7 +391,7 @@ fn a_displacement_matches_the_definition_by_compliance() {
     }
 }
 
-/// Every solid's surface is closed, faces outwards, and holds what its shape holds.
+/// The surface of every solid is closed, faces outwards, and encloses the volume of its shape.
 #[test]
 fn meshes_are_closed_and_as_large_as_their_solids() {
     use std::collections::BTreeMap;
@@ -404,7 +404,8 @@ fn meshes_are_closed_and_as_large_as_their_solids() {
         for solid in &scene.solids {
             let mesh = solid.shape.mesh();
             let mut volume = 0.0;
-            // Each edge is gone along once either way. Points on edges are there more than once: known by their place.
+            // Each edge is traversed once in either direction. Points on edges occur several times and are identified
+            // by their position.
             let key = |point: DVec3| (point * 1e9).round().to_array().map(|value| value as i64);
             let mut edges: BTreeMap<_, i32> = BTreeMap::new();
             for corners in &mesh.triangles {
@@ -429,13 +430,13 @@ fn meshes_are_closed_and_as_large_as_their_solids() {
             };
             assert!(
                 (volume - wanted).abs() < 1e-6 * wanted,
-                "{solid:?}: {volume}, not {wanted}"
+                "{solid:?}: the volume is {volume}, not {wanted}"
             );
         }
     }
 }
 
-/// The linkage weighs what the model says, its loops close, and its bodies look like the manipulator.
+/// The linkage has the mass given by the model, its loops close, and its bodies look like the manipulator.
 #[test]
 fn the_linkage_is_the_manipulator_in_bodies() {
     let model = Model::default();
@@ -469,7 +470,7 @@ fn the_linkage_is_the_manipulator_in_bodies() {
                     assert!((low..=high).contains(&joint.value));
                 }
             }
-            // Seen from the base again, the bodies' solids are those of the scene.
+            // In the frame of the base, the solids of the bodies are those of the scene.
             let scene = manipulator(&model, &design, pose).expect("reachable");
             let ends = |shape: &SolidShape| match *shape {
                 SolidShape::Bar { from, to, .. } => [from, to],
@@ -477,7 +478,7 @@ fn the_linkage_is_the_manipulator_in_bodies() {
             };
             for body in &found.bodies {
                 for solid in &body.solids {
-                    // Into a frame in which the base's is where it was.
+                    // Position of the base frame as seen from the body.
                     let back = -DVec2::from_angle(-body.frame.angle).rotate(body.frame.origin);
                     let seen = ends(&solid.seen_from(back, -body.frame.angle).shape);
                     let same = scene
@@ -488,14 +489,14 @@ fn the_linkage_is_the_manipulator_in_bodies() {
                             let other = ends(&other.shape);
                             seen[0].distance(other[0]) < 1e-9 && seen[1].distance(other[1]) < 1e-9
                         });
-                    assert!(same, "{text}: {} has {solid:?}", body.name);
+                    assert!(same, "{text}: {} has {solid:?}, which is not in the scene", body.name);
                 }
             }
         }
     }
 }
 
-/// A star of three bars has the moments that the textbook gives.
+/// A star of three bars has the moments of inertia given by textbook formulas for cylinders.
 #[test]
 fn moments_of_inertia_are_those_of_cylinders() {
     let model = Model::default();

@@ -1,8 +1,8 @@
-//! Study files: what comes with the program, what reads back, what is refused and how.
+//! Tests of study files: the built-in studies, reading and writing, and how invalid files are rejected.
 
+use kinefront::study::{BUILTIN, Builtin, Study, StudyError};
 use kinefront_model::evaluation::Model;
 use kinefront_model::stiffness::StiffnessDefinition;
-use kinefront::study::{BUILTIN, Builtin, Study, StudyError};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
 fn error(text: &str) -> StudyError {
@@ -28,12 +28,15 @@ fn the_studies_that_come_with_the_program_are_sound() {
     }
 }
 
-/// The file says what the program's defaults are, so that leaving a key out changes nothing.
+/// The file of the paper's study states the defaults of the program, so that omitting a key changes nothing.
 #[test]
 fn the_paper_is_the_default() {
-    let paper = Builtin::find("paper").expect("the paper").study().expect("sound");
-    assert_eq!(paper.model(), Model::default());
-    let bare = Study::parse("name = \"paper\"", "bare").expect("sound");
+    let paper = Builtin::find("paper")
+        .expect("the paper")
+        .study()
+        .expect("a valid study");
+    assert_eq!(paper.model(), Ok(Model::default()));
+    let bare = Study::parse("name = \"paper\"", "bare").expect("a valid study");
     assert_eq!(
         Study {
             description: paper.description.clone(),
@@ -45,20 +48,20 @@ fn the_paper_is_the_default() {
     let printed = Builtin::find("paper-bounds-as-printed")
         .expect("a study")
         .study()
-        .expect("sound");
+        .expect("a valid study");
     assert_eq!(printed.bounds.r_m, [0.5, 4.0]);
 }
 
 #[test]
 fn a_study_reads_what_it_writes() {
     for builtin in BUILTIN {
-        let study = builtin.study().expect("sound");
+        let study = builtin.study().expect("a valid study");
         let text = toml::to_string(&study).expect("TOML");
-        assert_eq!(Study::parse(&text, "again").expect("sound"), study);
+        assert_eq!(Study::parse(&text, "again").expect("a valid study"), study);
     }
 }
 
-/// SPEC section 8: every choice is a setting.
+/// Every assumption that the paper leaves open is a setting (docs/model.md, section 11).
 #[test]
 fn every_choice_reaches_the_model() {
     let text = r#"
@@ -83,8 +86,8 @@ fn every_choice_reaches_the_model() {
         ray_steps = 25
         halvings = 8
     "#;
-    let study = Study::parse(text, "choices").expect("sound");
-    let model = study.model();
+    let study = Study::parse(text, "choices").expect("a valid study");
+    let model = study.model().expect("a valid study");
     let paper = Model::default();
     assert_eq!(study.working_mode.signs(), [1, -1, 1]);
     assert_eq!(model.actuators.prismatic, 2e7);
@@ -92,7 +95,7 @@ fn every_choice_reaches_the_model() {
     assert_eq!(model.workspace.home_phi_deg, Some(45.0));
     assert_eq!(model.stiffness_definition, StiffnessDefinition::Compliance);
     assert_eq!(model.platform_bars, 1);
-    assert_eq!(model.reference_grid.directions, 24);
+    assert_eq!(model.reference_grid.directions(), 24);
     for changed in [
         model.legs != paper.legs,
         model.characteristic_length != paper.characteristic_length,
@@ -103,7 +106,7 @@ fn every_choice_reaches_the_model() {
 
 #[test]
 fn wrong_files_are_refused_with_file_line_and_key() {
-    // text, what the report must show
+    // Text of the study, and what the report must show.
     let cases: [(&str, &[&str]); 12] = [
         (
             "name = \"x\"\n[material]\ndensty = 1.0",
@@ -158,7 +161,7 @@ fn all_faults_are_told_at_once() {
     let StudyError::Values { faults, .. } =
         error("[material]\ndensity_kg_per_m3 = 0\n[bounds]\nR_m = [2, 1]\nrj_m = [-1, 1]")
     else {
-        panic!("not about values");
+        panic!("the error is not about values");
     };
     let keys: Vec<&str> = faults.iter().map(|fault| fault.key.as_str()).collect();
     assert_eq!(keys, ["material.density_kg_per_m3", "bounds.R_m", "bounds.rj_m"]);

@@ -1,5 +1,5 @@
-// Khronos's validator over the files given; prints one line of JSON.
-// Usage: node validate_gltf.js FILE.glb …, with gltf-validator where NODE_PATH points.
+// Runs the Khronos validator on the given files and prints one line of JSON.
+// Usage: node validate_gltf.js FILE.glb …, with gltf-validator in the folder that NODE_PATH names.
 const fs = require('fs');
 const validator = require('gltf-validator');
 

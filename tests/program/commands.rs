@@ -1,4 +1,4 @@
-//! `evaluate`, `pose`, `study` and wrong input.
+//! Tests of `evaluate`, `pose` and `study`, and of invalid input.
 
 use predicates::prelude::*;
 use predicates::str::contains;
@@ -92,7 +92,7 @@ fn a_stream_answers_line_by_line_and_survives_bad_lines() {
     let lines: Vec<Value> = String::from_utf8(output)
         .expect("UTF-8")
         .lines()
-        .map(|line| serde_json::from_str(line).expect("a JSON object a line"))
+        .map(|line| serde_json::from_str(line).expect("one JSON object per line"))
         .collect();
     assert_eq!(lines.len(), 7);
     for (index, line) in lines.iter().enumerate() {
@@ -136,7 +136,7 @@ fn pose_tells_joints_and_stiffness() {
         assert_eq!(far.get(key), Some(&Value::Null), "{key}");
     }
 
-    // B of a 3-RPR is A, and its stroke limits are told.
+    // B of a 3-RPR is A, and a violated stroke limit is reported.
     let telescopic = "3-RPR R=1.5 r=0.3 Lb=2 rj=0.03 rp=0.03";
     let near = json(["pose", "--design", telescopic, "--pose", "x=0 y=0 phi_deg=0", "--json"]);
     assert!((near["B"][2][1].as_f64().expect("a number") - 1.5).abs() < 1e-12);
@@ -169,7 +169,7 @@ fn people_get_tables() {
         .stdout(contains("inverse condition").and(contains("φz")));
 }
 
-/// Exit code 2, and words that say what is wrong and what would be right.
+/// Invalid input gives exit code 2 and a message that says what is wrong and what would be right.
 #[test]
 fn wrong_input_is_refused_in_words() {
     let cases: [(&[&str], &str); 13] = [
@@ -230,7 +230,7 @@ fn a_wrong_study_shows_file_line_and_key() {
     assert_eq!(
         std::fs::read_dir(folder.path()).expect("a folder").count(),
         1,
-        "a refused study leaves nothing behind"
+        "a rejected study leaves no files behind"
     );
 }
 
@@ -287,7 +287,7 @@ fn an_occupied_run_folder_is_left_alone() {
     assert_eq!(std::fs::read_dir(&out).expect("a folder").count(), 1);
 }
 
-/// The clearance is told whether g7 is asked or not, and asked only by a study that states one.
+/// The clearance is reported whether or not g7 is required; g7 is required only by a study that states a clearance.
 #[test]
 fn evaluate_and_pose_tell_the_nearest_bodies() {
     let free = json(["evaluate", "--design", DESIGN, "--json"]);
@@ -308,7 +308,7 @@ fn evaluate_and_pose_tell_the_nearest_bodies() {
     assert!(g7["pose"]["phi_deg"].is_number());
     assert!(asked["workspace_radius_m"].as_f64() < free["workspace_radius_m"].as_f64());
 
-    // At the pose where it is least, `pose` tells the same.
+    // At the pose with the smallest clearance, `pose` reports the same clearance.
     let pose = &g7["pose"];
     let text = format!("x={} y={} phi_deg={}", pose["x_m"], pose["y_m"], pose["phi_deg"]);
     let at = json(["pose", "--design", DESIGN, "--pose", &text, "--json"]);

@@ -1,4 +1,4 @@
-//! Designs for other programs, read by those programs.
+//! Tests of designs exported for other programs, read by those programs.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::support::{DESIGN, folder, json, kinefront, node, optimize, python, script, small_study};
 
-/// A design of each architecture with its actuators' stiffness, another one each.
+/// A design of each architecture, with the stiffness of its actuators.
 const DESIGNS: [(&str, f64); 3] = [
     (DESIGN, 1e7),
     ("3-RPR R=2.0 r=0.5 Lb=3.0 rj=0.03 rp=0.03", 1e7),
@@ -40,7 +40,7 @@ fn mujoco_follows_the_tour_with_the_loops_closed() {
             scope.spawn(move || {
                 let file = |extension: &str| export(design, folder, &format!("{index}.{extension}"));
                 let (model, json, urdf) = (file("xml"), file("json"), file("urdf"));
-                let python = python(&["mujoco", "numpy"]).expect("it was there");
+                let python = python(&["mujoco", "numpy"]).expect("Python, which was found before");
                 let found: Value =
                     serde_json::from_str(&script(python, "mujoco_tour.py", &[&model, &json, &urdf])).expect("JSON");
                 let evaluation = &read_json(&json)["evaluation"];
@@ -48,17 +48,17 @@ fn mujoco_follows_the_tour_with_the_loops_closed() {
                 let radius = number(&evaluation["workspace_radius_m"]);
                 assert!(number(&found["farthest_m"]) < 1e-4, "{design}: {found}");
                 assert!(number(&found["turned_rad"]) < 1e-4, "{design}: {found}");
-                // It did go out to the rim.
+                // The platform did travel to the rim.
                 assert!(number(&found["travelled_m"]) > 0.9 * radius, "{design}: {found}");
                 assert_eq!([&found["closures"], &found["actuators"], &found["warnings"]], [3, 3, 0]);
                 assert_eq!(found["stiffness"], serde_json::json!([stiffness, stiffness, stiffness]));
-                // Sliders weigh a gram each.
+                // Each slider has a mass of one gram.
                 let mass = number(&evaluation["mass_kg"]);
                 for key in ["mass_kg", "urdf_mass_kg"] {
                     let more = number(&found[key]) - mass;
-                    assert!((-1e-6..0.003_001).contains(&more), "{design}: {more} kg more");
+                    assert!((-1e-6..0.003_001).contains(&more), "{design}: {more} kg too much");
                 }
-                // Two a leg, and the one that is not cut.
+                // There are two joints per leg, and the one platform joint that is not cut.
                 assert_eq!(found["urdf_joints"], 7);
             });
         }
@@ -85,7 +85,7 @@ fn gltf_passes_the_validator() {
             "{file}"
         );
         assert_eq!(file["info"]["animationCount"], 1);
-        // Three legs, a platform and the base.
+        // The meshes are those of three legs, a platform and the base.
         assert!(file["info"]["totalTriangleCount"].as_u64().expect("a count") > 1000);
     }
 }
@@ -121,7 +121,7 @@ fn plan_view_and_front_are_read_back() {
         &[&drawing, &parquet, &csv, &glb, &json],
     ))
     .expect("JSON");
-    // Single precision over some metres; no joint opens at any step of the animation.
+    // The tolerance is that of single precision over a few metres; no joint opens at any step of the animation.
     let animation = &found["animation"];
     assert_eq!([&animation["bodies"], &animation["steps"]], [7, 235]);
     for key in ["from_tour_m", "gap_m"] {
@@ -131,7 +131,7 @@ fn plan_view_and_front_are_read_back() {
     assert_eq!(found["release"], "R12");
     let notes = found["notes"].as_array().expect("notes");
     assert!(notes.iter().any(|note| note == "lengths in mm"), "{notes:?}");
-    // L_b and r_j of design II, three times, and its three sliders.
+    // The outlines are three links with L_b and 2 r_j of design II, and its three sliders.
     let links: Vec<&Value> = found["legs_mm"].as_array().expect("bars").iter().collect();
     let near = |value: &Value, wanted: f64| (value.as_f64().expect("a number") - wanted).abs() < 1e-9;
     let bars = links.iter().filter(|bar| near(&bar[0], 72.0) && near(&bar[1], 1896.0));
@@ -155,7 +155,8 @@ fn plan_view_and_front_are_read_back() {
     );
 }
 
-/// Thin bars of a small mechanism, and a working mode with two minuses in a row, which would end a comment of XML.
+/// A small mechanism with thin bars is exported, and a working mode with two consecutive minus signs, which would end
+/// an XML comment.
 #[test]
 fn small_mechanisms_and_other_working_modes_are_exported() {
     let folder = folder();
@@ -177,7 +178,7 @@ fn small_mechanisms_and_other_working_modes_are_exported() {
     }
 }
 
-/// JSON says what `evaluate` and `pose` say, and where every body is.
+/// The JSON file contains the results of `evaluate` and `pose`, and the position of every body.
 #[test]
 fn json_holds_the_design() {
     let folder = folder();
@@ -204,7 +205,7 @@ fn json_holds_the_design() {
     assert!((mass - file["evaluation"]["mass_kg"].as_f64().expect("kg")).abs() < 1e-9);
 }
 
-/// At a pose of one's own; what is wrong is said, and no file is left or lost.
+/// An export at a given pose works. Errors say what is wrong; a failed export leaves no file and overwrites none.
 #[test]
 fn exports_say_what_is_wrong() {
     let folder = folder();
@@ -257,7 +258,7 @@ fn exports_say_what_is_wrong() {
         .code(2)
         .stderr(contains("exists already"));
     assert_eq!(std::fs::read_to_string(&out).expect("a file"), "mine");
-    // What a format cannot hold is said, in the file and beside it.
+    // What a format cannot represent is stated in the file and on standard error.
     kinefront()
         .args([
             "export",

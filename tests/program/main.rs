@@ -1,4 +1,4 @@
-//! The program from outside: commands, files and recordings as other programs meet them.
+//! Tests of the program from outside: commands, files and recordings as other programs use them.
 
 mod commands;
 mod exports;

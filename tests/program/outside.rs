@@ -1,4 +1,4 @@
-//! An optimizer that is not ours drives the evaluator.
+//! An external optimizer uses the evaluator.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ fn pymoo_finds_a_front_through_the_stream() {
             .map(|design| design[1].as_f64().expect("a number"))
             .collect();
         assert!(masses.is_sorted() && radii.is_sorted() && radii[0] > 0.0);
-        // Better than the sample it began with.
+        // The final front is better than the initial sample.
         let volume = |key: &str| report[key].as_f64().expect("a number");
         assert!(
             volume("last_hypervolume") > 1.2 * volume("first_hypervolume"),

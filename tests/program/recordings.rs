@@ -1,4 +1,4 @@
-//! Recordings, read back with the Rerun package for Python.
+//! Tests of recordings, which are read back with the Rerun package for Python.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use predicates::str::contains;
 
 use super::support::{DESIGN, folder, kinefront, optimize, python, script, small_study};
 
-/// The recording of a run folder passes `rerun rrd verify` and holds the rows of its tables.
+/// Checks that the recording of a run folder passes `rerun rrd verify` and contains the rows of the tables.
 pub fn agrees_with_its_tables(run: &Path) {
     if let Some(python) = python(&["rerun", "pyarrow", "numpy"]) {
         println!("{}", script(python, "check_recording.py", &[run]));
@@ -29,7 +29,7 @@ fn check_design(path: &Path) -> Option<serde_json::Value> {
 #[test]
 fn a_design_is_recorded_with_its_overlays_and_its_tour() {
     let folder = folder();
-    // architecture, bars of its legs
+    // Design, and number of bars in its legs.
     let designs = [
         (DESIGN, 3),
         ("3-RPR R=2.2462 r=1.2453 Lb=3.5382 rj=0.0224 rp=0.083", 6),
@@ -58,7 +58,7 @@ fn a_design_is_recorded_with_its_overlays_and_its_tour() {
     }
 }
 
-/// A row of a run's table, under the run's own study.
+/// A row of a table of a run is shown under the study of that run.
 #[test]
 fn a_design_of_a_front_is_shown_by_its_id() {
     let folder = folder();
@@ -83,7 +83,7 @@ fn a_design_of_a_front_is_shown_by_its_id() {
         let radius: f64 = row[10].parse().expect("a number");
         assert!(card.contains(&format!("R_w = {radius:.4} m")), "{card}");
     }
-    // Nothing is overwritten, and an id that is not there is named with those that are.
+    // No file is overwritten, and an id that does not exist is reported with ids that do.
     show(&row[0], &path)
         .code(2)
         .stderr(contains("cannot write the recording"));

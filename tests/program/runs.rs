@@ -1,4 +1,4 @@
-//! Whole runs: files, determinism, interruption.
+//! Tests of complete runs: files, determinism, interruption.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
@@ -37,7 +37,7 @@ fn a_run_leaves_its_files() {
         serde_json::from_str(&fs::read_to_string(out.join("run.json")).expect("the report")).expect("JSON");
     assert_eq!(saved, report);
 
-    // The front: feasible, sorted, non-dominated, and what `evaluate` says on the fine grid.
+    // The front is feasible, sorted and non-dominated, and agrees with `evaluate` on the fine grid.
     let front = rows(&out.join("front.csv"));
     assert_eq!(report["front_size"], front.len());
     assert!(front.len() > 3);
@@ -63,7 +63,7 @@ fn a_run_leaves_its_files() {
         .clone();
     let found: serde_json::Value = serde_json::from_slice(&output).expect("JSON");
     for (key, column) in [("workspace_radius_m", 10), ("mass_kg", 9)] {
-        // The reader of JSON may be off by the last bit.
+        // Reading JSON may change the last bit.
         let (found, wanted) = (found[key].as_f64().expect("a number"), number(row, column));
         assert!(
             (found - wanted).abs() <= 4.0 * f64::EPSILON * wanted,
@@ -77,7 +77,7 @@ fn a_run_leaves_its_files() {
     assert_eq!(marks.iter().filter(|mark| **mark == "knee").count(), 1);
 }
 
-/// The rules that a study may state besides its budget, and the thinned front.
+/// A run stops by each of the rules that a study may state besides its budget, and a front may be thinned.
 #[test]
 fn a_run_stops_by_the_rules_of_its_study() {
     let folder = folder();
@@ -105,7 +105,7 @@ fn a_run_stops_by_the_rules_of_its_study() {
     }
 }
 
-/// One seed, one result to the bit: whatever the threads, and again from the study a run leaves.
+/// A random seed gives one result to the bit, for any number of threads and also from the study that a run writes.
 #[test]
 fn runs_repeat_to_the_bit() {
     let folder = folder();
@@ -167,7 +167,7 @@ fn piped_progress_is_plain_lines_and_quiet_is_quiet() {
     assert!(output("quiet", &["--quiet"]).stderr.is_empty());
 }
 
-/// Ctrl-C: the tables and the recording hold all that was evaluated, exit code 130.
+/// After Ctrl-C, the tables and the recording contain all designs that were evaluated, and the exit code is 130.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_keeps_what_it_has() {
@@ -184,7 +184,7 @@ fn an_interrupted_run_keeps_what_it_has() {
         .stderr(Stdio::null())
         .spawn()
         .expect("the program starts");
-    // Wait until some rows are there.
+    // Wait until some rows are written.
     let begun = std::time::Instant::now();
     loop {
         let written = fs::File::open(out.join("designs.csv")).map_or(0, |file| BufReader::new(file).lines().count());
@@ -215,7 +215,7 @@ fn an_interrupted_run_keeps_what_it_has() {
     super::recordings::agrees_with_its_tables(&out);
 }
 
-/// A full disk is told, and the exit code says so.
+/// A full disk is reported, and the exit code is 1.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_told() {

@@ -1,4 +1,4 @@
-//! The binary, folders to work in, and a Python to read our files with.
+//! Helpers: the program, temporary folders, and Python and Node.js, which read the files of the program.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use tempfile::TempDir;
 /// The paper's design II.
 pub const DESIGN: &str = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056";
 
-/// The program, with no setting of the caller's environment that Rerun would listen to.
+/// Returns the program without any setting of the caller's environment that Rerun would use.
 pub fn kinefront() -> assert_cmd::Command {
     let mut command = cargo_bin_cmd!("kinefront");
     command.env_remove("RERUN").env("NO_COLOR", "1");
@@ -22,7 +22,7 @@ pub fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
 
-/// A small study: quick, and with all three architectures.
+/// Writes a small study, which runs quickly and has all three architectures, and returns its path.
 pub fn small_study(folder: &Path) -> PathBuf {
     let path = folder.join("small.toml");
     let text = "name = \"small\"\n[grid.reference]\nphi_step_deg = 5\ndirections = 12\nray_steps = 20\nhalvings = 6\n\
@@ -32,7 +32,7 @@ pub fn small_study(folder: &Path) -> PathBuf {
     path
 }
 
-/// What a command that succeeds tells in JSON.
+/// Runs a command that must succeed and returns the JSON that it prints.
 pub fn json<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Value {
     let told = kinefront().args(arguments).assert().success();
     serde_json::from_slice(&told.get_output().stdout).expect("one JSON object")
@@ -55,9 +55,9 @@ pub fn optimize(study: &Path, out: &Path, more: &[&str]) -> Value {
     )
 }
 
-/// A Python that has `modules`, or `None` with a word on what is missing.
+/// Returns a Python interpreter that has `modules`, or prints a message on what is missing and returns `None`.
 ///
-/// `KINEFRONT_PYTHON` names the interpreter; with `KINEFRONT_REQUIRE_PYTHON` set, a missing one is a failure.
+/// `KINEFRONT_PYTHON` names the interpreter; if `KINEFRONT_REQUIRE_PYTHON` is set, a missing one is a failure.
 pub fn python(modules: &[&str]) -> Option<Command> {
     let interpreter = std::env::var("KINEFRONT_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let imports: Vec<String> = modules.iter().map(|module| format!("import {module}")).collect();
@@ -90,9 +90,9 @@ pub fn script(mut python: Command, name: &str, arguments: &[&Path]) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// A Node.js that finds `package`, or `None` with a word on what is missing.
+/// Returns Node.js if it finds `package`, or prints a message on what is missing and returns `None`.
 ///
-/// `KINEFRONT_NODE_PATH` is where packages are; with `KINEFRONT_REQUIRE_NODE` set, a missing one is a failure.
+/// `KINEFRONT_NODE_PATH` is the folder of the packages; if `KINEFRONT_REQUIRE_NODE` is set, a missing one is a failure.
 pub fn node(package: &str) -> Option<Command> {
     let make = || {
         let mut node = Command::new("node");

@@ -1,4 +1,4 @@
-//! The window on a display: a server's software renderer under Xvfb does.
+//! Tests of the window on a display; Xvfb with a software renderer is sufficient.
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
@@ -41,7 +41,7 @@ fn what_cannot_be_opened_is_told_before_a_window_is() {
         .stderr(predicate::str::contains("line 2").and(predicate::str::contains("dance")));
 }
 
-/// A display of our own.
+/// An X server started by the test, with the name of its display.
 struct Display(Child, String);
 
 impl Drop for Display {
@@ -51,7 +51,7 @@ impl Drop for Display {
     }
 }
 
-/// Starts Xvfb on a free display; `None` with a word where there is none.
+/// Starts Xvfb on a free display, or prints a message and returns `None` if there is no Xvfb.
 fn display() -> Option<Display> {
     let started = Command::new("Xvfb")
         .args(["-displayfd", "1", "-screen", "0", "1600x1000x24"])
@@ -126,6 +126,6 @@ fn the_whole_window_runs_shows_a_design_and_saves() {
         with > 3 * without + 4000,
         "{without} pixels of a heatmap before, {with} after"
     );
-    let recorded = kinefront::recording::read_run(&recording).expect("a recording of ours");
+    let recorded = kinefront::recording::read_run(&recording).expect("a recording of Kinefront");
     assert_eq!(recorded.designs.len(), 600);
 }

@@ -2,7 +2,8 @@
 
     check_design.py FILE.rrd
 
-Prints one JSON object: poses of the tour, vertices of the heatmap in front, views of the layout.
+Prints one JSON object: poses of the tour, vertices of the heatmap shown first, bars of the legs, views of the layout,
+and the card.
 """
 
 import json
@@ -31,11 +32,11 @@ fields = ["inverse_condition", "k_xy", "k_z", "k_phi_z", "displacement", "worst_
 wanted = ["/card", "/configuration/axes/lines", "/configuration/cylinder/outline", "/design/workspace/outline"]
 wanted += ["/design/limits/poses", "/design/ellipsoids/stiffness/bodies", "/design/ellipsoids/displacement/bodies"]
 wanted += [f"/design/heatmap/{field}/field" for field in fields] + [f"/design/legend/{field}/strip" for field in fields]
-# The layer at home; others may have nothing reachable.
+# The layer at the home orientation; other layers may have no reachable pose.
 wanted += ["/configuration/layers/2/edge"]
 missing = [entity for entity in wanted if entity not in tables]
 assert not missing, missing
-# What does not move is static: it has no timeline.
+# Entities that do not move are static: they have no timeline.
 for entity in wanted:
     assert "tour" not in tables[entity].schema.names, entity
 
@@ -48,12 +49,12 @@ for name in moving:
     assert steps in (None, len(times)), f"{name} has {len(times)} poses, not {steps}"
     steps = len(times)
 
-# Bars keep their lengths while the platform goes round.
+# Bars keep their lengths while the platform moves along the tour.
 legs = tables["/design/manipulator/legs"].sort_by("tour")["Cylinders3D:lengths"].to_pylist()
 platform = np.array(tables["/design/manipulator/platform"]["Cylinders3D:lengths"].to_pylist())
 assert np.allclose(platform, platform[0, 0], rtol=1e-6)
 
-# The nearest bodies, with their distance in words, at each pose.
+# The nearest pair of members is labelled with its distance at each pose.
 words = tables["/design/manipulator/clearance/distance"]["Points3D:labels"].to_pylist()
 assert len(words) == steps and all(len(row) == 1 and row[0].endswith(" mm") for row in words), words[:3]
 

@@ -33,7 +33,7 @@ def table(entity):
 
 
 def column(rows, name):
-    """One value a row, None where the row has none."""
+    """Return one value per row, None if the row has none."""
     return [None if not cell else cell[0] for cell in rows[name].to_pylist()]
 
 
@@ -85,7 +85,7 @@ for architecture in report["architectures"]:
 assert len(points) == len(wanted), f"{len(points)} points for {len(wanted)} feasible designs"
 assert np.allclose(sorted(points), wanted, atol=1e-6)
 
-# A step of the timeline `front` for every verified design, in order; the knee once more at the end of the run.
+# The timeline `front` has a step for every verified design, in order; the knee is recorded again at the end of the run.
 with open(run / "front.csv", newline="") as file:
     front = list(csv.DictReader(file))
 for entity in ("/card", "/design/manipulator/legs", "/design/manipulator/joints/sliders", "/design/limits/poses",

@@ -1,5 +1,5 @@
-"""Loads a design's MJCF in MuJoCo, moves its actuators along the tour of the design's JSON, and tells how far the platform
-is from where it should be; loads its URDF, too.
+"""Loads a design's MJCF in MuJoCo, moves its actuators along the tour of the design's JSON, and reports how far the
+platform deviates from the poses of the tour; also loads the URDF.
 
 Usage: mujoco_tour.py DESIGN.xml DESIGN.json DESIGN.urdf
 """
@@ -10,7 +10,8 @@ import sys
 import mujoco
 import numpy as np
 
-# Along about so many poses, each reached in a ramp and held until what swings has come to rest.
+# Approximate number of poses, steps of the ramp that leads to each, and steps for which it is held until oscillations
+# decay.
 POSES, RAMP, HOLD = 24, 2000, 10000
 
 

@@ -1,4 +1,4 @@
-"""An outside optimizer on our evaluator: pymoo's NSGA-II over `kinefront evaluate --stdin`.
+"""Runs an external optimizer on Kinefront's evaluator: pymoo's NSGA-II over `kinefront evaluate --stdin`.
 
     python tests/python/pymoo_nsga2.py PATH/TO/kinefront [POPULATION] [GENERATIONS]
 
@@ -19,7 +19,7 @@ from pymoo.optimize import minimize
 
 
 class Kinefront(Problem):
-    """3-PRR designs within the paper's bounds: least mass, largest workspace."""
+    """3-PRR designs within the paper's bounds, with the objectives of smallest mass and largest workspace radius."""
 
     def __init__(self, program):
         super().__init__(
@@ -35,7 +35,7 @@ class Kinefront(Problem):
             for row in x
         )
 
-        # Answers come while lines still go in: a thread writes, so that neither pipe fills up.
+        # Answers arrive while lines are still being sent: a thread writes them, so that neither pipe fills up.
         def write():
             self.process.stdin.write(lines)
             self.process.stdin.flush()

@@ -1,4 +1,4 @@
-"""Reads a plan view back with ezdxf, a front's Parquet with pyarrow, and the animation of a glTF by hand.
+"""Reads a plan view back with ezdxf, a front's Parquet with pyarrow, and the animation of a glTF without a library.
 
 Usage: read_exports.py DESIGN.dxf FRONT.parquet FRONT.csv DESIGN.glb DESIGN.json
 """
@@ -14,7 +14,8 @@ import pyarrow.parquet
 
 
 def animation(glb_path, design_path):
-    """How far, over the whole animation, the platform is from the tour's poses, and the legs' ends from the platform's joints."""
+    """Return the largest distances, over the whole animation, of the platform from the poses of the tour and of the
+    ends of the legs from the joints of the platform."""
     with open(design_path, encoding="utf-8") as file:
         design = json.load(file)
     with open(glb_path, "rb") as file:
@@ -68,7 +69,7 @@ def main():
     differing = [
         name
         for name in table.column_names
-        # What is missing is an empty text in a CSV.
+        # A missing value is an empty text in a CSV file.
         if [value or None if isinstance(value, str) else value for value in text[name].to_pylist()]
         != table[name].to_pylist()
     ]

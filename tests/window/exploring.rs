@@ -1,12 +1,12 @@
-//! From a run to a design, a what-if, and back.
+//! Tests that go from a run to a design, to a modified design, and back.
 
 use egui::accesskit::{Role, Toggled};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use kinefront_model::evaluation::MemberReport;
 use kinefront::explorer::{Origin, Phase, Quantity};
-use kinefront_model::mechanism::{MemberKind, Variable};
 use kinefront::study::Outcome;
+use kinefront_model::evaluation::MemberReport;
+use kinefront_model::mechanism::{MemberKind, Variable};
 
 use super::support::{click_at, idle_window, opened_window, set_slider, until};
 
@@ -23,11 +23,11 @@ fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_re
     assert_eq!(session.store().len(), 300);
     assert_eq!(session.generations().last().map(|last| last.evaluations), Some(300));
     assert!(session.front().len() > 3 && session.front().iter().all(|entry| entry.verified));
-    // The knee was in the light by itself; that is nothing to undo.
+    // The knee was selected automatically, which is not a step to undo.
     assert!(!session.history.can_undo());
 
     let id = session.front()[session.front().len() / 3].id;
-    let at = window.state().scatter_position(id).expect("a place in the scatter");
+    let at = window.state().scatter_position(id).expect("a position in the scatter");
     click_at(&mut window, at);
     let chosen = window.state().session().document().chosen.clone().expect("a design");
     assert_eq!(chosen.origin, Origin::Evaluated(id));
@@ -52,7 +52,7 @@ fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_re
     assert_eq!(changed.origin, Origin::WhatIf { from: Some(id) });
     assert_eq!(changed.design.base_radius, 2.0);
     assert!(window.query_by_label("modified design").is_some());
-    until(&mut window, "the what-if is evaluated", |explorer| {
+    until(&mut window, "the modified design is evaluated", |explorer| {
         explorer.session().known().is_some()
     });
     let what_if = window.state().session().known().expect("known").evaluation.clone();
@@ -77,29 +77,29 @@ fn a_run_is_paused_stepped_resumed_stopped_and_started_again() {
         .change(|study| study.optimizer.evaluations = 30_000);
     window.get_by_label("▶ Start").click();
     window.run_steps(4);
-    until(&mut window, "designs come", |explorer| {
+    until(&mut window, "designs arrive", |explorer| {
         explorer.session().store().len() >= 60
     });
     window.get_by_label("⏸ Pause").click();
     window.run_steps(4);
     assert_eq!(*window.state().session().phase(), Phase::Paused);
-    // The generation under way still comes.
+    // The current generation is still completed.
     std::thread::sleep(std::time::Duration::from_millis(400));
     window.run_steps(3);
     let held = window.state().session().generations().len();
     window.get_by_label("⏭ Step").click();
-    until(&mut window, "one generation more", |explorer| {
+    until(&mut window, "one more generation is done", |explorer| {
         explorer.session().generations().len() == held + 1
     });
     std::thread::sleep(std::time::Duration::from_millis(200));
     window.run_steps(3);
     assert_eq!(window.state().session().generations().len(), held + 1);
     window.get_by_label("▶ Resume").click();
-    until(&mut window, "it goes on", |explorer| {
+    until(&mut window, "the run continues", |explorer| {
         explorer.session().generations().len() > held + 2
     });
     window.get_by_label("⏹ Stop").click();
-    until(&mut window, "it stops", |explorer| {
+    until(&mut window, "the run stops", |explorer| {
         *explorer.session().phase() == Phase::Finished(Outcome::Stopped)
     });
     let designs = window.state().session().store().len();
@@ -164,7 +164,7 @@ fn one_filter_holds_everywhere() {
         .accesskit_node()
         .toggled();
     assert_eq!(toggled, Some(Toggled::False));
-    // Dimmed, not gone.
+    // Designs that do not pass the filter are dimmed, not removed.
     assert_eq!(window.state().session().front().len(), all);
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     window.run_steps(2);
@@ -211,17 +211,17 @@ fn the_platform_stops_at_its_limits_and_says_which() {
     assert_eq!(window.state().session().pose(), window.state().session().home());
 }
 
-/// Pointing at a bar in the top view tells what it is; the numbers are those of the model.
+/// Pointing at a bar in the top view shows what it is, with the values of the model.
 #[test]
 fn pointing_at_a_bar_tells_what_it_is() {
     let mut window = opened_window();
     window.run_steps(3);
     let session = window.state().session();
-    let known = session.known().expect("a design in the light");
+    let known = session.known().expect("a selected design");
     let design = known.evaluation.design;
     let pose = session.pose().expect("a pose");
     let members = session.model().members(&design, &pose).expect("reachable");
-    // Of what lies on top, the link that is farthest from all else: the first whose middle no other member covers.
+    // Whether a member can be pointed at: no other member covers its middle.
     let bare = |report: &MemberReport| {
         let at = 0.5 * (report.from + report.to).truncate();
         members.iter().all(|other| {
@@ -233,7 +233,7 @@ fn pointing_at_a_bar_tells_what_it_is() {
     let report = members
         .iter()
         .find(|report| report.member.kind != MemberKind::PlatformBar && bare(report))
-        .expect("a link that stands alone");
+        .expect("a member that no other member covers");
     let view = window.get_by_label("Top view").rect();
     let reach = 1.25
         * design
@@ -260,7 +260,7 @@ fn pointing_at_a_bar_tells_what_it_is() {
     assert!(window.query_all_by_label_contains(&words).count() > 0, "{words}");
     window.hover_at(view.left_top() + egui::vec2(3.0, 3.0));
     window.run_steps(60);
-    assert!(window.query_by_label(&name).is_none(), "the card stays");
+    assert!(window.query_by_label(&name).is_none(), "the card is still shown");
 }
 
 #[test]

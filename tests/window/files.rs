@@ -1,4 +1,4 @@
-//! Files: saved, opened, dropped, pasted, wrong.
+//! Tests of files: saved, opened, dropped, pasted and invalid ones.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use kinefront::recording::read_run;
 
 use super::support::{idle_window, opened_window, run_folder, small_study, until, window};
 
-/// A finished run in a window.
+/// Returns a window with a finished run.
 fn finished() -> super::support::Window {
     let mut window = window(Subject::Study {
         study: Box::new(small_study()),
@@ -24,7 +24,7 @@ fn finished() -> super::support::Window {
     window
 }
 
-/// Types a path where one is asked for.
+/// Types a path into the field for paths.
 fn give_path(window: &mut super::support::Window, path: &std::path::Path) {
     window.run_steps(3);
     let field = window.get_by_label("Path");
@@ -47,7 +47,7 @@ fn a_recording_is_saved_and_read_back() {
     give_path(&mut window, &path);
     assert!(path.exists(), "{:?}", window.state().session().notices);
 
-    let recorded = read_run(&path).expect("a recording of ours");
+    let recorded = read_run(&path).expect("a recording of Kinefront");
     assert_eq!(recorded.designs.len(), 300);
     let store = window.state().session().store();
     for (id, design) in recorded.designs.iter().enumerate() {
@@ -56,7 +56,7 @@ fn a_recording_is_saved_and_read_back() {
         assert_eq!(design.numbers["workspace_radius_m"], row.radius);
         assert_eq!(design.generation, row.generation as usize);
     }
-    // By a reader that is not ours.
+    // The recording is also read by an independent program.
     if let Some(mut python) = python() {
         let script = "import json, pathlib, subprocess, sys, rerun\n\
             command = pathlib.Path(rerun.__file__).parent.parent / 'rerun_cli' / 'rerun'\n\
@@ -75,11 +75,11 @@ fn a_recording_is_saved_and_read_back() {
             .split_whitespace()
             .map(|word| word.parse().expect("a count"))
             .collect();
-        // A card for each of the front, one for the knee, one for the design in the light.
+        // There is a card for each design of the front, one for the knee, and one for the selected design.
         assert_eq!(counts, [300, window.state().session().front().len() + 2]);
     }
 
-    // And explored again.
+    // The recording can be opened in the window again.
     let opened = open(&path).expect("opens");
     assert_eq!(opened.store.len(), 300);
     assert_eq!(opened.study, small_study());
@@ -123,23 +123,23 @@ fn a_run_folder_is_saved_and_opened_to_the_same() {
     assert_eq!(opened.history.len(), session.generations().len());
     for (read, told) in opened.history.iter().zip(session.generations()) {
         assert_eq!((read.evaluations, read.front_size), (told.evaluations, told.front_size));
-        // The reader of JSON may miss the last bit.
+        // Reading JSON may change the last bit.
         assert!((read.hypervolume - told.hypervolume).abs() <= 1e-12 * told.hypervolume);
     }
     assert_eq!(opened.store.len(), session.store().len());
     for id in 0..opened.store.len() {
         assert_eq!(opened.store.row(id), session.store().row(id));
     }
-    // A folder that holds a run is not written over.
+    // A folder that contains a run is not overwritten.
     window
         .state_mut()
         .act(&ctx, kinefront::explorer::Purpose::SaveRun, path);
-    until(&mut window, "it is refused", |explorer| !explorer.is_busy());
+    until(&mut window, "the request is refused", |explorer| !explorer.is_busy());
     let notices = &window.state().session().notices;
     assert!(
         notices
             .iter()
-            .any(|notice| notice.is_error && notice.text.contains("is there already")),
+            .any(|notice| notice.is_error && notice.text.contains("already exists")),
         "{notices:?}"
     );
 }
@@ -180,7 +180,8 @@ fn the_front_is_exported_with_stars_and_notes() {
     assert_eq!(stars[0][0], chosen.to_string());
 }
 
-/// The design in the light in every format, and the front as Parquet: whole files that begin as they should.
+/// The selected design is exported in every format, and the front as Parquet: the files are complete and begin
+/// correctly.
 #[test]
 fn the_design_is_exported_for_other_programs() {
     use kinefront::explorer::Purpose;
@@ -300,7 +301,7 @@ fn files_are_dropped_and_wrong_ones_told() {
     for (path, words) in [
         (wrong, "bounds.R_m"),
         (cut, "not a recording of a run"),
-        (folder.path().join("none"), "is no run"),
+        (folder.path().join("none"), "is not a run"),
     ] {
         drop_file(&mut window, path);
         let notices = &window.state().session().notices;
@@ -311,7 +312,7 @@ fn files_are_dropped_and_wrong_ones_told() {
             "{words}: {notices:?}"
         );
     }
-    // What was there survives.
+    // The run that was open before is unchanged.
     assert_eq!(window.state().session().store().len(), designs);
 }
 

@@ -1,4 +1,4 @@
-//! The window, worked as a person would: by what it shows, its mouse and its keys.
+//! Tests that operate the window as a user would: by the text it shows, with the mouse and with keys.
 
 mod exploring;
 mod files;

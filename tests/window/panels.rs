@@ -1,13 +1,14 @@
-//! Pictures of every panel, light and dark, of one and the same run.
+//! Snapshots of every panel in the light and the dark theme, all of the same run.
 //!
-//! `UPDATE_SNAPSHOTS=1` makes those anew that differ. Drawn by a software renderer if there is one, so that machines agree.
+//! `UPDATE_SNAPSHOTS=1` replaces the snapshots that differ. A software renderer draws them if there is one, so that the
+//! pictures are the same on all machines.
 
 use egui_kittest::{Harness, SnapshotOptions, SnapshotResults};
 use kinefront::explorer::{Panel, Panels, Session, StudyEditor, dress};
 
 use super::support::{run_folder, small_study};
 
-/// A session with everything in it that a panel can show.
+/// Returns a session that contains everything that a panel can show.
 fn session() -> Session {
     let mut session =
         Session::new(StudyEditor::new(small_study(), None), None, std::sync::Arc::new(|| {})).expect("a session");
@@ -54,7 +55,7 @@ fn every_panel_looks_as_it_did() {
                 .with_size(size(panel))
                 .with_theme(theme)
                 .with_step_dt(1.0 / 60.0)
-                // Edges of letters and lines differ a little between drivers.
+                // The edges of letters and lines differ slightly between graphics drivers.
                 .with_options(SnapshotOptions::new().threshold(2.0).max_failed_pixels(300))
                 .wgpu()
                 .build_ui(move |ui| {
@@ -69,7 +70,7 @@ fn every_panel_looks_as_it_did() {
                         panels.ui(panel, ui, &mut session);
                     });
                 });
-            // The cloud takes some frames, and so does a layout that measures itself.
+            // Drawing the cloud of designs takes several frames, and so does a layout that measures itself.
             harness.run_steps(12);
             harness.snapshot(format!(
                 "{}_{}",

@@ -1,18 +1,18 @@
-//! What the window sends to the embedded viewer.
+//! Tests of the data that the window sends to the embedded viewer.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
-use kinefront_model::evaluation::{GridChoice, Model};
-use kinefront_model::mechanism::{Design, WorkingMode};
 use kinefront::recording::{Layers, LiveScene, Picked, Pinned, Shown};
 use kinefront::scene::EllipsoidKind;
 use kinefront::study::BUILTIN;
+use kinefront_model::evaluation::{GridChoice, Model};
+use kinefront_model::mechanism::{Design, WorkingMode};
 use rerun::external::arrow::array::Array as _;
 use rerun::log::{Chunk, LogMsg};
 use rerun::sink::CallbackSink;
 
-/// Instances of the largest component of each entity, as last sent.
+/// Number of instances in the largest component of each entity, as sent last.
 type Standing = BTreeMap<String, usize>;
 
 fn scene() -> (LiveScene, Arc<Mutex<Standing>>) {
@@ -33,7 +33,7 @@ fn scene() -> (LiveScene, Arc<Mutex<Standing>>) {
                 chunk.entity_path()
             );
             let components = chunk.components();
-            // How solids are filled says nothing about whether there are any.
+            // The fill mode of solids is sent even if there are no solids.
             let largest = components
                 .component_descriptors()
                 .zip(components.list_arrays())
@@ -46,7 +46,7 @@ fn scene() -> (LiveScene, Arc<Mutex<Standing>>) {
                 .insert(chunk.entity_path().to_string(), largest);
         }
     });
-    let study = BUILTIN[0].study().expect("sound");
+    let study = BUILTIN[0].study().expect("a valid study");
     (LiveScene::new(Box::new(sink), &study).expect("a scene"), standing)
 }
 
@@ -54,9 +54,9 @@ fn design(text: &str) -> Design {
     Design::parse(text, WorkingMode::ALL_PLUS).expect("a design")
 }
 
-/// Entities that show something, below a path.
+/// Returns the entities below a path that show something.
 fn shown(standing: &Mutex<Standing>, below: &str) -> Vec<String> {
-    // The sink has a thread of its own.
+    // The sink runs on its own thread.
     std::thread::sleep(std::time::Duration::from_millis(300));
     let standing = standing.lock().expect("a lock");
     let entities = standing
@@ -69,11 +69,10 @@ fn shown(standing: &Mutex<Standing>, below: &str) -> Vec<String> {
 fn what_is_no_longer_drawn_disappears() {
     let (mut scene, standing) = scene();
     let model = Model::default();
-    let evaluation = model
-        .evaluate(
-            &design("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"),
-            GridChoice::Reference,
-        );
+    let evaluation = model.evaluate(
+        &design("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"),
+        GridChoice::Reference,
+    );
     let mut layers = Layers {
         ellipsoids: Some(EllipsoidKind::Stiffness),
         ..Layers::default()
@@ -96,7 +95,7 @@ fn what_is_no_longer_drawn_disappears() {
         "/design/manipulator/legs",
         "/configuration",
     ] {
-        assert!(!shown(&standing, below).is_empty(), "{below} is drawn");
+        assert!(!shown(&standing, below).is_empty(), "{below} is not drawn");
     }
     layers.heatmap = None;
     layers.ellipsoids = None;
@@ -115,7 +114,7 @@ fn what_is_no_longer_drawn_disappears() {
     assert!(!shown(&standing, "/design/manipulator/platform").is_empty());
     assert!(
         !shown(&standing, "/design/heatmap/outlines").is_empty(),
-        "singularities stand by themselves"
+        "the outlines are not drawn, although they do not depend on the heatmap"
     );
     scene.design(None).expect("drawn");
     assert_eq!(shown(&standing, "/design"), Vec::<String>::new());

@@ -1,4 +1,4 @@
-//! A window without a screen, and a run to look at.
+//! Helpers: a window without a screen, and a run to show in it.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -9,24 +9,24 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use kinefront::explorer::{Explorer, Subject};
 use kinefront::study::Study;
 
-/// A small study: quick, and with all three architectures.
+/// Returns a small study, which runs quickly and has all three architectures.
 pub fn small_study() -> Study {
     let text = "name = \"small\"\n[grid.reference]\nphi_step_deg = 5\ndirections = 12\nray_steps = 20\nhalvings = 6\n\
                 [grid.fine]\nphi_step_deg = 2.5\ndirections = 24\nray_steps = 40\nhalvings = 8\n\
                 [optimizer]\nevaluations = 300\nseed = 5\nthreads = 2\n\
                 [[references]]\nname = \"ID-II\"\ndesign = \"3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056\"\n\
                 mass_kg = 484.8\nworkspace_radius_m = 1.207\n";
-    Study::parse(text, "small").expect("sound")
+    Study::parse(text, "small").expect("a valid study")
 }
 
-/// The folder of a run of that study.
+/// Returns the run folder of a run of that study.
 pub fn run_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/run")
 }
 
 pub type Window = Harness<'static, Explorer>;
 
-/// A window on `subject`, without the embedded viewer.
+/// Opens a window on `subject`, without the embedded viewer.
 pub fn window(subject: Subject) -> Window {
     Harness::builder()
         .with_size(egui::vec2(1600.0, 1000.0))
@@ -51,18 +51,18 @@ pub fn opened_window() -> Window {
     window
 }
 
-/// Frames until `done`, which threads bring about.
+/// Draws frames until `done` is true as a result of other threads; fails after two minutes.
 pub fn until(window: &mut Window, what: &str, done: impl Fn(&Explorer) -> bool) {
     let since = Instant::now();
     while !done(window.state()) {
-        assert!(since.elapsed() < Duration::from_secs(120), "waited in vain: {what}");
+        assert!(since.elapsed() < Duration::from_secs(120), "timed out: {what}");
         std::thread::sleep(Duration::from_millis(5));
         window.step();
     }
     window.run_steps(3);
 }
 
-/// Sets a slider to a value, as an assistive tool would.
+/// Sets a slider to a value, as assistive technology would.
 pub fn set_slider(window: &mut Window, label: &str, value: f64) {
     let (target_node, target_tree) = window
         .get_by_role_and_label(Role::Slider, label)
@@ -77,7 +77,7 @@ pub fn set_slider(window: &mut Window, label: &str, value: f64) {
     window.run_steps(2);
 }
 
-/// A click of the mouse at a place.
+/// Clicks the mouse at a position.
 pub fn click_at(window: &mut Window, at: egui::Pos2) {
     window.hover_at(at);
     window.run_steps(2);

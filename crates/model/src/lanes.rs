@@ -353,7 +353,7 @@ impl<S: Simd> Real for Lanes<S> {
 pub const MOST_LANES: usize = 16;
 
 /// Returns `count` rounded up to a multiple of [`MOST_LANES`].
-pub(crate) fn padded(count: usize) -> usize {
+pub fn padded(count: usize) -> usize {
     count.next_multiple_of(MOST_LANES)
 }
 

@@ -1,4 +1,4 @@
-//! Dominance, archive, hypervolume and the algorithms, on problems whose fronts are known.
+//! Tests of dominance, the archive, the hypervolume and the algorithms on problems with known fronts.
 
 use kinefront_optimize::{
     Aim, Algorithm, Archive, Candidate, Evaluated, FrontDe, FrontDeSettings, Moga2, Moga2Settings, Nsga2,
@@ -7,7 +7,7 @@ use kinefront_optimize::{
 };
 use proptest::prelude::*;
 
-/// A choice and a number: each choice is best over a part of the front.
+/// A problem with a categorical and a real variable: each choice is best on a part of the front.
 struct Mixed;
 
 impl Problem for Mixed {
@@ -54,7 +54,7 @@ fn every_choice_finds_its_part_of_the_front() {
     }
 }
 
-/// The second variable is best at a tenth of the first, which the problem knows how to set.
+/// A problem whose second variable is best at a tenth of the first; it can complete candidates accordingly.
 struct Structured;
 
 impl Problem for Structured {
@@ -101,7 +101,8 @@ fn structure_is_made_use_of() {
     assert!(levels.len() > 20 && levels.iter().any(|level| *level < 0.3) && levels.iter().any(|level| *level > 0.7));
 }
 
-/// Asking is pure state: the same seed asks the same, another seed asks otherwise, bounds hold.
+/// The candidates depend on nothing but the random seed and the evaluations: the same seed gives the same candidates,
+/// another seed gives others, and all are within the bounds.
 #[test]
 fn algorithms_repeat_themselves_and_stay_in_bounds() {
     let algorithms: [fn(u64) -> Box<dyn Algorithm>; 3] = [

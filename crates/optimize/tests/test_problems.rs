@@ -1,4 +1,4 @@
-//! Test problems of the field, on which the algorithms must reach what pymoo's NSGA-II reaches.
+//! Published test problems, on which the algorithms must reach the hypervolume that pymoo's NSGA-II reaches.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Made by crates/optimize/tests/tools/pymoo_fronts.py.
 const PYMOO: &str = include_str!("fixtures/pymoo_nsga2.json");
 
-/// A problem by formula: bounds, objectives, and constraints that must not be positive.
+/// A problem given by formulas: bounds, objectives, and constraint functions that must not be positive.
 struct Formula {
     name: &'static str,
     bounds: Vec<[f64; 2]>,
@@ -74,7 +74,7 @@ fn problems() -> Vec<Formula> {
                 ]
             },
         },
-        // Osyczka and Kundu 1995; each constraint over its right side.
+        // Osyczka and Kundu 1995; each constraint is divided by its right-hand side.
         Formula {
             name: "osy",
             bounds: vec![
@@ -201,11 +201,12 @@ fn median(problem: &Formula, evaluations: usize, reference: [f64; 2], make: Make
 
 type Make = fn(Vec<Variable>, u64) -> Box<dyn Algorithm>;
 
-/// The medians of 11 seeds at the budget of pymoo's runs, all feasible candidates counted on both sides. They may stay
-/// below pymoo's by what medians of 11 seeds differ by from one set of seeds to the next: on OSY that is whether the
-/// front's last piece was found, which makes 1.2 % and which half the seeds do, pymoo's own among them.
+/// Compares the median hypervolume over 11 random seeds with that of pymoo's runs, at the same budget; all feasible
+/// candidates count on both sides. A median may stay below pymoo's by as much as medians of 11 seeds differ between
+/// sets of seeds. On OSY the difference is whether a run found the last segment of the front, which contributes 1.2 %
+/// and which half of the seeds find, also in pymoo's runs.
 fn reach(make: Make) {
-    let pymoo: serde_json::Value = serde_json::from_str(PYMOO).expect("sound");
+    let pymoo: serde_json::Value = serde_json::from_str(PYMOO).expect("JSON");
     let evaluations = pymoo["evaluations"].as_u64().expect("a number") as usize;
     let mut short = Vec::new();
     for problem in problems() {
@@ -218,7 +219,10 @@ fn reach(make: Make) {
             short.push(format!("{}: {share}", problem.name));
         }
     }
-    assert!(short.is_empty(), "of what pymoo reaches: {short:?}");
+    assert!(
+        short.is_empty(),
+        "hypervolumes too small as fractions of pymoo's: {short:?}"
+    );
 }
 
 #[test]
@@ -228,7 +232,7 @@ fn nsga2_reaches_what_pymoo_reaches() {
 
 #[test]
 fn front_de_reaches_what_pymoo_reaches() {
-    // Without structure there is no quick start to be had from a small population.
+    // These problems have no structure, without which a small population gives no quick start.
     reach(|variables, seed| {
         let settings = FrontDeSettings {
             population: 60,

@@ -71,7 +71,10 @@ impl Explorer {
                 if ui.button("Reset layout").clicked() {
                     self.tree = layout();
                 }
-                if ui.button(if self.dark { "Light theme" } else { "Dark theme" }).clicked() {
+                if ui
+                    .button(if self.dark { "Light theme" } else { "Dark theme" })
+                    .clicked()
+                {
                     self.dark = !self.dark;
                     ui.ctx().set_theme(if self.dark {
                         egui::Theme::Dark

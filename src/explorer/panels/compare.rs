@@ -2,8 +2,8 @@
 
 use egui::{Color32, Grid, RichText, ScrollArea, Ui};
 
-use kinefront_model::evaluation::{Constraint, Evaluation};
 use crate::explorer::{Session, theme};
+use kinefront_model::evaluation::{Constraint, Evaluation};
 use kinefront_model::mechanism::VARIABLES;
 
 /// The panel that compares the pinned designs.

@@ -1,9 +1,10 @@
 //! The inspector: all results of the selected design, and sliders that modify its dimensions.
 
+use crate::text;
 use egui::{Color32, Grid, ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo, WidgetType};
 
-use kinefront_model::evaluation::ConstraintReport;
 use crate::explorer::{Known, Session, theme};
+use kinefront_model::evaluation::ConstraintReport;
 use kinefront_model::mechanism::VARIABLES;
 
 /// The inspector panel.
@@ -62,7 +63,11 @@ fn heading(ui: &mut Ui, session: &mut Session) {
         {
             session.toggle_pin();
         }
-        if ui.button("Copy").on_hover_text("copy the design as text (Ctrl+C)").clicked() {
+        if ui
+            .button("Copy")
+            .on_hover_text("copy the design as text (Ctrl+C)")
+            .clicked()
+        {
             ui.ctx().copy_text(chosen.design.to_string());
         }
         if let crate::explorer::Origin::Evaluated(id) = chosen.origin {

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 
-use kinefront_model::evaluation::{Constraint, Model};
 use crate::explorer::{Better, Quantity, Session, theme};
+use kinefront_model::evaluation::{Constraint, Model};
 use kinefront_model::mechanism::VARIABLES;
 
 /// Largest number of designs drawn besides the front, sampled evenly: more lines could not be told apart.

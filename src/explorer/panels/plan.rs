@@ -3,11 +3,11 @@
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2};
 use glam::{DVec2, DVec3};
 
+use crate::explorer::theme;
+use crate::scene::{Part, Scene, Solid, SolidShape};
 use kinefront_model::clearance::Member;
 use kinefront_model::evaluation::{MemberReport, Share};
-use crate::explorer::theme;
 use kinefront_model::mechanism::{Design, MemberKind};
-use crate::scene::{Part, Scene, Solid, SolidShape};
 use kinefront_model::spatial::nearest_on_segment;
 
 /// Largest distance of the pointer from the axis of a thin member at which the pointer still finds it \[points\].

@@ -1,12 +1,13 @@
 //! The pose panel: the manipulator from above, its platform moved and turned by the mouse, and the values at the pose.
 
+use crate::text;
 use egui::{Align2, Color32, FontId, Grid, Sense, Slider, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 use glam::DVec2;
 
 use super::plan::{Plan, card, paint};
 use crate::explorer::{Session, theme};
-use kinefront_model::mechanism::Design;
 use crate::scene::{Tour, manipulator, regular_workspace, tour};
+use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 
 /// Number of poses around each rim of the tour.
@@ -222,7 +223,7 @@ impl PosePanel {
 }
 
 fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
-    let Ok(Ok(report)) = session.model().pose(design, pose) else {
+    let Ok(report) = session.model().pose(design, pose) else {
         return;
     };
     let thresholds = &session.model().thresholds;
@@ -251,7 +252,7 @@ fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
     } else {
         theme::SOUND
     };
-    ui.colored_label(color, format!("clearance: {}", report.clearance));
+    ui.colored_label(color, format!("clearance: {}", text::clearance(&report.clearance)));
     let unit = design.architecture.actuator().unit();
     let actuators = report.actuators.map(theme::number).join(", ");
     ui.weak(format!(

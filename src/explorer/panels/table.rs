@@ -3,8 +3,8 @@
 use egui::{Align, Label, RichText, Sense, Ui};
 use egui_extras::{Column, TableBuilder};
 
-use kinefront_model::evaluation::Constraint;
 use crate::explorer::{FrontEntry, Origin, Quantity, Session, theme};
+use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::VARIABLES;
 
 /// Column by which the table is sorted.

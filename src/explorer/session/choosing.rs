@@ -1,12 +1,12 @@
-//! Choosing: by hand, by key, in the scene; what-if, pins and stars.
+//! Selection of designs by hand, by key and in the scene; modified designs, pins and stars.
 
 use super::super::document::{Chosen, Named, Origin};
 use super::{MOST_PINS, Session};
-use kinefront_model::mechanism::{Design, VARIABLES};
 use crate::recording::Picked;
+use kinefront_model::mechanism::{Design, VARIABLES};
 
 impl Session {
-    /// Puts a design of the run in the light.
+    /// Selects a design of the run.
     pub fn choose(&mut self, id: usize) {
         if let Some(row) = self.row(id) {
             self.choose_design(Chosen {
@@ -16,7 +16,7 @@ impl Session {
         }
     }
 
-    /// Puts a design in the light.
+    /// Selects a design.
     pub fn choose_design(&mut self, chosen: Chosen) {
         self.following = false;
         self.staging.pose = None;
@@ -24,14 +24,14 @@ impl Session {
         self.history.edit(|document| document.chosen = Some(chosen));
     }
 
-    /// Puts the knee of the front in the light.
+    /// Selects the knee of the front.
     pub fn choose_knee(&mut self) {
         if let Some(place) = self.knee() {
             self.choose(self.front[place].id);
         }
     }
 
-    /// Goes along the front by `steps` among the designs that the filter leaves in the light.
+    /// Moves the selection by `steps` along the designs of the front that pass the filter.
     pub fn walk(&mut self, steps: isize) {
         let sieve = self.document().filter.sieve(&self.store);
         let lit: Vec<usize> = self
@@ -57,7 +57,7 @@ impl Session {
         }
     }
 
-    /// What was pointed at in the scene.
+    /// Selects the design that was clicked in the scene.
     pub fn choose_picked(&mut self, picked: Picked) {
         match picked {
             Picked::Front(place) => {
@@ -73,7 +73,7 @@ impl Session {
         }
     }
 
-    /// Puts a named design in the light, under its origin where it has one.
+    /// Selects a named design, with its origin if that is known.
     pub fn choose_named(&mut self, named: &Named) {
         let id = named.name.strip_prefix('#').and_then(|id| id.parse().ok());
         let origin = match id {
@@ -89,7 +89,7 @@ impl Session {
         });
     }
 
-    /// Changes one variable of the design in the light, as part of a gesture.
+    /// Changes one variable of the selected design, as part of a gesture.
     pub fn what_if(&mut self, variable: usize, value: f64) {
         let Some(chosen) = self.document().chosen.clone() else {
             return;
@@ -117,18 +117,18 @@ impl Session {
         }
     }
 
-    /// Reads a design from text and puts it in the light.
+    /// Reads a design from text and selects it.
     pub fn paste(&mut self, text: &str) {
         match Design::parse(text.trim(), self.as_run.working_mode) {
             Ok(design) => self.choose_design(Chosen {
                 design,
                 origin: Origin::WhatIf { from: None },
             }),
-            Err(error) => self.tell_error(format!("what was pasted is no design: {error}")),
+            Err(error) => self.tell_error(format!("the pasted text is not a design: {error}")),
         }
     }
 
-    /// Keeps the design in the light under a name of its own.
+    /// Keeps the selected design under a new name.
     pub fn keep(&mut self) {
         let Some(chosen) = self.document().chosen.clone() else {
             return;
@@ -146,7 +146,7 @@ impl Session {
         });
     }
 
-    /// Stars the design in the light, or lifts its star.
+    /// Adds or removes the star of the selected design, if it is a design of the run.
     pub fn toggle_star(&mut self) {
         if let Some(Chosen {
             origin: Origin::Evaluated(id),
@@ -157,7 +157,7 @@ impl Session {
         }
     }
 
-    /// Stars a design of the run, or lifts its star.
+    /// Adds or removes the star of a design of the run.
     pub fn toggle_star_of(&mut self, id: usize) {
         self.history.edit(|document| {
             if !document.stars.remove(&id) {
@@ -166,7 +166,7 @@ impl Session {
         });
     }
 
-    /// Pins the design in the light, or lifts its pin.
+    /// Pins or unpins the selected design.
     pub fn toggle_pin(&mut self) {
         let Some((design, name)) = self
             .document()
@@ -184,7 +184,7 @@ impl Session {
         } else if self.document().pins.len() < MOST_PINS {
             self.history.edit(|document| document.pins.push(Named { name, design }));
         } else {
-            self.tell_error(format!("{MOST_PINS} designs are pinned; lift one of them first"));
+            self.tell_error(format!("{MOST_PINS} designs are already pinned; unpin one first"));
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Everything the window knows, without a window: the run, its designs, what is chosen, and what was asked of the scene.
+//! The complete state of the window, independent of any window: the run, its designs, the selection, and the requests
+//! to the scene.
 
 mod choosing;
 mod posing;
@@ -13,90 +14,90 @@ use super::document::{Chosen, Document, History, Named, Origin};
 use super::running::{Running, Writing};
 use super::scene_thread::{Answer, Known, SceneThread};
 use super::{Filter, FrontEntry, Row, Store, StudyEditor};
-use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use crate::recording::{FrontPoint, Layers, LiveScene};
-use kinefront_model::spatial::Pose;
 use crate::study::{GenerationSummary, Outcome, Study};
+use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
+use kinefront_model::spatial::Pose;
 
-/// Designs that can be compared at once.
+/// Largest number of designs that can be pinned for comparison.
 pub const MOST_PINS: usize = 4;
 
-/// Where a run stands.
+/// Phase of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Phase {
-    /// Nothing was run yet.
+    /// No run was started yet.
     Ready,
-    /// Searching.
+    /// The optimizer is searching.
     Searching,
-    /// Held between two generations.
+    /// The run is paused between two generations.
     Paused,
-    /// Verifying the front on the fine grid.
+    /// The front is being verified on the fine grid.
     Verifying {
-        /// Designs done.
+        /// Number of designs verified so far.
         done: usize,
-        /// Designs in all.
+        /// Number of designs to verify.
         total: usize,
     },
-    /// At its end.
+    /// The run has finished.
     Finished(Outcome),
-    /// Broken off.
+    /// The run has failed.
     Failed,
-    /// Read back from a file or folder.
+    /// The run was read from this file or folder.
     Opened(PathBuf),
 }
 
-/// Something to tell, until it is put away.
+/// A message to the user; an error is shown until it is dismissed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Notice {
-    /// The words.
+    /// Text of the message.
     pub text: String,
-    /// Whether something went wrong.
+    /// Whether the message reports an error.
     pub is_error: bool,
-    /// When it was told.
+    /// Time at which the message was reported.
     pub since: Instant,
 }
 
-/// Time that a message stays which tells of nothing wrong.
+/// Time for which a message is shown that is not an error.
 const GLANCE: Duration = Duration::from_secs(8);
 
-/// A design that comes with the study.
+/// A reference design of the study.
 #[derive(Debug, Clone)]
 pub struct Reference {
-    /// What it is called.
+    /// Name of the design.
     pub name: String,
-    /// What the model makes of it.
+    /// Evaluation of the design by the model.
     pub evaluation: Evaluation,
     /// Mass and `R_w` as its source states them.
     pub stated: Option<[f64; 2]>,
 }
 
-/// What is shown, and how; not undone.
+/// What is shown and how; undo does not restore it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Staging {
-    /// Pose of the manipulator; home where it is left out.
+    /// Pose of the manipulator; the home pose if `None`.
     pub pose: Option<Pose>,
-    /// Orientation of the heatmap \[rad\]; home where it is left out.
+    /// Orientation of the heatmap \[rad\]; the home orientation if `None`.
     pub heatmap_phi: Option<f64>,
-    /// What is drawn.
+    /// Layers that are drawn.
     pub layers: Layers,
-    /// Whether the pinned designs are in front.
+    /// Whether the view of the pinned designs is in front of that of the selected design.
     pub comparing: bool,
-    /// Whether the window's colours are light.
+    /// Whether the window uses light colours.
     pub light: bool,
 }
 
-/// Wakes the window when there is something new.
+/// Wakes the window when there is something new to show.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// Everything the window knows.
+/// The complete state of the window.
 pub struct Session {
-    /// The study being edited, which the next run takes.
+    /// The study being edited, which the next run uses.
     pub editor: StudyEditor,
-    /// What is shown.
+    /// What is shown and how.
     pub staging: Staging,
-    /// What is to be told.
+    /// Messages to the user.
     pub notices: Vec<Notice>,
-    /// Chosen, pinned, noted, filtered.
+    /// The user's selection, pins, kept designs, stars, notes and filter, with their earlier states.
     pub history: History,
     as_run: Arc<Study>,
     model: Model,
@@ -108,7 +109,7 @@ pub struct Session {
     place_on_front: BTreeMap<usize, usize>,
     front_points: Arc<Vec<FrontPoint>>,
     front_number: u64,
-    /// The front and filter that `front_points` shows.
+    /// Number of the front and the filter that `front_points` shows.
     front_drawn: Option<(u64, Filter)>,
     generations: Vec<GenerationSummary>,
     references: Vec<Reference>,
@@ -116,24 +117,25 @@ pub struct Session {
     answer: Answer,
     asked: u64,
     wake: Wake,
-    /// Counts the stores: ids of one mean nothing in another.
+    /// Number of the current store; the ids of one store mean nothing in another.
     era: u64,
-    /// Whether the knee of the front stays in the light while the run goes on: until a person chooses.
+    /// Whether the selection follows the knee of the front during the run; it does until the user selects a design.
     following: bool,
     followed: Option<Instant>,
 }
 
 impl Session {
-    /// A session that has run nothing yet; without a viewer there is no `scene`.
+    /// Makes a session without a run; `scene` is `None` if there is no viewer.
     ///
     /// # Errors
-    /// Its threads could not be started.
+    /// Returns an error if the threads of the session cannot be started.
     pub fn new(editor: StudyEditor, scene: Option<LiveScene>, wake: Wake) -> std::io::Result<Self> {
         let waking = Arc::clone(&wake);
         let study = Arc::new(editor.study().clone());
+        let model = study.model().map_err(std::io::Error::other)?;
         Ok(Self {
-            model: study.model(),
-            references: references(&study),
+            references: references(&study, &model),
+            model,
             as_run: study,
             editor,
             staging: Staging::default(),
@@ -159,42 +161,42 @@ impl Session {
         })
     }
 
-    /// The study of the designs at hand.
+    /// Returns the study to which the stored designs belong.
     pub fn study(&self) -> &Study {
         &self.as_run
     }
 
-    /// Its physics.
+    /// Returns the model of that study.
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// Every evaluated design.
+    /// Returns all evaluated designs.
     pub fn store(&self) -> &Store {
         &self.store
     }
 
-    /// Counts the stores: ids of one mean nothing in another.
+    /// Returns the number of the current store; the ids of one store mean nothing in another.
     pub fn era(&self) -> u64 {
         self.era
     }
 
-    /// The front, by mass.
+    /// Returns the front, sorted by mass.
     pub fn front(&self) -> &[FrontEntry] {
         &self.front
     }
 
-    /// Counts the fronts: what was made of one holds until the next.
+    /// Returns the number of the current front; data derived from a front are valid until the number changes.
     pub fn front_number(&self) -> u64 {
         self.front_number
     }
 
-    /// Place of a design on the front.
+    /// Returns the index of a design on the front, if it is on it.
     pub fn place_on_front(&self, id: usize) -> Option<usize> {
         self.place_on_front.get(&id).copied()
     }
 
-    /// The member of the front, or the stored design, of an id.
+    /// Returns the values of design `id`: from the front if it is on it, otherwise from the store.
     pub fn row(&self, id: usize) -> Option<Row> {
         match self.place_on_front(id) {
             Some(place) => Some(self.front[place].row),
@@ -202,53 +204,53 @@ impl Session {
         }
     }
 
-    /// State after each generation.
+    /// Returns the summary of each generation.
     pub fn generations(&self) -> &[GenerationSummary] {
         &self.generations
     }
 
-    /// Where the run stands.
+    /// Returns the phase of the run.
     pub fn phase(&self) -> &Phase {
         &self.phase
     }
 
-    /// Whether a run is under way.
+    /// Returns whether a run is in progress.
     pub fn is_running(&self) -> bool {
         matches!(self.phase, Phase::Searching | Phase::Paused | Phase::Verifying { .. })
     }
 
-    /// Worker threads of the run.
+    /// Returns the number of worker threads of the run.
     pub fn threads(&self) -> Option<usize> {
         self.threads
     }
 
-    /// Time the run has worked.
+    /// Returns the working time of the run.
     pub fn elapsed(&self) -> Duration {
         self.run.as_ref().map_or(Duration::ZERO, Running::elapsed)
     }
 
-    /// Folder of the run's files.
+    /// Returns the run folder of a run that was started in the window.
     pub fn run_folder(&self) -> Option<PathBuf> {
         self.run.as_ref().map(Running::folder)
     }
 
-    /// The run's files that will be whole after a wait: of a run that has ended.
+    /// Returns the counter of files still being written if the run has ended, so that a job can wait for them.
     pub(super) fn writing(&self) -> Option<Writing> {
         let ended = matches!(self.phase, Phase::Finished(_) | Phase::Failed);
         self.run.as_ref().filter(|_| ended).map(|run| run.writing().clone())
     }
 
-    /// Designs that come with the study.
+    /// Returns the reference designs of the study.
     pub fn references(&self) -> &[Reference] {
         &self.references
     }
 
-    /// Chosen, pinned, noted, filtered.
+    /// Returns the user's selection, pins, kept designs, stars, notes and filter.
     pub fn document(&self) -> &Document {
         self.history.present()
     }
 
-    /// What is known of the design in the light.
+    /// Returns the evaluation of the selected design, if it is known.
     pub fn known(&self) -> Option<&Known> {
         let chosen = self.document().chosen.as_ref()?;
         self.answer
@@ -257,24 +259,24 @@ impl Session {
             .filter(|known| known.evaluation.design == chosen.design)
     }
 
-    /// Evaluations of the pinned designs, as far as they are known.
+    /// Returns the evaluations of the pinned designs; `None` for each that is not known yet.
     pub fn pin_evaluations(&self) -> Vec<Option<&Evaluation>> {
         let known = |named: &Named| self.answer.pins.iter().find(|pin| pin.design == named.design);
         self.document().pins.iter().map(known).collect()
     }
 
-    /// Whether everything asked of the scene is drawn.
+    /// Returns whether everything requested of the scene is drawn.
     pub fn is_drawn(&self) -> bool {
         self.answer.drawn >= self.asked
     }
 
-    /// What the design in the light is called.
+    /// Returns the name of the selected design.
     pub fn chosen_name(&self) -> Option<String> {
         let document = self.document();
         Some(match &document.chosen.as_ref()?.origin {
             Origin::Evaluated(id) => format!("#{id}"),
-            Origin::WhatIf { from: Some(id) } => format!("what if, from #{id}"),
-            Origin::WhatIf { from: None } => "what if".to_owned(),
+            Origin::WhatIf { from: Some(id) } => format!("modified from #{id}"),
+            Origin::WhatIf { from: None } => "modified".to_owned(),
             Origin::Kept(index) => document.kept.get(*index).map_or("kept", |kept| &kept.name).to_owned(),
             Origin::Reference(index) => self
                 .references
@@ -284,7 +286,7 @@ impl Session {
         })
     }
 
-    /// Whether the design in the light is one that was changed by hand and not kept.
+    /// Returns whether the selected design is a modified design that was not kept.
     pub fn is_what_if(&self) -> bool {
         matches!(
             self.document().chosen,
@@ -295,18 +297,18 @@ impl Session {
         )
     }
 
-    /// Tells something.
+    /// Shows a message to the user.
     pub fn tell(&mut self, text: String) {
         self.put_notice(text, false);
     }
 
-    /// Tells that something went wrong.
+    /// Shows an error message to the user.
     pub fn tell_error(&mut self, text: String) {
         self.put_notice(text, true);
     }
 
     fn put_notice(&mut self, text: String, is_error: bool) {
-        // Said twice is said once.
+        // A message replaces an earlier one with the same text.
         self.notices.retain(|notice| notice.text != text);
         self.notices.push(Notice {
             text,
@@ -322,13 +324,12 @@ impl Drop for Session {
     }
 }
 
-fn references(study: &Study) -> Vec<Reference> {
-    let model = study.model();
+fn references(study: &Study, model: &Model) -> Vec<Reference> {
     let evaluated = study.references.iter().filter_map(|reference| {
         let design = reference.parse(study.working_mode).ok()?;
         Some(Reference {
             name: reference.name.clone(),
-            evaluation: model.evaluate(&design, GridChoice::Reference).ok()?,
+            evaluation: model.evaluate(&design, GridChoice::Reference),
             stated: reference
                 .mass_kg
                 .zip(reference.workspace_radius_m)

@@ -1,25 +1,26 @@
-//! The pose of the design in the light.
+//! The pose of the selected design.
 
 use super::Session;
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::spatial::Pose;
 
 impl Session {
-    /// Where the manipulator stands.
+    /// Returns the pose of the manipulator.
     pub fn pose(&self) -> Option<Pose> {
         self.staging.pose.or_else(|| self.home())
     }
 
-    /// Home of the design in the light.
+    /// Returns the home pose of the selected design.
     pub fn home(&self) -> Option<Pose> {
         Some(self.model.home(&self.known()?.evaluation))
     }
 
-    /// Moves the platform towards `pose`, as far as it gets in a straight line; tells what stopped it.
+    /// Moves the platform to `pose` or, if that is not reachable, as far towards it as possible in a straight line;
+    /// returns what stopped it.
     pub fn move_platform(&mut self, pose: Pose) -> Option<String> {
         let design = self.document().chosen.as_ref()?.design;
         let from = self.pose()?;
-        let reach = |pose: &Pose| self.model.pose(&design, pose).ok()?.err();
+        let reach = |pose: &Pose| self.model.pose(&design, pose).err();
         let Some(stopped) = reach(&pose) else {
             self.staging.pose = Some(pose);
             return None;
@@ -28,7 +29,7 @@ impl Session {
             position: from.position.lerp(pose.position, share),
             phi: from.phi + share * (pose.phi - from.phi),
         };
-        // As near as it gets: where the present pose itself is not reached, it stays.
+        // The platform moves as near as possible; if the current pose itself is not reachable, it stays there.
         let (mut low, mut high) = (0.0, 1.0);
         if reach(&from).is_none() {
             for _ in 0..24 {

@@ -1,4 +1,4 @@
-//! The run under way: started, held, ended, and its news taken in.
+//! The current run: it is started, paused and ended here, and its messages are processed.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,22 +11,22 @@ use super::super::running::Running;
 use super::super::scene_thread::Request;
 use super::super::{FrontEntry, Store, StudyEditor};
 use super::{GLANCE, Phase, Session, references};
-use kinefront_optimize::knee;
 use crate::recording::FrontPoint;
 use crate::study::{RunControl, Study, Subscriber, spawn};
+use kinefront_optimize::knee;
 
 impl Session {
-    /// Starts the run of the study in the editor; one under way is given up.
+    /// Starts a run of the study in the editor; a run in progress is abandoned.
     pub fn start(&mut self) {
         if let Some(fault) = self.editor.faults().first() {
-            let words = format!("the study cannot run: `{}` {}", fault.key, fault.message);
+            let words = format!("the study cannot be run: `{}` {}", fault.key, fault.message);
             self.tell_error(words);
             return;
         }
         self.start_from(spawn);
     }
 
-    /// Starts a run whose events come from `source`, as [`spawn`] is one.
+    /// Starts a run whose events come from `source`, for example [`spawn`].
     pub fn start_from(
         &mut self,
         source: impl FnOnce(Study, Arc<RunControl>, Vec<Subscriber>) -> std::io::Result<JoinHandle<()>>,
@@ -42,7 +42,7 @@ impl Session {
         }
     }
 
-    /// Opens what a run left, or a study.
+    /// Opens the results of a run, or a study.
     pub fn open(&mut self, path: &Path) {
         let is_study = path.extension().is_some_and(|extension| extension == "toml");
         if is_study {
@@ -77,8 +77,11 @@ impl Session {
     }
 
     fn begin(&mut self, study: Arc<Study>) {
-        self.model = study.model();
-        self.references = references(&study);
+        match study.model() {
+            Ok(model) => self.model = model,
+            Err(error) => return self.tell_error(error.to_string()),
+        }
+        self.references = references(&study, &self.model);
         self.as_run = study;
         self.store = Store::default();
         self.generations.clear();
@@ -87,7 +90,7 @@ impl Session {
         self.era += 1;
         self.following = true;
         self.followed = None;
-        // Ids of the run before mean nothing now; designs by themselves and the filter go on.
+        // The ids of the previous run are meaningless now; pinned and kept designs and the filter remain.
         let before = self.history.present();
         let document = Document {
             pins: before.pins.clone(),
@@ -100,7 +103,7 @@ impl Session {
         self.staging.heatmap_phi = None;
     }
 
-    /// Holds the run after the generation under way.
+    /// Pauses the run after the current generation.
     pub fn pause(&mut self) {
         if let Some(run) = self.run.as_mut().filter(|_| self.phase == Phase::Searching) {
             run.control.pause();
@@ -109,7 +112,7 @@ impl Session {
         }
     }
 
-    /// Goes on.
+    /// Resumes the run.
     pub fn resume(&mut self) {
         if let Some(run) = self.run.as_mut().filter(|_| self.phase == Phase::Paused) {
             run.control.resume();
@@ -118,7 +121,7 @@ impl Session {
         }
     }
 
-    /// Does one generation and holds again.
+    /// Runs one generation and pauses again.
     pub fn step(&mut self) {
         if let Some(run) = &mut self.run
             && matches!(self.phase, Phase::Searching | Phase::Paused)
@@ -129,7 +132,7 @@ impl Session {
         }
     }
 
-    /// Ends the run; what it found is verified and kept.
+    /// Ends the run; the designs found so far are verified and kept.
     pub fn stop(&mut self) {
         if let Some(run) = self
             .run
@@ -142,14 +145,14 @@ impl Session {
         }
     }
 
-    /// Ends everything, the run's files included.
+    /// Ends the run and removes its temporary files.
     pub fn close(&mut self) {
         if let Some(run) = self.run.take() {
             run.close();
         }
     }
 
-    /// Takes in what is new; to be called before each frame.
+    /// Processes new messages and results; must be called before each frame.
     pub fn update(&mut self) {
         if let Some(run) = &mut self.run {
             let mut news = run.intake.take();
@@ -166,7 +169,7 @@ impl Session {
             if let Some(message) = news.failed {
                 run.count_time(false);
                 self.phase = Phase::Failed;
-                self.tell_error(format!("the run broke off, what it found is kept: {message}"));
+                self.tell_error(format!("the run failed; the designs found so far are kept: {message}"));
             }
             for words in news.troubles {
                 self.tell_error(words);
@@ -187,7 +190,7 @@ impl Session {
         self.ask();
     }
 
-    /// Keeps the knee in the light, now and then: it is drawn beside the search.
+    /// Selects the knee at intervals only, because drawing it takes processor time from the search.
     fn follow(&mut self) {
         const EVERY: Duration = Duration::from_millis(700);
         let ended = !self.is_running();
@@ -219,7 +222,7 @@ impl Session {
         self.front = front;
     }
 
-    /// The front as the scene draws it, dimmed where the filter says so.
+    /// Prepares the front for the scene; designs that do not pass the filter are dimmed.
     fn draw_front(&mut self) {
         let drawn = (self.front_number, self.history.present().filter.clone());
         if self.front_drawn.as_ref() == Some(&drawn) {
@@ -237,7 +240,7 @@ impl Session {
         self.front_drawn = Some(drawn);
     }
 
-    /// Asks the scene for what is to be shown.
+    /// Requests the current scene from the scene thread.
     fn ask(&mut self) {
         self.draw_front();
         let document = self.history.present();

@@ -4,12 +4,12 @@ use maud::{Markup, html};
 
 use super::results::levels;
 use super::{change, figures, optional, percent};
-use kinefront_model::evaluation::Evaluation;
 use crate::report::{ClearanceCost, Front, Report};
-use crate::text::{number, short};
+use crate::text::{self, number, short};
+use kinefront_model::evaluation::Evaluation;
 
 pub(super) fn clearance(report: &Report) -> Markup {
-    let model = report.study.model();
+    let model = &report.model;
     let worst = |front: &Front| -> Option<String> {
         let found = front.shown().filter_map(|member| Some((member.clearance()?, member)));
         let (_, member) = found.reduce(|worst, next| if next.0 < worst.0 { next } else { worst })?;

@@ -4,10 +4,10 @@ use maud::{Markup, html};
 
 use super::results::{levels, unknown, verdict};
 use super::{cell, change, optional, percent};
-use kinefront_model::mechanism::{Architecture, VARIABLES, Variable};
-use kinefront_optimize::hypervolume;
 use crate::report::{Front, Reference, Report, Variation};
 use crate::text::number;
+use kinefront_model::mechanism::{Architecture, VARIABLES, Variable};
+use kinefront_optimize::hypervolume;
 
 pub(super) fn references(report: &Report) -> Markup {
     let stated = |reference: &Reference| {
@@ -287,7 +287,10 @@ const SILENCES: [(&str, &str); 11] = [
         "The printed mass of the platform is that of one bar; the printed table of designs requires three.",
         "three bars",
     ),
-    ("τ_z is 100 N·m in the text, but 10 N·m in the inequality and in g6.", "10 N·m"),
+    (
+        "τ_z is 100 N·m in the text, but 10 N·m in the inequality and in g6.",
+        "10 N·m",
+    ),
     (
         "The table of bounds has r ≥ 0.5 m, but design I has r = 0.319 m.",
         "r ≥ 0.1 m",

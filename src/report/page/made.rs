@@ -3,26 +3,49 @@
 use maud::{Markup, html};
 
 use super::optional;
-use kinefront_model::mechanism::{Architecture, VARIABLES};
 use crate::report::Report;
+use kinefront_model::mechanism::{Architecture, VARIABLES};
 
 /// Lists where a reader of the paper finds each of its figures and tables on the page.
 pub(super) fn guide(report: &Report) -> Markup {
     let whole = report.rivals.is_some();
     let mut places = vec![
         ("Fig. 1, the manipulators", "pictures", "Pictures of designs"),
-        ("Fig. 2 to 4, flexible models of the legs", "made", "How this report was made"),
+        (
+            "Fig. 2 to 4, flexible models of the legs",
+            "made",
+            "How this report was made",
+        ),
         ("Fig. 5, a regular workspace", "pictures", "Pictures of designs (green)"),
-        ("Fig. 6, Pareto front", "fronts", "Pareto fronts, all architectures together"),
+        (
+            "Fig. 6, Pareto front",
+            "fronts",
+            "Pareto fronts, all architectures together",
+        ),
         ("Fig. 7, fronts of the three architectures", "fronts", "Pareto fronts"),
         ("Fig. 8, CAD designs", "pictures", "Pictures of designs, ID-I to ID-III"),
-        ("Fig. 9, R, r and L_b over R_w", "variables", "Trends of the design variables"),
-        ("Fig. 10, r_j and r_p over R_w", "variables", "Trends of the design variables"),
+        (
+            "Fig. 9, R, r and L_b over R_w",
+            "variables",
+            "Trends of the design variables",
+        ),
+        (
+            "Fig. 10, r_j and r_p over R_w",
+            "variables",
+            "Trends of the design variables",
+        ),
         ("Tab. 1, bounds", "made", "How this report was made"),
         ("Tab. 3, three Pareto-optimal designs", "designs", "Reference designs"),
     ];
     if whole {
-        places.insert(9, ("Tab. 2, the parameters of the algorithm", "made", "How this report was made"));
+        places.insert(
+            9,
+            (
+                "Tab. 2, the parameters of the algorithm",
+                "made",
+                "How this report was made",
+            ),
+        );
     }
     html! {
         p {

@@ -23,7 +23,11 @@ pub(super) fn html(report: &Report) -> String {
         format!("Kinefront report: {}", report.study.name)
     };
     let mut sections: Vec<(&str, &str, Markup)> = vec![
-        ("comparison", "Comparison of the architectures", results::comparison(report)),
+        (
+            "comparison",
+            "Comparison of the architectures",
+            results::comparison(report),
+        ),
         ("fronts", "Pareto fronts", results::fronts(report)),
     ];
     if !report.references.is_empty() {
@@ -36,8 +40,16 @@ pub(super) fn html(report: &Report) -> String {
             differences::explained(report),
         ));
     }
-    sections.push(("variables", "Trends of the design variables with R_w", results::variables(report)));
-    sections.push(("constraints", "Constraints that limit the workspace", results::constraints(report)));
+    sections.push((
+        "variables",
+        "Trends of the design variables with R_w",
+        results::variables(report),
+    ));
+    sections.push((
+        "constraints",
+        "Constraints that limit the workspace",
+        results::constraints(report),
+    ));
     sections.push(("clearance", "Clearance between members", clearance::clearance(report)));
     sections.push(("pictures", "Pictures of designs", results::pictures(report)));
     if !report.variations.is_empty() {

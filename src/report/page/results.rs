@@ -3,10 +3,10 @@
 use maud::{Markup, html};
 
 use super::{cell, figures, image, percent};
-use kinefront_model::evaluation::{Constraint, Evaluation};
-use kinefront_model::mechanism::{VARIABLES, Variable};
 use crate::report::{AT_BOUND, Fit, Front, Report, Trend, lightest_where};
 use crate::text::{number, short};
+use kinefront_model::evaluation::{Constraint, Evaluation};
+use kinefront_model::mechanism::{VARIABLES, Variable};
 
 /// Workspace radii at which architectures are compared, as fractions of the largest radius.
 const LEVELS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95];
@@ -202,7 +202,7 @@ pub(super) fn variables(report: &Report) -> Markup {
 }
 
 pub(super) fn constraints(report: &Report) -> Markup {
-    let asked: Vec<Constraint> = Constraint::asked(&report.study.model().thresholds).collect();
+    let asked: Vec<Constraint> = Constraint::asked(&report.model.thresholds).collect();
     html! {
         p {
             "The active constraints are those that fail first just beyond R_w: they would have to be relaxed for the "

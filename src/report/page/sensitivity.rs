@@ -4,9 +4,9 @@ use maud::{Markup, html};
 
 use super::results::levels;
 use super::{cell, change, figures, optional};
-use kinefront_model::mechanism::Architecture;
 use crate::report::{Front, READINGS, Reading, Report, Variation};
 use crate::text::{number, short};
+use kinefront_model::mechanism::Architecture;
 
 pub(super) fn sensitivity(report: &Report) -> Markup {
     let Some((base, others)) = report.variations.split_first() else {

@@ -16,9 +16,9 @@ use self::mesh::{Layout, Mesh, Surface};
 use super::Field;
 use kinefront_model::evaluation::Model;
 use kinefront_model::mechanism::{Design, Leg, ReachReason};
-use kinefront_model::with_leg;
 use kinefront_model::spatial::{LEGS, Rotation};
-use kinefront_model::workspace::{GridError, PoseChecker, PoseLanes, PoseValues, ValueColumns};
+use kinefront_model::with_leg;
+use kinefront_model::workspace::{PoseChecker, PoseLanes, PoseValues, ValueColumns};
 
 /// Resolution of a heatmap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,23 +61,13 @@ pub struct Heatmap {
 
 impl Heatmap {
     /// Computes the heatmap of `field` for `design` at orientation `phi` \[rad\].
-    ///
-    /// # Errors
-    /// [`GridError`] when the study uses the isotropic characteristic length and the steps of the reference grid do not
-    /// divide the full turn or the rotation range.
-    pub fn new(
-        model: &Model,
-        design: &Design,
-        field: Field,
-        phi: f64,
-        settings: HeatmapSettings,
-    ) -> Result<Self, GridError> {
+    pub fn new(model: &Model, design: &Design, field: Field, phi: f64, settings: HeatmapSettings) -> Self {
         with_leg!(design.architecture, L => {
-            let mut checker = model.checker::<L>(design)?;
+            let mut checker = model.checker::<L>(design);
             checker.definition = field.definition(model);
             checker.thresholds.clearance = field.clearance(model);
             let sampler = Sampler { model, design, checker: &checker, arms: checker.manipulator.arms(&Rotation::new(phi)), field };
-            Ok(sampler.heatmap(phi, settings))
+            sampler.heatmap(phi, settings)
         })
     }
 

@@ -1,11 +1,11 @@
-//! MODE of fcmaes-core, the Rust peer, on the evaluator of `kinefront evaluate --stdin`.
+//! MODE of fcmaes-core, a comparable optimizer in Rust, on the evaluator of `kinefront evaluate --stdin`.
 //!
 //! ```text
 //! mode KINEFRONT ARCHITECTURES EVALUATIONS SEED POPULATION
 //! ```
 //!
-//! Prints each design as it goes in to the evaluator; whoever compares evaluates them again. Several architectures
-//! (`3-PRR,3-RPR,3-RRR`) are one more variable, cut into equal parts.
+//! Prints each design as it is sent to the evaluator; `compare.py` evaluates the designs again. Several architectures
+//! (`3-PRR,3-RPR,3-RRR`) are one more variable, whose range is divided into equal parts.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
@@ -62,11 +62,11 @@ fn main() {
     }
 }
 
-/// Mass, −R_w and the violation of each design.
+/// Evaluates designs; returns the mass, −R_w and the violation of each.
 fn evaluate(evaluator: &mut Child, designs: &[String]) -> Vec<Vec<f64>> {
     let mut input = evaluator.stdin.take().expect("piped");
     let lines = designs.join("\n") + "\n";
-    // Answers come while designs still go in: a thread writes, so that neither pipe fills up.
+    // Answers arrive while designs are still being sent: a thread writes them, so that neither pipe fills up.
     let writer = std::thread::spawn(move || {
         input.write_all(lines.as_bytes()).expect("the evaluator reads");
         input.flush().expect("the evaluator reads");

@@ -10,9 +10,9 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::{GridChoice, Model};
 use super::layout::{Layout, Place};
 use super::lightest::{Problem, Shares, lightest};
+use super::{GridChoice, Model};
 use crate::mechanism::{Design, Leg};
 use crate::spatial::{LEGS, Rotation, unit};
 use crate::stiffness::StiffnessModel;

@@ -126,7 +126,7 @@ fn finite(compliances: &[f64]) -> Option<()> {
 mod tests {
     use super::*;
     use crate::evaluation::Model;
-    use crate::mechanism::{Design};
+    use crate::mechanism::Design;
     use crate::spatial::Pose;
     use crate::stiffness::BarCompliance;
 

@@ -139,7 +139,10 @@ mod tests {
     #[test]
     fn a_grid_that_cannot_be_laid_is_refused() {
         for step in [7.0, 0.0, -2.5, f64::NAN, f64::INFINITY] {
-            assert!(matches!(Grid::new(step, 36, 50, 12), Err(GridError::TurnNotWhole(_))), "{step}");
+            assert!(
+                matches!(Grid::new(step, 36, 50, 12), Err(GridError::TurnNotWhole(_))),
+                "{step}"
+            );
         }
         assert_eq!(Grid::new(2.5, 0, 50, 12), Err(GridError::Empty("directions")));
         assert_eq!(Grid::new(2.5, 36, 0, 12), Err(GridError::Empty("ray steps")));

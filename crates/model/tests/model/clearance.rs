@@ -1,5 +1,5 @@
-//! Clearances beside capsules put together here from the joints that a pose report gives, and `parry3d`'s distance of
-//! segments in space.
+//! Compares clearances with an oracle: capsules constructed here from the joints in a pose report, and the distance of
+//! segments in space by `parry3d`.
 
 use kinefront_model::clearance::{BodySettings, Layers};
 use kinefront_model::evaluation::{Model, ModelSettings, PoseReport};
@@ -12,10 +12,10 @@ use parry3d_f64::shape::Segment;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// Poses of each architecture.
+/// Number of poses of each architecture.
 const POSES: usize = 100_000;
 
-/// A body as the oracle sees it: what it is joined by, and its capsule.
+/// A member as the oracle models it: its joints and its capsule.
 #[derive(Clone)]
 struct Body {
     name: String,
@@ -24,17 +24,17 @@ struct Body {
     radius: f64,
 }
 
-/// A fault that can be planted in the oracle.
+/// A fault that can be introduced into the oracle on purpose.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Fault {
     None,
-    /// The bodies whose names hold this are left out.
+    /// The members whose names contain this text are omitted.
     LeftOut(&'static str),
-    /// The bodies whose names hold this are 1 % thicker.
+    /// The members whose names contain this text are 1 % thicker.
     Thicker(&'static str),
-    /// Bodies that share a joint count too.
+    /// Members that share a joint are compared, too.
     JoinedCounted,
-    /// The ends of rails do not count.
+    /// The ends of the rails are not considered.
     NoRailEnds,
 }
 
@@ -137,13 +137,13 @@ fn distance(a: &Body, b: &Body) -> f64 {
     at(a, on_a).distance(at(b, on_b)) - a.radius - b.radius
 }
 
-/// The nearest pair as the oracle sees it.
+/// The nearest pair of members according to the oracle.
 struct Found {
     /// Its clearance.
     least: f64,
-    /// Its names.
+    /// Names of its two members.
     pair: [String; 2],
-    /// The clearance of the next.
+    /// Clearance of the second nearest pair.
     second: f64,
 }
 
@@ -199,7 +199,7 @@ fn oracle(model: &Model, design: &Design, pose: &Pose, report: &PoseReport, faul
     found
 }
 
-/// Numbers between two others.
+/// Generator of random numbers within a range.
 struct Random(ChaCha8Rng);
 
 impl Random {
@@ -207,11 +207,11 @@ impl Random {
         low + (high - low) * (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A study's choices about bodies and legs, and a design of an architecture.
+    /// Draws a model with random settings for members and legs, and a random design of an architecture.
     fn subject(&mut self, architecture: Architecture) -> (ModelSettings, Design) {
         let mut model = ModelSettings::default();
         let half_width = self.between(0.5, 3.0);
-        // Layers as they come, in one plane, or as they are built.
+        // The default layers, all layers in one plane, or random layers.
         let layers = match self.0.next_u32() % 3 {
             0 => Layers::default(),
             1 => Layers::ONE_PLANE,
@@ -237,7 +237,7 @@ impl Random {
             self.between(0.001, 0.1),
             self.between(0.001, 0.1),
         ];
-        let design = Design::new(architecture, WorkingMode::new(signs), values).expect("a sound design");
+        let design = Design::new(architecture, WorkingMode::new(signs), values).expect("a valid design");
         (model, design)
     }
 
@@ -250,7 +250,7 @@ impl Random {
     }
 }
 
-/// The clearance as evaluations see it: the loop over poses, for one.
+/// Returns the clearance that evaluations compute, by their loop over poses with a single pose.
 fn in_lanes(model: &Model, design: &Design, pose: &Pose) -> Option<f64> {
     fn of<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Option<f64> {
         let mut checker = model.checker::<L>(design);
@@ -264,7 +264,8 @@ fn in_lanes(model: &Model, design: &Design, pose: &Pose) -> Option<f64> {
     with_leg!(design.architecture, L => of::<L>(model, design, pose))
 }
 
-/// Looks at random poses of random designs; returns how many overlap, and how often each fault of the oracle shows.
+/// Compares random poses of random designs; returns the number of poses with an overlap and, for each fault of the
+/// oracle, the number of poses at which it is detected.
 fn compare(architecture: Architecture, poses: usize, faults: &[Fault]) -> (usize, Vec<usize>) {
     let mut random = Random(ChaCha8Rng::seed_from_u64(7));
     let (mut done, mut overlapping, mut shown) = (0, 0, vec![0; faults.len()]);
@@ -276,7 +277,7 @@ fn compare(architecture: Architecture, poses: usize, faults: &[Fault]) -> (usize
             let Ok(report) = model.pose(&design, &pose) else {
                 continue;
             };
-            // Within rounding of a singularity of a leg its own directions are lost, and with them the last digits.
+            // Within rounding of a singularity of a leg, its directions are undefined and the last digits are lost.
             if report.slack < 1e-9 {
                 continue;
             }
@@ -299,7 +300,7 @@ fn compare(architecture: Architecture, poses: usize, faults: &[Fault]) -> (usize
                 };
                 assert_eq!(names(told.pair()), names(pair), "{design} at {pose:?}");
             }
-            let lanes = in_lanes(&model, &design, &pose).expect("a reached pose");
+            let lanes = in_lanes(&model, &design, &pose).expect("a reachable pose");
             assert!(
                 (lanes - wanted).abs() < 1e-9,
                 "{design} at {pose:?}: {lanes} instead of {wanted}"
@@ -326,7 +327,8 @@ fn clearances_are_those_of_capsules_in_space() {
     }
 }
 
-/// The comparison tells: whatever is left out, too thick or counted too much on one side makes the two differ.
+/// The comparison detects faults: a member omitted or too thick, or a pair counted in excess, makes the two sides
+/// differ.
 #[test]
 fn a_planted_fault_shows() {
     let common = [
@@ -360,12 +362,15 @@ fn a_planted_fault_shows() {
         }
         let (_, shown) = compare(architecture, 2000, &faults);
         for (fault, count) in faults.iter().zip(shown) {
-            assert!(count > 10, "{architecture}: {fault:?} shows in {count} of 2000 poses");
+            assert!(
+                count > 10,
+                "{architecture}: {fault:?} is detected in {count} of 2000 poses"
+            );
         }
     }
 }
 
-/// Bars made as thick as to touch have no clearance, a little thicker ones overlap by as much.
+/// Bars thickened until they touch have zero clearance, and bars thickened further overlap by the excess.
 #[test]
 fn touching_is_zero() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(11));
@@ -374,7 +379,7 @@ fn touching_is_zero() {
         for _ in 0..400_000 {
             let (mut settings, mut design) = random.subject(architecture);
             settings.bodies.layers = Layers::ONE_PLANE;
-            // Small ones: as legs are made thicker, sliders are to stay out of the way.
+            // Sliders are small, so that they stay clear as the legs are made thicker.
             (settings.bodies.slider_half_width, settings.bodies.slider_length) = (0.2, 0.4);
             let model = Model::new(settings).expect("the grids fit the rotation range");
             let pose = random.pose();
@@ -383,7 +388,7 @@ fn touching_is_zero() {
                 let report = model.pose(design, &pose).ok()?;
                 Some(report.clearance)
             };
-            // Legs against legs: both radii are r_j, and as it grows no other pair may come first.
+            // Only pairs of legs: both radii are r_j, and no other pair may become the nearest as r_j grows.
             let legs = |pair: [String; 2]| {
                 pair.iter()
                     .all(|name| name.starts_with("leg") && !name.contains("slider"))
@@ -394,7 +399,7 @@ fn touching_is_zero() {
             for thicker in [0.0, 1e-3] {
                 design.leg_bar_radius = 0.01 + 0.5 * before.distance + thicker;
                 let Some(found) = clearance(&design) else {
-                    unreachable!("radii change no reach")
+                    unreachable!("bar radii do not affect reach")
                 };
                 if found.pair() == before.pair() {
                     assert!((found.distance + 2.0 * thicker).abs() < 1e-12, "{design}: {found:?}");
@@ -402,6 +407,6 @@ fn touching_is_zero() {
                 }
             }
         }
-        assert!(touched > 50, "{architecture}: {touched} touch");
+        assert!(touched > 50, "{architecture}: {touched} pairs touch");
     }
 }

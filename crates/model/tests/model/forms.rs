@@ -1,4 +1,4 @@
-//! The closed form of the stiffness against the general 6×6 form.
+//! Compares the closed form of the stiffness with the general 6×6 form.
 
 use kinefront_model::kinematics::Jacobian;
 use kinefront_model::mechanism::{Design, Leg, LegSettings, Manipulator};
@@ -18,7 +18,7 @@ const ACTUATORS: ActuatorStiffness = ActuatorStiffness {
     revolute: 1e7,
 };
 
-/// Both forms at a pose, where it is reachable and not on the edge of reach.
+/// Returns the stiffness in both forms at a pose, if the pose is reachable and not at the end of reach.
 fn both<L: Leg>(design: &Design, settings: &LegSettings, pose: &Pose) -> Option<(PlanarStiffness, Matrix6<f64>)> {
     let manipulator = Manipulator::<L>::new(design, settings);
     let posture = manipulator.posture(pose).ok()?;

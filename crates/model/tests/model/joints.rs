@@ -1,4 +1,5 @@
-//! Joints close, Jacobians are derivatives, forward kinematics undoes inverse kinematics.
+//! Checks that joints close, that Jacobians are derivatives, and that forward kinematics is the inverse of inverse
+//! kinematics.
 
 use kinefront_model::evaluation::Model;
 use kinefront_model::kinematics::{Jacobian, forward};
@@ -37,14 +38,14 @@ fn joints_close<L: Leg>(design: &Design, pose: &Pose) -> Check {
     Ok(())
 }
 
-/// `A t = B q̇` against central differences of the inverse kinematics.
+/// Compares `A t = B q̇` with central differences of the inverse kinematics.
 fn jacobian_is_the_derivative<L: Leg>(design: &Design, pose: &Pose) -> Check {
     let manipulator = Manipulator::<L>::new(design, &LegSettings::default());
     let Ok(posture) = manipulator.posture(pose) else {
         return Err(TestCaseError::reject("the property does not apply"));
     };
     let jacobian = Jacobian::new(&posture);
-    // Differences lose their meaning where a leg is nearly stretched out.
+    // Finite differences are meaningless where a leg is nearly stretched out.
     if posture.slack < 0.02 || jacobian.drive.iter().any(|drive| drive.abs() < 0.05) {
         return Err(TestCaseError::reject("the property does not apply"));
     }
@@ -97,7 +98,7 @@ fn forward_undoes_inverse<L: Leg>(design: &Design, pose: &Pose) -> Check {
     Ok(())
 }
 
-/// `κ_F⁻¹` from its definition, with matrices and an inverse.
+/// Compares `κ_F⁻¹` with its definition, computed with matrices and an inverse.
 fn condition_is_its_definition<L: Leg>(design: &Design, pose: &Pose, length: f64) -> Check {
     let manipulator = Manipulator::<L>::new(design, &LegSettings::default());
     let Ok(posture) = manipulator.posture(pose) else {
@@ -144,7 +145,7 @@ proptest! {
         with_leg!(design.architecture, L => condition_is_its_definition::<L>(&design, &pose, length))?;
     }
 
-    /// Non-finite numbers never leave the model, zero radii included.
+    /// The model never returns a non-finite number, even for bars of radius zero.
     #[test]
     fn everything_reported_is_finite(design in design(0.0), pose in pose(), zero in any::<[bool; 2]>()) {
         let mut values = design.values();
@@ -153,7 +154,7 @@ proptest! {
                 *value = 0.0;
             }
         }
-        let design = Design::new(design.architecture, design.working_mode, values).expect("a sound design");
+        let design = Design::new(design.architecture, design.working_mode, values).expect("a valid design");
         let report = Model::default()
             .pose(&design, &pose)
             .map_err(|unreachable| TestCaseError::reject(unreachable.to_string()))?;

@@ -1,4 +1,4 @@
-//! Several poses at once against one at a time.
+//! Compares the evaluation of several poses at once with that of one pose at a time.
 
 use glam::DVec2;
 use kinefront_model::evaluation::{GridChoice, Model};
@@ -7,8 +7,8 @@ use kinefront_model::lanes::{InstructionSet, Planar};
 use kinefront_model::mechanism::{BarLength, Design, Leg};
 use kinefront_model::spatial::{Pose, Rotation};
 use kinefront_model::stiffness::StiffnessDefinition;
-use kinefront_model::workspace::PoseChecker;
 use kinefront_model::with_leg;
+use kinefront_model::workspace::PoseChecker;
 use proptest::prelude::*;
 
 use super::strategies::{design, model, pose};
@@ -27,15 +27,16 @@ fn compare<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<(), Te
             let values = checker.values_at(&posture, &jacobian);
             prop_assert!(found.reachable);
             prop_assert!((found.slack - values.slack).abs() < 1e-13);
-            // Digits go where a leg is nearly stretched or the legs' lines nearly meet, and of what is left of a stiffness
-            // when other motions are free.
+            // Digits are lost where a leg is nearly stretched out or the lines of the legs nearly meet, and in the
+            // stiffness that remains when other motions are free.
             let distance = values.slack.min(1.0) * values.determinant.abs().min(1.0);
             let tolerance = 1e-12 / (distance * distance);
             if tolerance < 1e-6 {
                 let stiffness = checker.stiffness_at(&posture, &jacobian);
                 let held = stiffness.rigidity(StiffnessDefinition::Stiffness);
                 let in_plane = stiffness.in_plane[0] + stiffness.in_plane[3];
-                // With the plane free, its block is inverted: as many digits go as that is ill-conditioned.
+                // If motion in the plane is free, its block is inverted, which loses digits in proportion to the
+                // condition number of the block.
                 let free = match checker.definition {
                     StiffnessDefinition::Stiffness => 1.0,
                     StiffnessDefinition::Compliance => in_plane / held.k_xy,
@@ -63,14 +64,10 @@ fn compare<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<(), Te
     Ok(())
 }
 
-/// Everything an evaluation says, to the bit.
+/// Returns all values of an evaluation as a text that differs if any bit differs.
 fn bits(model: &Model, design: &Design, instructions: InstructionSet) -> String {
-    // The shortest decimal that gives a number back tells it from every other.
-    format!(
-        "{:?}",
-        model
-            .evaluate_with(design, GridChoice::Reference, instructions)
-    )
+    // The shortest decimal that reads back as a number distinguishes it from every other.
+    format!("{:?}", model.evaluate_with(design, GridChoice::Reference, instructions))
 }
 
 proptest! {
@@ -97,7 +94,8 @@ proptest! {
     }
 }
 
-/// A seed gives one run whatever the processor: the baseline, which every machine has, is among the sets compared.
+/// A random seed gives the same run on every processor: the baseline, which every machine has, is among the sets
+/// compared.
 #[test]
 fn the_sets_compared_are_those_of_the_machine() {
     let sets: Vec<&str> = InstructionSet::available().iter().map(|set| set.name()).collect();

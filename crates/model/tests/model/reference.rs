@@ -1,4 +1,4 @@
-//! Values from independent programs (tests/fixtures/README.md) and the designs of the paper.
+//! Compares results with values from independent programs (tests/fixtures/README.md) and with the designs of the paper.
 
 use kinefront_model::evaluation::{GridChoice, Model};
 use kinefront_model::mechanism::{Design, WorkingMode};
@@ -26,7 +26,7 @@ fn design(case: &Value) -> Design {
         .expect("a name")
         .parse()
         .expect("an architecture");
-    Design::new(architecture, WorkingMode::new([plus; 3]), values).expect("a sound design")
+    Design::new(architecture, WorkingMode::new([plus; 3]), values).expect("a valid design")
 }
 
 fn pose(case: &Value) -> Pose {
@@ -42,7 +42,7 @@ fn matrix(value: &Value) -> Matrix6<f64> {
     Matrix6::from_fn(|i, j| number(&value[i][j]))
 }
 
-/// `max |ΔK_ij| / √(K_ii K_jj)`, the measure of SPEC section 3.
+/// Returns `max |ΔK_ij| / √(K_ii K_jj)`, the difference of two stiffness matrices (docs/model.md, section 4.2).
 pub fn difference(a: &Matrix6<f64>, b: &Matrix6<f64>) -> f64 {
     let mut largest = 0.0f64;
     for i in 0..6 {
@@ -67,12 +67,11 @@ fn poses_agree_with_the_finite_element_solver() {
     let cases = fixture("cases.json");
     let cases = cases["poses"].as_array().expect("poses");
     assert_eq!(cases.len(), 12);
-    let compliance = super::strategies::model(|settings| settings.stiffness_definition = StiffnessDefinition::Compliance);
+    let compliance =
+        super::strategies::model(|settings| settings.stiffness_definition = StiffnessDefinition::Compliance);
     for case in cases {
         let (design, pose) = (design(case), pose(case));
-        let report = Model::default()
-            .pose(&design, &pose)
-            .expect("reachable");
+        let report = Model::default().pose(&design, &pose).expect("reachable");
         for leg in 0..3 {
             close(report.actuators[leg], number(&case["actuators"][leg]), 1e-9, "actuator");
             for axis in 0..2 {
@@ -88,10 +87,7 @@ fn poses_agree_with_the_finite_element_solver() {
         );
         let off = difference(&report.stiffness, &matrix(&case["stiffness_matrix"]));
         assert!(off < 1e-7, "{design} at {pose:?}: stiffness off by {off:e}");
-        let soft = compliance
-            .pose(&design, &pose)
-            .expect("reachable")
-            .rigidity;
+        let soft = compliance.pose(&design, &pose).expect("reachable").rigidity;
         for (value, key) in [
             (report.rigidity.k_xy, "k_xy"),
             (report.rigidity.k_z, "k_z"),
@@ -135,7 +131,7 @@ fn designs_agree_on_both_grids_and_both_definitions() {
                 evaluate(&compliance, GridChoice::Reference).workspace_radius,
                 "workspace_radius_compliance_definition",
             ),
-            // The plain evaluator has to pass the same.
+            // The plain search must agree with the same values.
             (plain(&model), "workspace_radius_reference_grid"),
             (plain(&compliance), "workspace_radius_compliance_definition"),
         ] {
@@ -147,7 +143,7 @@ fn designs_agree_on_both_grids_and_both_definitions() {
         }
         if reference.is_feasible() {
             let home = reference.home_phi_deg.expect("a home");
-            // 3-RPR radii tie by mirror symmetry: the mirrored home is as good.
+            // By mirror symmetry, a 3-RPR has the same radius at two home orientations; either is correct.
             let wanted = number(&case["home_orientation_deg"]);
             let mirrored = (360.0 - wanted) % 360.0;
             assert!(
@@ -165,15 +161,13 @@ fn thin_bars_agree_with_sixty_digits() {
     let cases = fixture("thin_bars.json");
     for case in cases["poses"].as_array().expect("poses") {
         let (design, pose) = (design(case), pose(case));
-        let report = Model::default()
-            .pose(&design, &pose)
-            .expect("reachable");
+        let report = Model::default().pose(&design, &pose).expect("reachable");
         let off = difference(&report.stiffness, &matrix(&case["stiffness_matrix"]));
         assert!(off < 1e-10, "{design} at {pose:?}: stiffness off by {off:e}");
     }
 }
 
-/// SPEC section 7: the paper's three designs, as printed and under this model.
+/// Compares the paper's three designs as printed with their values under this model (docs/model.md, section 12).
 #[test]
 fn the_table_of_the_paper() {
     struct Row {
@@ -215,10 +209,11 @@ fn the_table_of_the_paper() {
         assert!((reference.mass - row.model.0).abs() < 0.005);
         assert!((reference.workspace_radius - row.model.1).abs() < 5e-5);
         assert!((fine.workspace_radius - row.model.2).abs() < 5e-5);
-        // The masses agree within what half a millimetre of a printed radius makes.
+        // The masses agree within the effect of half a millimetre, the rounding of a printed bar radius.
         assert!((reference.mass / row.paper.0 - 1.0).abs() < 0.025);
         if row.name == "ID-I" {
-            // Twice the printed workspace, limited by dexterity, which no actuator stiffness moves.
+            // The workspace radius is twice the printed one. It is limited by dexterity, which does not depend on the
+            // stiffness of the actuators.
             assert!(reference.workspace_radius / row.paper.1 > 2.0);
             let active: Vec<&str> = fine.active().map(|constraint| constraint.id()).collect();
             assert_eq!(active, ["g3"]);

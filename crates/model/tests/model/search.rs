@@ -1,25 +1,26 @@
-//! The search for the regular workspace against its definition, which marches every ray of every orientation.
+//! Compares the search for the regular workspace with its definition, which marches along every ray of every
+//! orientation.
 
 use glam::DVec2;
 use kinefront_model::evaluation::{Constraint, GridChoice, Model};
 use kinefront_model::lanes::InstructionSet;
 use kinefront_model::mechanism::{Architecture, Design, Leg, WorkingMode};
-use kinefront_optimize::{Variable, sobol};
 use kinefront_model::spatial::LEGS;
+use kinefront_model::with_leg;
 use kinefront_model::workspace::plain::{PlainWorkspace, plain};
 use kinefront_model::workspace::{Grid, PoseChecker};
-use kinefront_model::with_leg;
+use kinefront_optimize::{Variable, sobol};
 use proptest::prelude::*;
 use rayon::prelude::*;
 
 use super::strategies::{bodies, clearance, design, model};
 
-/// Which form says what poses are good.
+/// Form of the stiffness that decides which poses are feasible.
 #[derive(Clone, Copy)]
 enum Form {
-    /// The closed form as it reads.
+    /// The closed form, evaluated as it is defined.
     Plain,
-    /// What evaluations use, one pose at a time.
+    /// The reduced form that evaluations use, one pose at a time.
     Reduced,
 }
 
@@ -46,7 +47,8 @@ pub fn plain_search(model: &Model, design: &Design, grid: &Grid) -> PlainWorkspa
     plain_in(model, design, grid, Form::Plain)
 }
 
-/// The definition with the same form of a pose: then radius and home, the first among equals, are the same to the bit.
+/// Compares with the definition evaluated with the same form: the radius and the home orientation, which is the first
+/// of several with equal radius, must agree to the bit.
 fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
     let grid = &model.reference_grid;
     let wanted = plain_in(model, design, grid, Form::Reduced);
@@ -56,8 +58,7 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
         .position(|&radius| radius == wanted.radius && radius > 0.0);
     let assembled = design.link_length + design.platform_radius >= 0.5 * design.base_radius;
     for instructions in InstructionSet::available() {
-        let found = model
-            .evaluate_with(design, GridChoice::Reference, instructions);
+        let found = model.evaluate_with(design, GridChoice::Reference, instructions);
         if !assembled {
             prop_assert_eq!(found.workspace_radius, 0.0);
             continue;
@@ -76,12 +77,12 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
             design,
             instructions.name()
         );
-        prop_assert!(found.active().next().is_some(), "{}: nothing is active", design);
+        prop_assert!(found.active().next().is_some(), "{}: no constraint is active", design);
     }
     Ok(())
 }
 
-/// Same radius; the same home, or one as good.
+/// Checks that the radius is the same and that the home orientation is the same or one with an equal radius.
 fn same(model: &Model, design: &Design) -> Result<(), String> {
     let found = model.evaluate(design, GridChoice::Reference);
     let wanted = plain_search(model, design, &model.reference_grid);
@@ -107,7 +108,7 @@ fn same(model: &Model, design: &Design) -> Result<(), String> {
 /// The bounds of the paper: `R`, `r`, `L_b`, `r_j` and `r_p` \[m\].
 const BOUNDS: [[f64; 2]; 5] = [[0.5, 4.0], [0.1, 4.0], [0.5, 4.0], [0.0, 0.1], [0.0, 0.1]];
 
-/// Designs of each architecture over the paper's bounds, compared one by one.
+/// Compares `count` designs of each architecture, spread over the paper's bounds.
 fn all_the_same(count: usize) {
     let bounds = BOUNDS.map(|[lower, upper]| Variable::Real { lower, upper });
     for &architecture in Architecture::ALL {
@@ -134,7 +135,7 @@ fn a_thousand_designs_of_each_architecture_have_the_plain_radius() {
     all_the_same(1000);
 }
 
-/// The same for 10⁴, which takes minutes: `cargo test --release -- --ignored ten_thousand`.
+/// The same test with 10⁴ designs takes minutes: `cargo test --release -- --ignored ten_thousand`.
 #[test]
 #[ignore = "takes minutes"]
 fn ten_thousand_designs_of_each_architecture_have_the_plain_radius() {
@@ -164,7 +165,8 @@ proptest! {
         same(&model, &design).map_err(TestCaseError::fail)?;
     }
 
-    /// Ties, and grids of any shape: one direction marched, rings of a few poses, hardly a step, no halving.
+    /// This also covers ties and grids of any shape: one direction marched, rings of a few poses, a single step, no
+    /// halving.
     #[test]
     fn the_search_is_the_definition_to_the_bit(
         design in design(0.01),
@@ -189,7 +191,7 @@ proptest! {
         exactly(&model, &design)?;
     }
 
-    /// A given home is the one window of the definition.
+    /// With a given home orientation, the radius is that of its window in the definition.
     #[test]
     fn a_given_home_is_the_window_of_the_definition(design in design(0.01), home in 0..144usize) {
         let paper = Model::default();
@@ -200,7 +202,7 @@ proptest! {
         prop_assert_eq!(found.workspace_radius, wanted);
     }
 
-    /// A report speaks of the workspace it reports.
+    /// The values of an evaluation are consistent with the workspace that it reports.
     #[test]
     fn reports_are_consistent(design in design(0.0), bodies in bodies(), clearance in clearance()) {
         let model = model(|settings| {
@@ -218,8 +220,8 @@ proptest! {
                 prop_assert_eq!(report.pose.is_none(), report.constraint == Constraint::Assembly);
             }
         }
-        prop_assert!(found.active().next().is_some(), "nothing is active");
-        // What is told of the nearest pair is what was found over the workspace.
+        prop_assert!(found.active().next().is_some(), "no constraint is active");
+        // The reported clearance is that of the nearest pair over the workspace.
         let told = found.constraint(Constraint::Clearance);
         prop_assert_eq!(told.asked, clearance.is_some());
         let nearest = model.nearest(&found).map(|nearest| nearest.distance);
@@ -228,14 +230,13 @@ proptest! {
     }
 }
 
-/// A fixed home gives the window about it, and never more than the best one.
+/// A given home orientation yields the radius of the window about it, which never exceeds that of the best window.
 #[test]
 fn a_given_home_is_kept() {
     let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
         .parse()
         .expect("a design");
-    let best = Model::default()
-        .evaluate(&design, GridChoice::Reference);
+    let best = Model::default().evaluate(&design, GridChoice::Reference);
     for (home, equal) in [(30.0, true), (-330.0, true), (20.0, false)] {
         let model = model(|settings| settings.workspace.home_phi_deg = Some(home));
         let found = model.evaluate(&design, GridChoice::Reference);
@@ -245,7 +246,7 @@ fn a_given_home_is_kept() {
     }
 }
 
-/// Each constraint shows: lifting the one that is active makes the workspace larger.
+/// Each constraint has an effect: relaxing the active one makes the workspace larger.
 #[test]
 fn lifting_the_active_constraint_enlarges_the_workspace() {
     let cases = [
@@ -277,8 +278,7 @@ fn a_zero_radius_is_infeasible_and_finite() {
         "3-PRR R=3 r=1.2 Lb=1.9 rj=0 rp=0.05",
         "3-RRR R=3 r=1.2 Lb=1.9 rj=0.05 rp=0",
     ] {
-        let found = Model::default()
-            .evaluate(&text.parse().expect("a design"), GridChoice::Reference);
+        let found = Model::default().evaluate(&text.parse().expect("a design"), GridChoice::Reference);
         assert!(!found.is_feasible());
         assert!(found.mass > 0.0 && found.violation > 0.0);
         assert_eq!(found.constraint(Constraint::StiffnessXy).value, Some(0.0));
@@ -286,7 +286,7 @@ fn a_zero_radius_is_infeasible_and_finite() {
     }
 }
 
-/// Nothing that is no number leaves, however far the input lies beyond what can be built.
+/// All results are finite, however far the input lies beyond anything that can be built.
 #[test]
 fn sizes_beyond_measure_stay_finite() {
     let far = model(|settings| settings.workspace.centre = DVec2::new(1e200, 0.0));
@@ -311,17 +311,16 @@ fn sizes_beyond_measure_stay_finite() {
                     "{design}: {report:?}"
                 );
             }
-            assert!(found.active().next().is_some(), "{design}: nothing is active");
+            assert!(found.active().next().is_some(), "{design}: no constraint is active");
         }
     }
 }
 
-/// A platform that can go far compared with its base costs time, not memory.
+/// A workspace that is large compared with the base costs time, not memory.
 #[test]
 fn a_disc_of_many_base_radii_is_searched() {
     let design: Design = "3-RRR R=0.001 r=1 Lb=1 rj=0.1 rp=0.1".parse().expect("a design");
-    let found = Model::default()
-        .evaluate(&design, GridChoice::Reference);
+    let found = Model::default().evaluate(&design, GridChoice::Reference);
     assert!(
         found.workspace_radius > 100.0 * design.base_radius,
         "{}",

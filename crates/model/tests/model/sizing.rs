@@ -1,4 +1,4 @@
-//! The lightest bars for a geometry, beside evaluations and an exhaustive search.
+//! Compares the lightest bars for a geometry with evaluations and an exhaustive search.
 
 use kinefront_model::evaluation::{BarRanges, Demand, GridChoice, Model};
 use kinefront_model::mechanism::{Design, WorkingMode};
@@ -20,7 +20,7 @@ fn radius(model: &Model, design: &Design) -> f64 {
     evaluation.workspace_radius
 }
 
-/// No pair of radii on a fine lattice is lighter by more than 1 % and has the workspace too.
+/// No pair of radii on a fine lattice that reaches the same workspace radius is lighter by more than 1 %.
 #[test]
 fn no_lighter_pair_of_radii_is_found_by_trying_all() {
     let model = Model::default();
@@ -36,7 +36,7 @@ fn no_lighter_pair_of_radii_is_found_by_trying_all() {
         let reached = radius(&model, &found);
         assert!(reached >= 0.995 * demand, "{text}: {reached} instead of {demand}");
         let least = model.mass(&found);
-        // From three times thinner to three times thicker; along r_j the lightest r_p by bisection.
+        // r_j ranges from three times thinner to three times thicker; for each r_j, bisection finds the lightest r_p.
         let lightest = (-20..=20)
             .filter_map(|k| {
                 let leg = found.leg_bar_radius * 3f64.powf(f64::from(k) / 20.0);
@@ -60,7 +60,10 @@ fn no_lighter_pair_of_radii_is_found_by_trying_all() {
                 Some(model.mass(&with(enough)))
             })
             .fold(f64::INFINITY, f64::min);
-        assert!(least <= 1.01 * lightest, "{text}: {least} kg, but {lightest} kg do");
+        assert!(
+            least <= 1.01 * lightest,
+            "{text}: {least} kg, but {lightest} kg is sufficient"
+        );
     }
 }
 
@@ -70,24 +73,28 @@ fn what_cannot_be_had_is_none() {
     let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
         .parse()
         .expect("a design");
-    assert_eq!(sized(&model, &design, Demand::Radius(3.0)), None, "beyond the geometry");
+    assert_eq!(
+        sized(&model, &design, Demand::Radius(3.0)),
+        None,
+        "the geometry does not allow the radius"
+    );
     let thin = BarRanges {
         leg: [0.0, 0.01],
         platform: [0.0, 0.01],
     };
     let found = model.sized(&design, &thin, Demand::Radius(1.0));
-    assert_eq!(found, None, "beyond the bars");
+    assert_eq!(found, None, "the ranges of the bars do not allow the radius");
     let apart = Design {
         base_radius: 8.0,
         ..design
     };
     assert_eq!(sized(&model, &apart, Demand::Largest), None, "the legs do not reach");
-    // Of this one the centre is the weakest spot.
+    // The weakest pose of this design is at the centre.
     let text = "3-RPR R=1.5770 r=0.6257 Lb=1.22825 rj=0.0219 rp=0.0324";
     let centre: Design = text.parse().expect("a design");
     let found = sized(&model, &centre, Demand::Largest).expect("bars");
     assert!(radius(&model, &found) > 0.15);
-    // A working mode without symmetry, a centre away from O, a given home: all are sized for what is asked.
+    // Bars are also sized for an asymmetric working mode, a centre away from O and a given home orientation.
     let model = super::strategies::model(|settings| {
         settings.workspace.centre = glam::DVec2::new(0.1, -0.05);
         settings.workspace.home_phi_deg = Some(30.0);
@@ -103,7 +110,7 @@ fn what_cannot_be_had_is_none() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
 
-    /// Over the whole design space: what is sized is within its ranges and holds nearly all of what was asked.
+    /// Over the whole design space, sized bars are within their ranges and reach most of the required workspace.
     #[test]
     fn sized_designs_hold_what_they_were_sized_for(design in design(0.0)) {
         let model = Model::default();

@@ -1,8 +1,8 @@
-//! Random designs and poses over the whole design space of the paper.
+//! Strategies for random designs and poses over the whole design space of the paper.
 
 use kinefront_model::clearance::{BodySettings, Layers};
-use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
 use kinefront_model::evaluation::{Model, ModelSettings};
+use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
 use kinefront_model::spatial::Pose;
 use proptest::prelude::*;
 
@@ -31,11 +31,11 @@ pub fn working_mode() -> impl Strategy<Value = WorkingMode> {
     any::<[bool; 3]>().prop_map(WorkingMode::new)
 }
 
-/// Designs within the paper's bounds with bar radii of at least `thinnest` \[m\].
+/// Generates designs within the paper's bounds, with bar radii of at least `thinnest` \[m\].
 pub fn design(thinnest: f64) -> impl Strategy<Value = Design> {
     let lengths = (0.5..4.0, 0.1..4.0, 0.5..4.0, thinnest..0.1, thinnest..0.1);
     (architecture(), working_mode(), lengths).prop_map(|(architecture, mode, (base, platform, link, leg, bar))| {
-        Design::new(architecture, mode, [base, platform, link, leg, bar]).expect("a sound design")
+        Design::new(architecture, mode, [base, platform, link, leg, bar]).expect("a valid design")
     })
 }
 
@@ -43,7 +43,7 @@ pub fn pose() -> impl Strategy<Value = Pose> {
     (-2.0..2.0, -2.0..2.0, -3.2..3.2).prop_map(|(x, y, phi)| Pose::new(x, y, phi))
 }
 
-/// Sliders and layers, in one plane, as they are built, or as they come.
+/// Generates sliders and layers: the default layers, all layers in one plane, or random layers.
 pub fn bodies() -> impl Strategy<Value = BodySettings> {
     let layer = || -2.0..2.0;
     let any = (layer(), layer(), layer(), layer(), layer());
@@ -62,7 +62,7 @@ pub fn bodies() -> impl Strategy<Value = BodySettings> {
     })
 }
 
-/// A clearance that a study may ask for.
+/// Generates a clearance that a study may require \[m\], or none.
 pub fn clearance() -> impl Strategy<Value = Option<f64>> {
     prop::option::weighted(0.8, 0.0..0.05)
 }

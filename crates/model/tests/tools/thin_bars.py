@@ -30,7 +30,7 @@ def cantilever(length, radius):
 
 
 def mapped(compliance, axis, tip, p):
-    """Compliance of a bar along `axis` with its tip at `tip`, as seen at p in base axes."""
+    """Return the compliance at p, in base axes, of a bar along `axis` with its tip at `tip`."""
     ax, ay = axis
     rotation = matrix([[ax, -ay, 0], [ay, ax, 0], [0, 0, 1]])
     lx, ly = p[0] - tip[0], p[1] - tip[1]

@@ -175,7 +175,11 @@ impl Scatter {
                     self.fitted = true;
                 }
             }
-            if ui.button("Fit").on_hover_text("fit the view to the feasible designs (or double-click)").clicked() {
+            if ui
+                .button("Fit")
+                .on_hover_text("fit the view to the feasible designs (or double-click)")
+                .clicked()
+            {
                 self.fitted = true;
             }
             ui.separator();
