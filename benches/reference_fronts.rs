@@ -25,7 +25,7 @@ use kinefront_optimize::{
     Archive, Evaluated, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, drive, hypervolume, spread,
 };
 use rand_chacha::ChaCha8Rng;
-use rand_core::{Rng, SeedableRng};
+use rand_chacha::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
 /// Number of designs kept in a file; thinning a front to this number loses 0.03 % of the hypervolume.

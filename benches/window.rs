@@ -283,7 +283,7 @@ fn clicks(of: &str, base_radius: [f64; 2]) {
         let Ok(design) = problem.design(&x) else { continue };
         let feasible = model
             .evaluate(&design, GridChoice::Reference)
-            .is_ok_and(|evaluation| evaluation.is_feasible());
+            .is_feasible();
         if !feasible {
             continue;
         }

@@ -24,9 +24,10 @@ use kinefront_model::clearance::Layers;
 use kinefront_model::evaluation::{GridChoice, Model};
 use kinefront_model::kinematics::Jacobian;
 use kinefront_model::lanes::{InstructionSet, Planar};
-use kinefront_model::mechanism::{Architecture, Design, Leg, PrrLeg, RprLeg, RrrLeg};
+use kinefront_model::mechanism::{Architecture, Design, Leg};
 use kinefront_model::spatial::{LEGS, Rotation, smaller_eigenvalue};
 use kinefront_model::stiffness::joint_model;
+use kinefront_model::with_leg;
 use kinefront_model::workspace::plain::plain;
 use kinefront_model::workspace::{PoseChecker, ValueColumns};
 use kinefront_optimize::{FrontDe, FrontDeSettings, drive, sobol};
@@ -159,9 +160,9 @@ fn poses_of<L: Leg>(criterion: &mut Criterion, architecture: Architecture) {
 }
 
 fn poses(criterion: &mut Criterion) {
-    poses_of::<PrrLeg>(criterion, Architecture::Prr);
-    poses_of::<RprLeg>(criterion, Architecture::Rpr);
-    poses_of::<RrrLeg>(criterion, Architecture::Rrr);
+    for &architecture in Architecture::ALL {
+        with_leg!(architecture, L => poses_of::<L>(criterion, architecture));
+    }
 }
 
 /// Returns the workspace radius by its definition, ray by ray and one pose at a time, in the given form of the
@@ -182,19 +183,15 @@ fn plainly(model: &Model, design: &Design, general: bool) -> f64 {
             stiff.then(|| jacobian.determinant().signum())
         };
         let closed_form = |position: DVec2, arms: &[DVec2; LEGS]| checker.good_sign(position, arms);
-        let (manipulator, spec, grid) = (&checker.manipulator, &model.workspace, &model.reference_grid);
+        let (manipulator, sampling) = (&checker.manipulator, model.sampling(GridChoice::Reference));
         let found = if general {
-            plain(manipulator, spec, grid, design.base_radius, general_form)
+            plain(manipulator, sampling, design.base_radius, general_form)
         } else {
-            plain(manipulator, spec, grid, design.base_radius, closed_form)
+            plain(manipulator, sampling, design.base_radius, closed_form)
         };
         found.radius
     }
-    match design.architecture {
-        Architecture::Prr => of::<PrrLeg>(model, design, general),
-        Architecture::Rpr => of::<RprLeg>(model, design, general),
-        Architecture::Rrr => of::<RrrLeg>(model, design, general),
-    }
+    with_leg!(design.architecture, L => of::<L>(model, design, general))
 }
 
 fn evaluate(model: &Model, design: &Design, grid: GridChoice, instructions: InstructionSet) -> f64 {

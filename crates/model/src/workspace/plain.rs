@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use super::{Grid, GridError, WorkspaceSpec};
+use super::WorkspaceSampling;
 use crate::mechanism::{Leg, Manipulator};
 use crate::spatial::{LEGS, Rotation, unit};
 
@@ -24,18 +24,14 @@ pub struct PlainWorkspace {
 ///
 /// `good_sign` returns the sign of `det A` for a position of `P` and the arms of an orientation if the pose is
 /// feasible, otherwise `None`. `step_base` is the base radius `R`, of which the ray step is a fraction.
-///
-/// # Errors
-/// [`GridError::WindowNotWhole`].
 pub fn plain<L: Leg>(
     manipulator: &Manipulator<L>,
-    spec: &WorkspaceSpec,
-    grid: &Grid,
+    sampling: &WorkspaceSampling,
     step_base: f64,
     good_sign: impl Fn(DVec2, &[DVec2; LEGS]) -> Option<f64>,
-) -> Result<PlainWorkspace, GridError> {
-    let count = grid.orientations();
-    let half = grid.half_window(spec.rotation_range_deg)?;
+) -> PlainWorkspace {
+    let (spec, grid) = (sampling.spec(), sampling.grid());
+    let (count, half) = (grid.orientations(), sampling.turn().half_window);
     let step = step_base / grid.ray_steps() as f64;
     let rays: Vec<(f64, f64)> = (0..count)
         .map(|k| {
@@ -74,8 +70,8 @@ pub fn plain<L: Leg>(
             window(home).map(|k| rays[k].0).fold(f64::INFINITY, f64::min)
         })
         .collect();
-    Ok(PlainWorkspace {
+    PlainWorkspace {
         radius: windows.iter().copied().fold(0.0, f64::max),
         windows,
-    })
+    }
 }

@@ -119,7 +119,7 @@ fn designs_agree_on_both_grids_and_both_definitions() {
         let tolerance = 1e-5 * design.base_radius;
         let evaluate = |model: &Model, grid| model.evaluate(&design, grid);
         let reference = evaluate(&model, GridChoice::Reference);
-        let plain = |model: &Model| plain_search(model, &design, &model.reference_grid).radius;
+        let plain = |model: &Model| plain_search(model, &design).radius;
         close(reference.mass, number(&case["mass"]), 1e-12, "mass");
         for (radius, key) in [
             (reference.workspace_radius, "workspace_radius_reference_grid"),

@@ -24,7 +24,7 @@ enum Form {
     Reduced,
 }
 
-fn plain_of<L: Leg>(model: &Model, design: &Design, grid: &Grid, form: Form) -> PlainWorkspace {
+fn plain_of<L: Leg>(model: &Model, design: &Design, form: Form) -> PlainWorkspace {
     let checker: PoseChecker<L> = model.checker(design);
     let good = |position: DVec2, arms: &[DVec2; LEGS]| match form {
         Form::Plain => checker.good_sign(position, arms),
@@ -36,22 +36,27 @@ fn plain_of<L: Leg>(model: &Model, design: &Design, grid: &Grid, form: Form) -> 
             (values.determinant != 0.0 && checker.thresholds.hold(&values)).then(|| values.determinant.signum())
         }
     };
-    plain(&checker.manipulator, &model.workspace, grid, design.base_radius, good).expect("the grid fits")
+    plain(
+        &checker.manipulator,
+        model.sampling(GridChoice::Reference),
+        design.base_radius,
+        good,
+    )
 }
 
-fn plain_in(model: &Model, design: &Design, grid: &Grid, form: Form) -> PlainWorkspace {
-    with_leg!(design.architecture, L => plain_of::<L>(model, design, grid, form))
+fn plain_in(model: &Model, design: &Design, form: Form) -> PlainWorkspace {
+    with_leg!(design.architecture, L => plain_of::<L>(model, design, form))
 }
 
-pub fn plain_search(model: &Model, design: &Design, grid: &Grid) -> PlainWorkspace {
-    plain_in(model, design, grid, Form::Plain)
+pub fn plain_search(model: &Model, design: &Design) -> PlainWorkspace {
+    plain_in(model, design, Form::Plain)
 }
 
 /// Compares with the definition evaluated with the same form: the radius and the home orientation, which is the first
 /// of several with equal radius, must agree to the bit.
 fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
     let grid = &model.reference_grid;
-    let wanted = plain_in(model, design, grid, Form::Reduced);
+    let wanted = plain_in(model, design, Form::Reduced);
     let first = wanted
         .windows
         .iter()
@@ -85,7 +90,7 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
 /// Checks that the radius is the same and that the home orientation is the same or one with an equal radius.
 fn same(model: &Model, design: &Design) -> Result<(), String> {
     let found = model.evaluate(design, GridChoice::Reference);
-    let wanted = plain_search(model, design, &model.reference_grid);
+    let wanted = plain_search(model, design);
     let close = |radius: f64| (found.workspace_radius - radius).abs() <= 1e-9 * wanted.radius;
     if !close(wanted.radius) {
         return Err(format!(
@@ -195,7 +200,7 @@ proptest! {
     #[test]
     fn a_given_home_is_the_window_of_the_definition(design in design(0.01), home in 0..144usize) {
         let paper = Model::default();
-        let wanted = plain_in(&paper, &design, &paper.reference_grid, Form::Reduced).windows[home];
+        let wanted = plain_in(&paper, &design, Form::Reduced).windows[home];
         let model = model(|settings| settings.workspace.home_phi_deg = Some(home as f64 * 2.5));
         let found = model.evaluate(&design, GridChoice::Reference);
         prop_assume!(design.link_length + design.platform_radius >= 0.5 * design.base_radius);
