@@ -19,8 +19,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use kinefront::study::{BUILTIN, DesignProblem, Study};
-use kinefront_model::evaluation::{BarRanges, Demand, Evaluation, GridChoice, Model};
-use kinefront_model::mechanism::{Architecture, Design, VARIABLES};
+use kinefront_model::evaluation::{BarRanges, Evaluation, GridChoice, Model, WorkspaceTarget};
+use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design};
 use kinefront_optimize::{
     Archive, Evaluated, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, drive, hypervolume, spread,
 };
@@ -145,7 +145,7 @@ impl Front {
         let mut row = |fields: Vec<String>| table.write_record(fields).expect("a row");
         let header = ["architecture"]
             .into_iter()
-            .chain(VARIABLES.map(|variable| variable.key()));
+            .chain(DESIGN_VARIABLES.map(|variable| variable.key()));
         let objectives = ["mass_kg", "workspace_radius_m"];
         row(header.chain(objectives).map(str::to_owned).collect());
         let objectives: Vec<[f64; 2]> = self.0.iter().map(|member| member.objectives).collect();
@@ -191,7 +191,7 @@ impl Search {
             architectures: vec![architecture],
             ..study.clone()
         };
-        let ranges = VARIABLES.map(|variable| study.bounds.range(variable));
+        let ranges = DESIGN_VARIABLES.map(|variable| study.bounds.range(variable));
         Self {
             model: study.model().expect("a valid study"),
             ranges,
@@ -327,7 +327,7 @@ impl Search {
     /// Returns the mass of a geometry with bars sized for a radius; it is infinite if the fine grid confirms less than
     /// 90 % of that radius.
     fn sized_mass(&self, design: &Design, level: f64, met: &mut Vec<Evaluation>) -> f64 {
-        let sized = self.model.sized(design, &self.bars, Demand::Radius(level));
+        let sized = self.model.sized(design, &self.bars, WorkspaceTarget::Radius(level));
         let Some(sized) = sized else { return f64::INFINITY };
         let evaluation = self.model.evaluate(&sized, GridChoice::Fine);
         let radius = evaluation.workspace_radius;

@@ -9,10 +9,10 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
-use kinefront::explorer::{Explorer, Session, StudyEditor, Subject};
+use kinefront::explorer::{Explorer, InitialContent, Session, StudyEditor};
 use kinefront::recording::LiveScene;
 use kinefront::study::{
-    BUILTIN, Batch, DesignProblem, Event, FrontMember, GenerationSummary, Outcome, RunSummary, RunTimes, Started,
+    BUILTIN, Batch, DesignProblem, Event, FrontMember, GenerationSummary, EndReason, RunSummary, RunTimes, Started,
     Study, Subscriber,
 };
 use kinefront_model::evaluation::{Evaluation, GridChoice};
@@ -43,9 +43,9 @@ impl Stream {
     fn evaluation(&self, id: usize) -> Evaluation {
         let mut evaluation = self.pool[id % self.pool.len()].clone();
         let chance = (id as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40;
-        let share = chance as f64 / f64::from(1 << 24);
-        evaluation.mass *= 0.7 + 0.6 * share;
-        evaluation.workspace_radius *= 0.8 + 0.2 * share;
+        let fraction = chance as f64 / f64::from(1 << 24);
+        evaluation.mass *= 0.7 + 0.6 * fraction;
+        evaluation.workspace_radius *= 0.8 + 0.2 * fraction;
         evaluation
     }
 
@@ -114,7 +114,7 @@ impl Stream {
             waited += tell(Event::Generation(summary));
         }
         waited += tell(Event::Finished(RunSummary {
-            outcome: Outcome::Completed,
+            outcome: EndReason::Completed,
             threads: 1,
             history,
             verified: members.len(),
@@ -136,7 +136,7 @@ fn window() -> Harness<'static, Explorer> {
         .with_size(egui::vec2(1600.0, 1000.0))
         .with_step_dt(1.0 / 60.0)
         .build_eframe(|cc| {
-            let subject = Subject::Study {
+            let subject = InitialContent::Study {
                 study: Box::new(study()),
                 path: None,
                 start: false,
@@ -148,7 +148,7 @@ fn window() -> Harness<'static, Explorer> {
 /// Returns the median and the 99th percentile as text, in milliseconds.
 fn percentiles(times: &mut [f64]) -> String {
     times.sort_by(f64::total_cmp);
-    let at = |share: f64| 1e3 * times[((times.len() - 1) as f64 * share) as usize];
+    let at = |fraction: f64| 1e3 * times[((times.len() - 1) as f64 * fraction) as usize];
     format!(
         "median {:.2} ms, 99th percentile {:.2} ms ({} frames)",
         at(0.5),
@@ -281,9 +281,7 @@ fn clicks(of: &str, base_radius: [f64; 2]) {
     let mut times = Vec::new();
     for x in sobol(&problem.variables(), 150, 1) {
         let Ok(design) = problem.design(&x) else { continue };
-        let feasible = model
-            .evaluate(&design, GridChoice::Reference)
-            .is_feasible();
+        let feasible = model.evaluate(&design, GridChoice::Reference).is_feasible();
         if !feasible {
             continue;
         }

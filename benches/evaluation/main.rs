@@ -30,7 +30,7 @@ use kinefront_model::stiffness::joint_model;
 use kinefront_model::with_leg;
 use kinefront_model::workspace::plain::plain;
 use kinefront_model::workspace::{PoseChecker, ValueColumns};
-use kinefront_optimize::{FrontDe, FrontDeSettings, drive, sobol};
+use kinefront_optimize::{FrontDe, FrontDeSettings, sobol, transmission};
 use rayon::prelude::*;
 
 use self::counted::{Operations, operations};
@@ -182,7 +182,7 @@ fn plainly(model: &Model, design: &Design, general: bool) -> f64 {
             let stiff = k_xy >= least.k_xy && k[(2, 2)] >= least.k_z && k[(5, 5)] >= least.k_phi_z;
             stiff.then(|| jacobian.determinant().signum())
         };
-        let closed_form = |position: DVec2, arms: &[DVec2; LEGS]| checker.good_sign(position, arms);
+        let closed_form = |position: DVec2, arms: &[DVec2; LEGS]| checker.feasible_sign(position, arms);
         let (manipulator, sampling) = (&checker.manipulator, model.sampling(GridChoice::Reference));
         let found = if general {
             plain(manipulator, sampling, design.base_radius, general_form)
@@ -271,7 +271,7 @@ fn clearance(criterion: &mut Criterion) {
             group.bench_function(BenchmarkId::new(name, architecture), |bencher| {
                 bencher.iter(|| {
                     let mut algorithm = FrontDe::new(problem.variables(), FrontDeSettings::default(), 1);
-                    drive(&problem, &mut algorithm, EVALUATIONS).iter().count()
+                    transmission(&problem, &mut algorithm, EVALUATIONS).iter().count()
                 });
             });
         }

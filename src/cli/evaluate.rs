@@ -10,7 +10,7 @@ use miette::miette;
 use super::{Ending, Failure, GridArgument, load_study, tables, to_json};
 
 #[derive(Debug, clap::Args)]
-pub struct Arguments {
+pub struct EvaluateArguments {
     /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
     #[arg(long, required_unless_present = "stdin", conflicts_with = "stdin")]
     design: Option<String>,
@@ -28,7 +28,7 @@ pub struct Arguments {
     stdin: bool,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
+pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
     let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
     let server = Server {
         model: study.model().map_err(Failure::runtime)?,

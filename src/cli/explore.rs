@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use kinefront::explorer::{Script, Subject, run as open_window};
+use kinefront::explorer::{InitialContent, Script, run as open_window};
 use kinefront::study::BUILTIN;
 use miette::miette;
 
 use super::{Ending, Failure, load_study};
 
 #[derive(Debug, Default, clap::Args)]
-pub struct Arguments {
+pub struct ExploreArguments {
     /// Study file, name of a built-in study, run folder, or Kinefront recording (.rrd) [default: paper].
     subject: Option<String>,
     /// Do not start the run of the study.
@@ -26,7 +26,7 @@ pub struct Arguments {
     script: Option<PathBuf>,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
+pub fn run(arguments: &ExploreArguments) -> Result<Ending, Failure> {
     let script = match &arguments.script {
         Some(path) => Some(Script::read(path).map_err(|words| Failure::Input(miette!("{words}")))?),
         None => None,
@@ -35,14 +35,14 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
     Ok(Ending::Done)
 }
 
-fn subject(arguments: &Arguments) -> Result<Subject, Failure> {
+fn subject(arguments: &ExploreArguments) -> Result<InitialContent, Failure> {
     let path = arguments.subject.as_ref().map(PathBuf::from);
     if let Some(path) = path.as_ref().filter(|path| path.exists()) {
         let is_study = path.is_file() && path.extension().is_some_and(|extension| extension == "toml");
         if !is_study {
             // Errors are reported before the window opens.
             kinefront::explorer::open(path).map_err(|error| Failure::Input(miette!("{error}")))?;
-            return Ok(Subject::Run(path.clone()));
+            return Ok(InitialContent::Run(path.clone()));
         }
     }
     let mut study = load_study(arguments.subject.as_deref()).map_err(Failure::Input)?;
@@ -55,7 +55,7 @@ fn subject(arguments: &Arguments) -> Result<Subject, Failure> {
     let builtin = BUILTIN
         .iter()
         .any(|builtin| Some(builtin.name) == arguments.subject.as_deref());
-    Ok(Subject::Study {
+    Ok(InitialContent::Study {
         study: Box::new(study),
         path: path.filter(|path| path.exists() && !builtin),
         start: !arguments.no_run,

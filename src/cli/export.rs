@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use kinefront::export::{ExportError, Format, Subject, export, front_to_parquet};
+use kinefront::export::{ExportError, ExportSubject, Format, export, front_to_parquet};
 use kinefront::study::write_whole;
 use kinefront_model::evaluation::GridChoice;
 use kinefront_model::spatial::Pose;
@@ -21,12 +21,12 @@ Examples:
   kinefront export --design \"3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056\" --out design.glb
   kinefront export run/front.csv#12 --format mjcf --out design.xml
   kinefront export run --out front.parquet")]
-pub struct Arguments {
+pub struct ExportArguments {
     #[command(flatten)]
     subject: SubjectArguments,
     /// Format [default: determined by the extension of FILE].
     #[arg(long, value_name = "FORMAT", value_parser = target)]
-    format: Option<Target>,
+    format: Option<ExportTarget>,
     /// Pose in which the design is written, as in "x=0.1 y=0.2 phi_deg=30" [default: home pose].
     #[arg(long, value_parser = |text: &str| text.parse::<Pose>())]
     pose: Option<Pose>,
@@ -37,25 +37,25 @@ pub struct Arguments {
 
 /// Content and format of the exported file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Target {
+enum ExportTarget {
     Design(Format),
     Csv,
     Parquet,
 }
 
-fn target(text: &str) -> Result<Target, String> {
+fn target(text: &str) -> Result<ExportTarget, String> {
     match text {
-        "csv" => Ok(Target::Csv),
-        "parquet" => Ok(Target::Parquet),
-        _ => Format::find(text).map(Target::Design).ok_or_else(|| {
+        "csv" => Ok(ExportTarget::Csv),
+        "parquet" => Ok(ExportTarget::Parquet),
+        _ => Format::find(text).map(ExportTarget::Design).ok_or_else(|| {
             let known: Vec<&str> = Format::ALL.iter().map(|format| format.key()).collect();
             format!("expected one of {}, csv, parquet", known.join(", "))
         }),
     }
 }
 
-impl Arguments {
-    fn target(&self) -> Result<Target> {
+impl ExportArguments {
+    fn target(&self) -> Result<ExportTarget> {
         if let Some(target) = self.format {
             return Ok(target);
         }
@@ -67,9 +67,9 @@ impl Arguments {
             .to_lowercase();
         let design = || Format::ALL.into_iter().find(|format| format.extension() == extension);
         match extension.as_ref() {
-            "csv" => Ok(Target::Csv),
-            "parquet" => Ok(Target::Parquet),
-            _ => design().map(Target::Design).ok_or_else(|| {
+            "csv" => Ok(ExportTarget::Csv),
+            "parquet" => Ok(ExportTarget::Parquet),
+            _ => design().map(ExportTarget::Design).ok_or_else(|| {
                 miette!(
                     help =
                         "give --format, or a file that ends in .glb, .xml, .sdf, .urdf, .dxf, .json, .csv or .parquet",
@@ -82,26 +82,26 @@ impl Arguments {
 
     /// Refuses arguments that do not fit the target: options that would be ignored, and a file extension that belongs
     /// to another format.
-    fn check(&self, target: Target) -> Result<()> {
+    fn check(&self, target: ExportTarget) -> Result<()> {
         let is_gltf = self
             .out
             .extension()
             .is_some_and(|extension| extension.eq_ignore_ascii_case("gltf"));
         match target {
-            Target::Design(Format::Gltf) if is_gltf => Err(miette!(
+            ExportTarget::Design(Format::Gltf) if is_gltf => Err(miette!(
                 help = "use the file extension .glb",
                 "{} has the extension of text glTF, but glTF is written in its binary form",
                 self.out.display()
             )),
-            Target::Csv | Target::Parquet if self.pose.is_some() || self.subject.study.is_some() => Err(miette!(
-                "--pose and --study have no meaning for a front: it is exported as the run wrote it"
-            )),
+            ExportTarget::Csv | ExportTarget::Parquet if self.pose.is_some() || self.subject.study.is_some() => Err(
+                miette!("--pose and --study have no meaning for a front: it is exported as the run wrote it"),
+            ),
             _ => Ok(()),
         }
     }
 }
 
-pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
+pub fn run(arguments: &ExportArguments) -> Result<Ending, Failure> {
     let target = arguments.target().map_err(Failure::Input)?;
     arguments.check(target).map_err(Failure::Input)?;
     let to_stdout = arguments.out == Path::new("-");
@@ -112,15 +112,15 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
         )));
     }
     let bytes = match target {
-        Target::Design(format) => design(arguments, format)?,
-        Target::Csv | Target::Parquet => front(arguments, target).map_err(Failure::Input)?,
+        ExportTarget::Design(format) => design(arguments, format)?,
+        ExportTarget::Csv | ExportTarget::Parquet => front(arguments, target).map_err(Failure::Input)?,
     };
     if to_stdout {
         std::io::stdout().write_all(&bytes)?;
     } else {
         write_whole(&arguments.out, &bytes).map_err(Failure::runtime)?;
     }
-    if let Target::Design(format) = target
+    if let ExportTarget::Design(format) = target
         && let Some(lost) = format.lost()
     {
         eprintln!("not in {}: {lost}", format.name());
@@ -132,11 +132,11 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
     Ok(Ending::Done)
 }
 
-fn design(arguments: &Arguments, format: Format) -> Result<Vec<u8>, Failure> {
+fn design(arguments: &ExportArguments, format: Format) -> Result<Vec<u8>, Failure> {
     let (study, design, _) = arguments.subject.read().map_err(Failure::Input)?;
     let model = study.model().map_err(Failure::runtime)?;
     let evaluation = model.evaluate(&design, GridChoice::Fine);
-    let subject = Subject {
+    let subject = ExportSubject {
         study: &study,
         evaluation: &evaluation,
         pose: arguments.pose,
@@ -148,7 +148,7 @@ fn design(arguments: &Arguments, format: Format) -> Result<Vec<u8>, Failure> {
 }
 
 /// Reads the front of the run that the row argument specifies by the run folder or by one of its tables.
-fn front(arguments: &Arguments, target: Target) -> Result<Vec<u8>> {
+fn front(arguments: &ExportArguments, target: ExportTarget) -> Result<Vec<u8>> {
     let Some(run) = arguments.subject.row.as_ref().filter(|run| !run.contains('#')) else {
         return Err(miette!(
             help = "kinefront export run --out front.parquet",
@@ -165,7 +165,7 @@ fn front(arguments: &Arguments, target: Target) -> Result<Vec<u8>> {
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot read {}", table.display()))?;
     match target {
-        Target::Parquet => front_to_parquet(&text).map_err(|message| miette!("{}: {message}", table.display())),
+        ExportTarget::Parquet => front_to_parquet(&text).map_err(|message| miette!("{}: {message}", table.display())),
         _ => Ok(text),
     }
 }

@@ -24,7 +24,7 @@ use miette::{IntoDiagnostic, Report, Result, miette};
 /// Design explorer for planar parallel manipulators.
 #[derive(Debug, Parser)]
 #[command(name = "kinefront", version, arg_required_else_help = cfg!(not(feature = "explorer")))]
-struct Arguments {
+struct ProgramArguments {
     /// Command; without one, the window opens and runs the paper's study.
     #[command(subcommand)]
     command: Option<Command>,
@@ -34,21 +34,21 @@ struct Arguments {
 enum Command {
     /// Open a study, a run folder or a recording in the window.
     #[cfg(feature = "explorer")]
-    Explore(explore::Arguments),
+    Explore(explore::ExploreArguments),
     /// Compute mass, regular workspace and constraint margins of a design, or of a stream of designs.
-    Evaluate(evaluate::Arguments),
+    Evaluate(evaluate::EvaluateArguments),
     /// Compute joint values, dexterity and stiffness of a design at one pose.
-    Pose(pose::Arguments),
+    Pose(pose::PoseArguments),
     /// Write a recording of one design with its overlays and a tour of its workspace.
-    Show(show::Arguments),
+    Show(show::ShowArguments),
     /// Export a design for CAD, viewers and simulators, or the front of a run as a table.
-    Export(export::Arguments),
+    Export(export::ExportArguments),
     /// Search for light designs with a large regular workspace, without a window.
-    Optimize(optimize::Arguments),
+    Optimize(optimize::OptimizeArguments),
     /// Write a report on one or more runs: fronts, trends, comparison, pictures, sensitivity.
-    Report(report::Arguments),
+    Report(report::ReportArguments),
     /// List, show, create and check study files.
-    Study(study::Arguments),
+    Study(study::StudyArguments),
 }
 
 /// How a command that did not fail has ended.
@@ -88,9 +88,9 @@ impl From<std::io::Error> for Failure {
 
 /// Parses the arguments and runs the command.
 pub fn run() -> ExitCode {
-    let outcome = match Arguments::parse().command {
+    let outcome = match ProgramArguments::parse().command {
         #[cfg(feature = "explorer")]
-        None => explore::run(&explore::Arguments::default()),
+        None => explore::run(&explore::ExploreArguments::default()),
         #[cfg(feature = "explorer")]
         Some(Command::Explore(arguments)) => explore::run(&arguments),
         // Not reached: `arg_required_else_help` prints the help if there is no command.

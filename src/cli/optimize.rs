@@ -8,7 +8,7 @@ use std::sync::{Arc, OnceLock};
 use std::thread::{Builder, JoinHandle};
 
 use kinefront::recording::Recorder;
-use kinefront::study::{AlgorithmName, Event, Outcome, RunControl, RunFolder, RunReport, RunSummary, Study, spawn};
+use kinefront::study::{AlgorithmName, EndReason, Event, RunControl, RunFolder, RunReport, RunSummary, Study, spawn};
 use kinefront_model::mechanism::Architecture;
 use miette::{Report, miette};
 
@@ -19,7 +19,7 @@ use super::{Ending, Failure, load_study, tables};
 const CHANNEL: usize = 64;
 
 #[derive(Debug, clap::Args)]
-pub struct Arguments {
+pub struct OptimizeArguments {
     /// Study file, or name of a built-in study [default: paper].
     study: Option<String>,
     /// Algorithm; overrides that of the study.
@@ -48,7 +48,7 @@ pub struct Arguments {
     quiet: bool,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
+pub fn run(arguments: &OptimizeArguments) -> Result<Ending, Failure> {
     let study = study(arguments)?;
     let path = arguments.out.clone().unwrap_or_else(|| free_folder(&study));
     let folder = RunFolder::create(&path, &study).map_err(|error| Failure::Input(Report::from_err(error)))?;
@@ -90,13 +90,13 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
     }
     tell(&study, &summary, &path, arguments)?;
     Ok(match summary.outcome {
-        Outcome::Completed | Outcome::TimeUp | Outcome::Stagnated => Ending::Done,
-        Outcome::Stopped => Ending::Interrupted,
+        EndReason::Completed | EndReason::TimeUp | EndReason::Stagnated => Ending::Done,
+        EndReason::Stopped => Ending::Interrupted,
     })
 }
 
 /// Loads the study that the arguments specify and checks it again with the values that they override.
-fn study(arguments: &Arguments) -> Result<Study, Failure> {
+fn study(arguments: &OptimizeArguments) -> Result<Study, Failure> {
     let mut study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
     if let Some(algorithm) = arguments.algorithm {
         study.optimizer.algorithm = algorithm;
@@ -184,7 +184,7 @@ fn watch(events: &Receiver<Arc<Event>>, progress: &mut Progress) -> Result<RunSu
     ended
 }
 
-fn tell(study: &Study, summary: &RunSummary, path: &Path, arguments: &Arguments) -> Result<(), Failure> {
+fn tell(study: &Study, summary: &RunSummary, path: &Path, arguments: &OptimizeArguments) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     if arguments.json {
         let report = serde_json::to_string_pretty(&RunReport::new(study, summary)).map_err(Failure::runtime)?;
@@ -200,9 +200,9 @@ fn tell(study: &Study, summary: &RunSummary, path: &Path, arguments: &Arguments)
             last.map_or(0, |last| last.feasible),
             summary.times.search_s,
             match summary.outcome {
-                Outcome::Completed | Outcome::Stopped => "",
-                Outcome::TimeUp => " (time limit reached)",
-                Outcome::Stagnated => " (stagnated)",
+                EndReason::Completed | EndReason::Stopped => "",
+                EndReason::TimeUp => " (time limit reached)",
+                EndReason::Stagnated => " (stagnated)",
             },
             summary.times.verification_s,
             summary.front.len(),

@@ -10,7 +10,7 @@ use miette::{Report, miette};
 use super::{Ending, Failure, load_study, tables, to_json};
 
 #[derive(Debug, clap::Args)]
-pub struct Arguments {
+pub struct PoseArguments {
     /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
     #[arg(long)]
     design: String,
@@ -25,7 +25,7 @@ pub struct Arguments {
     json: bool,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
+pub fn run(arguments: &PoseArguments) -> Result<Ending, Failure> {
     let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
     let design = Design::parse(&arguments.design, study.working_mode)
         .map_err(|error| Failure::Input(Report::from_err(error)))?;

@@ -19,7 +19,7 @@ Examples:
   kinefront report run                          report on one run in run/report
   kinefront report prr rpr rrr --out compared   report on several runs with the same requirements
   kinefront report --paper --out paper          comparison with the 2010 paper, with new runs of its study")]
-pub struct Arguments {
+pub struct ReportArguments {
     /// Run folders; the studies of several runs may differ only in architectures and search.
     #[arg(value_name = "RUN", required_unless_present = "paper", conflicts_with = "paper")]
     runs: Vec<PathBuf>,
@@ -53,7 +53,7 @@ fn scale(text: &str) -> Result<f32, String> {
     }
 }
 
-impl Arguments {
+impl ReportArguments {
     fn folder(&self) -> PathBuf {
         match (&self.out, self.runs.first()) {
             (Some(out), _) => out.clone(),
@@ -84,7 +84,7 @@ impl Arguments {
     }
 }
 
-pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
+pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
     let folder = arguments.folder();
     free(&folder, arguments.replace).map_err(failure)?;
     let options = Options {

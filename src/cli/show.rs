@@ -12,7 +12,7 @@ use super::subject::SubjectArguments;
 use super::{Ending, Failure};
 
 #[derive(Debug, clap::Args)]
-pub struct Arguments {
+pub struct ShowArguments {
     #[command(flatten)]
     subject: SubjectArguments,
     /// Field whose heatmap is shown first.
@@ -30,7 +30,7 @@ fn field(text: &str) -> Result<Field, String> {
     })
 }
 
-pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
+pub fn run(arguments: &ShowArguments) -> Result<Ending, Failure> {
     let (study, design, heading) = arguments.subject.read().map_err(Failure::Input)?;
     let model = study.model().map_err(Failure::runtime)?;
     let evaluation = model.evaluate(&design, GridChoice::Fine);

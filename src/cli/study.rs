@@ -10,13 +10,13 @@ use miette::miette;
 use super::{Ending, Failure, builtin_names, load_study};
 
 #[derive(Debug, clap::Args)]
-pub struct Arguments {
+pub struct StudyArguments {
     #[command(subcommand)]
-    command: Command,
+    command: StudyCommand,
 }
 
 #[derive(Debug, clap::Subcommand)]
-enum Command {
+enum StudyCommand {
     /// List the built-in studies.
     List,
     /// Print a built-in study with its comments.
@@ -45,17 +45,17 @@ fn builtin(name: &str) -> Result<Builtin, Failure> {
     Builtin::find(name).ok_or_else(|| Failure::Input(miette!("no study `{name}`; expected one of {}", builtin_names())))
 }
 
-pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
+pub fn run(arguments: &StudyArguments) -> Result<Ending, Failure> {
     let mut out = std::io::stdout().lock();
     match &arguments.command {
-        Command::List => {
+        StudyCommand::List => {
             for builtin in BUILTIN {
                 let study = builtin.study().map_err(Failure::input)?;
                 writeln!(out, "{:<28}{}", builtin.name, study.description)?;
             }
         }
-        Command::Show { name } => write!(out, "{}", builtin(name)?.text)?,
-        Command::New { file, from } => {
+        StudyCommand::Show { name } => write!(out, "{}", builtin(name)?.text)?,
+        StudyCommand::New { file, from } => {
             let text = builtin(from)?.text;
             let mut target = OpenOptions::new()
                 .write(true)
@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<Ending, Failure> {
             target.write_all(text.as_bytes())?;
             writeln!(out, "wrote {}", file.display())?;
         }
-        Command::Check { file } => {
+        StudyCommand::Check { file } => {
             let study: Study = load_study(file.to_str()).map_err(Failure::Input)?;
             writeln!(out, "{}: valid ({})", file.display(), study.name)?;
         }

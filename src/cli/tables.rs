@@ -4,7 +4,7 @@ use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{CellAlignment, Table};
 use kinefront::study::{FrontMember, RunSummary};
 use kinefront::text::{self, number};
-use kinefront_model::evaluation::{Evaluation, Model, PoseReport, Unreachable};
+use kinefront_model::evaluation::{Evaluation, Model, PoseEvaluation, Unreachable};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 
@@ -81,7 +81,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         ],
         &[2, 3, 5],
     );
-    for report in evaluation.constraints.iter().filter(|report| report.asked) {
+    for report in evaluation.constraints.iter().filter(|report| report.required) {
         constraints.add_row([
             report.constraint.id().to_owned(),
             report.constraint.name().to_owned(),
@@ -97,7 +97,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
 }
 
 /// Formats the report on a design at one pose.
-pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseReport, Unreachable>) -> String {
+pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseEvaluation, Unreachable>) -> String {
     let mut facts = table(["design", &design.to_string()], &[]);
     facts.add_row(["pose".to_owned(), pose_text(pose)]);
     let report = match outcome {
@@ -118,16 +118,19 @@ pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseReport, Unreachab
             point(report.c[leg]),
         ]);
     }
-    facts.add_row(["limit margin".to_owned(), format!("{:.6} m", report.slack)]);
+    facts.add_row(["limit margin".to_owned(), format!("{:.6} m", report.limit_margin)]);
     facts.add_row([
         "inverse condition".to_owned(),
         format!("{:.6}", report.inverse_condition),
     ]);
-    facts.add_row(["k_xy".to_owned(), format!("{} N/m", number(report.rigidity.k_xy))]);
-    facts.add_row(["k_z".to_owned(), format!("{} N/m", number(report.rigidity.k_z))]);
+    facts.add_row([
+        "k_xy".to_owned(),
+        format!("{} N/m", number(report.stiffness_values.k_xy)),
+    ]);
+    facts.add_row(["k_z".to_owned(), format!("{} N/m", number(report.stiffness_values.k_z))]);
     facts.add_row([
         "k_φz".to_owned(),
-        format!("{} N·m/rad", number(report.rigidity.k_phi_z)),
+        format!("{} N·m/rad", number(report.stiffness_values.k_phi_z)),
     ]);
     facts.add_row(["clearance".to_owned(), text::clearance(&report.clearance)]);
     let mut stiffness = table(["K", "x", "y", "z", "φx", "φy", "φz"], &[1, 2, 3, 4, 5, 6]);

@@ -11,7 +11,7 @@ pub enum Origin {
     /// Evaluated by the run under this id.
     Evaluated(usize),
     /// Modified by hand from another design, or pasted as text.
-    WhatIf {
+    Modified {
         /// Id of the design of the run that it was modified from, if there is one.
         from: Option<usize>,
     },
@@ -23,7 +23,7 @@ pub enum Origin {
 
 /// The selected design and its origin.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Chosen {
+pub struct Selected {
     /// The design.
     pub design: Design,
     /// Its origin.
@@ -43,7 +43,7 @@ pub struct Named {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Document {
     /// The selected design.
-    pub chosen: Option<Chosen>,
+    pub selected: Option<Selected>,
     /// Pinned designs, which are compared.
     pub pins: Vec<Named>,
     /// Modified designs that the user has kept.

@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, channel};
 
 use super::running::Writing;
 use super::{Phase, Session};
-use crate::export::{ExportError, Format, Subject, export, front_to_parquet};
+use crate::export::{ExportError, ExportSubject, Format, export, front_to_parquet};
 use crate::recording::{record_design, save_copy};
 use crate::report::{Options, Report, Source};
 use kinefront_model::evaluation::GridChoice;
@@ -138,11 +138,11 @@ pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job
         Purpose::Open | Purpose::OpenFolder => session.open(&path),
         Purpose::SaveStudy => {
             let saved = session.editor.save(&path);
-            tell(session, saved.map(|()| format!("saved {}", path.display())));
+            notify(session, saved.map(|()| format!("saved {}", path.display())));
         }
         Purpose::SaveFilter => {
             let text = session.document().filter.to_text();
-            tell(
+            notify(
                 session,
                 write_whole(&path, text.as_bytes()).map(|()| format!("saved {}", path.display())),
             );
@@ -152,7 +152,7 @@ pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job
                 std::fs::read_to_string(&path).map_err(|error| format!("cannot read {}: {error}", path.display()));
             match read.and_then(|text| super::Filter::parse(&text)) {
                 Ok(filter) => session.history.edit(|document| document.filter = filter),
-                Err(words) => session.tell_error(words),
+                Err(words) => session.notify_error(words),
             }
         }
         Purpose::ExportFront => {
@@ -160,7 +160,7 @@ pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job
             let written = front_table(session)
                 .and_then(|table| if parquet { front_to_parquet(&table) } else { Ok(table) })
                 .and_then(|table| write_whole(&path, &table));
-            tell(session, written.map(|()| format!("exported {}", path.display())));
+            notify(session, written.map(|()| format!("exported {}", path.display())));
         }
         Purpose::SaveRecording => return save_recording(session, path),
         Purpose::RecordDesign => return record(session, path),
@@ -173,16 +173,16 @@ pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job
     None
 }
 
-fn tell(session: &mut Session, outcome: Result<String, String>) {
+fn notify(session: &mut Session, outcome: Result<String, String>) {
     match outcome {
-        Ok(words) => session.tell(words),
-        Err(words) => session.tell_error(words),
+        Ok(words) => session.notify(words),
+        Err(words) => session.notify_error(words),
     }
 }
 
 fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
     let Some(folder) = session.run_folder() else {
-        session.tell_error("there is no run to save; an opened run is already on disk".to_owned());
+        session.notify_error("there is no run to save; an opened run is already on disk".to_owned());
         return None;
     };
     let writing = session.writing();
@@ -190,7 +190,7 @@ fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
     let shown = session
         .known()
         .map(|known| known.evaluation.clone())
-        .zip(session.chosen_name());
+        .zip(session.selected_name());
     Some(Box::new(move || {
         writing.iter().for_each(Writing::wait);
         let shown = shown
@@ -204,7 +204,7 @@ fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
 /// Exports the selected design at the pose that is shown.
 fn export_design(session: &mut Session, format: Format, path: PathBuf) -> Option<Job> {
     let Some(known) = session.known().cloned() else {
-        session.tell_error("no design is selected".to_owned());
+        session.notify_error("no design is selected".to_owned());
         return None;
     };
     let study = session.study().clone();
@@ -213,7 +213,7 @@ fn export_design(session: &mut Session, format: Format, path: PathBuf) -> Option
         // The export contains the values from the fine grid, as verified.
         let model = study.model().map_err(|error| error.to_string())?;
         let fine = model.evaluate(&known.evaluation.design, GridChoice::Fine);
-        let subject = Subject {
+        let subject = ExportSubject {
             study: &study,
             evaluation: &fine,
             pose,
@@ -229,8 +229,8 @@ fn export_design(session: &mut Session, format: Format, path: PathBuf) -> Option
 }
 
 fn record(session: &mut Session, path: PathBuf) -> Option<Job> {
-    let Some((known, name)) = session.known().cloned().zip(session.chosen_name()) else {
-        session.tell_error("no design is selected".to_owned());
+    let Some((known, name)) = session.known().cloned().zip(session.selected_name()) else {
+        session.notify_error("no design is selected".to_owned());
         return None;
     };
     let study = session.study().clone();
@@ -250,7 +250,7 @@ fn record(session: &mut Session, path: PathBuf) -> Option<Job> {
 /// Saves the run folder with a complete recording; `path` must not contain a run.
 fn save_run(session: &mut Session, path: PathBuf) -> Option<Job> {
     let Some(folder) = session.run_folder() else {
-        session.tell_error("there is no run to save; an opened run is already on disk".to_owned());
+        session.notify_error("there is no run to save; an opened run is already on disk".to_owned());
         return None;
     };
     let writing = session.writing();
@@ -283,11 +283,11 @@ fn report(session: &mut Session, path: PathBuf) -> Option<Job> {
         _ => None,
     };
     let Some(folder) = session.run_folder().or(opened) else {
-        session.tell_error("there is no run to report on; start a run or open a run folder".to_owned());
+        session.notify_error("there is no run to report on; start a run or open a run folder".to_owned());
         return None;
     };
     let writing = session.writing();
-    session.tell("writing the report; this takes several seconds".to_owned());
+    session.notify("writing the report; this takes several seconds".to_owned());
     Some(Box::new(move || {
         writing.iter().for_each(Writing::wait);
         let options = Options {

@@ -19,7 +19,7 @@ pub struct Filter {
 }
 
 /// A filter prepared for testing many designs.
-pub struct Sieve<'a> {
+pub struct PreparedFilter<'a> {
     store: &'a Store,
     feasible_only: bool,
     hidden: Vec<Architecture>,
@@ -46,8 +46,8 @@ impl Filter {
     }
 
     /// Prepares the filter for the designs of a store.
-    pub fn sieve<'a>(&self, store: &'a Store) -> Sieve<'a> {
-        Sieve {
+    pub fn prepare<'a>(&self, store: &'a Store) -> PreparedFilter<'a> {
+        PreparedFilter {
             store,
             feasible_only: self.feasible_only,
             hidden: self.hidden.clone(),
@@ -89,7 +89,7 @@ impl Filter {
     }
 }
 
-impl Sieve<'_> {
+impl PreparedFilter<'_> {
     /// Returns whether design `id` exists and passes the filter.
     pub fn passes(&self, id: usize) -> bool {
         id < self.store.len()
@@ -105,7 +105,7 @@ impl Sieve<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kinefront_model::mechanism::Variable;
+    use kinefront_model::mechanism::DesignVariable;
 
     #[test]
     fn a_filter_reads_what_it_writes() {
@@ -115,7 +115,10 @@ mod tests {
             ranges: BTreeMap::new(),
         };
         filter.set_range(Quantity::Mass, Some([10.0, 2.5]));
-        filter.set_range(Quantity::Variable(Variable::LinkLength), Some([0.5, 1.0 / 3.0]));
+        filter.set_range(
+            Quantity::DesignVariable(DesignVariable::LinkLength),
+            Some([0.5, 1.0 / 3.0]),
+        );
         assert_eq!(filter.range(Quantity::Mass), Some([2.5, 10.0]));
         assert_eq!(Filter::parse(&filter.to_text()), Ok(filter));
     }

@@ -8,7 +8,7 @@ use crate::study::{Event, GenerationSummary, RunSummary};
 
 /// Messages of a run since the last call of [`Intake::take`].
 #[derive(Debug, Default)]
-pub struct News {
+pub struct RunMessages {
     /// Designs that were evaluated.
     pub rows: Store,
     /// The current front, if it has changed.
@@ -29,7 +29,7 @@ pub struct News {
 
 /// Collects the messages of a run until the window takes them.
 pub struct Intake {
-    news: Mutex<News>,
+    news: Mutex<RunMessages>,
     wake: Box<dyn Fn() + Send + Sync>,
 }
 
@@ -43,11 +43,11 @@ impl Intake {
     }
 
     /// Takes all messages since the last call.
-    pub fn take(&self) -> News {
+    pub fn take(&self) -> RunMessages {
         std::mem::take(&mut *self.news.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    fn put(&self, put: impl FnOnce(&mut News)) {
+    fn put(&self, put: impl FnOnce(&mut RunMessages)) {
         put(&mut self.news.lock().unwrap_or_else(PoisonError::into_inner));
         (self.wake)();
     }

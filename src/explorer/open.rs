@@ -115,12 +115,12 @@ fn open_recording(path: &Path) -> Result<Opened, OpenError> {
 /// Reads the summaries of the generations; a run without them can be opened, because only the curves need them.
 fn history(path: &Path) -> Vec<GenerationSummary> {
     #[derive(Deserialize)]
-    struct Report {
+    struct GenerationHistory {
         history: Vec<GenerationSummary>,
     }
     std::fs::read(path)
         .ok()
-        .and_then(|bytes| serde_json::from_slice::<Report>(&bytes).ok())
+        .and_then(|bytes| serde_json::from_slice::<GenerationHistory>(&bytes).ok())
         .map(|report| report.history)
         .unwrap_or_default()
 }

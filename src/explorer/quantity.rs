@@ -2,7 +2,7 @@
 
 use super::Row;
 use kinefront_model::evaluation::Constraint;
-use kinefront_model::mechanism::{VARIABLES, Variable};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable};
 
 /// A numerical quantity of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -12,7 +12,7 @@ pub enum Quantity {
     /// Workspace radius `R_w`.
     Radius,
     /// One of the five dimensions.
-    Variable(Variable),
+    DesignVariable(DesignVariable),
     /// Home orientation `φ_c`.
     Phi,
     /// Relative margin of a constraint.
@@ -36,7 +36,7 @@ impl Quantity {
     /// Returns all quantities: objectives, variables, margins, then the others.
     pub fn all() -> Vec<Quantity> {
         let mut all = vec![Quantity::Mass, Quantity::Radius];
-        all.extend(VARIABLES.map(Quantity::Variable));
+        all.extend(DESIGN_VARIABLES.map(Quantity::DesignVariable));
         all.extend(Constraint::ALL.map(Quantity::Margin));
         all.extend([Quantity::Clearance, Quantity::Phi, Quantity::Violation]);
         all
@@ -47,7 +47,7 @@ impl Quantity {
         match self {
             Quantity::Mass => "mass_kg".to_owned(),
             Quantity::Radius => "workspace_radius_m".to_owned(),
-            Quantity::Variable(variable) => variable.key().to_owned(),
+            Quantity::DesignVariable(variable) => variable.key().to_owned(),
             Quantity::Phi => "phi_deg".to_owned(),
             Quantity::Margin(constraint) => format!("margin_{}", constraint.id()),
             Quantity::Clearance => format!("value_{}", Constraint::Clearance.id()),
@@ -65,7 +65,7 @@ impl Quantity {
         match self {
             Quantity::Mass => "mass in motion [kg]".to_owned(),
             Quantity::Radius => "R_w [m]".to_owned(),
-            Quantity::Variable(variable) => format!("{} [m]", variable.symbol()),
+            Quantity::DesignVariable(variable) => format!("{} [m]", variable.symbol()),
             Quantity::Phi => "φ_c [°]".to_owned(),
             Quantity::Margin(constraint) => format!("margin {}", constraint.id()),
             Quantity::Clearance => "clearance [m]".to_owned(),
@@ -78,7 +78,7 @@ impl Quantity {
         match self {
             Quantity::Mass => "mass".to_owned(),
             Quantity::Radius => "R_w".to_owned(),
-            Quantity::Variable(variable) => variable.symbol().to_owned(),
+            Quantity::DesignVariable(variable) => variable.symbol().to_owned(),
             Quantity::Phi => "φ_c".to_owned(),
             Quantity::Margin(Constraint::DeterminantSign) => "det A".to_owned(),
             Quantity::Margin(constraint) => constraint.id().to_owned(),
@@ -92,7 +92,7 @@ impl Quantity {
         match self {
             Quantity::Mass | Quantity::Violation => Some(Better::Lower),
             Quantity::Radius | Quantity::Margin(_) | Quantity::Clearance => Some(Better::Higher),
-            Quantity::Variable(_) | Quantity::Phi => None,
+            Quantity::DesignVariable(_) | Quantity::Phi => None,
         }
     }
 
@@ -106,7 +106,7 @@ impl Quantity {
         match self {
             Quantity::Mass => row.mass,
             Quantity::Radius => row.radius,
-            Quantity::Variable(variable) => row.design.values()[variable as usize],
+            Quantity::DesignVariable(variable) => row.design.values()[variable as usize],
             Quantity::Phi => row.phi.unwrap_or(f64::NAN),
             Quantity::Margin(constraint) => row.margins[constraint as usize].unwrap_or(f64::NAN),
             Quantity::Clearance => row.clearance.unwrap_or(f64::NAN),

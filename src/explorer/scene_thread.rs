@@ -13,7 +13,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::Duration;
 
-use crate::recording::{FrontPoint, Layers, LiveScene, Pinned, Shown};
+use crate::recording::{FrontPoint, LiveScene, Pinned, Shown, VisibleLayers};
 use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, GridChoice};
 use kinefront_model::mechanism::Design;
@@ -34,7 +34,7 @@ pub struct Request {
     /// Orientation of the heatmap \[rad\]; the home orientation if `None`.
     pub heatmap_phi: Option<f64>,
     /// Layers that are drawn.
-    pub layers: Layers,
+    pub layers: VisibleLayers,
     /// Pinned designs with their names.
     pub pins: Vec<(String, Design)>,
     /// Whether the view of the pinned designs is in front of that of the selected design.
@@ -237,7 +237,7 @@ fn verify_requests(shared: &Shared) {
 
 /// Current state of the scene.
 #[derive(Default)]
-struct Standing {
+struct SceneState {
     scene: Option<LiveScene>,
     request: Option<Request>,
     known: Option<Known>,
@@ -247,9 +247,9 @@ struct Standing {
 }
 
 fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
-    let mut standing = Standing {
+    let mut standing = SceneState {
         scene,
-        ..Standing::default()
+        ..SceneState::default()
     };
     while let Some((number, request)) = shared.requests.take() {
         let trouble = step(&mut standing, shared, &request).err();
@@ -278,7 +278,7 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
     }
 }
 
-fn step(standing: &mut Standing, shared: &Shared, request: &Request) -> Result<(), String> {
+fn step(standing: &mut SceneState, shared: &Shared, request: &Request) -> Result<(), String> {
     let before = standing.request.take();
     let new_study = before.as_ref().is_none_or(|before| before.study != request.study);
     if new_study {

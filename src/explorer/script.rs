@@ -33,7 +33,7 @@ use super::panels::Panel;
 use super::{Explorer, Phase, Quantity};
 use crate::scene::{EllipsoidKind, Field};
 use kinefront_model::evaluation::Constraint;
-use kinefront_model::mechanism::VARIABLES;
+use kinefront_model::mechanism::DESIGN_VARIABLES;
 use kinefront_model::spatial::Pose;
 
 /// A script in progress.
@@ -60,7 +60,7 @@ enum Step {
     Pin,
     Keep,
     Star,
-    WhatIf(usize, f64),
+    Modified(usize, f64),
     Heatmap(Option<Field>),
     Ellipsoids(Option<EllipsoidKind>),
     Pose(Pose),
@@ -148,21 +148,21 @@ impl Script {
             Step::WaitEvaluations(count) => return session.store().len() >= *count || !session.is_running(),
             Step::WaitDrawn => {
                 let verified =
-                    session.document().chosen.is_none() || session.known().is_some_and(|known| known.verified);
+                    session.document().selected.is_none() || session.known().is_some_and(|known| known.verified);
                 // The viewer shows the scene a few frames later.
                 return verified && session.is_drawn() && self.frames > 12;
             }
             Step::WaitFrames(count) => return self.frames >= *count,
             // A picture arrives some frames after its request.
             Step::WaitBusy => return !busy && self.frames > 6,
-            Step::ChooseKnee => session.choose_knee(),
+            Step::ChooseKnee => session.select_knee(),
             Step::Choose(id) => session.choose(*id),
             Step::ChooseDesign(text) => session.paste(text),
             Step::Walk(steps) => session.walk(*steps),
             Step::Pin => session.toggle_pin(),
             Step::Keep => session.keep(),
             Step::Star => session.toggle_star(),
-            Step::WhatIf(variable, value) => session.what_if(*variable, *value),
+            Step::Modified(variable, value) => session.modify(*variable, *value),
             Step::Heatmap(field) => session.staging.layers.heatmap = *field,
             Step::Ellipsoids(kind) => session.staging.layers.ellipsoids = *kind,
             Step::Pose(pose) => drop(session.move_platform(*pose)),
@@ -195,7 +195,7 @@ impl Script {
             let lines: Vec<String> = times.iter().map(|seconds| format!("{:.3}", 1e3 * seconds)).collect();
             let text = format!("frame_ms\n{}\n", lines.join("\n"));
             if let Err(words) = super::files::write_whole(&path, text.as_bytes()) {
-                explorer.session_mut().tell_error(words);
+                explorer.session_mut().notify_error(words);
             }
         }
     }
@@ -225,8 +225,8 @@ fn step(line: &str) -> Option<Step> {
         "star" => Step::Star,
         "what-if" => {
             let (key, value) = rest.split_once('=')?;
-            let variable = VARIABLES.iter().position(|variable| variable.key() == key)?;
-            Step::WhatIf(variable, value.parse().ok()?)
+            let variable = DESIGN_VARIABLES.iter().position(|variable| variable.key() == key)?;
+            Step::Modified(variable, value.parse().ok()?)
         }
         "heatmap" if rest == "none" => Step::Heatmap(None),
         "heatmap" => Step::Heatmap(Some(Field::find(rest)?)),

@@ -2,7 +2,7 @@
 
 use crate::study::Row;
 use kinefront_model::evaluation::Constraint;
-use kinefront_model::mechanism::{Architecture, Design, VARIABLES, WorkingMode};
+use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, WorkingMode};
 
 /// Evaluated designs in the order of their ids, which are consecutive from 0.
 #[derive(Debug, Clone, Default)]
@@ -11,7 +11,7 @@ pub struct Store {
     architecture: Vec<u8>,
     mode: Vec<WorkingMode>,
     generation: Vec<u32>,
-    values: [Vec<f64>; VARIABLES.len()],
+    values: [Vec<f64>; DESIGN_VARIABLES.len()],
     mass: Vec<f64>,
     radius: Vec<f64>,
     /// Home orientation `φ_c` \[deg\]; NaN for an infeasible design.
@@ -119,7 +119,7 @@ impl Store {
         match quantity {
             Q::Mass => &self.mass,
             Q::Radius => &self.radius,
-            Q::Variable(variable) => &self.values[variable as usize],
+            Q::DesignVariable(variable) => &self.values[variable as usize],
             Q::Phi => &self.phi,
             Q::Violation => &self.violation,
             Q::Clearance => &self.clearance,
@@ -129,7 +129,7 @@ impl Store {
 
     /// Returns the memory in use \[bytes\].
     pub fn bytes(&self) -> usize {
-        let per_row = 1 + size_of::<WorkingMode>() + 4 + 1 + 8 * (VARIABLES.len() + 5 + Constraint::ALL.len());
+        let per_row = 1 + size_of::<WorkingMode>() + 4 + 1 + 8 * (DESIGN_VARIABLES.len() + 5 + Constraint::ALL.len());
         self.mass.capacity() * per_row
     }
 }

@@ -146,17 +146,17 @@ mod tests {
     #[test]
     fn faults_are_told_as_typed_and_the_sound_study_stays() {
         let mut editor = StudyEditor::paper();
-        let sound = editor.text().to_owned();
-        editor.set_text(sound.replace("evaluations = 6000", "evaluations = 0"));
+        let valid = editor.text().to_owned();
+        editor.set_text(valid.replace("evaluations = 6000", "evaluations = 0"));
         assert_eq!(editor.faults()[0].key, "optimizer.evaluations");
         assert_eq!(editor.study().optimizer.evaluations, 6000);
-        editor.set_text(sound.replace("[optimizer]", "[optimiser]"));
+        editor.set_text(valid.replace("[optimizer]", "[optimiser]"));
         assert!(
             editor.faults()[0].message.contains("optimiser"),
             "{:?}",
             editor.faults()
         );
-        editor.set_text(sound);
+        editor.set_text(valid);
         assert!(editor.faults().is_empty());
         editor.change(|study| study.optimizer.seed = 7);
         assert!(editor.text().contains("seed = 7") && editor.is_changed());

@@ -9,15 +9,15 @@ pub use crate::text::number;
 use kinefront_model::mechanism::Architecture;
 
 /// Colour of the selected design.
-pub const CHOSEN: Color32 = Color32::from_rgb(255, 70, 60);
+pub const SELECTED: Color32 = Color32::from_rgb(255, 70, 60);
 /// Colour of a modified design.
-pub const WHAT_IF: Color32 = Color32::from_rgb(230, 110, 230);
+pub const MODIFIED: Color32 = Color32::from_rgb(230, 110, 230);
 /// Colour of a violated constraint and of an error.
-pub const BROKEN: Color32 = Color32::from_rgb(230, 70, 60);
+pub const VIOLATED: Color32 = Color32::from_rgb(230, 70, 60);
 /// Colour of an active constraint.
 pub const ACTIVE: Color32 = Color32::from_rgb(240, 160, 40);
 /// Colour of a satisfied constraint and of a message that is not an error.
-pub const SOUND: Color32 = Color32::from_rgb(90, 180, 110);
+pub const SATISFIED: Color32 = Color32::from_rgb(90, 180, 110);
 
 /// Applies the fonts and colours of the embedded viewer, so that the whole window has one style.
 pub fn dress(ctx: &Context) {
@@ -90,9 +90,9 @@ pub fn ink(ui: &Ui) -> Color32 {
     ui.visuals().strong_text_color()
 }
 
-/// Blends a colour over the background; `share` is the fraction of the colour.
-pub fn mix(color: Color32, ground: Color32, share: f32) -> Color32 {
-    let part = |a: u8, b: u8| (f32::from(a) * share + f32::from(b) * (1.0 - share)) as u8;
+/// Blends a colour over the background; `fraction` is the fraction of the colour.
+pub fn mix(color: Color32, ground: Color32, fraction: f32) -> Color32 {
+    let part = |a: u8, b: u8| (f32::from(a) * fraction + f32::from(b) * (1.0 - fraction)) as u8;
     Color32::from_rgb(
         part(color.r(), ground.r()),
         part(color.g(), ground.g()),

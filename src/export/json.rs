@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::Prepared;
 use crate::scene::{Body, Frame, Linkage};
-use kinefront_model::evaluation::{Evaluation, Model, PoseReport, Unreachable};
+use kinefront_model::evaluation::{Evaluation, Model, PoseEvaluation, Unreachable};
 use kinefront_model::mechanism::{Actuator, Design};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::Material;
@@ -104,7 +104,7 @@ impl EvaluationJson {
             constraints: evaluation
                 .constraints
                 .iter()
-                .filter(|report| report.asked)
+                .filter(|report| report.required)
                 .map(|report| ConstraintJson {
                     id: report.constraint.id(),
                     name: report.constraint.name(),
@@ -138,8 +138,8 @@ pub struct PoseReportJson {
     stiffness: Option<[[f64; 6]; 6]>,
 }
 
-impl From<&Result<PoseReport, Unreachable>> for PoseReportJson {
-    fn from(outcome: &Result<PoseReport, Unreachable>) -> Self {
+impl From<&Result<PoseEvaluation, Unreachable>> for PoseReportJson {
+    fn from(outcome: &Result<PoseEvaluation, Unreachable>) -> Self {
         let report = outcome.as_ref().ok();
         Self {
             reachable: report.is_some(),
@@ -148,9 +148,9 @@ impl From<&Result<PoseReport, Unreachable>> for PoseReportJson {
             b: report.map(|report| report.b),
             c: report.map(|report| report.c),
             inverse_condition: report.map(|report| report.inverse_condition),
-            k_xy: report.map(|report| report.rigidity.k_xy),
-            k_z: report.map(|report| report.rigidity.k_z),
-            k_phi_z: report.map(|report| report.rigidity.k_phi_z),
+            k_xy: report.map(|report| report.stiffness_values.k_xy),
+            k_z: report.map(|report| report.stiffness_values.k_z),
+            k_phi_z: report.map(|report| report.stiffness_values.k_phi_z),
             clearance_m: report.map(|report| report.clearance.distance),
             clearance_pair: report.map(|report| report.clearance.pair()),
             stiffness: report.map(|report| std::array::from_fn(|i| std::array::from_fn(|j| report.stiffness[(i, j)]))),

@@ -164,7 +164,7 @@ pub enum ExportError {
 
 /// The subject of an export: a design at a pose.
 #[derive(Debug, Clone, Copy)]
-pub struct Subject<'a> {
+pub struct ExportSubject<'a> {
     /// The study for which the design was evaluated.
     pub study: &'a Study,
     /// The evaluation of the design.
@@ -296,8 +296,8 @@ fn place(shape: &SolidShape) -> [f64; 6] {
 /// # Errors
 /// [`ExportError`] when the design does not reach the pose, when a simulator format is requested for a design with a
 /// bar of radius 0, or when the format cannot be written.
-pub fn export(subject: &Subject, format: Format) -> Result<Vec<u8>, ExportError> {
-    let Subject {
+pub fn export(subject: &ExportSubject, format: Format) -> Result<Vec<u8>, ExportError> {
+    let ExportSubject {
         study,
         evaluation,
         pose,

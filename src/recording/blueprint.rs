@@ -23,7 +23,7 @@ pub(super) fn send_run_layout(
     scatter_bounds: Range2D,
     base_radius: f64,
 ) -> Result<(), ChunkError> {
-    let mut layout = Layout::new();
+    let mut layout = ViewLayout::new();
     let scatter = layout.view("2D", "Pareto front", paths::SCATTER, &["+ $origin/**"])?;
     layout.property(&scatter, "VisualBounds2D", &parts::VisualBounds2D::new(scatter_bounds))?;
     // Of the front and the axes the latest state is drawn; of the designs the whole history.
@@ -63,7 +63,7 @@ pub(super) fn send_run_layout(
 ///
 /// `first` is the field whose heatmap is in front.
 pub(super) fn send_design_layout(recording: &RecordingStream, extent: f64, first: Field) -> Result<(), ChunkError> {
-    let mut layout = Layout::new();
+    let mut layout = ViewLayout::new();
     let mut maps = Vec::new();
     let others = Field::ALL.into_iter().filter(|&field| field != first);
     for field in std::iter::once(first).chain(others) {
@@ -103,7 +103,7 @@ pub(super) fn send_live_layout(
     extent: f64,
     comparing: Option<f64>,
 ) -> Result<(), ChunkError> {
-    let mut layout = Layout::new();
+    let mut layout = ViewLayout::new();
     let manipulator = layout.space("Manipulator", paths::DESIGN, &["+ $origin/**"], extent)?;
     let configuration = layout.configuration(extent)?;
     let scatter = layout.view("2D", "Front", paths::SCATTER, &["+ $origin/**"])?;
@@ -133,7 +133,7 @@ fn up_to_now() -> parts::VisibleTimeRanges {
     )
 }
 
-struct Layout {
+struct ViewLayout {
     id: StoreId,
     messages: Vec<LogMsg>,
     at: TimePoint,
@@ -146,7 +146,7 @@ struct Node {
     path: String,
 }
 
-impl Layout {
+impl ViewLayout {
     fn new() -> Self {
         // Each layout has a unique id, because viewers merge layouts with the same id.
         let id = StoreId::new(

@@ -3,7 +3,7 @@
 use crate::scene::{EllipsoidSet, Tour};
 use crate::text::{self, short};
 use kinefront_model::evaluation::{Evaluation, Model};
-use kinefront_model::mechanism::VARIABLES;
+use kinefront_model::mechanism::DESIGN_VARIABLES;
 
 /// Returns the card of a design; `heading` names the design.
 pub(super) fn card(
@@ -33,7 +33,7 @@ pub(super) fn card(
         ),
     };
     card += "| R | r | L_b | r_j | r_p |\n|---|---|---|---|---|\n|";
-    for (variable, value) in VARIABLES.into_iter().zip(design.values()) {
+    for (variable, value) in DESIGN_VARIABLES.into_iter().zip(design.values()) {
         card += &if variable.may_be_zero() {
             format!(" {:.2} mm |", 1e3 * value)
         } else {
@@ -41,7 +41,7 @@ pub(super) fn card(
         };
     }
     card += "\n\n| | constraint | smallest value | threshold | margin | |\n|---|---|---|---|---|---|\n";
-    for report in evaluation.constraints.iter().filter(|report| report.asked) {
+    for report in evaluation.constraints.iter().filter(|report| report.required) {
         card += &format!(
             "| {} | {} | {} {} | {} | {:+.1} % | {} |\n",
             report.constraint.id(),

@@ -75,28 +75,28 @@ impl ColorMap {
     }
 
     /// Returns the position of a value in the map, from 0 to 1.
-    fn share(&self, value: f64) -> f64 {
-        let share = match self.scale {
+    fn fraction(&self, value: f64) -> f64 {
+        let fraction = match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
             Scale::Logarithmic => libm::log(value.max(f64::MIN_POSITIVE) / self.low) / libm::log(self.high / self.low),
         };
-        share.clamp(0.0, 1.0)
+        fraction.clamp(0.0, 1.0)
     }
 
     /// Returns the colour of a value.
     pub(super) fn color(&self, value: f64) -> Color {
-        Self::at(self.share(value))
+        Self::at(self.fraction(value))
     }
 
     /// Returns the colour at a position in the map, from 0 to 1.
-    pub(super) fn at(share: f64) -> Color {
-        let color = colorous::VIRIDIS.eval_continuous(share.clamp(0.0, 1.0));
+    pub(super) fn at(fraction: f64) -> Color {
+        let color = colorous::VIRIDIS.eval_continuous(fraction.clamp(0.0, 1.0));
         Color::from_rgb(color.r, color.g, color.b)
     }
 
     /// Returns the position of a value in the map, if the map's range contains it.
     pub(super) fn place(&self, value: f64) -> Option<f64> {
-        (self.low..=self.high).contains(&value).then(|| self.share(value))
+        (self.low..=self.high).contains(&value).then(|| self.fraction(value))
     }
 
     /// Returns round values for the tick labels of the map, with their positions.
@@ -128,7 +128,7 @@ impl ColorMap {
         let decade = libm::pow(10.0, libm::floor(libm::log10(span)));
         let step = [0.1, 0.2, 0.25, 0.5, 1.0]
             .into_iter()
-            .map(|share| share * decade)
+            .map(|fraction| fraction * decade)
             .find(|step| span / step <= 6.0)
             .unwrap_or(decade);
         let (first, last) = ((self.low / step).ceil() as i64, (self.high / step).floor() as i64);

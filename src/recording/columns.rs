@@ -8,7 +8,7 @@ use rerun::{ComponentDescriptor, ComponentIdentifier, SerializedComponentBatch, 
 
 use super::writer::RecordingError;
 use kinefront_model::evaluation::{Constraint, Evaluation};
-use kinefront_model::mechanism::VARIABLES;
+use kinefront_model::mechanism::DESIGN_VARIABLES;
 
 fn descriptor(name: &str) -> Result<ComponentDescriptor, RecordingError> {
     let identifier = ComponentIdentifier::try_new(name).map_err(RecordingError::encode)?;
@@ -46,7 +46,7 @@ pub(super) fn designs(evaluations: &[&Evaluation]) -> Result<Vec<SerializedCompo
         texts("architecture", each().map(|e| e.design.architecture.to_string()))?,
         texts("working_mode", each().map(|e| e.design.working_mode.to_string()))?,
     ];
-    for (index, variable) in VARIABLES.into_iter().enumerate() {
+    for (index, variable) in DESIGN_VARIABLES.into_iter().enumerate() {
         columns.push(numbers(variable.key(), each().map(|e| e.design.values()[index]))?);
     }
     columns.push(numbers("mass_kg", each().map(|e| e.mass))?);
@@ -59,7 +59,7 @@ pub(super) fn designs(evaluations: &[&Evaluation]) -> Result<Vec<SerializedCompo
         let id = constraint.id();
         columns.push(sparse(
             &format!("margin_{id}"),
-            each().map(|e| report(e).asked_margin()),
+            each().map(|e| report(e).required_margin()),
         )?);
         columns.push(sparse(&format!("value_{id}"), each().map(|e| report(e).value))?);
     }

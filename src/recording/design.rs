@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::card::card;
 use super::draw::Canvas;
-use super::subject::Subject;
-use super::writer::{ALWAYS, Moment, RecordingError, Writer};
+use super::subject::RecordedDesign;
+use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
 use super::{blueprint, paths, timelines};
 use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour};
 use crate::study::Study;
@@ -34,8 +34,8 @@ pub fn record_design(
     field: Field,
 ) -> Result<(), RecordingError> {
     let model = &study.model().map_err(RecordingError::encode)?;
-    let writer = Writer::create(path, heading)?;
-    let subject = Subject { model, evaluation };
+    let writer = RecordingWriter::create(path, heading)?;
+    let subject = RecordedDesign { model, evaluation };
     let cylinder = regular_workspace(evaluation, model.workspace.rotation_range_deg);
     let tour = cylinder.and_then(|cylinder| tour(model, &evaluation.design, &cylinder, TOUR_STEPS));
     let still = [subject.home()];
@@ -88,13 +88,13 @@ pub fn record_design(
 /// Records one verified design of a front as a step: manipulator at the home pose, regular workspace, heatmap of the
 /// inverse condition number, stiffness ellipsoids, configuration space and card.
 pub(super) fn record_step(
-    writer: &Writer,
+    writer: &RecordingWriter,
     moment: Moment<'_>,
     model: &Model,
     evaluation: &Evaluation,
     heading: &str,
 ) -> Result<(), RecordingError> {
-    let subject = Subject { model, evaluation };
+    let subject = RecordedDesign { model, evaluation };
     let canvas = Canvas::at(writer, moment);
     let home = subject.home();
     if let Ok(scene) = manipulator(model, &evaluation.design, &home) {

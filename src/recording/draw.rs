@@ -11,16 +11,16 @@ use rerun::{
 
 use super::colors::{self, ColorMap, rgb};
 use super::stage::Rows;
-use super::writer::{Moment, RecordingError, Writer};
+use super::writer::{Moment, RecordingError, RecordingWriter};
 use crate::palette;
 use crate::scene::{
     ConfigurationSpace, EllipsoidSet, Field, Heatmap, Nearest, Part, RegularCylinder, Scene, Solid, SolidShape,
 };
 use crate::text::short;
-use kinefront_model::evaluation::{ConstraintReport, Evaluation};
+use kinefront_model::evaluation::{ConstraintResult, Evaluation};
 use kinefront_model::spatial::unit;
 
-type Outcome = Result<(), RecordingError>;
+type DrawResult = Result<(), RecordingError>;
 
 fn point(p: DVec3) -> [f32; 3] {
     p.as_vec3().to_array()
@@ -41,11 +41,11 @@ fn circle(centre: DVec3, radius: f64) -> Vec<[f32; 3]> {
 ///
 /// A group without members is written as an empty entity, because a viewer would otherwise show that of the previous
 /// moment.
-pub(super) struct Canvas<'a>(Target<'a>);
+pub(super) struct Canvas<'a>(CanvasTarget<'a>);
 
-enum Target<'a> {
+enum CanvasTarget<'a> {
     /// Each row is written immediately, all at one moment.
-    Written(&'a Writer, Moment<'a>),
+    Written(&'a RecordingWriter, Moment<'a>),
     /// Rows are collected, to be shown together.
     Collected {
         rows: &'a RefCell<Rows>,
@@ -56,19 +56,19 @@ enum Target<'a> {
 
 impl<'a> Canvas<'a> {
     /// Creates a canvas that writes at one moment.
-    pub(super) fn at(writer: &'a Writer, moment: Moment<'a>) -> Self {
-        Self(Target::Written(writer, moment))
+    pub(super) fn at(writer: &'a RecordingWriter, moment: Moment<'a>) -> Self {
+        Self(CanvasTarget::Written(writer, moment))
     }
 
     /// Creates a canvas that collects what is drawn in `rows`.
     pub(super) fn collecting(rows: &'a RefCell<Rows>, dark_words: bool) -> Self {
-        Self(Target::Collected { rows, dark_words })
+        Self(CanvasTarget::Collected { rows, dark_words })
     }
 
-    fn row(&self, entity: &str, archetype: &dyn AsComponents) -> Outcome {
+    fn row(&self, entity: &str, archetype: &dyn AsComponents) -> DrawResult {
         match &self.0 {
-            Target::Written(writer, moment) => writer.row(entity, moment, archetype),
-            Target::Collected { rows, .. } => {
+            CanvasTarget::Written(writer, moment) => writer.row(entity, moment, archetype),
+            CanvasTarget::Collected { rows, .. } => {
                 rows.borrow_mut().push(entity, archetype);
                 Ok(())
             }
@@ -76,7 +76,7 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws the manipulator below `root`.
-    pub(super) fn manipulator(&self, root: &str, scene: &Scene) -> Outcome {
+    pub(super) fn manipulator(&self, root: &str, scene: &Scene) -> DrawResult {
         let groups: [(&str, &[Part]); 4] = [
             ("legs", &[Part::Tube, Part::Rod, Part::Crank, Part::Link]),
             ("platform", &[Part::PlatformBar]),
@@ -113,7 +113,7 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws the pair of members with the smallest clearance below `root`, as a line labelled with the distance.
-    fn nearest(&self, root: &str, nearest: Option<&Nearest>) -> Outcome {
+    fn nearest(&self, root: &str, nearest: Option<&Nearest>) -> DrawResult {
         let color = nearest.map(|nearest| rgb(palette::nearest(nearest.too_near)));
         let strips = nearest.iter().map(|nearest| nearest.line.map(point));
         let line = LineStrips3D::new(strips)
@@ -125,7 +125,7 @@ impl<'a> Canvas<'a> {
         self.labels(&format!("{root}/distance"), label.into_iter().collect(), color)
     }
 
-    fn bars(&self, entity: &str, solids: &[&Solid]) -> Outcome {
+    fn bars(&self, entity: &str, solids: &[&Solid]) -> DrawResult {
         let bars: Vec<(DVec3, DVec3, f64, Part)> = solids
             .iter()
             .filter_map(|solid| match solid.shape {
@@ -143,7 +143,7 @@ impl<'a> Canvas<'a> {
         self.row(entity, &cylinders)
     }
 
-    fn blocks(&self, entity: &str, solids: &[&Solid]) -> Outcome {
+    fn blocks(&self, entity: &str, solids: &[&Solid]) -> DrawResult {
         let blocks: Vec<(DVec3, DVec3, f64, Part)> = solids
             .iter()
             .filter_map(|solid| match solid.shape {
@@ -166,14 +166,14 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws a text at a point.
-    pub(super) fn word(&self, entity: &str, at: DVec3, text: &str, color: [u8; 3]) -> Outcome {
+    pub(super) fn word(&self, entity: &str, at: DVec3, text: &str, color: [u8; 3]) -> DrawResult {
         self.labels(entity, vec![(at, text.to_owned())], rgb(color))
     }
 
     /// Draws texts at points, without markers.
-    fn labels(&self, entity: &str, labels: Vec<(DVec3, String)>, color: Color) -> Outcome {
+    fn labels(&self, entity: &str, labels: Vec<(DVec3, String)>, color: Color) -> DrawResult {
         let color = match self.0 {
-            Target::Collected { dark_words: true, .. } => rgb(colors::INK),
+            CanvasTarget::Collected { dark_words: true, .. } => rgb(colors::INK),
             _ => color,
         };
         let count = labels.len();
@@ -186,7 +186,13 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws the regular workspace below `root`, as a cylinder between two heights.
-    pub(super) fn cylinder(&self, root: &str, cylinder: &RegularCylinder, heights: [f64; 2], label: &str) -> Outcome {
+    pub(super) fn cylinder(
+        &self,
+        root: &str,
+        cylinder: &RegularCylinder,
+        heights: [f64; 2],
+        label: &str,
+    ) -> DrawResult {
         let [low, high] = heights.map(|z| cylinder.centre.extend(z));
         let mut strips = vec![circle(low, cylinder.radius), circle(high, cylinder.radius)];
         for k in 0..12 {
@@ -209,7 +215,7 @@ impl<'a> Canvas<'a> {
         heatmap: &Heatmap,
         map: &ColorMap,
         place: &impl Fn(DVec2) -> DVec3,
-    ) -> Outcome {
+    ) -> DrawResult {
         if heatmap.triangles.is_empty() {
             return Ok(());
         }
@@ -221,7 +227,7 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws the contours and edges of a heatmap below `root`.
-    pub(super) fn outlines(&self, root: &str, heatmap: &Heatmap, place: &impl Fn(DVec2) -> DVec3) -> Outcome {
+    pub(super) fn outlines(&self, root: &str, heatmap: &Heatmap, place: &impl Fn(DVec2) -> DVec3) -> DrawResult {
         let edges = heatmap
             .edges
             .iter()
@@ -253,14 +259,14 @@ impl<'a> Canvas<'a> {
         map: &ColorMap,
         corner: DVec3,
         size: DVec2,
-    ) -> Outcome {
+    ) -> DrawResult {
         const STEPS: u32 = 64;
-        let at = |x: f64, share: f64| corner + DVec3::new(x * size.x, share * size.y, 0.0);
+        let at = |x: f64, fraction: f64| corner + DVec3::new(x * size.x, fraction * size.y, 0.0);
         let rows = (0..=STEPS).map(|k| f64::from(k) / f64::from(STEPS));
         let vertices = rows
             .clone()
-            .flat_map(|share| [point(at(0.0, share)), point(at(1.0, share))]);
-        let colors = rows.flat_map(|share| [ColorMap::at(share); 2]);
+            .flat_map(|fraction| [point(at(0.0, fraction)), point(at(1.0, fraction))]);
+        let colors = rows.flat_map(|fraction| [ColorMap::at(fraction); 2]);
         let triangles = (0..STEPS).flat_map(|k| [[2 * k, 2 * k + 1, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 2]]);
         let mesh = Mesh3D::new(vertices)
             .with_triangle_indices(triangles)
@@ -269,20 +275,23 @@ impl<'a> Canvas<'a> {
         let factor = field.display_factor();
         let mut ticks = Vec::new();
         let mut labels = vec![(at(0.5, 1.09), field.title().to_owned())];
-        for (value, share) in map.ticks() {
-            ticks.push((vec![point(at(1.0, share)), point(at(1.25, share))], rgb(colors::TEXT)));
-            labels.push((at(2.1, share), short(value * factor)));
+        for (value, fraction) in map.ticks() {
+            ticks.push((
+                vec![point(at(1.0, fraction)), point(at(1.25, fraction))],
+                rgb(colors::TEXT),
+            ));
+            labels.push((at(2.1, fraction), short(value * factor)));
         }
         self.labels(&format!("{root}/ticks"), labels, rgb(colors::TEXT))?;
-        if let Some(share) = map.place(threshold) {
+        if let Some(fraction) = map.place(threshold) {
             ticks.push((
-                vec![point(at(-0.6, share)), point(at(1.0, share))],
+                vec![point(at(-0.6, fraction)), point(at(1.0, fraction))],
                 rgb(colors::THRESHOLD),
             ));
             let text = format!("threshold {}", short(threshold * factor));
             self.labels(
                 &format!("{root}/threshold"),
-                vec![(at(-2.4, share), text)],
+                vec![(at(-2.4, fraction), text)],
                 rgb(colors::THRESHOLD),
             )?;
         }
@@ -295,7 +304,7 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws ellipsoids at height `z` below `root`, with a text that gives their scale at `note`.
-    pub(super) fn ellipsoids(&self, root: &str, set: &EllipsoidSet, z: f64, note: DVec3) -> Outcome {
+    pub(super) fn ellipsoids(&self, root: &str, set: &EllipsoidSet, z: f64, note: DVec3) -> DrawResult {
         let each = || set.ellipsoids.iter();
         let count = set.ellipsoids.len();
         let ellipsoids = Ellipsoids3D::from_centers_and_half_sizes(
@@ -311,8 +320,8 @@ impl<'a> Canvas<'a> {
 
     /// Draws below `root` the poses at which the active constraints limit the regular workspace, with the names of the
     /// constraints in the corners of a square at the distance `away` from the centre.
-    pub(super) fn limits(&self, root: &str, evaluation: &Evaluation, z: f64, away: f64) -> Outcome {
-        let active: Vec<(&ConstraintReport, DVec2)> = evaluation
+    pub(super) fn limits(&self, root: &str, evaluation: &Evaluation, z: f64, away: f64) -> DrawResult {
+        let active: Vec<(&ConstraintResult, DVec2)> = evaluation
             .constraints
             .iter()
             .filter(|report| report.active)
@@ -348,7 +357,13 @@ impl<'a> Canvas<'a> {
 
     /// Draws the axes of the configuration space below `root`; the φ axis extends by `span` \[rad\] on either side of
     /// the home orientation.
-    pub(super) fn configuration_axes(&self, root: &str, space: &ConfigurationSpace, extent: f64, span: f64) -> Outcome {
+    pub(super) fn configuration_axes(
+        &self,
+        root: &str,
+        space: &ConfigurationSpace,
+        extent: f64,
+        span: f64,
+    ) -> DrawResult {
         // The far corner, so that the axes lie behind the data.
         let foot = DVec2::new(-extent, extent);
         let at = |turn: f64| space.place(foot, space.origin + turn);
@@ -386,7 +401,7 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws a marker with a text.
-    pub(super) fn mark(&self, entity: &str, at: DVec3, text: &str, color: [u8; 3]) -> Outcome {
+    pub(super) fn mark(&self, entity: &str, at: DVec3, text: &str, color: [u8; 3]) -> DrawResult {
         let points = Points3D::new([point(at)])
             .with_radii([Radius::new_ui_points(5.0)])
             .with_colors([rgb(color)])
@@ -397,7 +412,7 @@ impl<'a> Canvas<'a> {
 }
 
 /// Returns a text with a constraint's smallest value and the orientation at which it occurs.
-fn limit_text(report: &ConstraintReport) -> String {
+fn limit_text(report: &ConstraintResult) -> String {
     let value = report.value.map(short).unwrap_or_default();
     let phi = report.pose.map_or(0.0, |pose| pose.phi.to_degrees());
     let unit = report.constraint.unit();

@@ -7,10 +7,10 @@ use rerun::sink::LogSink;
 use rerun::{Transform3D, Vec3D};
 
 use super::draw::Canvas;
-use super::scatter::{Frame, FrontPoint, front_points, selected, staircase};
+use super::scatter::{FrontPoint, PlotRange, front_points, selected, staircase};
 use super::stage::{Rows, Stage};
-use super::subject::Subject;
-use super::writer::{RecordingError, Writer};
+use super::subject::RecordedDesign;
+use super::writer::{RecordingError, RecordingWriter};
 use super::{blueprint, colors, paths};
 use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Scene, ellipsoids, manipulator};
 use crate::study::Study;
@@ -32,7 +32,7 @@ const PIN_VIEW: f64 = 3.1;
 
 /// The parts and overlays of a design that are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Layers {
+pub struct VisibleLayers {
     /// Rails, bars and joints of the legs.
     pub legs: bool,
     /// Bars of the platform.
@@ -53,7 +53,7 @@ pub struct Layers {
     pub configuration: bool,
 }
 
-impl Default for Layers {
+impl Default for VisibleLayers {
     fn default() -> Self {
         Self {
             legs: true,
@@ -81,7 +81,7 @@ pub struct Shown<'a> {
     /// Orientation of the heatmap \[rad\]; the home orientation if `None`.
     pub heatmap_phi: Option<f64>,
     /// The parts and overlays to draw.
-    pub layers: &'a Layers,
+    pub layers: &'a VisibleLayers,
     /// Whether the viewer has a light theme.
     pub light: bool,
 }
@@ -106,8 +106,8 @@ pub enum Picked {
 
 /// The scene, as sent to a viewer.
 pub struct LiveScene {
-    writer: Writer,
-    frame: Frame,
+    writer: RecordingWriter,
+    frame: PlotRange,
     /// Size for which the 3-D views are set up \[m\].
     extent: f64,
     /// Size for which the view of the pinned designs is set up \[m\].
@@ -127,8 +127,8 @@ impl LiveScene {
     /// [`RecordingError::Encode`] when the layout cannot be encoded.
     pub fn new(sink: Box<dyn LogSink>, study: &Study) -> Result<Self, RecordingError> {
         let scene = Self {
-            writer: Writer::sending(sink, "scene")?,
-            frame: Frame::new(study),
+            writer: RecordingWriter::sending(sink, "scene")?,
+            frame: PlotRange::new(study),
             extent: VIEW * study.bounds.R_m[1],
             pins_extent: 1.0,
             comparing: false,
@@ -146,7 +146,7 @@ impl LiveScene {
     /// # Errors
     /// [`RecordingError::Encode`] when the layout cannot be encoded.
     pub fn turn_to(&mut self, study: &Study) -> Result<(), RecordingError> {
-        self.frame = Frame::new(study);
+        self.frame = PlotRange::new(study);
         self.extent = VIEW * study.bounds.R_m[1];
         self.layout()
     }
@@ -218,10 +218,10 @@ impl LiveScene {
                 self.layout()?;
             }
         }
-        let layers = Layers {
+        let layers = VisibleLayers {
             labels: false,
             clearance: false,
-            ..Layers::default()
+            ..VisibleLayers::default()
         };
         for (index, pin) in pins.iter().enumerate() {
             let root = format!("{}/{index}", paths::PINS);
@@ -229,7 +229,7 @@ impl LiveScene {
             let (x, y) = (off(index % columns, columns), -off(index / columns, rows_of_pins));
             let transform = Transform3D::from_translation(Vec3D::new(x as f32, y as f32, 0.0));
             rows.borrow_mut().push(&root, &transform);
-            let subject = Subject {
+            let subject = RecordedDesign {
                 model,
                 evaluation: pin.evaluation,
             };
@@ -296,7 +296,7 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<(), RecordingError> {
         layers,
         ..
     } = *shown;
-    let subject = Subject { model, evaluation };
+    let subject = RecordedDesign { model, evaluation };
     let home = subject.home();
     let pose = shown.pose.unwrap_or(home);
     if let Ok(mut scene) = manipulator(model, &evaluation.design, &pose) {
@@ -344,7 +344,7 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<(), RecordingError> {
 }
 
 /// Removes the parts that `layers` excludes.
-fn keep(scene: &mut Scene, layers: &Layers) {
+fn keep(scene: &mut Scene, layers: &VisibleLayers) {
     let platform = |part: Part| part == Part::PlatformBar;
     scene.solids.retain(|solid| {
         if platform(solid.part) {

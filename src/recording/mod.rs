@@ -40,7 +40,7 @@ mod subject;
 mod writer;
 
 pub use design::record_design;
-pub use live::{Layers, LiveScene, Picked, Pinned, Shown};
+pub use live::{LiveScene, Picked, Pinned, Shown, VisibleLayers};
 #[cfg(feature = "explorer")]
 pub use read::{ReadError, RecordedDesign, RecordedRun, read_run, save_copy};
 pub use recorder::Recorder;

@@ -13,7 +13,7 @@ use rerun::{StoreId, StoreKind, TimelineName};
 
 use super::design;
 use super::sink::RrdFile;
-use super::writer::{RecordingError, Writer};
+use super::writer::{RecordingError, RecordingWriter};
 use super::{paths, timelines};
 use kinefront_model::evaluation::{Evaluation, Model};
 
@@ -180,8 +180,8 @@ pub fn save_copy(from: &Path, to: &Path, shown: Option<(&Model, &Evaluation, &st
         file.check().map_err(failed)?;
     }
     if let Some(((model, evaluation, heading), store)) = shown.zip(recording) {
-        let builder = Writer::builder().recording_id(store.recording_id().clone());
-        let writer = Writer::over(&file, to, builder).map_err(|error| error.to_string())?;
+        let builder = RecordingWriter::builder().recording_id(store.recording_id().clone());
+        let writer = RecordingWriter::over(&file, to, builder).map_err(|error| error.to_string())?;
         let drawn: Result<(), RecordingError> = design::record_step(&writer, &last, model, evaluation, heading);
         drawn.and_then(|()| writer.close()).map_err(|error| error.to_string())
     } else {

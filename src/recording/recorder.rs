@@ -6,8 +6,8 @@ use std::sync::mpsc::Receiver;
 
 use rerun::{Scalars, SeriesLines, TimeColumn};
 
-use super::scatter::{Frame, FrontPoint, INFEASIBLE_COLOR, front_points, points, selected, staircase};
-use super::writer::{ALWAYS, Moment, RecordingError, Writer};
+use super::scatter::{FrontPoint, INFEASIBLE_COLOR, PlotRange, front_points, points, selected, staircase};
+use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
 use super::{blueprint, colors, columns, design, paths, timelines};
 use crate::study::{Batch, Event, GenerationSummary, RunSummary, Study};
 use kinefront_model::evaluation::{Evaluation, Model};
@@ -36,10 +36,10 @@ fn along_front(name: &str) -> String {
 
 /// The recording of one run.
 pub struct Recorder {
-    writer: Writer,
+    writer: RecordingWriter,
     model: Model,
     architectures: Vec<Architecture>,
-    frame: Frame,
+    frame: PlotRange,
     /// Rows not yet written: id, generation, evaluation.
     pending: Vec<(usize, usize, Evaluation)>,
     front: Vec<FrontPoint>,
@@ -61,8 +61,8 @@ impl Recorder {
     /// # Errors
     /// [`RecordingError::Write`] when the file exists or cannot be created.
     pub fn create(path: &Path, study: &Study) -> Result<Self, RecordingError> {
-        let writer = Writer::create(path, &format!("{} (seed {})", study.name, study.optimizer.seed))?;
-        let frame = Frame::new(study);
+        let writer = RecordingWriter::create(path, &format!("{} (seed {})", study.name, study.optimizer.seed))?;
+        let frame = PlotRange::new(study);
         let clouds: Vec<String> = study
             .architectures
             .iter()
@@ -176,10 +176,10 @@ impl Recorder {
     }
 
     fn curves(&self, moment: Moment<'_>, summary: &GenerationSummary) -> Result<(), RecordingError> {
-        let share = summary.feasible as f64 / summary.evaluations.max(1) as f64;
+        let fraction = summary.feasible as f64 / summary.evaluations.max(1) as f64;
         for (entity, value) in [
             (paths::HYPERVOLUME, summary.hypervolume),
-            (paths::FEASIBLE_SHARE, share),
+            (paths::FEASIBLE_SHARE, fraction),
             (paths::FRONT_SIZE, summary.front_size as f64),
         ] {
             self.writer.row(entity, moment, &Scalars::single(value))?;

@@ -44,7 +44,7 @@ pub struct FrontPoint {
     /// `R_w` \[m\].
     pub radius: f64,
     /// Whether the design passes the filter; otherwise it is dimmed.
-    pub lit: bool,
+    pub passes_filter: bool,
 }
 
 impl From<&FrontMember> for FrontPoint {
@@ -54,7 +54,7 @@ impl From<&FrontMember> for FrontPoint {
             architecture: member.evaluation.design.architecture,
             mass: member.evaluation.mass,
             radius: member.evaluation.workspace_radius,
-            lit: true,
+            passes_filter: true,
         }
     }
 }
@@ -64,7 +64,11 @@ pub(super) fn front_points(front: &[FrontPoint]) -> Points2D {
     Points2D::new(front.iter().map(|m| position(m.mass, m.radius)))
         .with_colors(front.iter().map(|m| {
             let [r, g, b] = crate::palette::architecture(m.architecture);
-            if m.lit { [r, g, b] } else { [r / 4, g / 4, b / 4] }
+            if m.passes_filter {
+                [r, g, b]
+            } else {
+                [r / 4, g / 4, b / 4]
+            }
         }))
         .with_radii(std::iter::repeat_n(Radius::new_ui_points(4.0), front.len()))
         .with_labels(
@@ -85,7 +89,7 @@ pub(super) fn selected(evaluation: &Evaluation) -> Points2D {
 }
 
 /// Returns the boundary of the region that the front dominates, from its lightest design to the right end of the plot.
-pub(super) fn staircase(front: &[FrontPoint], frame: &Frame) -> LineStrips2D {
+pub(super) fn staircase(front: &[FrontPoint], frame: &PlotRange) -> LineStrips2D {
     let mut strip: Vec<[f32; 2]> = Vec::new();
     for member in front {
         let [x, y] = position(member.mass, member.radius);
@@ -103,14 +107,14 @@ pub(super) fn staircase(front: &[FrontPoint], frame: &Frame) -> LineStrips2D {
 
 /// Range of the plot: decades of mass and metres of `R_w`. It never shrinks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Frame {
+pub(super) struct PlotRange {
     decades: (i32, i32),
     /// Number of ticks above 0 on the `R_w` axis.
     ticks: u32,
     tick: f64,
 }
 
-impl Frame {
+impl PlotRange {
     /// Creates the range for a study: four decades of mass up to the decade of the hypervolume's reference mass, and
     /// `R_w` up to 65 % of the largest base radius.
     pub(super) fn new(study: &Study) -> Self {
@@ -119,7 +123,7 @@ impl Frame {
         let decade = libm::pow(10.0, libm::floor(libm::log10(largest)));
         let tick = [0.1, 0.2, 0.5]
             .into_iter()
-            .map(|share| share * decade)
+            .map(|fraction| fraction * decade)
             .find(|tick| largest / tick <= 14.0)
             .unwrap_or(decade);
         Self {

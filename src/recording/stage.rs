@@ -7,21 +7,21 @@ use std::collections::BTreeMap;
 
 use rerun::{AsComponents, ComponentDescriptor, SerializedComponentBatch};
 
-use super::writer::{ALWAYS, RecordingError, Writer};
+use super::writer::{ALWAYS, RecordingError, RecordingWriter};
 
 /// The entities that are shown below one path, each with empty batches of its components.
-type Standing = BTreeMap<String, BTreeMap<ComponentDescriptor, SerializedComponentBatch>>;
+type DrawnComponents = BTreeMap<String, BTreeMap<ComponentDescriptor, SerializedComponentBatch>>;
 
 /// Entities that are drawn together and replaced together.
 #[derive(Default)]
 pub(super) struct Stage {
-    standing: Standing,
+    standing: DrawnComponents,
 }
 
 impl Stage {
     /// Replaces the entities that are shown by `rows`.
-    pub(super) fn show(&mut self, writer: &Writer, rows: Rows) -> Result<(), RecordingError> {
-        let mut drawn = Standing::new();
+    pub(super) fn show(&mut self, writer: &RecordingWriter, rows: Rows) -> Result<(), RecordingError> {
+        let mut drawn = DrawnComponents::new();
         for (entity, mut batches) in rows.0 {
             let known: BTreeMap<ComponentDescriptor, SerializedComponentBatch> = batches
                 .iter()

@@ -54,12 +54,12 @@ pub(super) type Moment<'a> = &'a [(&'static str, usize)];
 pub(super) const ALWAYS: Moment<'static> = &[];
 
 /// A recording being written, to a file or to another sink.
-pub(super) struct Writer {
+pub(super) struct RecordingWriter {
     file: Option<(PathBuf, RrdFile)>,
     recording: RecordingStream,
 }
 
-impl Writer {
+impl RecordingWriter {
     /// Creates the file; an existing file is an error.
     pub(super) fn create(path: &Path, name: &str) -> Result<Self, RecordingError> {
         let file = RrdFile::create(path).map_err(|source| RecordingError::Write {

@@ -9,13 +9,13 @@ use kinefront_model::mechanism::Architecture;
 
 /// An alternative to one assumption of a study.
 #[derive(Debug, Clone, Copy)]
-pub struct Reading {
+pub struct Alternative {
     /// Short name, as shown in legends and tables.
     pub name: &'static str,
     /// What the alternative changes and, where it is not obvious, why one might choose it.
     pub meaning: &'static str,
     /// Whether the alternative can change the evaluation of a design, rather than only the search.
-    moves_designs: bool,
+    affects_evaluation: bool,
     change: fn(&mut Study),
 }
 
@@ -30,24 +30,24 @@ const COLLIDING: &str = "members may collide";
 const CLEARANCE: f64 = 5e-3;
 
 /// The alternative assumptions tried. The last ones change only the random seed: their differences are due to chance.
-pub const READINGS: [Reading; 15] = [
-    Reading {
+pub const ALTERNATIVES: [Alternative; 15] = [
+    Alternative {
         name: "K_act / 10",
         meaning: "actuators ten times softer",
-        moves_designs: true,
+        affects_evaluation: true,
         change: |study| scale_actuators(study, 0.1),
     },
-    Reading {
+    Alternative {
         name: "K_act × 10",
         meaning: "actuators ten times stiffer",
-        moves_designs: true,
+        affects_evaluation: true,
         change: |study| scale_actuators(study, 10.0),
     },
-    Reading {
+    Alternative {
         name: "other stiffness definition",
         meaning: "stiffness from the blocks of the compliance matrix (all other directions free) instead of the \
                   blocks of the stiffness matrix (all other directions held), or vice versa",
-        moves_designs: true,
+        affects_evaluation: true,
         change: |study| {
             study.model.stiffness_definition = match study.model.stiffness_definition {
                 StiffnessChoice::Stiffness => StiffnessChoice::Compliance,
@@ -55,34 +55,34 @@ pub const READINGS: [Reading; 15] = [
             };
         },
     },
-    Reading {
+    Alternative {
         name: "isotropic length",
         meaning: "the Jacobian normalised with the isotropic characteristic length",
-        moves_designs: true,
+        affects_evaluation: true,
         change: |study| study.model.characteristic_length = LengthChoice::Isotropic,
     },
-    Reading {
+    Alternative {
         name: "r ≥ 0.5 m",
         meaning: "a larger lower bound of r, as printed in the 2010 paper, which excludes the paper's own design I",
-        moves_designs: false,
+        affects_evaluation: false,
         change: |study| study.bounds.r_m[0] = study.bounds.r_m[0].max(0.5),
     },
-    Reading {
+    Alternative {
         name: "telescopic bar L_b",
         meaning: "the beam of a telescopic leg as long as the fully extended leg, whatever the pose",
-        moves_designs: true,
+        affects_evaluation: true,
         change: |study| study.model.telescopic_bar = TelescopicBar::Longest,
     },
-    Reading {
+    Alternative {
         name: "φ_c = 0",
         meaning: "the home orientation fixed, with the platform triangle parallel to the base triangle",
-        moves_designs: true,
+        affects_evaluation: true,
         change: |study| study.workspace.home_phi_deg = Some(0.0),
     },
-    Reading {
+    Alternative {
         name: "τ_z = 100 N·m",
         meaning: "another required torque: the 2010 paper has 100 N·m in its text and 10 N·m in its inequality",
-        moves_designs: true,
+        affects_evaluation: true,
         change: |study| {
             // A threshold that is set explicitly does not depend on the torque.
             if study.requirements.k_phi_z_min_nm_per_rad.is_none() {
@@ -90,48 +90,48 @@ pub const READINGS: [Reading; 15] = [
             }
         },
     },
-    Reading {
+    Alternative {
         name: "one platform bar",
         meaning: "only one platform bar counted in the mass, as in the equation of the 2010 paper",
-        moves_designs: true,
+        affects_evaluation: true,
         change: |study| study.model.platform_bars = 1,
     },
-    Reading {
+    Alternative {
         name: "G − 7 %",
         meaning: "a smaller shear modulus",
-        moves_designs: true,
+        affects_evaluation: true,
         change: |study| study.material.shear_modulus_pa *= 0.93,
     },
-    Reading {
+    Alternative {
         name: CLEAR,
         meaning: "a clearance of 5 mm between members that are not joined, which the study does not require",
-        moves_designs: true,
+        affects_evaluation: true,
         change: |study| {
             study.requirements.clearance_min_m.get_or_insert(CLEARANCE);
         },
     },
-    Reading {
+    Alternative {
         name: COLLIDING,
         meaning: "no clearance required, unlike in the study",
-        moves_designs: true,
+        affects_evaluation: true,
         change: |study| study.requirements.clearance_min_m = None,
     },
-    Reading {
+    Alternative {
         name: "seed + 1",
         meaning: SEED,
-        moves_designs: false,
+        affects_evaluation: false,
         change: |study| study.optimizer.seed += 1,
     },
-    Reading {
+    Alternative {
         name: "seed + 2",
         meaning: SEED,
-        moves_designs: false,
+        affects_evaluation: false,
         change: |study| study.optimizer.seed += 2,
     },
-    Reading {
+    Alternative {
         name: "seed + 3",
         meaning: SEED,
-        moves_designs: false,
+        affects_evaluation: false,
         change: |study| study.optimizer.seed += 3,
     },
 ];
@@ -148,7 +148,7 @@ fn scale_actuators(study: &mut Study, factor: f64) {
 #[derive(Debug, Clone)]
 pub struct Variation {
     /// The alternative assumption; `None` for the study as given.
-    pub reading: Option<Reading>,
+    pub alternative: Option<Alternative>,
     /// Front of each architecture; empty if no feasible design was found.
     pub alone: Vec<(Architecture, Front)>,
     /// `R_w` of each reference design of the study on the fine grid \[m\].
@@ -158,17 +158,18 @@ pub struct Variation {
 impl Variation {
     /// Returns the short name of the alternative assumption.
     pub fn name(&self) -> &'static str {
-        self.reading.map_or(AS_STATED, |reading| reading.name)
+        self.alternative.map_or(AS_STATED, |alternative| alternative.name)
     }
 
     /// Returns whether the alternative can change the evaluation of a design, rather than only the search.
-    pub fn moves_designs(&self) -> bool {
-        self.reading.is_none_or(|reading| reading.moves_designs)
+    pub fn affects_evaluation(&self) -> bool {
+        self.alternative
+            .is_none_or(|alternative| alternative.affects_evaluation)
     }
 
     /// Returns whether only the random seed differs, so that all differences are due to chance.
     pub fn is_chance(&self) -> bool {
-        self.reading.is_some_and(|reading| reading.meaning == SEED)
+        self.alternative.is_some_and(|alternative| alternative.meaning == SEED)
     }
 
     /// Returns the front of an architecture, unless it is empty.
@@ -192,7 +193,7 @@ pub struct ClearanceCost<'a> {
 impl<'a> ClearanceCost<'a> {
     /// Finds the two variations to compare; `None` if one of them was not searched.
     pub fn of(study: &Study, variations: &'a [Variation]) -> Option<Self> {
-        let base = variations.iter().find(|variation| variation.reading.is_none())?;
+        let base = variations.iter().find(|variation| variation.alternative.is_none())?;
         let named = |name: &str| variations.iter().find(|variation| variation.name() == name);
         Some(match study.requirements.clearance_min_m {
             Some(clearance) => Self {
@@ -214,7 +215,7 @@ impl<'a> ClearanceCost<'a> {
 ///
 /// # Errors
 /// [`ReportError`] if a search fails.
-pub(super) fn vary(
+pub(super) fn search_alternatives(
     study: &Study,
     evaluations: usize,
     tell: &mut dyn FnMut(&str),
@@ -224,18 +225,18 @@ pub(super) fn vary(
     // All searches must have the same number of evaluations: neither a time limit nor stagnation may end one earlier.
     base.optimizer.time_limit_s = None;
     base.optimizer.stagnation = None;
-    let readings = std::iter::once(None).chain(READINGS.into_iter().map(Some));
+    let readings = std::iter::once(None).chain(ALTERNATIVES.into_iter().map(Some));
     let mut variations = Vec::new();
-    for reading in readings {
+    for alternative in readings {
         let mut study = base.clone();
-        if let Some(reading) = reading {
-            (reading.change)(&mut study);
+        if let Some(alternative) = alternative {
+            (alternative.change)(&mut study);
             // The study may already make this assumption, or the changed study may be invalid.
             if study == base || !study.faults().is_empty() {
                 continue;
             }
         }
-        let name = reading.map_or(AS_STATED, |reading| reading.name);
+        let name = alternative.map_or(AS_STATED, |alternative| alternative.name);
         let mut alone = Vec::new();
         for &architecture in &base.architectures {
             tell(&format!("sensitivity: {name}, {architecture}"));
@@ -257,7 +258,7 @@ pub(super) fn vary(
             .map(|design| model.evaluate(&design, GridChoice::Fine).workspace_radius)
             .collect();
         variations.push(Variation {
-            reading,
+            alternative,
             alone,
             references,
         });

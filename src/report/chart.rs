@@ -9,13 +9,13 @@ use resvg::{tiny_skia, usvg};
 
 /// An axis of a chart.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Axis {
+pub(super) struct ChartAxis {
     pub label: &'static str,
     pub range: [f64; 2],
     pub logarithmic: bool,
 }
 
-impl Axis {
+impl ChartAxis {
     /// Creates a linear axis from 0 to slightly beyond the largest value.
     pub fn from_zero(label: &'static str, values: impl Iterator<Item = f64>) -> Self {
         let largest = values.fold(0.0, f64::max);
@@ -76,8 +76,8 @@ pub(super) struct Series {
 /// A chart.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Chart {
-    pub x: Axis,
-    pub y: Axis,
+    pub x: ChartAxis,
+    pub y: ChartAxis,
     /// Labels for the integers 0, 1, 2, … of the y axis, shown instead of numbers.
     pub names: Option<Vec<String>>,
     pub series: Vec<Series>,
@@ -132,7 +132,7 @@ impl Chart {
     }
 
     fn holds(&self, point: &[f64; 2]) -> bool {
-        let inside = |axis: &Axis, value: f64| (axis.range[0]..=axis.range[1]).contains(&value);
+        let inside = |axis: &ChartAxis, value: f64| (axis.range[0]..=axis.range[1]).contains(&value);
         inside(&self.x, point[0]) && inside(&self.y, point[1])
     }
 

@@ -1,13 +1,13 @@
 //! Figures of a report.
 
-use super::chart::{Axis, Chart, Mark, Series};
+use super::chart::{Chart, ChartAxis, Mark, Series};
 use super::fits::Trend;
 use super::fronts::Front;
 use super::{ClearanceCost, Figure, Report, ReportError, slug};
 use crate::palette;
 use crate::text::short;
 use kinefront_model::evaluation::Constraint;
-use kinefront_model::mechanism::{Architecture, Variable};
+use kinefront_model::mechanism::{Architecture, DesignVariable};
 use kinefront_model::workspace::Thresholds;
 
 const MASS: &str = "mass in motion [kg]";
@@ -18,7 +18,7 @@ const MODELLED: [u8; 3] = [20, 20, 20];
 /// Colour of MOGA-II (reimplementation), the algorithm of the paper.
 const RIVAL: [u8; 3] = [150, 150, 150];
 /// Colours of the alternative assumptions, distinguishable on white.
-const READINGS: [[u8; 3]; 14] = [
+const ALTERNATIVES: [[u8; 3]; 14] = [
     [0, 0, 0],
     [213, 94, 0],
     [0, 114, 178],
@@ -162,7 +162,7 @@ fn references(report: &Report, of: Option<Architecture>) -> (Vec<Series>, Vec<([
 
 /// Creates a chart of fronts over a logarithmic mass axis.
 fn decades(series: Vec<Series>, notes: Vec<([f64; 2], String)>) -> (Chart, usize) {
-    let x = Axis::decades(MASS, values(&series, 0));
+    let x = ChartAxis::decades(MASS, values(&series, 0));
     (front_chart(x, series, notes, true), 0)
 }
 
@@ -174,7 +174,7 @@ fn plain(report: &Report, own: usize, series: Vec<Series>, notes: Vec<([f64; 2],
     let masses = || values(&series[..own], 0);
     let heavier = masses().filter(|&mass| mass > most).count();
     let is_cut = 4 * heavier < masses().count();
-    let x = Axis::from_zero(
+    let x = ChartAxis::from_zero(
         MASS,
         values(&series, 0).map(|mass| if is_cut { mass.min(most) } else { mass }),
     );
@@ -189,10 +189,10 @@ fn values(series: &[Series], axis: usize) -> impl Iterator<Item = f64> {
         .map(move |point| point[axis])
 }
 
-fn front_chart(x: Axis, series: Vec<Series>, notes: Vec<([f64; 2], String)>, logarithmic: bool) -> Chart {
+fn front_chart(x: ChartAxis, series: Vec<Series>, notes: Vec<([f64; 2], String)>, logarithmic: bool) -> Chart {
     Chart {
         x,
-        y: Axis::from_zero(RADIUS, values(&series, 1)),
+        y: ChartAxis::from_zero(RADIUS, values(&series, 1)),
         names: None,
         series,
         notes,
@@ -208,7 +208,7 @@ fn alone(report: &Report, architecture: Architecture, front: &Front) -> (Chart, 
         mark: Mark::DottedLine,
         points: front.points(),
     }];
-    if let Some(rival) = report.rivals.as_ref().and_then(|rivals| rivals.of(architecture)) {
+    if let Some(rival) = report.moga2.as_ref().and_then(|moga2| moga2.of(architecture)) {
         series.push(rival_series("MOGA-II (reimplementation), one architecture", rival));
     }
     let (references, notes) = references(report, Some(architecture));
@@ -268,7 +268,7 @@ fn joint(report: &Report) -> (Chart, usize) {
         .filter(|series| !series.points.is_empty())
         .collect();
     let own = series.len();
-    if let Some(rival) = report.rivals.as_ref().and_then(|rivals| rivals.joint.as_ref()) {
+    if let Some(rival) = report.moga2.as_ref().and_then(|moga2| moga2.joint.as_ref()) {
         series.push(rival_series("MOGA-II (reimplementation), all architectures", rival));
     }
     let (references, notes) = references(report, None);
@@ -284,8 +284,8 @@ fn along(trends: &[&Trend]) -> Chart {
         let points = trends.iter().flat_map(|trend| &trend.points);
         points.map(move |point| point[axis])
     };
-    let x = Axis::from_zero(RADIUS, values(0));
-    let y = Axis::from_zero("[m]", values(1));
+    let x = ChartAxis::from_zero(RADIUS, values(0));
+    let y = ChartAxis::from_zero("[m]", values(1));
     let mut series = Vec::new();
     for (trend, color) in trends.iter().zip(COLORS) {
         series.push(Series {
@@ -294,7 +294,7 @@ fn along(trends: &[&Trend]) -> Chart {
             mark: Mark::Dots,
             points: trend.points.clone(),
         });
-        let fit = if trend.variable == Variable::PlatformBarRadius {
+        let fit = if trend.variable == DesignVariable::PlatformBarRadius {
             &trend.quadratic
         } else {
             &trend.linear
@@ -334,12 +334,12 @@ fn active(architecture: Architecture, front: &Front, thresholds: &Thresholds) ->
         })
         .collect();
     // The y value is the index among all constraints: only the last one, g7, may not be required.
-    let names: Vec<String> = Constraint::asked(thresholds)
+    let names: Vec<String> = Constraint::required(thresholds)
         .map(|constraint| format!("{} {}", constraint.id(), constraint.name().replace('_', " ")))
         .collect();
     Chart {
-        x: Axis::from_zero(RADIUS, front.shown().map(|member| member.workspace_radius)),
-        y: Axis {
+        x: ChartAxis::from_zero(RADIUS, front.shown().map(|member| member.workspace_radius)),
+        y: ChartAxis {
             label: "",
             range: [-0.5, names.len() as f64 - 0.5],
             logarithmic: false,
@@ -384,7 +384,7 @@ fn sensitivity(report: &Report, architecture: Architecture) -> (Chart, usize) {
     let series = report
         .variations
         .iter()
-        .zip(READINGS.iter().cycle())
+        .zip(ALTERNATIVES.iter().cycle())
         .filter_map(|(variation, &color)| {
             // All variations of the random seed share one legend entry.
             let name = match (variation.is_chance(), chance) {
@@ -396,7 +396,7 @@ fn sensitivity(report: &Report, architecture: Architecture) -> (Chart, usize) {
             Some(Series {
                 name,
                 color: if variation.is_chance() { RIVAL } else { color },
-                mark: if variation.reading.is_none() {
+                mark: if variation.alternative.is_none() {
                     Mark::Line
                 } else {
                     Mark::ThinLine

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Front;
 use crate::study::Bounds;
-use kinefront_model::mechanism::{VARIABLES, Variable};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable};
 
 /// A polynomial in `R_w` fitted to a design variable.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +67,7 @@ impl Fit {
 #[derive(Debug, Clone)]
 pub struct Trend {
     /// The variable.
-    pub variable: Variable,
+    pub variable: DesignVariable,
     /// `(R_w, value)` of the shown designs of the front.
     pub points: Vec<[f64; 2]>,
     /// The points at which the variable is at neither of its bounds; only these are fitted.
@@ -90,7 +90,7 @@ const FEWEST: usize = 4;
 
 /// Determines the trends of all five design variables along a front found within `bounds`.
 pub fn trends(front: &Front, bounds: &Bounds) -> Vec<Trend> {
-    VARIABLES
+    DESIGN_VARIABLES
         .into_iter()
         .map(|variable| {
             let points: Vec<[f64; 2]> = front

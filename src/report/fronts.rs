@@ -141,7 +141,7 @@ fn candidates(sources: &[Source], architecture: Architecture) -> Vec<Design> {
 
 /// Fronts of individual searches, not pooled: each shows the result of a single search.
 #[derive(Debug, Clone, Default)]
-pub struct Single {
+pub struct SearchFronts {
     /// Front of the search over each architecture on its own.
     pub alone: Vec<(Architecture, Front)>,
     /// Front of the search over all architectures together.
@@ -176,7 +176,7 @@ pub(super) fn joint(sources: &[Source], study: &Study) -> Result<Option<Front>, 
     }
 }
 
-impl Single {
+impl SearchFronts {
     /// Determines the fronts of the first search over each architecture and of the first search over all of them.
     ///
     /// # Errors
@@ -202,7 +202,7 @@ impl Single {
 
 impl Front {
     /// Returns the fraction of the front's designs that have the given architecture.
-    pub fn share(&self, architecture: Architecture) -> f64 {
+    pub fn fraction(&self, architecture: Architecture) -> f64 {
         let of = self
             .members
             .iter()
@@ -212,7 +212,7 @@ impl Front {
 }
 
 /// Determines which architecture is the lightest at which radii: intervals of `R_w` \[m\] in ascending order.
-pub fn lightest_where(fronts: &Fronts) -> Vec<(Architecture, [f64; 2])> {
+pub fn lightest_intervals(fronts: &Fronts) -> Vec<(Architecture, [f64; 2])> {
     const LEVELS: u32 = 400;
     let largest = fronts.together.largest();
     let mut stretches: Vec<(Architecture, [f64; 2])> = Vec::new();

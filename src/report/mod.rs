@@ -21,11 +21,11 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-pub use assumptions::{ClearanceCost, READINGS, Reading, Variation};
+pub use assumptions::{ALTERNATIVES, Alternative, ClearanceCost, Variation};
 pub use error::ReportError;
 pub use fits::{AT_BOUND, Fit, Trend, trends};
-pub use fronts::{Front, Fronts, Single, lightest_where};
-pub use reference::Reference;
+pub use fronts::{Front, Fronts, SearchFronts, lightest_intervals};
+pub use reference::EvaluatedReference;
 pub use source::Source;
 pub use write::free;
 
@@ -69,7 +69,7 @@ struct Figure {
 
 /// A picture of a design.
 #[derive(Debug, Clone, PartialEq)]
-struct Picture {
+struct DesignPicture {
     name: String,
     caption: String,
     evaluation: Evaluation,
@@ -83,26 +83,26 @@ pub struct Report {
     model: Model,
     options: Options,
     /// Summaries of the searches that the report covers, without their designs.
-    sources: Vec<Made>,
+    sources: Vec<SearchSummary>,
     fronts: Fronts,
     /// Front of the search over all architectures together, if there was one.
     joint: Option<Front>,
     /// Fronts found by MOGA-II (reimplementation), the algorithm that the paper used.
-    rivals: Option<Single>,
-    references: Vec<Reference>,
+    moga2: Option<SearchFronts>,
+    references: Vec<EvaluatedReference>,
     trends: Vec<(Architecture, Vec<Trend>)>,
     variations: Vec<Variation>,
     figures: Vec<Figure>,
-    pictures: Vec<Picture>,
+    pictures: Vec<DesignPicture>,
     /// Whether the study states the problem of the paper, so that the page may compare with the paper.
     of_paper: bool,
     /// Time taken to make the report, including the searches that it runs itself.
-    taken: Duration,
+    duration: Duration,
 }
 
 /// Summary of a search that a report covers.
 #[derive(Debug, Clone)]
-struct Made {
+struct SearchSummary {
     name: String,
     algorithm: AlgorithmName,
     architectures: String,
@@ -114,7 +114,7 @@ struct Made {
     version: String,
 }
 
-impl Made {
+impl SearchSummary {
     fn new(source: &Source) -> Self {
         let names: Vec<&str> = source.study.architectures.iter().map(|found| found.name()).collect();
         Self {
@@ -138,7 +138,7 @@ impl Report {
     /// # Errors
     /// [`ReportError`].
     pub fn make(sources: &[Source], options: Options, tell: &mut dyn FnMut(&str)) -> Result<Self, ReportError> {
-        Self::with_rivals(sources, &[], options, tell, Instant::now())
+        Self::make_with_moga2(sources, &[], options, tell, Instant::now())
     }
 
     /// Makes the report on the paper from scratch: searches each architecture on its own and all architectures
@@ -170,17 +170,17 @@ impl Report {
         };
         let ours = searches(study.optimizer.algorithm)?;
         let theirs = searches(AlgorithmName::Moga2)?;
-        Self::with_rivals(&ours, &theirs, options, tell, start)
+        Self::make_with_moga2(&ours, &theirs, options, tell, start)
     }
 
-    fn with_rivals(
+    fn make_with_moga2(
         sources: &[Source],
-        rivals: &[Source],
+        moga2: &[Source],
         options: Options,
         tell: &mut dyn FnMut(&str),
         start: Instant,
     ) -> Result<Self, ReportError> {
-        let study = common(sources)?;
+        let study = common_study(sources)?;
         let model = study.model()?;
         let most = study.optimizer.front_designs;
         tell("verifying the fronts");
@@ -190,9 +190,9 @@ impl Report {
             [_] => Some(fronts.together.clone()),
             _ => fronts::joint(sources, &study)?,
         };
-        let rivals_found = match rivals {
+        let rivals_found = match moga2 {
             [] => None,
-            _ => Some(Single::new(rivals, &study)?),
+            _ => Some(SearchFronts::new(moga2, &study)?),
         };
         let references = reference::all(&study, &model, &fronts);
         let trends: Vec<_> = fronts
@@ -201,7 +201,7 @@ impl Report {
             .map(|(architecture, front)| (*architecture, trends(front, &study.bounds)))
             .collect();
         let variations = match options.sensitivity {
-            Some(evaluations) => assumptions::vary(&study, evaluations, tell)?,
+            Some(evaluations) => assumptions::search_alternatives(&study, evaluations, tell)?,
             None => Vec::new(),
         };
         tell("drawing figures and pictures");
@@ -210,25 +210,25 @@ impl Report {
             study,
             model,
             options,
-            sources: sources.iter().chain(rivals).map(Made::new).collect(),
+            sources: sources.iter().chain(moga2).map(SearchSummary::new).collect(),
             fronts,
             joint,
-            rivals: rivals_found,
+            moga2: rivals_found,
             references,
             trends,
             variations,
             figures: Vec::new(),
             pictures: Vec::new(),
             of_paper,
-            taken: Duration::ZERO,
+            duration: Duration::ZERO,
         };
         report.figures = figures::all(&report)?;
         report.pictures = report.draw_pictures()?;
-        report.taken = start.elapsed();
+        report.duration = start.elapsed();
         Ok(report)
     }
 
-    fn draw_pictures(&self) -> Result<Vec<Picture>, ReportError> {
+    fn draw_pictures(&self) -> Result<Vec<DesignPicture>, ReportError> {
         let model = &self.model;
         let marked = self.fronts.alone.iter().flat_map(|(architecture, front)| {
             front.marked().into_iter().map(move |(mark, evaluation)| {
@@ -255,7 +255,7 @@ impl Report {
                         name: name.clone(),
                         message,
                     })?;
-                Ok(Picture {
+                Ok(DesignPicture {
                     name,
                     caption,
                     evaluation: evaluation.clone(),
@@ -267,7 +267,7 @@ impl Report {
 }
 
 /// Returns the study that all sources have in common, with the architectures of all of them.
-fn common(sources: &[Source]) -> Result<Study, ReportError> {
+fn common_study(sources: &[Source]) -> Result<Study, ReportError> {
     let Some((first, others)) = sources.split_first() else {
         return Err(ReportError::NothingFeasible);
     };

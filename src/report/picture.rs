@@ -36,7 +36,7 @@ pub(super) fn picture(
     rotation_range_deg: f64,
     [width, height]: [u32; 2],
 ) -> Result<Vec<[u8; 3]>, String> {
-    let stage = Stage::new(model, evaluation, rotation_range_deg)?;
+    let stage = RenderScene::new(model, evaluation, rotation_range_deg)?;
     let camera = Camera::new(&stage.corners, [width, height]);
     let row = |y: u32| -> Vec<DVec3> {
         (0..width)
@@ -136,7 +136,7 @@ impl Camera {
 }
 
 /// A solid that rays can hit.
-struct Body {
+struct RenderSolid {
     shape: SharedShape,
     pose: Pose,
     /// Bounds in the solid's own axes, where they are tight because a bar lies along one of the axes.
@@ -144,7 +144,7 @@ struct Body {
     color: DVec3,
 }
 
-impl Body {
+impl RenderSolid {
     fn new(shape: &SolidShape, color: DVec3) -> Self {
         let (shape, pose) = match *shape {
             SolidShape::Bar { from, to, radius } => {
@@ -186,8 +186,8 @@ impl Body {
 }
 
 /// Everything that rays can hit: bodies, workspace and ground.
-struct Stage {
-    bodies: Vec<Body>,
+struct RenderScene {
+    bodies: Vec<RenderSolid>,
     /// Points that bound everything visible.
     corners: Vec<DVec3>,
     /// Centre and radius of the regular workspace.
@@ -199,7 +199,7 @@ struct Stage {
     light: DVec3,
 }
 
-impl Stage {
+impl RenderScene {
     fn new(model: &Model, evaluation: &Evaluation, rotation_range_deg: f64) -> Result<Self, String> {
         let design = &evaluation.design;
         let home = model.home(evaluation);
@@ -210,7 +210,7 @@ impl Stage {
         for solid in solids.filter(|solid| solid.shape.has_volume()) {
             corners.extend(solid.shape.mesh().positions);
             let color = palette::part(solid.part).map(|value| f64::from(value) / 255.0);
-            bodies.push(Body::new(&solid.shape, DVec3::from_array(color)));
+            bodies.push(RenderSolid::new(&solid.shape, DVec3::from_array(color)));
         }
         let thickness = corners.iter().fold(0.0f64, |most, corner| most.max(corner.z.abs()));
         let heights = [-1.02 * thickness, -1.3 * thickness];
@@ -231,7 +231,7 @@ impl Stage {
 
     fn color(&self, ray: &Ray) -> DVec3 {
         let [origin, direction] = [ray.origin, ray.dir].map(|v| DVec3::from_array(v.to_array()));
-        let mut nearest: Option<(f64, DVec3, &Body)> = None;
+        let mut nearest: Option<(f64, DVec3, &RenderSolid)> = None;
         for body in &self.bodies {
             let most = nearest.map_or(f64::MAX, |(distance, ..)| distance);
             if let Some((distance, normal)) = body.meet(ray, most)
@@ -241,7 +241,7 @@ impl Stage {
             }
         }
         if let Some((distance, normal, body)) = nearest {
-            return self.lit(body, origin + direction * distance, normal, direction);
+            return self.passes_filter(body, origin + direction * distance, normal, direction);
         }
         let meets = |height: f64| origin + direction * ((height - origin.z) / direction.z);
         let ground = meets(self.heights[1]);
@@ -250,8 +250,8 @@ impl Stage {
             let distance = meets(self.heights[0]).truncate().distance(centre);
             if distance < radius {
                 // The rim is stronger so that the edge is visible although the tint is weak.
-                let share = if distance > 0.985 * radius { 0.9 } else { 0.28 };
-                color = color.lerp(WORKSPACE, share);
+                let fraction = if distance > 0.985 * radius { 0.9 } else { 0.28 };
+                color = color.lerp(WORKSPACE, fraction);
             }
         }
         color
@@ -263,7 +263,7 @@ impl Stage {
         self.bodies.iter().any(|body| body.meet(&ray, f64::MAX).is_some())
     }
 
-    fn lit(&self, body: &Body, at: DVec3, normal: DVec3, direction: DVec3) -> DVec3 {
+    fn passes_filter(&self, body: &RenderSolid, at: DVec3, normal: DVec3, direction: DVec3) -> DVec3 {
         let mut facing = normal.dot(self.light).max(0.0);
         if facing > 0.0 && self.is_shaded(at + normal * self.step) {
             facing *= 0.25;
@@ -288,16 +288,16 @@ mod tests {
         let evaluation = model.evaluate(&design, GridChoice::Reference);
         let pixels = picture(&model, &evaluation, 20.0, SIZE).expect("a picture");
         assert_eq!(pixels.len(), (SIZE[0] * SIZE[1]) as usize);
-        let share = |is: fn([i32; 3]) -> bool| {
+        let fraction = |is: fn([i32; 3]) -> bool| {
             let found = pixels.iter().filter(|pixel| is(pixel.map(i32::from))).count();
             found as f64 / pixels.len() as f64
         };
         [
-            share(|[r, g, b]| r > 250 && g > 250 && b > 250),
+            fraction(|[r, g, b]| r > 250 && g > 250 && b > 250),
             // The workspace, sliders, and the platform.
-            share(|[r, g, b]| g > r + 15 && g > b + 10),
-            share(|[r, g, b]| r > g + 60 && g > b),
-            share(|[r, g, b]| b > r + 60 && b > g + 20),
+            fraction(|[r, g, b]| g > r + 15 && g > b + 10),
+            fraction(|[r, g, b]| r > g + 60 && g > b),
+            fraction(|[r, g, b]| b > r + 60 && b > g + 20),
         ]
     }
 

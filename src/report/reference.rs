@@ -4,11 +4,11 @@
 use super::Fronts;
 use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
-use kinefront_model::mechanism::{Design, VARIABLES};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, Design};
 
 /// A reference design of the study.
 #[derive(Debug, Clone)]
-pub struct Reference {
+pub struct EvaluatedReference {
     /// Name of the design.
     pub name: String,
     /// Mass stated by the source of the design \[kg\].
@@ -23,11 +23,11 @@ pub struct Reference {
     pub mass_range: [f64; 2],
     /// The lightest design found with at least the `R_w` of this design on the fine grid, if it is lighter than this
     /// design and this design is feasible.
-    pub beaten_by: Option<Evaluation>,
+    pub lighter: Option<Evaluation>,
 }
 
 /// Evaluates the reference designs of the study.
-pub(super) fn all(study: &Study, model: &Model, fronts: &Fronts) -> Vec<Reference> {
+pub(super) fn all(study: &Study, model: &Model, fronts: &Fronts) -> Vec<EvaluatedReference> {
     study
         .references
         .iter()
@@ -35,14 +35,14 @@ pub(super) fn all(study: &Study, model: &Model, fronts: &Fronts) -> Vec<Referenc
         .filter_map(|reference| Some((reference, reference.parse(study.working_mode).ok()?)))
         .map(|(reference, design)| {
             let fine = model.evaluate(&design, GridChoice::Fine);
-            let beaten_by = fronts.together.lightest(fine.workspace_radius);
-            Reference {
+            let lighter = fronts.together.lightest(fine.workspace_radius);
+            EvaluatedReference {
                 name: reference.name.clone(),
                 stated_mass: reference.mass_kg,
                 stated_radius: reference.workspace_radius_m,
                 coarse: model.evaluate(&design, GridChoice::Reference),
-                mass_range: [-1.0, 1.0].map(|side| mass_of(model, &design, side * 0.0005)),
-                beaten_by: beaten_by
+                mass_range: [-1.0, 1.0].map(|side| mass_with_thicker_bars(model, &design, side * 0.0005)),
+                lighter: lighter
                     .filter(|found| fine.is_feasible() && found.mass < fine.mass)
                     .cloned(),
                 fine,
@@ -52,9 +52,9 @@ pub(super) fn all(study: &Study, model: &Model, fronts: &Fronts) -> Vec<Referenc
 }
 
 /// Computes the mass with both bar radii increased by `more` \[m\].
-fn mass_of(model: &Model, design: &Design, more: f64) -> f64 {
+fn mass_with_thicker_bars(model: &Model, design: &Design, more: f64) -> f64 {
     let mut values = design.values();
-    for variable in VARIABLES.into_iter().filter(|variable| variable.may_be_zero()) {
+    for variable in DESIGN_VARIABLES.into_iter().filter(|variable| variable.may_be_zero()) {
         let value = &mut values[variable as usize];
         *value = (*value + more).max(0.0);
     }

@@ -45,11 +45,13 @@ impl Source {
             .unwrap_or(folder)
             .file_name()
             .unwrap_or(folder.as_os_str());
-        let told = told(&folder.join("run.json"));
+        let read_run_info = read_run_info(&folder.join("run.json"));
         Ok(Self {
             name: name.to_string_lossy().into_owned(),
-            times: told.as_ref().map(|told| told.times),
-            version: told.map(|told| told.kinefront_version).unwrap_or_default(),
+            times: read_run_info.as_ref().map(|read_run_info| read_run_info.times),
+            version: read_run_info
+                .map(|read_run_info| read_run_info.kinefront_version)
+                .unwrap_or_default(),
             study,
             rows,
         })
@@ -97,13 +99,13 @@ impl Source {
 
 /// The fields of `run.json` that a report uses.
 #[derive(serde::Deserialize)]
-struct Told {
+struct RunInfo {
     times: RunTimes,
     kinefront_version: String,
 }
 
 /// Reads `run.json`; returns `None` if it is missing or invalid. A report does not depend on it, because a run that was
 /// killed leaves none.
-fn told(path: &Path) -> Option<Told> {
+fn read_run_info(path: &Path) -> Option<RunInfo> {
     serde_json::from_slice(&std::fs::read(path).ok()?).ok()
 }

@@ -111,7 +111,7 @@ fn ellipsoid(pose: Pose, stiffness: &PlanarStiffness, kind: EllipsoidKind) -> Op
             let [xx, xy, yy] = free_stiffness(&stiffness.in_plane)?;
             let determinant = xx * yy - xy * xy;
             let vertical = stiffness
-                .rigidity(kinefront_model::stiffness::StiffnessDefinition::Compliance)
+                .stiffness_values(kinefront_model::stiffness::StiffnessDefinition::Compliance)
                 .k_z;
             if determinant <= 0.0 || vertical <= 0.0 {
                 return None;

@@ -136,11 +136,11 @@ impl Field {
             Field::InverseCondition => values.inverse_condition,
             Field::Determinant => values.determinant,
             Field::Clearance => values.clearance.unwrap_or(0.0),
-            Field::StiffnessXy => values.rigidity.k_xy,
-            Field::StiffnessPhiZ => values.rigidity.k_phi_z,
-            Field::StiffnessZ => values.rigidity.k_z,
+            Field::StiffnessXy => values.stiffness_values.k_xy,
+            Field::StiffnessPhiZ => values.stiffness_values.k_phi_z,
+            Field::StiffnessZ => values.stiffness_values.k_z,
             Field::Displacement => {
-                let softest = values.rigidity.k_xy;
+                let softest = values.stiffness_values.k_xy;
                 if softest > model.in_plane_force / FARTHEST {
                     model.in_plane_force / softest
                 } else {

@@ -204,7 +204,7 @@ fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage,
         angle: pose.phi,
     };
     // The study may count fewer platform bars than the three that exist (docs/model.md, section 11).
-    let share = f64::from(model.platform_bars) / LEGS as f64;
+    let fraction = f64::from(model.platform_bars) / LEGS as f64;
     let ends = posture.arms.map(|arm| pose.position + arm);
     bodies.push(Body {
         name: "platform".to_owned(),
@@ -213,7 +213,7 @@ fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage,
         height: sizes.height(MemberKind::PlatformBar),
         joint: None,
         bars: ends
-            .map(|c| mass_bar(model, &frame, [c, pose.position], design.platform_bar_radius, share))
+            .map(|c| mass_bar(model, &frame, [c, pose.position], design.platform_bar_radius, fraction))
             .to_vec(),
         solids: (0..LEGS)
             .map(|index| {
@@ -233,12 +233,12 @@ fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage,
     Ok(Linkage { bodies, closures })
 }
 
-fn mass_bar(model: &Model, frame: &Frame, [from, to]: [DVec2; 2], radius: f64, share: f64) -> MassBar {
+fn mass_bar(model: &Model, frame: &Frame, [from, to]: [DVec2; 2], radius: f64, fraction: f64) -> MassBar {
     let back = Rotation::new(-frame.angle);
     MassBar {
         from: back.apply(from - frame.origin),
         to: back.apply(to - frame.origin),
         radius,
-        mass: share * model.bar_mass(radius, from.distance(to)),
+        mass: fraction * model.bar_mass(radius, from.distance(to)),
     }
 }

@@ -50,12 +50,12 @@ impl<'a> Sizes<'a> {
         self.bodies.height(kind, self.design)
     }
 
-    fn bar(&self, kind: MemberKind, from: DVec2, to: DVec2, share: f64) -> SolidShape {
+    fn bar(&self, kind: MemberKind, from: DVec2, to: DVec2, fraction: f64) -> SolidShape {
         let z = self.height(kind);
         SolidShape::Bar {
             from: from.extend(z),
             to: to.extend(z),
-            radius: share * self.bodies.radius(kind, self.design),
+            radius: fraction * self.bodies.radius(kind, self.design),
         }
     }
 

@@ -51,8 +51,8 @@ fn path(cylinder: &RegularCylinder, steps: usize) -> Vec<Pose> {
         ([0.0, -1.0, low], [0.0, 0.0, 0.0], 0.25),
     ];
     let mut poses = Vec::new();
-    for (from, to, share) in ways {
-        let count = ((steps as f64 * share).ceil() as usize).max(1);
+    for (from, to, fraction) in ways {
+        let count = ((steps as f64 * fraction).ceil() as usize).max(1);
         for k in 0..count {
             let s = k as f64 / count as f64;
             let at = |index: usize| from[index] + s * (to[index] - from[index]);
@@ -85,14 +85,14 @@ fn check<L: Leg>(manipulator: &Manipulator<L>, design: &Design, poses: &[Pose]) 
     for pose in poses {
         let target = actuators(pose)?;
         for step in 1..=SUBSTEPS {
-            let share = f64::from(step) / f64::from(SUBSTEPS);
+            let fraction = f64::from(step) / f64::from(SUBSTEPS);
             let part = [0, 1, 2].map(|i| {
                 let way = match L::ACTUATOR {
                     Actuator::Prismatic => target[i] - before[i],
                     // The shorter of the two directions of rotation.
                     Actuator::Revolute => libm::remainder(target[i] - before[i], 2.0 * std::f64::consts::PI),
                 };
-                before[i] + share * way
+                before[i] + fraction * way
             });
             // At the edge of reach an iterate may become unreachable; the iteration then starts from the pose itself.
             found = forward(manipulator, part, found, 1e-13)

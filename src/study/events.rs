@@ -93,7 +93,7 @@ impl FrontMember {
 /// Reason why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome {
+pub enum EndReason {
     /// The budget of evaluations was used up.
     Completed,
     /// The time limit was reached.
@@ -123,7 +123,7 @@ pub struct RunTimes {
 #[derive(Debug, Clone)]
 pub struct RunSummary {
     /// Reason why the run ended.
-    pub outcome: Outcome,
+    pub outcome: EndReason,
     /// Number of worker threads.
     pub threads: usize,
     /// State of the run after each generation.

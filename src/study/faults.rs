@@ -73,10 +73,10 @@ impl Study {
             }
         }
         if let Some(clearance) = r.clearance_min_m {
-            let sound = (0.0..=1e3).contains(&clearance);
+            let valid = (0.0..=1e3).contains(&clearance);
             check.that(
                 "requirements.clearance_min_m",
-                sound,
+                valid,
                 format!("is {clearance}; it must be in [0, 1000], or be omitted if members may collide"),
             );
         }
@@ -96,10 +96,10 @@ impl Study {
             );
         }
         if let Some(phi) = w.home_phi_deg {
-            let sound = phi.abs() <= 360.0;
+            let valid = phi.abs() <= 360.0;
             check.that(
                 "workspace.home_phi_deg",
-                sound,
+                valid,
                 format!("is {phi}; it must be in [-360, 360]"),
             );
         }
@@ -149,10 +149,10 @@ impl Study {
             ("crank", b.layers.crank),
             ("slider", b.layers.slider),
         ] {
-            let sound = layer.abs() <= 1e3;
+            let valid = layer.abs() <= 1e3;
             check.that(
                 &format!("bodies.layers.{key}"),
-                sound,
+                valid,
                 format!("is {layer}; it must be in [-1000, 1000] diameters of the thicker bar"),
             );
         }
@@ -197,16 +197,16 @@ impl Study {
         for (name, section) in [("reference", &self.grid.reference), ("fine", &self.grid.fine)] {
             let key = |key: &str| format!("grid.{name}.{key}");
             let step = section.phi_step_deg;
-            let sound = step.is_finite() && (0.01..=120.0).contains(&step);
+            let valid = step.is_finite() && (0.01..=120.0).contains(&step);
             check.that(
                 &key("phi_step_deg"),
-                sound,
+                valid,
                 format!("is {step}; it must be in [0.01, 120]"),
             );
             check.range(&key("directions"), section.directions, 3, 3600);
             check.range(&key("ray_steps"), section.ray_steps, 1, 10_000);
             check.range(&key("halvings"), section.halvings as usize, 0, 40);
-            if sound && section.directions > 0 && section.ray_steps > 0 {
+            if valid && section.directions > 0 && section.ray_steps > 0 {
                 let grid = Grid::try_from(section);
                 if let Err(error) = grid.and_then(|grid| grid.half_window(range)) {
                     check.that(&key("phi_step_deg"), false, format!("is invalid: {error}"));
@@ -236,7 +236,7 @@ impl Study {
         check.positive("optimizer.front_de.scale", o.front_de.scale);
         check.range("optimizer.moga2.population", o.moga2.population, 2, 65_536);
         check.range("optimizer.nsga2.population", o.nsga2.population, 2, 65_536);
-        for (key, share) in [
+        for (key, fraction) in [
             ("front_de.crossover", o.front_de.crossover),
             ("front_de.best", o.front_de.best),
             ("moga2.directional_crossover", o.moga2.directional_crossover),
@@ -246,11 +246,11 @@ impl Study {
             ("nsga2.crossover", o.nsga2.crossover),
             ("nsga2.mutation", o.nsga2.mutation.unwrap_or(0.5)),
         ] {
-            let sound = (0.0..=1.0).contains(&share);
+            let valid = (0.0..=1.0).contains(&fraction);
             check.that(
                 &format!("optimizer.{key}"),
-                sound,
-                format!("is {share}; it must be in [0, 1]"),
+                valid,
+                format!("is {fraction}; it must be in [0, 1]"),
             );
         }
         let sum = o.moga2.directional_crossover + o.moga2.selection + o.moga2.mutation;
@@ -279,8 +279,8 @@ impl Study {
 struct Check(Vec<Fault>);
 
 impl Check {
-    fn that(&mut self, key: &str, sound: bool, message: impl Into<String>) {
-        if !sound {
+    fn that(&mut self, key: &str, valid: bool, message: impl Into<String>) {
+        if !valid {
             self.0.push(Fault {
                 key: key.to_owned(),
                 message: message.into(),
@@ -290,15 +290,15 @@ impl Check {
 
     /// Checks that a value is positive, and within limits that keep squares and quotients of such values finite.
     fn positive(&mut self, key: &str, value: f64) {
-        let sound = (1e-12..=1e15).contains(&value);
-        self.that(key, sound, format!("is {value}; it must be above 0 (1e-12 to 1e15)"));
+        let valid = (1e-12..=1e15).contains(&value);
+        self.that(key, valid, format!("is {value}; it must be above 0 (1e-12 to 1e15)"));
     }
 
     fn at_least_zero(&mut self, key: &str, value: f64) {
-        let sound = (0.0..=1e15).contains(&value);
+        let valid = (0.0..=1e15).contains(&value);
         self.that(
             key,
-            sound,
+            valid,
             format!("is {value}; it must be at least 0 (and at most 1e15)"),
         );
     }

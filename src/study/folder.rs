@@ -12,7 +12,7 @@ use std::sync::mpsc::Receiver;
 
 use serde::Serialize;
 
-use super::{AlgorithmName, Batch, Event, GenerationSummary, Outcome, RunSummary, RunTimes, Study};
+use super::{AlgorithmName, Batch, EndReason, Event, GenerationSummary, RunSummary, RunTimes, Study};
 use kinefront_model::evaluation::{Constraint, Evaluation};
 
 /// First columns of `designs.csv` and `front.csv`; margins, values, active constraints and violation follow.
@@ -72,7 +72,7 @@ pub struct RunReport<'a> {
     architectures: Vec<&'static str>,
     seed: u64,
     threads: usize,
-    outcome: Outcome,
+    outcome: EndReason,
     evaluations: usize,
     feasible: usize,
     generations: usize,
@@ -253,7 +253,7 @@ fn row(id: usize, generation: usize, evaluation: &Evaluation) -> Vec<String> {
         evaluation
             .constraints
             .iter()
-            .map(|report| optional(report.asked_margin())),
+            .map(|report| optional(report.required_margin())),
     );
     row.extend(evaluation.constraints.iter().map(|report| optional(report.value)));
     let active: Vec<&str> = evaluation.active().map(Constraint::id).collect();

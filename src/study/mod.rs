@@ -17,7 +17,7 @@ mod table;
 pub use builtin::{BUILTIN, Builtin};
 pub use control::RunControl;
 pub use error::StudyError;
-pub use events::{Batch, Event, FrontMember, GenerationSummary, Outcome, RunSummary, RunTimes, Started, Subscriber};
+pub use events::{Batch, EndReason, Event, FrontMember, GenerationSummary, RunSummary, RunTimes, Started, Subscriber};
 pub use faults::Fault;
 pub use file::Study;
 pub use folder::{FolderError, RunFolder, RunReport, TABLE_HEADER, front_table, write_whole};

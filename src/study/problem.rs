@@ -1,21 +1,21 @@
 //! A study as an optimization problem; `x` consists of the architecture and the five lengths.
 
 use super::Study;
-use kinefront_model::evaluation::{BarRanges, Demand, Evaluation, GridChoice, Model};
-use kinefront_model::mechanism::{Architecture, Design, DesignError, VARIABLES, Variable, WorkingMode};
+use kinefront_model::evaluation::{BarRanges, Evaluation, GridChoice, Model, WorkspaceTarget};
+use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, DesignError, DesignVariable, WorkingMode};
 use kinefront_model::workspace::GridError;
-use kinefront_optimize::{Aim, Outcome, Problem, Variable as Unknown};
+use kinefront_optimize::{Outcome, Problem, Target, Variable};
 
 /// The optimization problem of a study, with designs encoded as vectors of values.
 ///
 /// The first value is the index of the architecture in the study's list; the lengths follow in the order of
-/// [`VARIABLES`]. If the study has one architecture, the first variable has a single choice.
+/// [`DESIGN_VARIABLES`]. If the study has one architecture, the first variable has a single choice.
 #[derive(Debug, Clone)]
 pub struct DesignProblem {
     model: Model,
     architectures: Vec<Architecture>,
     working_mode: WorkingMode,
-    ranges: [[f64; 2]; VARIABLES.len()],
+    ranges: [[f64; 2]; DESIGN_VARIABLES.len()],
 }
 
 impl DesignProblem {
@@ -25,7 +25,7 @@ impl DesignProblem {
             model: study.model()?,
             architectures: study.architectures.clone(),
             working_mode: study.working_mode,
-            ranges: VARIABLES.map(|variable| study.bounds.range(variable)),
+            ranges: DESIGN_VARIABLES.map(|variable| study.bounds.range(variable)),
         })
     }
 
@@ -61,38 +61,44 @@ impl DesignProblem {
     }
 
     /// Returns the variables of the problem.
-    pub fn variables(&self) -> Vec<Unknown> {
-        std::iter::once(Unknown::Categorical {
+    pub fn variables(&self) -> Vec<Variable> {
+        std::iter::once(Variable::Categorical {
             choices: self.architectures.len(),
         })
-        .chain(self.ranges.iter().map(|&[lower, upper]| Unknown::Real { lower, upper }))
+        .chain(
+            self.ranges
+                .iter()
+                .map(|&[lower, upper]| Variable::Real { lower, upper }),
+        )
         .collect()
     }
 }
 
 impl Problem for DesignProblem {
-    fn variables(&self) -> Vec<Unknown> {
+    fn variables(&self) -> Vec<Variable> {
         DesignProblem::variables(self)
     }
 
     /// Sets the lightest bars for the geometry in `x` that provide the workspace radius of the target. For the target
-    /// [`Aim::Best`], or for a radius that the geometry does not allow, the bars are sized for the largest radius that
+    /// [`Target::Best`], or for a radius that the geometry does not allow, the bars are sized for the largest radius that
     /// it allows.
-    fn complete(&self, x: &[f64], aim: Aim) -> Option<Vec<f64>> {
+    fn complete(&self, x: &[f64], target: Target) -> Option<Vec<f64>> {
         let design = self.design(x).ok()?;
-        let range = |variable: Variable| self.ranges[variable as usize];
+        let range = |variable: DesignVariable| self.ranges[variable as usize];
         let ranges = BarRanges {
-            leg: range(Variable::LegBarRadius),
-            platform: range(Variable::PlatformBarRadius),
+            leg: range(DesignVariable::LegBarRadius),
+            platform: range(DesignVariable::PlatformBarRadius),
         };
-        let sized = |demand| self.model.sized(&design, &ranges, demand);
-        let sized = match aim {
-            Aim::Level(level) if level < 0.0 => sized(Demand::Radius(-level)).or_else(|| sized(Demand::Largest)),
-            Aim::Level(_) | Aim::Best => sized(Demand::Largest),
+        let sized = |target| self.model.sized(&design, &ranges, target);
+        let sized = match target {
+            Target::Level(level) if level < 0.0 => {
+                sized(WorkspaceTarget::Radius(-level)).or_else(|| sized(WorkspaceTarget::Largest))
+            }
+            Target::Level(_) | Target::Best => sized(WorkspaceTarget::Largest),
         }?;
         let mut x = x.to_vec();
-        x[1 + Variable::LegBarRadius as usize] = sized.leg_bar_radius;
-        x[1 + Variable::PlatformBarRadius as usize] = sized.platform_bar_radius;
+        x[1 + DesignVariable::LegBarRadius as usize] = sized.leg_bar_radius;
+        x[1 + DesignVariable::PlatformBarRadius as usize] = sized.platform_bar_radius;
         Some(x)
     }
 

@@ -25,7 +25,7 @@ use rayon::prelude::*;
 
 use super::stopping::Stopping;
 use super::{
-    AlgorithmName, Batch, DesignProblem, Event, FrontMember, GenerationSummary, Outcome, RunControl, RunSummary,
+    AlgorithmName, Batch, DesignProblem, EndReason, Event, FrontMember, GenerationSummary, RunControl, RunSummary,
     RunTimes, Started, Study, Subscriber,
 };
 use kinefront_model::evaluation::{Evaluation, GridChoice};
@@ -97,17 +97,17 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
     let mut members: BTreeMap<usize, FrontMember> = BTreeMap::new();
     let mut history: Vec<GenerationSummary> = Vec::new();
     let (mut evaluated_count, mut feasible, mut generation) = (0, 0, 0);
-    let mut outcome = Outcome::Completed;
+    let mut outcome = EndReason::Completed;
     while evaluated_count < budget {
         if !control.go_on() {
-            outcome = Outcome::Stopped;
+            outcome = EndReason::Stopped;
             break;
         }
         generation += 1;
-        let asked = Instant::now();
+        let required = Instant::now();
         let mut candidates = algorithm.ask();
         candidates.truncate(budget - evaluated_count);
-        times.optimizer_s += asked.elapsed().as_secs_f64();
+        times.optimizer_s += required.elapsed().as_secs_f64();
 
         let began = Instant::now();
         let (values, evaluations): (Vec<Vec<f64>>, Vec<Evaluation>) = pool

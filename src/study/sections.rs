@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use kinefront_model::evaluation::Model;
-use kinefront_model::mechanism::{Design, TextError, VARIABLES, Variable, WorkingMode};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignVariable, TextError, WorkingMode};
 use kinefront_model::stiffness::Material;
 use kinefront_model::workspace::{Grid, GridError};
 
@@ -218,19 +218,19 @@ impl Default for Bounds {
 
 impl Bounds {
     /// Returns the range of a variable.
-    pub fn range(&self, variable: Variable) -> [f64; 2] {
+    pub fn range(&self, variable: DesignVariable) -> [f64; 2] {
         match variable {
-            Variable::BaseRadius => self.R_m,
-            Variable::PlatformRadius => self.r_m,
-            Variable::LinkLength => self.Lb_m,
-            Variable::LegBarRadius => self.rj_m,
-            Variable::PlatformBarRadius => self.rp_m,
+            DesignVariable::BaseRadius => self.R_m,
+            DesignVariable::PlatformRadius => self.r_m,
+            DesignVariable::LinkLength => self.Lb_m,
+            DesignVariable::LegBarRadius => self.rj_m,
+            DesignVariable::PlatformBarRadius => self.rp_m,
         }
     }
 
     /// Iterates over the variables, each with the key of its range.
-    pub fn keys() -> impl Iterator<Item = (Variable, String)> {
-        VARIABLES
+    pub fn keys() -> impl Iterator<Item = (DesignVariable, String)> {
+        DESIGN_VARIABLES
             .into_iter()
             .map(|variable| (variable, format!("{}_m", variable.key())))
     }

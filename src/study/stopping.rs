@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{GenerationSummary, OptimizerSection, Outcome, Stagnation};
+use super::{EndReason, GenerationSummary, OptimizerSection, Stagnation};
 
 /// Stopping rules of a study other than its budget of evaluations.
 #[derive(Debug, Clone)]
@@ -20,9 +20,9 @@ impl Stopping {
     }
 
     /// Returns the reason why a search of this duration and history ends, or `None` if it continues.
-    pub fn reason(&self, elapsed: Duration, history: &[GenerationSummary]) -> Option<Outcome> {
+    pub fn reason(&self, elapsed: Duration, history: &[GenerationSummary]) -> Option<EndReason> {
         if self.time_limit.is_some_and(|limit| elapsed.as_secs_f64() >= limit) {
-            return Some(Outcome::TimeUp);
+            return Some(EndReason::TimeUp);
         }
         let Stagnation { evaluations, gain } = self.stagnation?;
         let last = history.last()?;
@@ -30,7 +30,7 @@ impl Stopping {
         // The latest state that is at least that many evaluations old; if there is none, no gain can be measured yet.
         let before = history.iter().rev().find(|summary| summary.evaluations <= since)?;
         let stagnated = before.hypervolume > 0.0 && last.hypervolume < before.hypervolume * (1.0 + gain);
-        stagnated.then_some(Outcome::Stagnated)
+        stagnated.then_some(EndReason::Stagnated)
     }
 }
 
@@ -71,7 +71,7 @@ mod tests {
             None,
             "no 60 evaluations have passed since the first state"
         );
-        assert_eq!(reason(&[100.0, 100.0, 100.5]), Some(Outcome::Stagnated));
+        assert_eq!(reason(&[100.0, 100.0, 100.5]), Some(EndReason::Stagnated));
         assert_eq!(reason(&[100.0, 100.0, 101.5]), None);
         assert_eq!(reason(&[0.0, 0.0, 0.0, 0.0]), None, "nothing feasible yet");
     }
@@ -82,7 +82,7 @@ mod tests {
         assert_eq!(rule.reason(Duration::from_secs(1), &history(&[1.0])), None);
         assert_eq!(
             rule.reason(Duration::from_secs(2), &history(&[1.0])),
-            Some(Outcome::TimeUp)
+            Some(EndReason::TimeUp)
         );
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::Study;
 use kinefront_model::evaluation::{Constraint, Evaluation};
-use kinefront_model::mechanism::{Design, VARIABLES};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, Design};
 
 /// Stored values of one design.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,7 +40,7 @@ impl Row {
             radius: evaluation.workspace_radius,
             phi: evaluation.home_phi_deg,
             violation: evaluation.violation,
-            margins: evaluation.constraints.map(|report| report.asked_margin()),
+            margins: evaluation.constraints.map(|report| report.required_margin()),
             clearance: evaluation.clearance(),
             active: bits(evaluation.active()),
         }
@@ -65,15 +65,15 @@ impl Row {
             Some(mode) => mode.parse().map_err(|error| format!("{error}"))?,
             None => study.working_mode,
         };
-        let mut values = [0.0; VARIABLES.len()];
-        for (value, variable) in values.iter_mut().zip(VARIABLES) {
+        let mut values = [0.0; DESIGN_VARIABLES.len()];
+        for (value, variable) in values.iter_mut().zip(DESIGN_VARIABLES) {
             *value = wanted(variable.key())?;
         }
         let design = Design::new(architecture, mode, values).map_err(|error| error.to_string())?;
-        let asked = study.thresholds();
+        let required = study.thresholds();
         let mut margins = [None; Constraint::ALL.len()];
         for (margin, constraint) in margins.iter_mut().zip(Constraint::ALL) {
-            if constraint.is_asked(&asked) {
+            if constraint.is_required(&required) {
                 *margin = Some(wanted(&format!("margin_{}", constraint.id()))?);
             }
         }

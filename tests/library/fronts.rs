@@ -5,7 +5,7 @@ use kinefront::study::{BUILTIN, Builtin, DesignProblem, Study};
 use kinefront_model::evaluation::{Constraint, Evaluation, GridChoice};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
-use kinefront_optimize::{Aim, FrontDe, FrontDeSettings, Problem, Variable, drive};
+use kinefront_optimize::{FrontDe, FrontDeSettings, Problem, Target, Variable, run};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
@@ -24,9 +24,9 @@ fn a_level_that_the_geometry_does_not_allow_becomes_its_largest() {
     let problem = DesignProblem::new(&study).expect("a valid study");
     assert_eq!(problem.variables()[0], Variable::Categorical { choices: 1 });
     let x = [0.0, 3.066, 1.283, 1.896, 0.036, 0.056];
-    let best = problem.complete(&x, Aim::Best).expect("bars");
-    assert_eq!(problem.complete(&x, Aim::Level(-3.0)), Some(best.clone()));
-    let level = problem.complete(&x, Aim::Level(-0.8)).expect("bars");
+    let best = problem.complete(&x, Target::Best).expect("bars");
+    assert_eq!(problem.complete(&x, Target::Level(-3.0)), Some(best.clone()));
+    let level = problem.complete(&x, Target::Level(-0.8)).expect("bars");
     assert!(level[4] < best[4] || level[5] < best[5], "less is asked of the bars");
     assert_eq!(level[..4], x[..4], "the geometry stays");
     let outcome = problem.evaluate(&level);
@@ -40,7 +40,7 @@ fn the_papers_designs_are_dominated() {
     let study = BUILTIN[0].study().expect("sound");
     let problem = DesignProblem::new(&study).expect("a valid study");
     let mut algorithm = FrontDe::new(problem.variables(), FrontDeSettings::default(), 1);
-    let archive = drive(&problem, &mut algorithm, 1000);
+    let archive = run(&problem, &mut algorithm, 1000);
     let model = problem.model();
     let fine = |design: &Design| model.evaluate(design, GridChoice::Fine);
     for reference in &study.references {
@@ -133,9 +133,9 @@ fn a_front_with_clearance_has_no_overlap_on_a_million_poses() {
     for member in found {
         let nearest = model.nearest(member).expect("a pose");
         let report = member.constraint(Constraint::Clearance);
-        assert!(nearest.distance < 0.0 && !report.asked && !report.active);
+        assert!(nearest.distance < 0.0 && !report.required && !report.active);
         // The same study with g7 has no use for that workspace.
-        let asked = model.evaluate(&member.design, GridChoice::Fine);
-        assert!(asked.workspace_radius < member.workspace_radius);
+        let required = model.evaluate(&member.design, GridChoice::Fine);
+        assert!(required.workspace_radius < member.workspace_radius);
     }
 }

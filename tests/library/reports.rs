@@ -1,9 +1,9 @@
 //! The computations of reports: fits, fronts, and the ranges in which each architecture is the lightest.
 
-use kinefront::report::{Fit, Front, Fronts, Source, lightest_where, trends};
+use kinefront::report::{Fit, Front, Fronts, Source, lightest_intervals, trends};
 use kinefront::study::{BUILTIN, Row, Study};
 use kinefront_model::evaluation::{GridChoice, Model};
-use kinefront_model::mechanism::{Architecture, Design, VARIABLES};
+use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design};
 use proptest::prelude::*;
 
 proptest! {
@@ -80,7 +80,7 @@ fn fronts_are_what_they_are_called() {
         let marks: Vec<&str> = front.marked().into_iter().map(|(mark, _)| mark).collect();
         assert!(marks.contains(&"lightest") && marks.contains(&"largest") || front.members.len() == 1);
     }
-    let stretches = lightest_where(&fronts);
+    let stretches = lightest_intervals(&fronts);
     for pair in stretches.windows(2) {
         assert!(pair[0].0 != pair[1].0 && (pair[0].1[1] - pair[1].1[0]).abs() < 1e-12);
     }
@@ -119,7 +119,7 @@ fn trends_leave_out_what_stands_at_its_bounds() {
     assert!((trends[1].rank_correlation.expect("four designs") - 1.0).abs() < 1e-12);
     assert_eq!(trends[3].rank_correlation, Some(0.0));
     assert_eq!((trends[0].rank_correlation, &trends[0].linear), (None, &None));
-    assert_eq!(trends.len(), VARIABLES.len());
+    assert_eq!(trends.len(), DESIGN_VARIABLES.len());
 }
 
 /// A row has the active constraints and the objectives of its evaluation.

@@ -5,7 +5,7 @@ use kinefront::scene::{
     Body, EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Solid, SolidShape, ellipsoids, linkage, manipulator,
     regular_workspace, tour,
 };
-use kinefront_model::evaluation::{Evaluation, GridChoice, Model, ModelSettings, PoseReport};
+use kinefront_model::evaluation::{Evaluation, GridChoice, Model, ModelSettings, PoseEvaluation};
 use kinefront_model::mechanism::{Design, MemberKind};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::StiffnessDefinition;
@@ -41,7 +41,7 @@ fn ends(solid: &Solid) -> (DVec3, DVec3) {
     }
 }
 
-fn report(model: &Model, design: &Design, position: DVec2, phi: f64) -> PoseReport {
+fn report(model: &Model, design: &Design, position: DVec2, phi: f64) -> PoseEvaluation {
     let pose = Pose { position, phi };
     model.pose(design, &pose).expect("reachable")
 }
@@ -195,13 +195,13 @@ fn bodies_are_drawn_where_they_are_looked_for() {
         assert!((mass - evaluation.mass).abs() < 1e-9 * mass);
         let shares = members
             .iter()
-            .flat_map(|report| [report.share, report.actuator])
+            .flat_map(|report| [report.fraction, report.actuator])
             .flatten();
-        let sum = shares.fold([0.0; 3], |sum: [f64; 3], share| {
+        let sum = shares.fold([0.0; 3], |sum: [f64; 3], fraction| {
             [
-                sum[0] + share.in_plane,
-                sum[1] + share.vertical,
-                sum[2] + share.rotation,
+                sum[0] + fraction.in_plane,
+                sum[1] + fraction.vertical,
+                sum[2] + fraction.rotation,
             ]
         });
         assert!(sum.iter().all(|sum| (sum - 1.0).abs() < 1e-9), "{design}: {sum:?}");
@@ -220,12 +220,12 @@ fn bodies_are_drawn_where_they_are_looked_for() {
 }
 
 /// Returns the value of a field, computed from the report of a pose.
-fn field_value(model: &Model, design: &Design, field: Field, report: &PoseReport) -> f64 {
+fn field_value(model: &Model, design: &Design, field: Field, report: &PoseEvaluation) -> f64 {
     match field {
         Field::InverseCondition => report.inverse_condition,
-        Field::StiffnessXy => report.rigidity.k_xy,
-        Field::StiffnessZ => report.rigidity.k_z,
-        Field::StiffnessPhiZ => report.rigidity.k_phi_z,
+        Field::StiffnessXy => report.stiffness_values.k_xy,
+        Field::StiffnessZ => report.stiffness_values.k_z,
+        Field::StiffnessPhiZ => report.stiffness_values.k_phi_z,
         Field::Determinant => report.determinant,
         Field::Clearance => report.clearance.distance,
         Field::Displacement => {
@@ -236,11 +236,11 @@ fn field_value(model: &Model, design: &Design, field: Field, report: &PoseReport
         Field::WorstMargin => {
             let t = &model.thresholds;
             [
-                report.slack / design.base_radius,
+                report.limit_margin / design.base_radius,
                 report.inverse_condition / t.inverse_condition - 1.0,
-                report.rigidity.k_xy / t.k_xy - 1.0,
-                report.rigidity.k_z / t.k_z - 1.0,
-                report.rigidity.k_phi_z / t.k_phi_z - 1.0,
+                report.stiffness_values.k_xy / t.k_xy - 1.0,
+                report.stiffness_values.k_z / t.k_z - 1.0,
+                report.stiffness_values.k_phi_z / t.k_phi_z - 1.0,
             ]
             .into_iter()
             .fold(f64::INFINITY, f64::min)
@@ -288,10 +288,10 @@ fn heatmaps_hold_the_values_of_their_poses_and_contours_lie_on_the_threshold() {
             }
             for edge in &heatmap.edges {
                 for &position in &edge.points {
-                    let slack = report(model, design, position, phi).slack;
+                    let limit_margin = report(model, design, position, phi).limit_margin;
                     assert!(
-                        (0.0..1e-9).contains(&slack),
-                        "{design}: the limit margin at an edge is {slack:e} m"
+                        (0.0..1e-9).contains(&limit_margin),
+                        "{design}: the limit margin at an edge is {limit_margin:e} m"
                     );
                 }
             }
@@ -384,7 +384,7 @@ fn a_displacement_matches_the_definition_by_compliance() {
     let model = Model::new(settings).expect("the grids fit");
     let heatmap = Heatmap::new(&model, &design, Field::Displacement, 0.5, HeatmapSettings { cells: 40 });
     for (&position, &value) in heatmap.vertices.iter().zip(&heatmap.values).step_by(11) {
-        let k_xy = report(&model, &design, position, 0.5).rigidity.k_xy;
+        let k_xy = report(&model, &design, position, 0.5).stiffness_values.k_xy;
         if k_xy > 1.0 {
             assert!((value * k_xy / model.in_plane_force - 1.0).abs() < 1e-6);
         }

@@ -292,27 +292,27 @@ fn an_occupied_run_folder_is_left_alone() {
 fn evaluate_and_pose_tell_the_nearest_bodies() {
     let free = json(["evaluate", "--design", DESIGN, "--json"]);
     let study = ["--study", "paper-without-collisions"];
-    let asked = json([&["evaluate", "--design", DESIGN, "--json"][..], &study].concat());
-    for found in [&free, &asked] {
+    let required = json([&["evaluate", "--design", DESIGN, "--json"][..], &study].concat());
+    for found in [&free, &required] {
         let clearance = found["clearance_m"].as_f64().expect("a number");
         let pair = found["clearance_pair"].as_array().expect("a pair");
         assert_eq!(pair.len(), 2);
         assert!(pair[0].as_str().expect("a name").starts_with("leg"), "{pair:?}");
         assert_eq!(clearance < 0.0, std::ptr::eq(found, &free), "{clearance}");
     }
-    let g7 = asked["constraints"].as_array().expect("a list").last().expect("g7");
+    let g7 = required["constraints"].as_array().expect("a list").last().expect("g7");
     assert_eq!(g7["id"], "g7");
     assert_eq!(g7["threshold"], 0.005);
-    assert_eq!(g7["value"], asked["clearance_m"]);
+    assert_eq!(g7["value"], required["clearance_m"]);
     assert!(g7["margin"].as_f64().expect("a number") >= 0.0);
     assert!(g7["pose"]["phi_deg"].is_number());
-    assert!(asked["workspace_radius_m"].as_f64() < free["workspace_radius_m"].as_f64());
+    assert!(required["workspace_radius_m"].as_f64() < free["workspace_radius_m"].as_f64());
 
     // At the pose with the smallest clearance, `pose` reports the same clearance.
     let pose = &g7["pose"];
     let text = format!("x={} y={} phi_deg={}", pose["x_m"], pose["y_m"], pose["phi_deg"]);
     let at = json(["pose", "--design", DESIGN, "--pose", &text, "--json"]);
-    assert_eq!(at["clearance_pair"], asked["clearance_pair"]);
+    assert_eq!(at["clearance_pair"], required["clearance_pair"]);
     let difference = at["clearance_m"].as_f64().expect("a number") - g7["value"].as_f64().expect("a number");
     assert!(difference.abs() < 1e-9, "{difference}");
     let nowhere = json(["pose", "--design", DESIGN, "--pose", "x=9 y=0 phi_deg=0", "--json"]);

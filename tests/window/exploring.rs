@@ -29,12 +29,12 @@ fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_re
     let id = session.front()[session.front().len() / 3].id;
     let at = window.state().scatter_position(id).expect("a position in the scatter");
     click_at(&mut window, at);
-    let chosen = window.state().session().document().chosen.clone().expect("a design");
-    assert_eq!(chosen.origin, Origin::Evaluated(id));
+    let selected = window.state().session().document().selected.clone().expect("a design");
+    assert_eq!(selected.origin, Origin::Evaluated(id));
     until(&mut window, "the design is verified", |explorer| {
         explorer.session().known().is_some_and(|known| known.verified) && explorer.session().is_drawn()
     });
-    let heading = format!("{} #{id}", chosen.design.architecture);
+    let heading = format!("{} #{id}", selected.design.architecture);
     assert!(
         window.query_by_label(&heading).is_some(),
         "the inspector shows {heading}"
@@ -48,23 +48,23 @@ fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_re
 
     set_slider(&mut window, "R", 2.0);
     let session = window.state().session();
-    let changed = session.document().chosen.clone().expect("a design");
-    assert_eq!(changed.origin, Origin::WhatIf { from: Some(id) });
+    let changed = session.document().selected.clone().expect("a design");
+    assert_eq!(changed.origin, Origin::Modified { from: Some(id) });
     assert_eq!(changed.design.base_radius, 2.0);
     assert!(window.query_by_label("modified design").is_some());
     until(&mut window, "the modified design is evaluated", |explorer| {
         explorer.session().known().is_some()
     });
-    let what_if = window.state().session().known().expect("known").evaluation.clone();
-    assert_ne!(what_if.mass, 0.0);
-    assert_eq!(what_if.design, changed.design);
+    let modify = window.state().session().known().expect("known").evaluation.clone();
+    assert_ne!(modify.mass, 0.0);
+    assert_eq!(modify.design, changed.design);
 
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     window.run_steps(3);
-    assert_eq!(window.state().session().document().chosen, Some(chosen));
+    assert_eq!(window.state().session().document().selected, Some(selected));
     window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     window.run_steps(3);
-    assert_eq!(window.state().session().document().chosen, Some(changed));
+    assert_eq!(window.state().session().document().selected, Some(changed));
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn arrow_keys_walk_along_the_lit_front_and_p_pins() {
         .state()
         .session()
         .document()
-        .chosen
+        .selected
         .as_ref()
         .map(|c| c.origin.clone())
     {
@@ -178,14 +178,14 @@ fn one_filter_holds_everywhere() {
     window.run_steps(2);
     let session = window.state().session();
     let sieve = session.document().filter.sieve(session.store());
-    let lit = (0..session.store().len()).filter(|&id| sieve.passes(id)).count();
+    let passes_filter = (0..session.store().len()).filter(|&id| sieve.passes(id)).count();
     let inside = session
         .store()
         .column(Quantity::Radius)
         .iter()
         .filter(|r| (low..=high).contains(*r))
         .count();
-    assert_eq!(lit, inside);
+    assert_eq!(passes_filter, inside);
     assert!(inside > 0 && inside < session.store().len());
 }
 
@@ -202,7 +202,7 @@ fn the_platform_stops_at_its_limits_and_says_which() {
     let session = window.state().session();
     let (pose, design) = (
         session.pose().expect("a pose"),
-        session.document().chosen.as_ref().expect("a design").design,
+        session.document().selected.as_ref().expect("a design").design,
     );
     assert!(pose.position.x > 0.0);
     assert!(session.model().pose(&design, &pose).is_ok());
@@ -226,8 +226,8 @@ fn pointing_at_a_bar_tells_what_it_is() {
         let at = 0.5 * (report.from + report.to).truncate();
         members.iter().all(|other| {
             let (from, way) = (other.from.truncate(), (other.to - other.from).truncate());
-            let share = ((at - from).dot(way) / way.length_squared()).clamp(0.0, 1.0);
-            other.member == report.member || at.distance(from + way * share) > 0.05 * design.base_radius
+            let fraction = ((at - from).dot(way) / way.length_squared()).clamp(0.0, 1.0);
+            other.member == report.member || at.distance(from + way * fraction) > 0.05 * design.base_radius
         })
     };
     let report = members
@@ -252,10 +252,10 @@ fn pointing_at_a_bar_tells_what_it_is() {
     window.get_by_label(&name);
     let mass = format!("mass {} kg", kinefront::text::number(report.mass));
     window.get_by_label(&mass);
-    let share = report.share.expect("a stiff design");
+    let fraction = report.fraction.expect("a stiff design");
     let words = format!(
         "contribution to the compliance at this pose: {:.1} % in the plane",
-        100.0 * share.in_plane
+        100.0 * fraction.in_plane
     );
     assert!(window.query_all_by_label_contains(&words).count() > 0, "{words}");
     window.hover_at(view.left_top() + egui::vec2(3.0, 3.0));

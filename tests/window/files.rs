@@ -151,13 +151,13 @@ fn the_front_is_exported_with_stars_and_notes() {
     let mut window = opened_window();
     window.key_press(Key::S);
     window.run_steps(2);
-    let chosen = match window
+    let selected = match window
         .state()
         .session()
         .document()
-        .chosen
+        .selected
         .as_ref()
-        .map(|chosen| chosen.origin.clone())
+        .map(|selected| selected.origin.clone())
     {
         Some(Origin::Evaluated(id)) => id,
         other => panic!("{other:?}"),
@@ -177,7 +177,7 @@ fn the_front_is_exported_with_stars_and_notes() {
     assert_eq!(rows.len(), window.state().session().front().len());
     let stars: Vec<&csv::StringRecord> = rows.iter().filter(|row| &row[starred] == "true").collect();
     assert_eq!(stars.len(), 1);
-    assert_eq!(stars[0][0], chosen.to_string());
+    assert_eq!(stars[0][0], selected.to_string());
 }
 
 /// The selected design is exported in every format, and the front as Parquet: the files are complete and begin
@@ -235,7 +235,7 @@ fn a_design_is_copied_and_pasted_as_text() {
         .state()
         .session()
         .document()
-        .chosen
+        .selected
         .as_ref()
         .expect("a design")
         .design;
@@ -253,9 +253,9 @@ fn a_design_is_copied_and_pasted_as_text() {
     assert_eq!(copied, Some(design.to_string()));
     window.event(egui::Event::Paste("3-RPR R=2 r=0.5 Lb=2 rj=0.03 rp=0.04".to_owned()));
     window.run_steps(2);
-    let chosen = window.state().session().document().chosen.clone().expect("a design");
-    assert_eq!(chosen.origin, Origin::WhatIf { from: None });
-    assert_eq!(chosen.design.architecture.name(), "3-RPR");
+    let selected = window.state().session().document().selected.clone().expect("a design");
+    assert_eq!(selected.origin, Origin::Modified { from: None });
+    assert_eq!(selected.design.architecture.name(), "3-RPR");
     window.event(egui::Event::Paste("3-RPR R=two".to_owned()));
     window.run_steps(2);
     let notices = &window.state().session().notices;
@@ -265,7 +265,7 @@ fn a_design_is_copied_and_pasted_as_text() {
             .any(|notice| notice.is_error && notice.text.contains("`two` is not a number")),
         "{notices:?}"
     );
-    assert_eq!(window.state().session().document().chosen, Some(chosen));
+    assert_eq!(window.state().session().document().selected, Some(selected));
 }
 
 #[derive(Debug)]

@@ -18,7 +18,7 @@ fn session() -> Session {
         session.choose(front[place]);
         session.toggle_pin();
     }
-    session.choose_knee();
+    session.select_knee();
     session.toggle_star();
     session.history.edit(|document| {
         document.notes.insert(front[1], "the one to build".to_owned());

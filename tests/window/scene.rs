@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
-use kinefront::recording::{Layers, LiveScene, Picked, Pinned, Shown};
+use kinefront::recording::{LiveScene, Picked, Pinned, Shown, VisibleLayers};
 use kinefront::scene::EllipsoidKind;
 use kinefront::study::BUILTIN;
 use kinefront_model::evaluation::{GridChoice, Model};
@@ -73,11 +73,11 @@ fn what_is_no_longer_drawn_disappears() {
         &design("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"),
         GridChoice::Reference,
     );
-    let mut layers = Layers {
+    let mut layers = VisibleLayers {
         ellipsoids: Some(EllipsoidKind::Stiffness),
-        ..Layers::default()
+        ..VisibleLayers::default()
     };
-    let show = |scene: &mut LiveScene, layers: &Layers| {
+    let show = |scene: &mut LiveScene, layers: &VisibleLayers| {
         let shown = Shown {
             model: &model,
             evaluation: &evaluation,

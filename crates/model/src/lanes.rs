@@ -30,20 +30,20 @@ pub trait Real:
     /// Compares `self > other`; false if either is NaN.
     fn exceeds(self, other: Self) -> Self::Mask;
     /// Selects `self` in the lanes where the mask is set and `other` in the rest.
-    fn where_set(self, mask: Self::Mask, other: Self) -> Self;
+    fn select(self, mask: Self::Mask, other: Self) -> Self;
     /// Returns whether the mask is set in any lane.
     fn any(mask: Self::Mask) -> bool;
 
     /// Returns the smaller of two numbers, or `other` if either is NaN.
     #[inline(always)]
     fn smaller(self, other: Self) -> Self {
-        self.where_set(other.exceeds(self), other)
+        self.select(other.exceeds(self), other)
     }
 
     /// Returns the larger of two numbers, or `other` if either is NaN.
     #[inline(always)]
     fn larger(self, other: Self) -> Self {
-        self.where_set(self.exceeds(other), other)
+        self.select(self.exceeds(other), other)
     }
 }
 
@@ -76,7 +76,7 @@ impl Real for f64 {
     }
 
     #[inline(always)]
-    fn where_set(self, mask: bool, other: Self) -> Self {
+    fn select(self, mask: bool, other: Self) -> Self {
         if mask { self } else { other }
     }
 
@@ -171,7 +171,7 @@ pub(crate) struct LaneMask<S: Simd> {
 impl<S: Simd> Lanes<S> {
     /// Number of lanes.
     pub(crate) const COUNT: usize = {
-        assert!(REGISTERS * S::F64_LANES <= MOST_LANES);
+        assert!(REGISTERS * S::F64_LANES <= MAX_LANES);
         REGISTERS * S::F64_LANES
     };
 
@@ -216,7 +216,7 @@ impl<S: Simd> Lanes<S> {
 impl<S: Simd> LaneMask<S> {
     /// Returns the number of lanes before the first lane that is not set.
     #[inline(always)]
-    pub(crate) fn leading(self) -> usize {
+    pub(crate) fn count_leading_set(self) -> usize {
         self.bits().trailing_ones() as usize
     }
 
@@ -332,7 +332,7 @@ impl<S: Simd> Real for Lanes<S> {
     }
 
     #[inline(always)]
-    fn where_set(self, mask: LaneMask<S>, other: Self) -> Self {
+    fn select(self, mask: LaneMask<S>, other: Self) -> Self {
         let (simd, mask, a, b) = (self.simd, mask.registers, self.registers, other.registers);
         Self {
             simd,
@@ -350,11 +350,11 @@ impl<S: Simd> Real for Lanes<S> {
 }
 
 /// Largest number of lanes of any instruction set; columns of poses are padded to a multiple of it.
-pub const MOST_LANES: usize = 16;
+pub const MAX_LANES: usize = 16;
 
-/// Returns `count` rounded up to a multiple of [`MOST_LANES`].
-pub fn padded(count: usize) -> usize {
-    count.next_multiple_of(MOST_LANES)
+/// Returns `count` rounded up to a multiple of [`MAX_LANES`].
+pub fn padded_length(count: usize) -> usize {
+    count.next_multiple_of(MAX_LANES)
 }
 
 /// An instruction set that this processor supports.

@@ -56,8 +56,12 @@ impl Pose {
 /// 0 at `from`, 1 at `to`, and 0 if the ends coincide.
 pub fn nearest_on_segment(at: DVec2, from: DVec2, to: DVec2) -> f64 {
     let way = to - from;
-    let share = (at - from).dot(way) / way.length_squared();
-    if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
+    let fraction = (at - from).dot(way) / way.length_squared();
+    if fraction.is_finite() {
+        fraction.clamp(0.0, 1.0)
+    } else {
+        0.0
+    }
 }
 
 /// Returns the planar cross product, which is the z component of `a × b`.
@@ -103,7 +107,7 @@ pub fn smaller_eigenvalue<V: Real>(xx: V, xy: V, yy: V) -> V {
     let root = (half_gap * half_gap + xy * xy).sqrt();
     let larger = half_trace + root;
     // The quotient det/larger, unlike the difference, suffers no cancellation if the matrix is nearly singular.
-    ((xx * yy - xy * xy) / larger).where_set(larger.exceeds(xx.splat(0.0)), half_trace - root)
+    ((xx * yy - xy * xy) / larger).select(larger.exceeds(xx.splat(0.0)), half_trace - root)
 }
 
 impl std::str::FromStr for Pose {

@@ -6,7 +6,7 @@ use super::Evaluated;
 
 /// A member of the archive.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Member {
+pub struct ArchiveMember {
     /// Number of its evaluation, counted from 0.
     pub id: usize,
     /// Values of its variables.
@@ -16,16 +16,16 @@ pub struct Member {
 }
 
 /// Non-dominated feasible candidates in ascending order of the first objective, which makes the second objective
-/// strictly descending. The archive dereferences to a slice of its [`Member`]s.
+/// strictly descending. The archive dereferences to a slice of its [`ArchiveMember`]s.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Archive {
-    members: Vec<Member>,
+    members: Vec<ArchiveMember>,
 }
 
 impl Deref for Archive {
-    type Target = [Member];
+    type Target = [ArchiveMember];
 
-    fn deref(&self) -> &[Member] {
+    fn deref(&self) -> &[ArchiveMember] {
         &self.members
     }
 }
@@ -54,7 +54,7 @@ impl Archive {
             .iter()
             .take_while(|member| member.objectives[1] >= second)
             .count();
-        let member = Member {
+        let member = ArchiveMember {
             id,
             x: candidate.x.clone(),
             objectives: [first, second],

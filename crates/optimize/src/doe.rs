@@ -26,10 +26,10 @@ pub fn sobol(variables: &[Variable], count: usize, seed: u64) -> Vec<Vec<f64>> {
                 .iter()
                 .zip(0u32..)
                 .map(|(variable, dimension)| {
-                    let share = f64::from(sobol_burley::sample(index, dimension, seed));
+                    let fraction = f64::from(sobol_burley::sample(index, dimension, seed));
                     match *variable {
-                        Variable::Real { lower, upper } => lower + share * (upper - lower),
-                        Variable::Categorical { choices } => (share * choices as f64).floor(),
+                        Variable::Real { lower, upper } => lower + fraction * (upper - lower),
+                        Variable::Categorical { choices } => (fraction * choices as f64).floor(),
                     }
                 })
                 .collect()

@@ -18,10 +18,10 @@
 //! - **Crossover**: where differences do not help (many local fronts, separable variables), simulated binary crossover
 //!   and polynomial mutation do. The probability of each of the two operators follows its recent success.
 
-use super::population::{Member, best, ranked, tournament};
+use super::population::{Individual, best, ranked, tournament};
 use super::random::Random;
 use super::variation::{cross, mutate};
-use super::{Aim, Algorithm, Archive, Candidate, Evaluated, Variable, doe};
+use super::{Algorithm, Archive, Candidate, Evaluated, Target, Variable, doe};
 
 /// Parameters of [`FrontDe`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -62,7 +62,7 @@ impl Default for FrontDeSettings {
 }
 
 /// Smallest probability with which a niche, or one of the two operators, is drawn for a candidate.
-const LEAST_SHARE: f64 = 0.03;
+const MIN_PROBABILITY: f64 = 0.03;
 
 /// Weight of one candidate in the exponential moving averages of the success of its niche and of its operator.
 const MEMORY: f64 = 0.02;
@@ -84,7 +84,7 @@ pub struct FrontDe {
     ways: [Success; 2],
     /// Niche and operator of each candidate of the current generation; `None` for a candidate drawn without an
     /// operator.
-    asked: Vec<(usize, Option<usize>)>,
+    pending: Vec<(usize, Option<usize>)>,
     archive: Archive,
     evaluated: usize,
 }
@@ -107,7 +107,7 @@ struct Niche {
     /// Values of the categorical variables, in the order of the variables.
     categories: Vec<f64>,
     /// Members in the order of the front: feasible members by the first objective, then infeasible ones by violation.
-    population: Vec<Member>,
+    population: Vec<Individual>,
     evaluated: usize,
     success: Success,
 }
@@ -131,7 +131,7 @@ impl FrontDe {
             seed,
             niches,
             ways: [Success::UNKNOWN; 2],
-            asked: Vec::new(),
+            pending: Vec::new(),
             archive: Archive::default(),
             evaluated: 0,
         }
@@ -143,22 +143,22 @@ impl FrontDe {
         let mut sample = doe::sobol(&self.variables, count, self.seed);
         for (index, x) in sample.iter_mut().enumerate() {
             let niche = index % self.niches.len();
-            self.asked.push((niche, None));
+            self.pending.push((niche, None));
             set_categories(&self.variables, x, &self.niches[niche].categories);
         }
-        let aim = Some(Aim::Best);
-        sample.into_iter().map(|x| Candidate { x, aim }).collect()
+        let target = Some(Target::Best);
+        sample.into_iter().map(|x| Candidate { x, target }).collect()
     }
 
-    /// Draws an index with a probability in proportion to the success, but at least [`LEAST_SHARE`] for each.
+    /// Draws an index with a probability in proportion to the success, but at least [`MIN_PROBABILITY`] for each.
     fn draw(&mut self, successes: &[Success]) -> usize {
         let sum: f64 = successes.iter().map(|success| success.0).sum();
         let count = successes.len();
-        let least = LEAST_SHARE.min(1.0 / count as f64);
+        let least = MIN_PROBABILITY.min(1.0 / count as f64);
         let mut draw = self.random.uniform();
         for (index, success) in successes.iter().enumerate() {
-            let share = if sum > 0.0 { success.0 / sum } else { 1.0 / count as f64 };
-            draw -= least + (1.0 - count as f64 * least) * share;
+            let fraction = if sum > 0.0 { success.0 / sum } else { 1.0 / count as f64 };
+            draw -= least + (1.0 - count as f64 * least) * fraction;
             if draw < 0.0 {
                 return index;
             }
@@ -170,29 +170,32 @@ impl FrontDe {
         let successes: Vec<Success> = self.niches.iter().map(|niche| niche.success).collect();
         let niche = self.draw(&successes);
         if self.niches[niche].population.len() < 4 {
-            self.asked.push((niche, None));
-            return self.anywhere(niche);
+            self.pending.push((niche, None));
+            return self.random_candidate(niche);
         }
         let ways = self.ways;
         let way = self.draw(&ways);
-        self.asked.push((niche, Some(way)));
+        self.pending.push((niche, Some(way)));
         let size = self.niches[niche].population.len();
         let place = self.random.below(size);
-        let aims_at_best = self.random.chance(self.settings.best);
+        let targets_best = self.random.chance(self.settings.best);
         let (x, level) = if way == 0 {
             self.difference(niche, place)
         } else {
             self.crossed(niche)
         };
-        let aim = match level {
-            Some(level) if !aims_at_best => Aim::Level(level),
-            _ => Aim::Best,
+        let target = match level {
+            Some(level) if !targets_best => Target::Level(level),
+            _ => Target::Best,
         };
-        Candidate { x, aim: Some(aim) }
+        Candidate {
+            x,
+            target: Some(target),
+        }
     }
 
     /// Returns a uniformly distributed random candidate of a niche.
-    fn anywhere(&mut self, niche: usize) -> Candidate {
+    fn random_candidate(&mut self, niche: usize) -> Candidate {
         let mut x: Vec<f64> = self
             .variables
             .iter()
@@ -204,7 +207,7 @@ impl FrontDe {
         set_categories(&self.variables, &mut x, &self.niches[niche].categories);
         Candidate {
             x,
-            aim: Some(Aim::Best),
+            target: Some(Target::Best),
         }
     }
 
@@ -281,7 +284,7 @@ impl FrontDe {
 
 impl Algorithm for FrontDe {
     fn ask(&mut self) -> Vec<Candidate> {
-        self.asked.clear();
+        self.pending.clear();
         if self.evaluated == 0 {
             return self.sample();
         }
@@ -290,7 +293,7 @@ impl Algorithm for FrontDe {
 
     fn tell(&mut self, evaluated: Vec<Evaluated>) {
         let mut offspring: Vec<Vec<Evaluated>> = vec![Vec::new(); self.niches.len()];
-        for (candidate, &(niche, way)) in evaluated.into_iter().zip(&self.asked) {
+        for (candidate, &(niche, way)) in evaluated.into_iter().zip(&self.pending) {
             let reached = self.archive.insert(self.evaluated, &candidate);
             self.evaluated += 1;
             self.niches[niche].evaluated += 1;
@@ -343,10 +346,10 @@ fn set_categories(variables: &[Variable], x: &mut [f64], categories: &[f64]) {
 
 /// Ranks the candidates and sorts them along the front: feasible ones by the first objective, then infeasible ones by
 /// violation.
-fn along_front(candidates: Vec<Evaluated>) -> Vec<Member> {
+fn along_front(candidates: Vec<Evaluated>) -> Vec<Individual> {
     let mut members = ranked(candidates);
     members.sort_by(|a, b| {
-        let key = |member: &Member| {
+        let key = |member: &Individual| {
             let outcome = &member.candidate.outcome;
             (outcome.violation.max(0.0), outcome.objectives[0])
         };

@@ -25,7 +25,6 @@
 //! ```
 
 mod archive;
-mod choice;
 mod doe;
 mod dominance;
 mod front_de;
@@ -35,14 +34,15 @@ mod nsga2;
 mod population;
 mod problem;
 mod random;
+mod selection;
 mod variation;
 
-pub use archive::{Archive, Member};
-pub use choice::{groups, knee, ranking, spread};
+pub use archive::{Archive, ArchiveMember};
 pub use doe::sobol;
 pub use dominance::{Relation, compare, crowding_distances, non_dominated_ranks};
 pub use front_de::{FrontDe, FrontDeSettings};
 pub use hypervolume::hypervolume;
 pub use moga2::{Moga2, Moga2Settings};
 pub use nsga2::{Nsga2, Nsga2Settings};
-pub use problem::{Aim, Algorithm, Candidate, Evaluated, Outcome, Problem, Variable, drive};
+pub use problem::{Algorithm, Candidate, Evaluated, Outcome, Problem, Target, Variable, run};
+pub use selection::{groups, knee, ranking, spread};

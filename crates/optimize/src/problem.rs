@@ -37,7 +37,7 @@ impl Outcome {
 
 /// Target that a candidate is completed for before it is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Aim {
+pub enum Target {
     /// The smallest first objective for which the second objective is at most this level.
     Level(f64),
     /// The smallest first objective for which the second objective is the best attainable.
@@ -50,12 +50,12 @@ pub struct Candidate {
     /// One value per variable.
     pub x: Vec<f64>,
     /// Target that the problem may complete the candidate for; `None` if it is to be evaluated unchanged.
-    pub aim: Option<Aim>,
+    pub target: Option<Target>,
 }
 
 impl From<Vec<f64>> for Candidate {
     fn from(x: Vec<f64>) -> Self {
-        Self { x, aim: None }
+        Self { x, target: None }
     }
 }
 
@@ -82,16 +82,16 @@ pub trait Problem: Sync {
     /// With this function a problem exposes its structure: some variables may be the solution of a cheaper subproblem.
     /// Bars, for example, must carry the load that the other variables imply and are best as thin as that load allows.
     /// The function is not an evaluation and need not be exact: the completed candidate is evaluated like any other.
-    fn complete(&self, x: &[f64], aim: Aim) -> Option<Vec<f64>> {
-        let _ = (x, aim);
+    fn complete(&self, x: &[f64], target: Target) -> Option<Vec<f64>> {
+        let _ = (x, target);
         None
     }
 
     /// Returns the values at which a candidate is evaluated: the completed ones, or its own if it cannot be completed.
     fn completed(&self, candidate: Candidate) -> Vec<f64> {
         candidate
-            .aim
-            .and_then(|aim| self.complete(&candidate.x, aim))
+            .target
+            .and_then(|target| self.complete(&candidate.x, target))
             .unwrap_or(candidate.x)
     }
 }
@@ -108,7 +108,7 @@ pub trait Algorithm: Send {
 
 /// Runs `algorithm` on `problem` for `evaluations` evaluations in the current thread and returns the archive of the
 /// non-dominated feasible candidates.
-pub fn drive(problem: &impl Problem, algorithm: &mut (impl Algorithm + ?Sized), evaluations: usize) -> Archive {
+pub fn run(problem: &impl Problem, algorithm: &mut (impl Algorithm + ?Sized), evaluations: usize) -> Archive {
     let mut archive = Archive::default();
     let mut done = 0;
     while done < evaluations {

@@ -1,9 +1,9 @@
 //! Tests of dominance, the archive, the hypervolume and the algorithms on problems with known fronts.
 
 use kinefront_optimize::{
-    Aim, Algorithm, Archive, Candidate, Evaluated, FrontDe, FrontDeSettings, Moga2, Moga2Settings, Nsga2,
-    Nsga2Settings, Outcome, Problem, Relation, Variable, compare, crowding_distances, drive, hypervolume,
-    non_dominated_ranks, sobol,
+    Algorithm, Archive, Candidate, Evaluated, FrontDe, FrontDeSettings, Moga2, Moga2Settings, Nsga2, Nsga2Settings,
+    Outcome, Problem, Relation, Target, Variable, compare, crowding_distances, hypervolume, non_dominated_ranks, run,
+    sobol,
 };
 use proptest::prelude::*;
 
@@ -29,17 +29,17 @@ impl Problem for Mixed {
 
 #[test]
 fn every_choice_finds_its_part_of_the_front() {
-    let nsga2 = drive(
+    let nsga2 = run(
         &Mixed,
         &mut Nsga2::new(Mixed.variables(), Nsga2Settings::default(), 3),
         6000,
     );
-    let moga2 = drive(
+    let moga2 = run(
         &Mixed,
         &mut Moga2::new(Mixed.variables(), Moga2Settings::default(), 3),
         6000,
     );
-    let front_de = drive(
+    let front_de = run(
         &Mixed,
         &mut FrontDe::new(Mixed.variables(), FrontDeSettings::default(), 3),
         6000,
@@ -70,10 +70,10 @@ impl Problem for Structured {
         }
     }
 
-    fn complete(&self, x: &[f64], aim: Aim) -> Option<Vec<f64>> {
-        let first = match aim {
-            Aim::Level(level) => (1.0 - level).clamp(0.0, 1.0).sqrt(),
-            Aim::Best => x[0],
+    fn complete(&self, x: &[f64], target: Target) -> Option<Vec<f64>> {
+        let first = match target {
+            Target::Level(level) => (1.0 - level).clamp(0.0, 1.0).sqrt(),
+            Target::Best => x[0],
         };
         Some(vec![first, 0.1 * first])
     }
@@ -82,7 +82,7 @@ impl Problem for Structured {
 #[test]
 fn structure_is_made_use_of() {
     let mut algorithm = FrontDe::new(Structured.variables(), FrontDeSettings::default(), 1);
-    let archive = drive(&Structured, &mut algorithm, 300);
+    let archive = run(&Structured, &mut algorithm, 300);
     assert!(archive.len() > 100);
     for member in archive.iter() {
         assert_eq!(
@@ -93,8 +93,8 @@ fn structure_is_made_use_of() {
     }
     let levels = (0..20)
         .flat_map(|_| algorithm.ask())
-        .filter_map(|candidate| match candidate.aim {
-            Some(Aim::Level(level)) => Some(level),
+        .filter_map(|candidate| match candidate.target {
+            Some(Target::Level(level)) => Some(level),
             _ => None,
         });
     let levels: Vec<f64> = levels.collect();

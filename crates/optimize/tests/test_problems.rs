@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use kinefront_optimize::{
-    Algorithm, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, Problem, Variable, drive, hypervolume,
+    Algorithm, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, Problem, Variable, hypervolume, run,
 };
 use rayon::prelude::*;
 
@@ -190,7 +190,7 @@ fn median(problem: &Formula, evaluations: usize, reference: [f64; 2], make: Make
     let mut volumes: Vec<f64> = (1..=11)
         .into_par_iter()
         .map(|seed| {
-            let archive = drive(problem, &mut *make(problem.variables(), seed), evaluations);
+            let archive = run(problem, &mut *make(problem.variables(), seed), evaluations);
             assert!(archive.iter().all(|member| problem.evaluate(&member.x).is_feasible()));
             hypervolume(archive.iter().map(|member| member.objectives), reference)
         })
@@ -212,11 +212,11 @@ fn reach(make: Make) {
     for problem in problems() {
         let theirs = &pymoo["problems"][problem.name];
         let reference = [0, 1].map(|k| theirs["reference"][k].as_f64().expect("a number"));
-        let share = median(&problem, evaluations, reference, make) / theirs["median"].as_f64().expect("a number");
-        println!("{:5} {share:.5}", problem.name);
+        let fraction = median(&problem, evaluations, reference, make) / theirs["median"].as_f64().expect("a number");
+        println!("{:5} {fraction:.5}", problem.name);
         let allowed = if problem.name == "osy" { 0.013 } else { 0.001 };
-        if share < 1.0 - allowed {
-            short.push(format!("{}: {share}", problem.name));
+        if fraction < 1.0 - allowed {
+            short.push(format!("{}: {fraction}", problem.name));
         }
     }
     assert!(

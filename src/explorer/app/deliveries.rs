@@ -9,7 +9,7 @@ use super::super::files::{self, Purpose};
 use super::Explorer;
 
 /// The file that a requested picture of the window is saved to; it accompanies the request.
-pub(super) struct Picture(pub(super) PathBuf);
+pub(super) struct PendingScreenshot(pub(super) PathBuf);
 
 impl Explorer {
     /// Opens dropped files, saves pictures that were taken of the window, and reports the results of file jobs.
@@ -27,7 +27,7 @@ impl Explorer {
         let pictures: Vec<(PathBuf, Arc<egui::ColorImage>)> = ctx.input(|input| {
             let taken = input.raw.events.iter().filter_map(|event| match event {
                 Event::Screenshot { user_data, image, .. } => {
-                    let Picture(path) = user_data.data.as_ref()?.downcast_ref()?;
+                    let PendingScreenshot(path) = user_data.data.as_ref()?.downcast_ref()?;
                     Some((path.clone(), Arc::clone(image)))
                 }
                 _ => None,
@@ -40,8 +40,8 @@ impl Explorer {
         while let Ok(ended) = self.ended.1.try_recv() {
             self.jobs -= 1;
             match ended {
-                Ok(words) => self.session.tell(words),
-                Err(words) => self.session.tell_error(words),
+                Ok(words) => self.session.notify(words),
+                Err(words) => self.session.notify_error(words),
             }
         }
     }

@@ -19,11 +19,11 @@ pub(super) fn layout() -> Tree<Panel> {
     let scene = tabs(&[Panel::Scene]);
     let below = tabs(&[Panel::Table, Panel::Parallel, Panel::Compare]);
     let design = tabs(&[Panel::Design, Panel::Choose]);
-    let pose = tabs(&[Panel::Pose, Panel::Layers]);
+    let pose = tabs(&[Panel::Pose, Panel::VisibleLayers]);
     let mut split = |direction: LinearDir, parts: &[(TileId, f32)]| {
         let mut linear = Linear::new(direction, parts.iter().map(|(tile, _)| *tile).collect());
-        for &(tile, share) in parts {
-            linear.shares.set_share(tile, share);
+        for &(tile, fraction) in parts {
+            linear.shares.set_share(tile, fraction);
         }
         tiles.insert_container(linear)
     };
@@ -40,7 +40,7 @@ pub(super) struct Drawing<'a> {
     pub(super) panels: &'a mut Panels,
     pub(super) viewer: Option<&'a mut Viewer>,
     pub(super) frame: &'a mut eframe::Frame,
-    pub(super) asked: Option<Purpose>,
+    pub(super) requested: Option<Purpose>,
 }
 
 impl egui_tiles::Behavior<Panel> for Drawing<'_> {
@@ -54,8 +54,8 @@ impl egui_tiles::Behavior<Panel> for Drawing<'_> {
         }
         egui::Frame::central_panel(ui.style()).inner_margin(6).show(ui, |ui| {
             ui.push_id(*panel, |ui| {
-                let asked = self.panels.ui(*panel, ui, self.session);
-                self.asked = self.asked.or(asked);
+                let requested = self.panels.ui(*panel, ui, self.session);
+                self.requested = self.requested.or(requested);
             });
         });
         UiResponse::None

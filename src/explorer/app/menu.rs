@@ -13,7 +13,7 @@ use crate::export::Format;
 impl Explorer {
     pub(super) fn menu(&mut self, ui: &mut Ui) {
         egui::MenuBar::new().ui(ui, |ui| {
-            let mut asked = None;
+            let mut requested = None;
             ui.menu_button("File", |ui| {
                 for (text, purpose) in [
                     ("Open… (Ctrl+O)", Purpose::Open),
@@ -27,13 +27,13 @@ impl Explorer {
                     ("Save picture…", Purpose::SavePicture),
                 ] {
                     if ui.button(text).clicked() {
-                        asked = Some(purpose);
+                        requested = Some(purpose);
                     }
                 }
                 ui.menu_button("Export design", |ui| {
                     for format in Format::ALL {
                         if ui.button(format!("{}…", format.title())).clicked() {
-                            asked = Some(Purpose::ExportDesign(format));
+                            requested = Some(Purpose::ExportDesign(format));
                         }
                     }
                 });
@@ -101,7 +101,7 @@ impl Explorer {
             if self.jobs > 0 {
                 ui.weak("writing a file…");
             }
-            if let Some(purpose) = asked {
+            if let Some(purpose) = requested {
                 self.ask(&ui.ctx().clone(), purpose);
             }
         });
@@ -114,7 +114,11 @@ impl Explorer {
                 if ui.small_button("×").clicked() {
                     away = Some(index);
                 }
-                let color = if notice.is_error { theme::BROKEN } else { theme::SOUND };
+                let color = if notice.is_error {
+                    theme::VIOLATED
+                } else {
+                    theme::SATISFIED
+                };
                 ui.colored_label(color, &notice.text);
             });
         }
@@ -126,15 +130,15 @@ impl Explorer {
     /// Shows a field for the path of the requested file, for systems without a file dialog. A choice made in a
     /// dialog is acted on as well.
     pub(super) fn path_field(&mut self, ui: &mut Ui) {
-        let chosen = self.dialog.as_ref().and_then(Dialog::choice);
-        if let Some((purpose, path)) = chosen {
+        let selected = self.dialog.as_ref().and_then(Dialog::choice);
+        if let Some((purpose, path)) = selected {
             self.dialog = None;
             if let Some(path) = path {
-                self.asked = None;
+                self.requested = None;
                 self.act(&ui.ctx().clone(), purpose, path);
             }
         }
-        let Some((purpose, mut path)) = self.asked.take() else {
+        let Some((purpose, mut path)) = self.requested.take() else {
             return;
         };
         let (mut open, mut done) = (true, false);
@@ -163,7 +167,7 @@ impl Explorer {
             self.dialog = None;
             self.act(&ui.ctx().clone(), purpose, PathBuf::from(path.trim()));
         } else if open && !ui.input(|input| input.key_pressed(Key::Escape)) {
-            self.asked = Some((purpose, path));
+            self.requested = Some((purpose, path));
         } else {
             self.dialog = None;
         }

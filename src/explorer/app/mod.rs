@@ -15,10 +15,10 @@ use egui::{Context, Ui, UserData, ViewportCommand};
 use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
-use self::deliveries::Picture;
+use self::deliveries::PendingScreenshot;
 use self::layout::{Drawing, layout};
 use super::files::{self, Dialog, Job, Purpose};
-use super::panels::scatter::{Axis, Scatter};
+use super::panels::scatter::{Scatter, ScatterAxis};
 use super::panels::{Panel, Panels};
 use super::viewer::Viewer;
 use super::{Phase, Script, Session, StudyEditor, theme};
@@ -26,7 +26,7 @@ use crate::study::Study;
 
 /// Content that the window opens with.
 #[derive(Debug, Clone)]
-pub enum Subject {
+pub enum InitialContent {
     /// A study, which is run at once if `start` is true.
     Study {
         /// The study.
@@ -44,7 +44,7 @@ pub enum Subject {
 #[derive(Serialize, Deserialize)]
 struct Remembered {
     tree: Tree<Panel>,
-    axes: [Axis; 2],
+    axes: [ScatterAxis; 2],
     recent: Vec<PathBuf>,
     dark: bool,
 }
@@ -70,7 +70,7 @@ pub struct Explorer {
     dark: bool,
     help: bool,
     /// Purpose of the requested file, and its path as typed so far. The system's dialog may be open as well.
-    asked: Option<(Purpose, String)>,
+    requested: Option<(Purpose, String)>,
     dialog: Option<Dialog>,
     /// Channel for the results of file jobs.
     ended: (Sender<Ended>, Receiver<Ended>),
@@ -86,13 +86,13 @@ impl Explorer {
     /// Returns an error if the graphics card cannot draw the viewer or if a thread cannot be started.
     pub fn new(
         cc: &eframe::CreationContext<'_>,
-        subject: Subject,
+        subject: InitialContent,
         script: Option<Script>,
         embedded: bool,
     ) -> Result<Self, Box<dyn std::error::Error + Send + Sync>> {
         let editor = match &subject {
-            Subject::Study { study, path, .. } => StudyEditor::new((**study).clone(), path.clone()),
-            Subject::Run(_) => StudyEditor::paper(),
+            InitialContent::Study { study, path, .. } => StudyEditor::new((**study).clone(), path.clone()),
+            InitialContent::Run(_) => StudyEditor::paper(),
         };
         let (viewer, scene) = if embedded {
             let (viewer, scene) = Viewer::new(cc, editor.study())?;
@@ -109,9 +109,9 @@ impl Explorer {
         let wake = Arc::new(move || ctx.request_repaint_after(Duration::from_millis(paced.load(Ordering::Relaxed))));
         let mut session = Session::new(editor, scene, wake)?;
         match &subject {
-            Subject::Study { start: true, .. } => session.start(),
-            Subject::Study { .. } => {}
-            Subject::Run(path) => session.open(path),
+            InitialContent::Study { start: true, .. } => session.start(),
+            InitialContent::Study { .. } => {}
+            InitialContent::Run(path) => session.open(path),
         }
         // A script starts from the default layout, axes and theme, not from those of an earlier session.
         let remembered: Option<Remembered> = cc
@@ -137,7 +137,7 @@ impl Explorer {
             recent,
             dark,
             help: false,
-            asked: None,
+            requested: None,
             dialog: None,
             ended: channel(),
             jobs: 0,
@@ -161,12 +161,12 @@ impl Explorer {
     }
 
     /// Returns the axes of the scatter.
-    pub fn scatter_axes(&self) -> [Axis; 2] {
+    pub fn scatter_axes(&self) -> [ScatterAxis; 2] {
         self.panels.scatter.axes()
     }
 
     /// Replaces the axes of the scatter and fits its view.
-    pub fn set_axes(&mut self, axes: [Axis; 2]) {
+    pub fn set_axes(&mut self, axes: [ScatterAxis; 2]) {
         self.panels.scatter = Scatter::new(axes);
     }
 
@@ -189,7 +189,7 @@ impl Explorer {
             self.recent.truncate(RECENT);
         }
         if purpose == Purpose::SavePicture {
-            ctx.send_viewport_cmd(ViewportCommand::Screenshot(UserData::new(Picture(path))));
+            ctx.send_viewport_cmd(ViewportCommand::Screenshot(UserData::new(PendingScreenshot(path))));
         } else if let Some(job) = files::act(&mut self.session, purpose, path) {
             self.begin(ctx, job);
         }
@@ -211,7 +211,7 @@ impl Explorer {
 
     fn ask(&mut self, ctx: &Context, purpose: Purpose) {
         let ctx = ctx.clone();
-        self.asked = Some((purpose, purpose.name().to_owned()));
+        self.requested = Some((purpose, purpose.name().to_owned()));
         self.dialog = Some(Dialog::open(purpose, move || ctx.request_repaint()));
     }
 }
@@ -251,10 +251,10 @@ impl eframe::App for Explorer {
                 panels: &mut self.panels,
                 viewer: self.viewer.as_mut(),
                 frame,
-                asked: None,
+                requested: None,
             };
             self.tree.ui(&mut drawing, ui);
-            if let Some(purpose) = drawing.asked {
+            if let Some(purpose) = drawing.requested {
                 self.ask(&ctx, purpose);
             }
         });
@@ -300,7 +300,7 @@ impl eframe::App for Explorer {
 ///
 /// # Errors
 /// Returns a message that says why the window cannot be opened and what would help.
-pub fn run(subject: Subject, script: Option<Script>) -> Result<(), String> {
+pub fn run(subject: InitialContent, script: Option<Script>) -> Result<(), String> {
     let headless =
         "`kinefront optimize --out run` runs a study without a window and writes a recording to view elsewhere";
     let display = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"];

@@ -60,7 +60,7 @@ impl Explorer {
             self.session.walk(-1);
         }
         if key(Key::K) {
-            self.session.choose_knee();
+            self.session.select_knee();
         }
         if key(Key::P) {
             self.session.toggle_pin();
@@ -103,8 +103,8 @@ impl Explorer {
             });
             (copied, pasted)
         });
-        if copied && let Some(chosen) = &self.session.document().chosen {
-            ctx.copy_text(chosen.design.to_string());
+        if copied && let Some(selected) = &self.session.document().selected {
+            ctx.copy_text(selected.design.to_string());
         }
         if let Some(text) = pasted {
             self.session.paste(&text);

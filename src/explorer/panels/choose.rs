@@ -36,7 +36,7 @@ pub enum FilterFile {
 impl ChoosePanel {
     /// Draws the panel. Returns the filter file that it requests, if any.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
-        let mut asked = None;
+        let mut requested = None;
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             ui.strong("Knee and extreme designs");
             ui.horizontal_wrapped(|ui| {
@@ -50,7 +50,7 @@ impl ChoosePanel {
                     .on_hover_text("the design beyond which a larger R_w costs much more mass (K)")
                     .clicked()
                 {
-                    session.choose_knee();
+                    session.select_knee();
                 }
                 if let Some((lightest, largest)) = ends {
                     if ui.button("Lightest").clicked() {
@@ -66,11 +66,11 @@ impl ChoosePanel {
             ui.separator();
             self.clusters(ui, session);
             ui.separator();
-            asked = filter(ui, session);
+            requested = filter(ui, session);
             ui.separator();
             kept(ui, session);
         });
-        asked
+        requested
     }
 
     fn weighted(&mut self, ui: &mut Ui, session: &mut Session) {
@@ -124,7 +124,7 @@ fn designs(ui: &mut Ui, session: &mut Session, ids: &[usize]) {
 }
 
 fn filter(ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
-    let mut asked = None;
+    let mut requested = None;
     ui.strong("Filter");
     let mut edited: Filter = session.document().filter.clone();
     ui.checkbox(&mut edited.feasible_only, "feasible only");
@@ -179,13 +179,13 @@ fn filter(ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
             ui.ctx().copy_text(session.document().filter.to_text());
         }
         if ui.button("Save filter…").clicked() {
-            asked = Some(FilterFile::Save);
+            requested = Some(FilterFile::Save);
         }
         if ui.button("Open filter…").clicked() {
-            asked = Some(FilterFile::Open);
+            requested = Some(FilterFile::Open);
         }
     });
-    asked
+    requested
 }
 
 fn kept(ui: &mut Ui, session: &mut Session) {
@@ -196,7 +196,7 @@ fn kept(ui: &mut Ui, session: &mut Session) {
     }
     for named in &kept {
         if ui.link(format!("{}: {}", named.name, named.design)).clicked() {
-            session.choose_named(named);
+            session.select_named(named);
         }
     }
 }

@@ -4,7 +4,7 @@ use egui::{Color32, Grid, RichText, ScrollArea, Ui};
 
 use crate::explorer::{Session, theme};
 use kinefront_model::evaluation::{Constraint, Evaluation};
-use kinefront_model::mechanism::VARIABLES;
+use kinefront_model::mechanism::DESIGN_VARIABLES;
 
 /// The panel that compares the pinned designs.
 #[derive(Default)]
@@ -68,11 +68,11 @@ impl ComparePanel {
                         each(|e| 1e3 * e.workspace_radius / e.mass.max(1e-9)),
                         Some(Best::Largest),
                     );
-                    for (index, variable) in VARIABLES.into_iter().enumerate() {
+                    for (index, variable) in DESIGN_VARIABLES.into_iter().enumerate() {
                         let values = pins.iter().map(|pin| Some(pin.design.values()[index])).collect();
                         row(ui, &format!("{} [m]", variable.symbol()), values, None);
                     }
-                    for constraint in Constraint::asked(&session.model().thresholds) {
+                    for constraint in Constraint::required(&session.model().thresholds) {
                         let margins = evaluations
                             .iter()
                             .map(|e| e.as_ref().map(|e| e.constraint(constraint).margin))
@@ -91,7 +91,7 @@ impl ComparePanel {
                 });
         });
         if let Some(index) = choose {
-            session.choose_named(&pins[index]);
+            session.select_named(&pins[index]);
         }
         if let Some(index) = lift {
             session.history.edit(|document| drop(document.pins.remove(index)));
@@ -117,7 +117,7 @@ fn row(ui: &mut Ui, name: &str, values: Vec<Option<f64>>, best: Option<Best>) {
         let text = value.map_or_else(|| "…".to_owned(), theme::number);
         let text = RichText::new(text).monospace();
         let text = if several && value.is_some() && value == target {
-            text.color(theme::SOUND).strong()
+            text.color(theme::SATISFIED).strong()
         } else {
             text.color(Color32::PLACEHOLDER)
         };

@@ -4,8 +4,8 @@ use crate::text;
 use egui::{Color32, Grid, ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo, WidgetType};
 
 use crate::explorer::{Known, Session, theme};
-use kinefront_model::evaluation::ConstraintReport;
-use kinefront_model::mechanism::VARIABLES;
+use kinefront_model::evaluation::ConstraintResult;
+use kinefront_model::mechanism::DESIGN_VARIABLES;
 
 /// The inspector panel.
 #[derive(Default)]
@@ -14,13 +14,13 @@ pub struct Inspector;
 impl Inspector {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        let Some(chosen) = session.document().chosen.clone() else {
+        let Some(selected) = session.document().selected.clone() else {
             ui.weak("Click a design in the scatter, or step along the front with the arrow keys.");
             return;
         };
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             heading(ui, session);
-            sliders(ui, session, &chosen.design.values());
+            sliders(ui, session, &selected.design.values());
             ui.separator();
             match session.known().cloned() {
                 Some(known) => {
@@ -37,14 +37,14 @@ impl Inspector {
 }
 
 fn heading(ui: &mut Ui, session: &mut Session) {
-    let name = session.chosen_name().unwrap_or_default();
-    let Some(chosen) = session.document().chosen.clone() else {
+    let name = session.selected_name().unwrap_or_default();
+    let Some(selected) = session.document().selected.clone() else {
         return;
     };
     ui.horizontal_wrapped(|ui| {
-        ui.heading(format!("{} {name}", chosen.design.architecture));
-        if session.is_what_if() {
-            ui.colored_label(theme::WHAT_IF, "modified design");
+        ui.heading(format!("{} {name}", selected.design.architecture));
+        if session.is_modified() {
+            ui.colored_label(theme::MODIFIED, "modified design");
             if ui
                 .button("Keep")
                 .on_hover_text("adds the modified design to the kept designs")
@@ -55,7 +55,7 @@ fn heading(ui: &mut Ui, session: &mut Session) {
         }
     });
     ui.horizontal_wrapped(|ui| {
-        let pinned = session.document().pins.iter().any(|pin| pin.design == chosen.design);
+        let pinned = session.document().pins.iter().any(|pin| pin.design == selected.design);
         if ui
             .selectable_label(pinned, "📌 Pin")
             .on_hover_text("pin this design to compare it; up to four designs (P)")
@@ -68,9 +68,9 @@ fn heading(ui: &mut Ui, session: &mut Session) {
             .on_hover_text("copy the design as text (Ctrl+C)")
             .clicked()
         {
-            ui.ctx().copy_text(chosen.design.to_string());
+            ui.ctx().copy_text(selected.design.to_string());
         }
-        if let crate::explorer::Origin::Evaluated(id) = chosen.origin {
+        if let crate::explorer::Origin::Evaluated(id) = selected.origin {
             let starred = session.document().stars.contains(&id);
             if ui
                 .selectable_label(starred, if starred { "★" } else { "☆" })
@@ -101,7 +101,7 @@ fn heading(ui: &mut Ui, session: &mut Session) {
 
 fn sliders(ui: &mut Ui, session: &mut Session, values: &[f64; 5]) {
     let bounds = session.study().bounds.clone();
-    for (index, variable) in VARIABLES.into_iter().enumerate() {
+    for (index, variable) in DESIGN_VARIABLES.into_iter().enumerate() {
         let [low, high] = bounds.range(variable);
         let mut value = values[index];
         // A design that does not come from the run may lie outside the study's bounds.
@@ -130,7 +130,7 @@ fn sliders(ui: &mut Ui, session: &mut Session, values: &[f64; 5]) {
             ui.ctx()
                 .accesskit_node_builder(slider.id, |node| node.set_label(variable.symbol()));
             if slider.changed() {
-                session.what_if(index, value);
+                session.modify(index, value);
             }
         });
     }
@@ -152,7 +152,7 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
             if evaluation.is_feasible() {
                 ui.strong(format!("{} m", theme::number(evaluation.workspace_radius)));
             } else {
-                ui.colored_label(theme::BROKEN, "infeasible: no regular workspace");
+                ui.colored_label(theme::VIOLATED, "infeasible: no regular workspace");
             }
             ui.weak(if known.verified {
                 "fine grid"
@@ -195,7 +195,7 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
         .show(ui, |ui| {
             for report in &known.evaluation.constraints {
                 let name = report.constraint.name().replace('_', " ");
-                if !report.asked {
+                if !report.required {
                     ui.weak(report.constraint.id());
                     ui.weak(format!("{name}, not required"));
                 } else if report.active {
@@ -216,7 +216,7 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
     if let Some(nearest) = session.model().nearest(&known.evaluation) {
         let words = format!("nearest pair of members: {}", text::clearance(&nearest));
         if nearest.distance < 0.0 {
-            ui.colored_label(theme::BROKEN, words);
+            ui.colored_label(theme::VIOLATED, words);
         } else {
             ui.weak(words);
         }
@@ -227,29 +227,29 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
 }
 
 /// Draws a margin as a bar that begins at the threshold and extends to the right if the constraint is satisfied.
-fn margin_bar(ui: &mut Ui, report: &ConstraintReport) {
+fn margin_bar(ui: &mut Ui, report: &ConstraintResult) {
     const WIDTH: f32 = 96.0;
     let (rect, response) = ui.allocate_exact_size(Vec2::new(WIDTH, 14.0), Sense::hover());
     let painter = ui.painter_at(rect);
     let middle = rect.left() + 0.3 * WIDTH;
     painter.rect_filled(rect, 2.0, Color32::from_gray(128).gamma_multiply(0.25));
     // Compresses the absolute margin into [0, 1): 1 takes half of the width, and large margins differ little.
-    let share = |margin: f64| (margin.abs() / (1.0 + margin.abs())) as f32;
-    let color = if !report.asked {
+    let fraction = |margin: f64| (margin.abs() / (1.0 + margin.abs())) as f32;
+    let color = if !report.required {
         Color32::from_gray(128)
     } else if report.margin < 0.0 {
-        theme::BROKEN
+        theme::VIOLATED
     } else if report.active {
         theme::ACTIVE
     } else {
-        theme::SOUND
+        theme::SATISFIED
     };
     let bar = if report.margin < 0.0 {
         rect.with_max_x(middle)
-            .with_min_x(middle - share(report.margin) * 2.0 * 0.3 * WIDTH)
+            .with_min_x(middle - fraction(report.margin) * 2.0 * 0.3 * WIDTH)
     } else {
         rect.with_min_x(middle)
-            .with_max_x(middle + share(report.margin).max(0.01) * 0.7 * WIDTH)
+            .with_max_x(middle + fraction(report.margin).max(0.01) * 0.7 * WIDTH)
     };
     painter.rect_filled(bar, 2.0, color);
     painter.vline(middle, rect.y_range(), (1.0, theme::ink(ui)));

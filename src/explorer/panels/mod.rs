@@ -44,7 +44,7 @@ pub enum Panel {
     /// The pose of the selected design.
     Pose,
     /// Layers that are drawn in 3-D.
-    Layers,
+    VisibleLayers,
     /// Pinned designs side by side.
     Compare,
     /// Decision support, and the filter.
@@ -64,7 +64,7 @@ impl Panel {
         Panel::Scene,
         Panel::Design,
         Panel::Pose,
-        Panel::Layers,
+        Panel::VisibleLayers,
         Panel::Compare,
         Panel::Choose,
         Panel::Table,
@@ -80,7 +80,7 @@ impl Panel {
             Panel::Scene => "3-D",
             Panel::Design => "Inspector",
             Panel::Pose => "Pose",
-            Panel::Layers => "Layers",
+            Panel::VisibleLayers => "Layers",
             Panel::Compare => "Compare",
             Panel::Choose => "Choose",
             Panel::Table => "Front",
@@ -114,10 +114,10 @@ impl Panels {
             Panel::Scatter => self.scatter.ui(ui, session),
             Panel::Design => self.design.ui(ui, session),
             Panel::Pose => self.pose.ui(ui, session),
-            Panel::Layers => self.layers.ui(ui, session),
+            Panel::VisibleLayers => self.layers.ui(ui, session),
             Panel::Compare => self.compare.ui(ui, session),
             Panel::Choose => {
-                return self.choose.ui(ui, session).map(|asked| match asked {
+                return self.choose.ui(ui, session).map(|requested| match requested {
                     choose::FilterFile::Save => Purpose::SaveFilter,
                     choose::FilterFile::Open => Purpose::OpenFilter,
                 });

@@ -6,7 +6,7 @@ use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Shape, Stroke, Ui, 
 
 use crate::explorer::{Better, Quantity, Session, theme};
 use kinefront_model::evaluation::{Constraint, Model};
-use kinefront_model::mechanism::VARIABLES;
+use kinefront_model::mechanism::DESIGN_VARIABLES;
 
 /// Largest number of designs drawn besides the front, sampled evenly: more lines could not be told apart.
 const SAMPLE: usize = 800;
@@ -34,10 +34,10 @@ struct Drawn {
 }
 
 fn axes(model: &Model) -> Vec<Quantity> {
-    let mut axes: Vec<Quantity> = VARIABLES.map(Quantity::Variable).to_vec();
+    let mut axes: Vec<Quantity> = DESIGN_VARIABLES.map(Quantity::DesignVariable).to_vec();
     axes.extend([Quantity::Mass, Quantity::Radius]);
     axes.extend(
-        Constraint::asked(&model.thresholds)
+        Constraint::required(&model.thresholds)
             .filter(|&constraint| constraint != Constraint::DeterminantSign)
             .map(Quantity::Margin),
     );
@@ -81,10 +81,10 @@ impl ParallelPanel {
                 points,
                 Stroke::new(
                     2.2,
-                    if session.is_what_if() {
-                        theme::WHAT_IF
+                    if session.is_modified() {
+                        theme::MODIFIED
                     } else {
-                        theme::CHOSEN
+                        theme::SELECTED
                     },
                 ),
             );
@@ -146,19 +146,19 @@ impl ParallelPanel {
                 value
             }
         };
-        let share = (scale(value) - scale(low)) / (scale(high) - scale(low)).max(1e-12);
-        plot.bottom() - plot.height() * share.clamp(-0.02, 1.02) as f32
+        let fraction = (scale(value) - scale(low)) / (scale(high) - scale(low)).max(1e-12);
+        plot.bottom() - plot.height() * fraction.clamp(-0.02, 1.02) as f32
     }
 
     /// Returns the value at a vertical screen coordinate of an axis.
     fn value(&self, index: usize, axis: Quantity, y: f32, plot: Rect) -> f64 {
         let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
-        let share = f64::from(((plot.bottom() - y) / plot.height()).clamp(0.0, 1.0));
+        let fraction = f64::from(((plot.bottom() - y) / plot.height()).clamp(0.0, 1.0));
         if axis.is_logarithmic() {
             let (low, high) = (low.max(1e-9).log10(), high.max(1e-9).log10());
-            10f64.powf(low + share * (high - low))
+            10f64.powf(low + fraction * (high - low))
         } else {
-            low + share * (high - low)
+            low + fraction * (high - low)
         }
     }
 
@@ -224,7 +224,7 @@ impl ParallelPanel {
                         [low.min(value), high.max(value)]
                     });
                 let range = match axis {
-                    Quantity::Variable(variable) => session.study().bounds.range(*variable),
+                    Quantity::DesignVariable(variable) => session.study().bounds.range(*variable),
                     // Margins have no upper bound, and those near 0 matter most.
                     Quantity::Margin(_) => [range[0].min(0.0), range[1].clamp(0.1, 10.0)],
                     _ => range,
@@ -236,7 +236,7 @@ impl ParallelPanel {
                 }
             })
             .collect();
-        let sieve = session.document().filter.sieve(store);
+        let prepare = session.document().filter.prepare(store);
         let ground = theme::ground(dark);
         let mut mesh = Mesh::default();
         let spacing = plot.width() / (axes.len() - 1) as f32;
@@ -255,19 +255,19 @@ impl ParallelPanel {
             }
         };
         // Dimmed designs are drawn first and the front last, so that it is on top.
-        for lit in [false, true] {
-            for &id in sample.iter().filter(|&&id| sieve.passes(id) == lit) {
+        for passes_filter in [false, true] {
+            for &id in sample.iter().filter(|&&id| prepare.passes(id) == passes_filter) {
                 let color = theme::architecture(store.architecture(id), dark);
-                let share = if lit { 0.3 } else { 0.07 };
-                line(&|axis| store.column(axis)[id], theme::mix(color, ground, share), 0.7);
+                let fraction = if passes_filter { 0.3 } else { 0.07 };
+                line(&|axis| store.column(axis)[id], theme::mix(color, ground, fraction), 0.7);
             }
         }
-        for lit in [false, true] {
+        for passes_filter in [false, true] {
             for entry in session.front() {
-                if sieve.passes(entry.id) == lit {
+                if prepare.passes(entry.id) == passes_filter {
                     let color = theme::architecture(entry.row.design.architecture, dark);
-                    let share = if lit { 0.7 } else { 0.15 };
-                    line(&|axis| axis.of(&entry.row), theme::mix(color, ground, share), 1.3);
+                    let fraction = if passes_filter { 0.7 } else { 0.15 };
+                    line(&|axis| axis.of(&entry.row), theme::mix(color, ground, fraction), 1.3);
                 }
             }
         }

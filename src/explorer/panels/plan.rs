@@ -5,8 +5,8 @@ use glam::{DVec2, DVec3};
 
 use crate::explorer::theme;
 use crate::scene::{Part, Scene, Solid, SolidShape};
-use kinefront_model::clearance::Member;
-use kinefront_model::evaluation::{MemberReport, Share};
+use kinefront_model::clearance::MemberId;
+use kinefront_model::evaluation::{Contribution, MemberReport};
 use kinefront_model::mechanism::{Design, MemberKind};
 use kinefront_model::spatial::nearest_on_segment;
 
@@ -152,25 +152,25 @@ pub(super) fn card(ui: &mut Ui, report: &MemberReport) {
     } else {
         ui.weak("no mass in this model");
     }
-    let of_all = |what: &str, share: Share| {
-        let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let of_all = |what: &str, fraction: Contribution| {
+        let percent = |fraction: f64| format!("{:.1} %", 100.0 * fraction);
         format!(
             "{what} to the compliance at this pose: {} in the plane, {} along z, {} about z",
-            percent(share.in_plane),
-            percent(share.vertical),
-            percent(share.rotation)
+            percent(fraction.in_plane),
+            percent(fraction.vertical),
+            percent(fraction.rotation)
         )
     };
-    if let Some(share) = report.share.filter(|_| report.member.kind != MemberKind::Slider) {
-        ui.label(of_all("contribution", share));
+    if let Some(fraction) = report.contribution.filter(|_| report.member.kind != MemberKind::Slider) {
+        ui.label(of_all("contribution", fraction));
     }
-    if let Some(share) = report.actuator {
-        ui.label(of_all("contribution of its actuator", share));
+    if let Some(fraction) = report.actuator {
+        ui.label(of_all("contribution of its actuator", fraction));
     }
 }
 
 /// Returns the display name of a member.
-fn name(member: &Member) -> String {
+fn name(member: &MemberId) -> String {
     let kind = member.kind.name().replace('_', " ");
     let number = member.leg + 1;
     match member.kind {

@@ -50,7 +50,7 @@ impl PosePanel {
         self.tour(ui, session, &known);
         self.sliders(ui, session, pose, home, evaluation.design.base_radius);
         match &self.stopped {
-            Some(reason) => ui.colored_label(theme::BROKEN, format!("stopped: {reason}")),
+            Some(reason) => ui.colored_label(theme::VIOLATED, format!("stopped: {reason}")),
             None => ui.weak("drag the platform to move it, its rim to turn it; point at a member to see its data"),
         };
         let pose = session.pose().unwrap_or(pose);
@@ -147,7 +147,7 @@ impl PosePanel {
                 Align2::CENTER_CENTER,
                 "the manipulator cannot reach this pose",
                 FontId::proportional(14.0),
-                theme::BROKEN,
+                theme::VIOLATED,
             );
             return;
         };
@@ -163,8 +163,8 @@ impl PosePanel {
             painter.circle(
                 centre,
                 radius,
-                theme::SOUND.gamma_multiply(0.12),
-                Stroke::new(1.2, theme::SOUND),
+                theme::SATISFIED.gamma_multiply(0.12),
+                Stroke::new(1.2, theme::SATISFIED),
             );
         }
         paint(ui, &painter, &plan, &scene);
@@ -229,9 +229,9 @@ fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
     let thresholds = &session.model().thresholds;
     let values = [
         ("κ_F⁻¹", report.inverse_condition, thresholds.inverse_condition, ""),
-        ("k_xy", report.rigidity.k_xy, thresholds.k_xy, "N/m"),
-        ("k_z", report.rigidity.k_z, thresholds.k_z, "N/m"),
-        ("k_φz", report.rigidity.k_phi_z, thresholds.k_phi_z, "N·m/rad"),
+        ("k_xy", report.stiffness_values.k_xy, thresholds.k_xy, "N/m"),
+        ("k_z", report.stiffness_values.k_z, thresholds.k_z, "N/m"),
+        ("k_φz", report.stiffness_values.k_phi_z, thresholds.k_phi_z, "N·m/rad"),
     ];
     Grid::new("pose numbers")
         .num_columns(4)
@@ -239,7 +239,11 @@ fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
         .show(ui, |ui| {
             for (index, (name, value, least, unit)) in values.into_iter().enumerate() {
                 ui.label(name);
-                let color = if value < least { theme::BROKEN } else { theme::SOUND };
+                let color = if value < least {
+                    theme::VIOLATED
+                } else {
+                    theme::SATISFIED
+                };
                 ui.colored_label(color, format!("{} {unit}", theme::number(value)));
                 if index % 2 == 1 {
                     ui.end_row();
@@ -248,15 +252,15 @@ fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
         });
     let least = thresholds.clearance.unwrap_or(0.0);
     let color = if report.clearance.distance < least {
-        theme::BROKEN
+        theme::VIOLATED
     } else {
-        theme::SOUND
+        theme::SATISFIED
     };
     ui.colored_label(color, format!("clearance: {}", text::clearance(&report.clearance)));
     let unit = design.architecture.actuator().unit();
     let actuators = report.actuators.map(theme::number).join(", ");
     ui.weak(format!(
         "actuators {actuators} {unit}; limit margin {} m",
-        theme::number(report.slack)
+        theme::number(report.limit_margin)
     ));
 }

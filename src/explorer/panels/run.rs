@@ -4,7 +4,7 @@ use egui::{ComboBox, DragValue, Grid, ProgressBar, Ui};
 use egui_plot::{Line, Plot, PlotPoints};
 
 use crate::explorer::{Phase, Session, StudyEditor, theme};
-use crate::study::{AlgorithmName, BUILTIN, Outcome};
+use crate::study::{AlgorithmName, BUILTIN, EndReason};
 
 /// The run panel.
 #[derive(Default)]
@@ -40,7 +40,7 @@ fn study(ui: &mut Ui, session: &mut Session) {
         if let Some(builtin) = picked {
             match StudyEditor::builtin(&builtin) {
                 Ok(editor) => session.editor = editor,
-                Err(error) => session.tell_error(error.to_string()),
+                Err(error) => session.notify_error(error.to_string()),
             }
         }
         if session.editor.is_changed() {
@@ -106,7 +106,7 @@ fn settings(ui: &mut Ui, session: &mut Session) {
     });
     session.editor.change(|edited| *edited = study);
     for fault in session.editor.faults() {
-        ui.colored_label(theme::BROKEN, format!("`{}` {}", fault.key, fault.message));
+        ui.colored_label(theme::VIOLATED, format!("`{}` {}", fault.key, fault.message));
     }
 }
 
@@ -120,7 +120,7 @@ fn random_seed() -> u64 {
 
 fn buttons(ui: &mut Ui, session: &mut Session) {
     ui.horizontal_wrapped(|ui| {
-        let sound = session.editor.faults().is_empty();
+        let valid = session.editor.faults().is_empty();
         match session.phase() {
             Phase::Searching => {
                 if ui.button("⏸ Pause").clicked() {
@@ -136,7 +136,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
                 ui.add_enabled(false, egui::Button::new("⏸ Pause"));
             }
             _ => {
-                if ui.add_enabled(sound, egui::Button::new("▶ Start")).clicked() {
+                if ui.add_enabled(valid, egui::Button::new("▶ Start")).clicked() {
                     session.start();
                 }
             }
@@ -157,7 +157,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
             session.stop();
         }
         if ui
-            .add_enabled(sound && session.is_running(), egui::Button::new("⟲ Restart"))
+            .add_enabled(valid && session.is_running(), egui::Button::new("⟲ Restart"))
             .on_hover_text("discards the current run and starts again with the study as edited here")
             .clicked()
         {
@@ -170,17 +170,17 @@ fn progress(ui: &mut Ui, session: &Session) {
     let budget = session.study().optimizer.evaluations;
     let done = session.store().len();
     let seconds = session.elapsed().as_secs_f64();
-    let (share, text) = match session.phase() {
+    let (fraction, text) = match session.phase() {
         Phase::Verifying { done, total } => {
-            let share = *done as f32 / (*total).max(1) as f32;
-            (share, format!("verifying on the fine grid: {done} of {total}"))
+            let fraction = *done as f32 / (*total).max(1) as f32;
+            (fraction, format!("verifying on the fine grid: {done} of {total}"))
         }
         _ => (
             done as f32 / budget.max(1) as f32,
             format!("{done} of {budget} evaluations"),
         ),
     };
-    let bar = ui.add(ProgressBar::new(share).text(text.clone()));
+    let bar = ui.add(ProgressBar::new(fraction).text(text.clone()));
     bar.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::ProgressIndicator, true, "Progress"));
     let words = match session.phase() {
         Phase::Ready => "ready".to_owned(),
@@ -191,10 +191,10 @@ fn progress(ui: &mut Ui, session: &Session) {
         }
         Phase::Paused => "paused".to_owned(),
         Phase::Verifying { .. } => "search finished".to_owned(),
-        Phase::Finished(Outcome::Completed) => format!("finished in {seconds:.1} s"),
-        Phase::Finished(Outcome::TimeUp) => format!("time limit reached after {seconds:.1} s"),
-        Phase::Finished(Outcome::Stagnated) => format!("stagnated after {seconds:.1} s"),
-        Phase::Finished(Outcome::Stopped) => format!("stopped after {seconds:.1} s"),
+        Phase::Finished(EndReason::Completed) => format!("finished in {seconds:.1} s"),
+        Phase::Finished(EndReason::TimeUp) => format!("time limit reached after {seconds:.1} s"),
+        Phase::Finished(EndReason::Stagnated) => format!("stagnated after {seconds:.1} s"),
+        Phase::Finished(EndReason::Stopped) => format!("stopped after {seconds:.1} s"),
         Phase::Failed => "failed".to_owned(),
         Phase::Opened(path) => format!(
             "opened {}",
@@ -225,7 +225,7 @@ fn curve(ui: &mut Ui, session: &Session) {
         .chain(generations.last())
         .map(|generation| [generation.evaluations as f64, generation.hypervolume])
         .collect();
-    let color = theme::SOUND;
+    let color = theme::SATISFIED;
     let shown = Plot::new("hypervolume")
         .height(ui.available_height().clamp(70.0, 160.0))
         .allow_drag(false)

@@ -29,10 +29,10 @@ impl StudyPanel {
         });
         let faults = session.editor.faults().to_vec();
         for fault in &faults {
-            ui.colored_label(theme::BROKEN, format!("`{}` {}", fault.key, fault.message));
+            ui.colored_label(theme::VIOLATED, format!("`{}` {}", fault.key, fault.message));
         }
         if faults.is_empty() {
-            ui.colored_label(theme::SOUND, "valid");
+            ui.colored_label(theme::SATISFIED, "valid");
             self.typed = None;
         }
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
@@ -70,7 +70,7 @@ fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault]) {
             Ok(study) => session.editor.change(|edited| *edited = study),
             // Only a text that must be a known name but is none, such as a working mode, leads here: the field keeps
             // its last valid value.
-            Err(error) => session.tell_error(format!("invalid study: {}", error.message())),
+            Err(error) => session.notify_error(format!("invalid study: {}", error.message())),
         }
     }
 }
@@ -153,7 +153,7 @@ fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
             Value::Datetime(_) => {}
         }
         for fault in faults.iter().filter(|fault| fault.key == path) {
-            ui.colored_label(theme::BROKEN, &fault.message);
+            ui.colored_label(theme::VIOLATED, &fault.message);
         }
     }
 }

@@ -5,7 +5,7 @@ use egui_extras::{Column, TableBuilder};
 
 use crate::explorer::{FrontEntry, Origin, Quantity, Session, theme};
 use kinefront_model::evaluation::Constraint;
-use kinefront_model::mechanism::VARIABLES;
+use kinefront_model::mechanism::DESIGN_VARIABLES;
 
 /// Column by which the table is sorted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,8 +56,8 @@ impl TablePanel {
             ));
         });
         let order = self.order(session);
-        let chosen = match &session.document().chosen {
-            Some(chosen) => match chosen.origin {
+        let selected = match &session.document().selected {
+            Some(selected) => match selected.origin {
                 Origin::Evaluated(id) => Some(id),
                 _ => None,
             },
@@ -72,10 +72,10 @@ impl TablePanel {
         .chain(
             [Quantity::Mass, Quantity::Radius, Quantity::Phi].map(|quantity| (Key::Number(quantity), quantity.title())),
         )
-        .chain(VARIABLES.map(|variable| {
+        .chain(DESIGN_VARIABLES.map(|variable| {
             (
-                Key::Number(Quantity::Variable(variable)),
-                Quantity::Variable(variable).title(),
+                Key::Number(Quantity::DesignVariable(variable)),
+                Quantity::DesignVariable(variable).title(),
             )
         }))
         .chain([(Key::Number(Quantity::Clearance), Quantity::Clearance.title())])
@@ -94,16 +94,16 @@ impl TablePanel {
                     .column(Column::initial(70.0))
                     .column(Column::remainder().clip(true))
                     .min_scrolled_height(0.0);
-                if chosen != self.last_chosen
+                if selected != self.last_chosen
                     && let Some(row) = order
                         .iter()
-                        .position(|&place| Some(session.front()[place].id) == chosen)
+                        .position(|&place| Some(session.front()[place].id) == selected)
                 {
                     table = table.scroll_to_row(row, Some(Align::Center));
                 }
-                self.last_chosen = chosen;
+                self.last_chosen = selected;
                 let filter = session.document().filter.clone();
-                let sieve = filter.sieve(session.store());
+                let prepare = filter.prepare(session.store());
                 table
                     .header(20.0, |mut header| {
                         for (key, title) in &columns {
@@ -128,8 +128,8 @@ impl TablePanel {
                     .body(|body| {
                         body.rows(18.0, order.len(), |mut row| {
                             let entry = &session.front()[order[row.index()]];
-                            let lit = sieve.passes(entry.id);
-                            row.set_selected(Some(entry.id) == chosen);
+                            let passes_filter = prepare.passes(entry.id);
+                            row.set_selected(Some(entry.id) == selected);
                             row.col(|ui| {
                                 let star = session.document().stars.contains(&entry.id);
                                 if ui
@@ -142,15 +142,15 @@ impl TablePanel {
                             for (key, _) in &columns[1..] {
                                 row.col(|ui| {
                                     let text = RichText::new(cell(entry, *key));
-                                    let text = if lit { text } else { text.weak() };
+                                    let text = if passes_filter { text } else { text.weak() };
                                     let text = match key {
-                                        Key::Architecture if lit && Some(entry.id) != chosen => text.color(
+                                        Key::Architecture if passes_filter && Some(entry.id) != selected => text.color(
                                             theme::architecture(entry.row.design.architecture, ui.visuals().dark_mode),
                                         ),
                                         Key::Number(Quantity::Clearance)
                                             if Quantity::Clearance.of(&entry.row) < 0.0 =>
                                         {
-                                            text.color(theme::BROKEN)
+                                            text.color(theme::VIOLATED)
                                         }
                                         _ => text,
                                     };

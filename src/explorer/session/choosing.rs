@@ -1,15 +1,15 @@
 //! Selection of designs by hand, by key and in the scene; modified designs, pins and stars.
 
-use super::super::document::{Chosen, Named, Origin};
+use super::super::document::{Named, Origin, Selected};
 use super::{MOST_PINS, Session};
 use crate::recording::Picked;
-use kinefront_model::mechanism::{Design, VARIABLES};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, Design};
 
 impl Session {
     /// Selects a design of the run.
     pub fn choose(&mut self, id: usize) {
         if let Some(row) = self.row(id) {
-            self.choose_design(Chosen {
+            self.choose_design(Selected {
                 design: row.design,
                 origin: Origin::Evaluated(id),
             });
@@ -17,15 +17,15 @@ impl Session {
     }
 
     /// Selects a design.
-    pub fn choose_design(&mut self, chosen: Chosen) {
+    pub fn choose_design(&mut self, selected: Selected) {
         self.following = false;
         self.staging.pose = None;
         self.staging.heatmap_phi = None;
-        self.history.edit(|document| document.chosen = Some(chosen));
+        self.history.edit(|document| document.selected = Some(selected));
     }
 
     /// Selects the knee of the front.
-    pub fn choose_knee(&mut self) {
+    pub fn select_knee(&mut self) {
         if let Some(place) = self.knee() {
             self.choose(self.front[place].id);
         }
@@ -33,26 +33,28 @@ impl Session {
 
     /// Moves the selection by `steps` along the designs of the front that pass the filter.
     pub fn walk(&mut self, steps: isize) {
-        let sieve = self.document().filter.sieve(&self.store);
-        let lit: Vec<usize> = self
+        let prepare = self.document().filter.prepare(&self.store);
+        let passes_filter: Vec<usize> = self
             .front
             .iter()
             .map(|entry| entry.id)
-            .filter(|&id| sieve.passes(id))
+            .filter(|&id| prepare.passes(id))
             .collect();
-        let here = match self.document().chosen {
-            Some(Chosen {
+        let here = match self.document().selected {
+            Some(Selected {
                 origin: Origin::Evaluated(id),
                 ..
-            }) => lit.iter().position(|&other| other == id),
+            }) => passes_filter.iter().position(|&other| other == id),
             _ => None,
         };
         let next = match here {
-            Some(here) => here.saturating_add_signed(steps).min(lit.len().saturating_sub(1)),
-            None if steps < 0 => lit.len().saturating_sub(1),
+            Some(here) => here
+                .saturating_add_signed(steps)
+                .min(passes_filter.len().saturating_sub(1)),
+            None if steps < 0 => passes_filter.len().saturating_sub(1),
             None => 0,
         };
-        if let Some(&id) = lit.get(next) {
+        if let Some(&id) = passes_filter.get(next) {
             self.choose(id);
         }
     }
@@ -67,91 +69,91 @@ impl Session {
             }
             Picked::Pin(place) => {
                 if let Some(pin) = self.document().pins.get(place).cloned() {
-                    self.choose_named(&pin);
+                    self.select_named(&pin);
                 }
             }
         }
     }
 
     /// Selects a named design, with its origin if that is known.
-    pub fn choose_named(&mut self, named: &Named) {
+    pub fn select_named(&mut self, named: &Named) {
         let id = named.name.strip_prefix('#').and_then(|id| id.parse().ok());
         let origin = match id {
             Some(id) => Origin::Evaluated(id),
             None => match self.document().kept.iter().position(|kept| kept.design == named.design) {
                 Some(index) => Origin::Kept(index),
-                None => Origin::WhatIf { from: None },
+                None => Origin::Modified { from: None },
             },
         };
-        self.choose_design(Chosen {
+        self.choose_design(Selected {
             design: named.design,
             origin,
         });
     }
 
     /// Changes one variable of the selected design, as part of a gesture.
-    pub fn what_if(&mut self, variable: usize, value: f64) {
-        let Some(chosen) = self.document().chosen.clone() else {
+    pub fn modify(&mut self, variable: usize, value: f64) {
+        let Some(selected) = self.document().selected.clone() else {
             return;
         };
-        let mut values = chosen.design.values();
+        let mut values = selected.design.values();
         values[variable] = value;
-        match Design::new(chosen.design.architecture, chosen.design.working_mode, values) {
+        match Design::new(selected.design.architecture, selected.design.working_mode, values) {
             Ok(design) => {
-                let from = match chosen.origin {
+                let from = match selected.origin {
                     Origin::Evaluated(id) => Some(id),
-                    Origin::WhatIf { from } => from,
+                    Origin::Modified { from } => from,
                     Origin::Kept(_) | Origin::Reference(_) => None,
                 };
                 self.following = false;
                 self.staging.pose = None;
-                let gesture = VARIABLES[variable].key();
+                let gesture = DESIGN_VARIABLES[variable].key();
                 self.history.drag(gesture, |document| {
-                    document.chosen = Some(Chosen {
+                    document.selected = Some(Selected {
                         design,
-                        origin: Origin::WhatIf { from },
+                        origin: Origin::Modified { from },
                     });
                 });
             }
-            Err(error) => self.tell_error(error.to_string()),
+            Err(error) => self.notify_error(error.to_string()),
         }
     }
 
     /// Reads a design from text and selects it.
     pub fn paste(&mut self, text: &str) {
         match Design::parse(text.trim(), self.as_run.working_mode) {
-            Ok(design) => self.choose_design(Chosen {
+            Ok(design) => self.choose_design(Selected {
                 design,
-                origin: Origin::WhatIf { from: None },
+                origin: Origin::Modified { from: None },
             }),
-            Err(error) => self.tell_error(format!("the pasted text is not a design: {error}")),
+            Err(error) => self.notify_error(format!("the pasted text is not a design: {error}")),
         }
     }
 
     /// Keeps the selected design under a new name.
     pub fn keep(&mut self) {
-        let Some(chosen) = self.document().chosen.clone() else {
+        let Some(selected) = self.document().selected.clone() else {
             return;
         };
         let name = format!("kept {}", self.document().kept.len() + 1);
         self.history.edit(|document| {
             document.kept.push(Named {
                 name,
-                design: chosen.design,
+                design: selected.design,
             });
-            document.chosen = Some(Chosen {
+            document.selected = Some(Selected {
                 origin: Origin::Kept(document.kept.len() - 1),
-                ..chosen
+                ..selected
             });
         });
     }
 
     /// Adds or removes the star of the selected design, if it is a design of the run.
     pub fn toggle_star(&mut self) {
-        if let Some(Chosen {
+        if let Some(Selected {
             origin: Origin::Evaluated(id),
             ..
-        }) = self.document().chosen
+        }) = self.document().selected
         {
             self.toggle_star_of(id);
         }
@@ -170,10 +172,10 @@ impl Session {
     pub fn toggle_pin(&mut self) {
         let Some((design, name)) = self
             .document()
-            .chosen
+            .selected
             .as_ref()
-            .map(|chosen| chosen.design)
-            .zip(self.chosen_name())
+            .map(|selected| selected.design)
+            .zip(self.selected_name())
         else {
             return;
         };
@@ -184,7 +186,7 @@ impl Session {
         } else if self.document().pins.len() < MOST_PINS {
             self.history.edit(|document| document.pins.push(Named { name, design }));
         } else {
-            self.tell_error(format!("{MOST_PINS} designs are already pinned; unpin one first"));
+            self.notify_error(format!("{MOST_PINS} designs are already pinned; unpin one first"));
         }
     }
 }

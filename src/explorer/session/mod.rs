@@ -10,12 +10,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::document::{Chosen, Document, History, Named, Origin};
+use super::document::{Document, History, Named, Origin, Selected};
 use super::running::{Running, Writing};
 use super::scene_thread::{Answer, Known, SceneThread};
 use super::{Filter, FrontEntry, Row, Store, StudyEditor};
-use crate::recording::{FrontPoint, Layers, LiveScene};
-use crate::study::{GenerationSummary, Outcome, Study};
+use crate::recording::{FrontPoint, LiveScene, VisibleLayers};
+use crate::study::{EndReason, GenerationSummary, Study};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::spatial::Pose;
 
@@ -39,7 +39,7 @@ pub enum Phase {
         total: usize,
     },
     /// The run has finished.
-    Finished(Outcome),
+    Finished(EndReason),
     /// The run has failed.
     Failed,
     /// The run was read from this file or folder.
@@ -62,7 +62,7 @@ const GLANCE: Duration = Duration::from_secs(8);
 
 /// A reference design of the study.
 #[derive(Debug, Clone)]
-pub struct Reference {
+pub struct ReferenceMark {
     /// Name of the design.
     pub name: String,
     /// Evaluation of the design by the model.
@@ -79,7 +79,7 @@ pub struct Staging {
     /// Orientation of the heatmap \[rad\]; the home orientation if `None`.
     pub heatmap_phi: Option<f64>,
     /// Layers that are drawn.
-    pub layers: Layers,
+    pub layers: VisibleLayers,
     /// Whether the view of the pinned designs is in front of that of the selected design.
     pub comparing: bool,
     /// Whether the window uses light colours.
@@ -112,10 +112,10 @@ pub struct Session {
     /// Number of the front and the filter that `front_points` shows.
     front_drawn: Option<(u64, Filter)>,
     generations: Vec<GenerationSummary>,
-    references: Vec<Reference>,
+    references: Vec<ReferenceMark>,
     scene: SceneThread,
     answer: Answer,
-    asked: u64,
+    requested: u64,
     wake: Wake,
     /// Number of the current store; the ids of one store mean nothing in another.
     era: u64,
@@ -153,7 +153,7 @@ impl Session {
             generations: Vec::new(),
             scene: SceneThread::start(scene, move || waking())?,
             answer: Answer::default(),
-            asked: 0,
+            requested: 0,
             wake,
             era: 0,
             following: true,
@@ -241,7 +241,7 @@ impl Session {
     }
 
     /// Returns the reference designs of the study.
-    pub fn references(&self) -> &[Reference] {
+    pub fn references(&self) -> &[ReferenceMark] {
         &self.references
     }
 
@@ -252,11 +252,11 @@ impl Session {
 
     /// Returns the evaluation of the selected design, if it is known.
     pub fn known(&self) -> Option<&Known> {
-        let chosen = self.document().chosen.as_ref()?;
+        let selected = self.document().selected.as_ref()?;
         self.answer
             .known
             .as_ref()
-            .filter(|known| known.evaluation.design == chosen.design)
+            .filter(|known| known.evaluation.design == selected.design)
     }
 
     /// Returns the evaluations of the pinned designs; `None` for each that is not known yet.
@@ -267,16 +267,16 @@ impl Session {
 
     /// Returns whether everything requested of the scene is drawn.
     pub fn is_drawn(&self) -> bool {
-        self.answer.drawn >= self.asked
+        self.answer.drawn >= self.requested
     }
 
     /// Returns the name of the selected design.
-    pub fn chosen_name(&self) -> Option<String> {
+    pub fn selected_name(&self) -> Option<String> {
         let document = self.document();
-        Some(match &document.chosen.as_ref()?.origin {
+        Some(match &document.selected.as_ref()?.origin {
             Origin::Evaluated(id) => format!("#{id}"),
-            Origin::WhatIf { from: Some(id) } => format!("modified from #{id}"),
-            Origin::WhatIf { from: None } => "modified".to_owned(),
+            Origin::Modified { from: Some(id) } => format!("modified from #{id}"),
+            Origin::Modified { from: None } => "modified".to_owned(),
             Origin::Kept(index) => document.kept.get(*index).map_or("kept", |kept| &kept.name).to_owned(),
             Origin::Reference(index) => self
                 .references
@@ -287,23 +287,23 @@ impl Session {
     }
 
     /// Returns whether the selected design is a modified design that was not kept.
-    pub fn is_what_if(&self) -> bool {
+    pub fn is_modified(&self) -> bool {
         matches!(
-            self.document().chosen,
-            Some(Chosen {
-                origin: Origin::WhatIf { .. },
+            self.document().selected,
+            Some(Selected {
+                origin: Origin::Modified { .. },
                 ..
             })
         )
     }
 
     /// Shows a message to the user.
-    pub fn tell(&mut self, text: String) {
+    pub fn notify(&mut self, text: String) {
         self.put_notice(text, false);
     }
 
     /// Shows an error message to the user.
-    pub fn tell_error(&mut self, text: String) {
+    pub fn notify_error(&mut self, text: String) {
         self.put_notice(text, true);
     }
 
@@ -324,10 +324,10 @@ impl Drop for Session {
     }
 }
 
-fn references(study: &Study, model: &Model) -> Vec<Reference> {
+fn references(study: &Study, model: &Model) -> Vec<ReferenceMark> {
     let evaluated = study.references.iter().filter_map(|reference| {
         let design = reference.parse(study.working_mode).ok()?;
-        Some(Reference {
+        Some(ReferenceMark {
             name: reference.name.clone(),
             evaluation: model.evaluate(&design, GridChoice::Reference),
             stated: reference

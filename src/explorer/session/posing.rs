@@ -18,16 +18,16 @@ impl Session {
     /// Moves the platform to `pose` or, if that is not reachable, as far towards it as possible in a straight line;
     /// returns what stopped it.
     pub fn move_platform(&mut self, pose: Pose) -> Option<String> {
-        let design = self.document().chosen.as_ref()?.design;
+        let design = self.document().selected.as_ref()?.design;
         let from = self.pose()?;
         let reach = |pose: &Pose| self.model.pose(&design, pose).err();
         let Some(stopped) = reach(&pose) else {
             self.staging.pose = Some(pose);
             return None;
         };
-        let between = |share: f64| Pose {
-            position: from.position.lerp(pose.position, share),
-            phi: from.phi + share * (pose.phi - from.phi),
+        let between = |fraction: f64| Pose {
+            position: from.position.lerp(pose.position, fraction),
+            phi: from.phi + fraction * (pose.phi - from.phi),
         };
         // The platform moves as near as possible; if the current pose itself is not reachable, it stays there.
         let (mut low, mut high) = (0.0, 1.0);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::super::document::{Chosen, Document, Origin};
+use super::super::document::{Document, Origin, Selected};
 use super::super::open::{Opened, open};
 use super::super::running::Running;
 use super::super::scene_thread::Request;
@@ -20,7 +20,7 @@ impl Session {
     pub fn start(&mut self) {
         if let Some(fault) = self.editor.faults().first() {
             let words = format!("the study cannot be run: `{}` {}", fault.key, fault.message);
-            self.tell_error(words);
+            self.notify_error(words);
             return;
         }
         self.start_from(spawn);
@@ -38,7 +38,7 @@ impl Session {
                 self.run = Some(running);
                 self.phase = Phase::Searching;
             }
-            Err(words) => self.tell_error(words),
+            Err(words) => self.notify_error(words),
         }
     }
 
@@ -49,9 +49,9 @@ impl Session {
             match StudyEditor::read(path) {
                 Ok(editor) => {
                     self.editor = editor;
-                    self.tell(format!("the study {} is ready to run", path.display()));
+                    self.notify(format!("the study {} is ready to run", path.display()));
                 }
-                Err(error) => self.tell_error(error.to_string()),
+                Err(error) => self.notify_error(error.to_string()),
             }
             return;
         }
@@ -70,16 +70,16 @@ impl Session {
                 self.set_front(front);
                 self.generations = history;
                 self.phase = Phase::Opened(path.to_owned());
-                self.choose_knee();
+                self.select_knee();
             }
-            Err(error) => self.tell_error(error.to_string()),
+            Err(error) => self.notify_error(error.to_string()),
         }
     }
 
     fn begin(&mut self, study: Arc<Study>) {
         match study.model() {
             Ok(model) => self.model = model,
-            Err(error) => return self.tell_error(error.to_string()),
+            Err(error) => return self.notify_error(error.to_string()),
         }
         self.references = references(&study, &self.model);
         self.as_run = study;
@@ -169,10 +169,10 @@ impl Session {
             if let Some(message) = news.failed {
                 run.count_time(false);
                 self.phase = Phase::Failed;
-                self.tell_error(format!("the run failed; the designs found so far are kept: {message}"));
+                self.notify_error(format!("the run failed; the designs found so far are kept: {message}"));
             }
             for words in news.troubles {
-                self.tell_error(words);
+                self.notify_error(words);
             }
             if let Some(front) = news.front {
                 self.set_front(front);
@@ -185,7 +185,7 @@ impl Session {
         if let Some(trouble) = self.answer.trouble.clone()
             && self.notices.iter().all(|notice| notice.text != trouble)
         {
-            self.tell_error(trouble);
+            self.notify_error(trouble);
         }
         self.ask();
     }
@@ -198,11 +198,11 @@ impl Session {
             return;
         }
         if let Some(entry) = self.knee().map(|place| &self.front[place]) {
-            let chosen = Chosen {
+            let selected = Selected {
                 design: entry.row.design,
                 origin: Origin::Evaluated(entry.id),
             };
-            self.history.follow(|document| document.chosen = Some(chosen));
+            self.history.follow(|document| document.selected = Some(selected));
             self.followed = Some(Instant::now());
         }
     }
@@ -228,13 +228,13 @@ impl Session {
         if self.front_drawn.as_ref() == Some(&drawn) {
             return;
         }
-        let sieve = drawn.1.sieve(&self.store);
+        let prepare = drawn.1.prepare(&self.store);
         let points = self.front.iter().map(|entry| FrontPoint {
             id: entry.id,
             architecture: entry.row.design.architecture,
             mass: entry.row.mass,
             radius: entry.row.radius,
-            lit: sieve.passes(entry.id),
+            passes_filter: prepare.passes(entry.id),
         });
         self.front_points = Arc::new(points.collect());
         self.front_drawn = Some(drawn);
@@ -244,7 +244,7 @@ impl Session {
     fn ask(&mut self) {
         self.draw_front();
         let document = self.history.present();
-        let design = document.chosen.as_ref().map(|chosen| chosen.design);
+        let design = document.selected.as_ref().map(|selected| selected.design);
         let request = Request {
             study: Arc::clone(&self.as_run),
             verified: self
@@ -261,6 +261,6 @@ impl Session {
             light: self.staging.light,
             front: Arc::clone(&self.front_points),
         };
-        self.asked = self.scene.ask(request);
+        self.requested = self.scene.ask(request);
     }
 }

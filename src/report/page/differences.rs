@@ -4,13 +4,13 @@ use maud::{Markup, html};
 
 use super::results::{levels, unknown, verdict};
 use super::{cell, change, optional, percent};
-use crate::report::{Front, Reference, Report, Variation};
+use crate::report::{EvaluatedReference, Front, Report, Variation};
 use crate::text::number;
-use kinefront_model::mechanism::{Architecture, VARIABLES, Variable};
+use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, DesignVariable};
 use kinefront_optimize::hypervolume;
 
 pub(super) fn references(report: &Report) -> Markup {
-    let stated = |reference: &Reference| {
+    let stated = |reference: &EvaluatedReference| {
         let design = &reference.fine.design;
         html! { tr {
             td { (reference.name) } td { (design.architecture) }
@@ -27,7 +27,7 @@ pub(super) fn references(report: &Report) -> Markup {
             thead {
                 tr {
                     th { "design" } th { "architecture" }
-                    @for variable in VARIABLES { th.number { (variable.symbol()) } }
+                    @for variable in DESIGN_VARIABLES { th.number { (variable.symbol()) } }
                     th.number { "mass, stated" } th.number { "mass" }
                     @if report.of_paper { th.number { "mass range for the rounded bar radii" } }
                     th.number { "R_w, stated" } th.number { "R_w, reference grid" } th.number { "R_w, fine grid" } th { "active constraints" }
@@ -40,12 +40,12 @@ pub(super) fn references(report: &Report) -> Markup {
             caption { "The lightest design found with at least the workspace radius of each reference design (fine grid)." }
             thead { tr {
                 th { "reference design" } th.number { "mass" } th { "" } th { "architecture" }
-                @for variable in VARIABLES { th.number { (variable.symbol()) } }
+                @for variable in DESIGN_VARIABLES { th.number { (variable.symbol()) } }
                 th.number { "mass" } th.number { "R_w" } th.number { "ratio of the masses" }
             } }
             tbody { @for reference in &report.references { tr {
                 td { (reference.name) } (cell(reference.fine.mass)) td { "→" }
-                @match &reference.beaten_by {
+                @match &reference.lighter {
                     Some(found) => {
                         td { (found.design.architecture) }
                         @for value in found.design.values() { (cell(value)) }
@@ -59,7 +59,7 @@ pub(super) fn references(report: &Report) -> Markup {
     }
 }
 
-fn active(reference: &Reference) -> String {
+fn active(reference: &EvaluatedReference) -> String {
     let active: Vec<&str> = reference.fine.active().map(|constraint| constraint.id()).collect();
     active.join(", ")
 }
@@ -107,7 +107,7 @@ pub(super) fn explained(report: &Report) -> Markup {
                         "the workspace is limited by " (active(reference)) ". "
                         @if (ratio - 1.0).abs() > NEAR {
                             @if let Some((variation, radius)) = nearest(report, place, stated) {
-                                @if variation.reading.is_none() { "None of the alternative assumptions tried below comes closer. " }
+                                @if variation.alternative.is_none() { "None of the alternative assumptions tried below comes closer. " }
                                 @else {
                                     "Of the alternative assumptions tried below, “" (variation.name()) "” comes closest by ratio, with "
                                     (number(radius)) " m (" (change(radius / stated)) "). "
@@ -121,12 +121,12 @@ pub(super) fn explained(report: &Report) -> Markup {
             li {
                 strong { "Much lighter designs exist. " }
                 @for reference in &report.references {
-                    @if let Some(found) = &reference.beaten_by {
+                    @if let Some(found) = &reference.lighter {
                         "With at least the workspace of " (reference.name) ": " (number(found.mass)) " kg instead of "
                         (number(reference.fine.mass)) " kg. "
                     }
                 }
-                @if let Some(rival) = report.rivals.as_ref().and_then(|rivals| rivals.joint.as_ref()) {
+                @if let Some(rival) = report.moga2.as_ref().and_then(|moga2| moga2.joint.as_ref()) {
                     "A reimplementation of MOGA-II, based on what is publicly known of it, also finds lighter designs "
                     "(grey in the figures). With the settings of the paper, all architectures together and the same "
                     "number of evaluations per search, it finds: "
@@ -178,7 +178,7 @@ fn claims(report: &Report) -> Markup {
                 td {
                     "R² of straight lines: "
                     @for (index, (architecture, trend)) in trends()
-                        .filter(|(_, trend)| trend.variable != Variable::PlatformBarRadius)
+                        .filter(|(_, trend)| trend.variable != DesignVariable::PlatformBarRadius)
                         .enumerate()
                     {
                         @if index > 0 { "; " }
@@ -198,7 +198,7 @@ fn claims(report: &Report) -> Markup {
                 td {
                     "R² of the parabola and of the straight line: "
                     @for (index, (architecture, trend)) in trends()
-                        .filter(|(_, trend)| trend.variable == Variable::PlatformBarRadius)
+                        .filter(|(_, trend)| trend.variable == DesignVariable::PlatformBarRadius)
                         .enumerate()
                     {
                         @if index > 0 { "; " }
@@ -237,10 +237,10 @@ fn comparisons(report: &Report) -> Markup {
     else {
         return html! {};
     };
-    let class = |share: f64| {
-        if share == 1.0 {
+    let class = |fraction: f64| {
+        if fraction == 1.0 {
             "holds"
-        } else if share > 0.5 {
+        } else if fraction > 0.5 {
             "partly"
         } else {
             "fails"
@@ -253,12 +253,12 @@ fn comparisons(report: &Report) -> Markup {
             @if fronts.alone.len() < Architecture::ALL.len() {
                 td { "not compared: not all architectures were searched" }
             } @else {
-                @let share = fronts.together.share(best);
-                @let rival = report.rivals.as_ref().and_then(|rivals| rivals.joint.as_ref());
-                (judged(class(share), format!(
-                    "{} of the designs of the front of all architectures{}{}", percent(share),
-                    report.joint.as_ref().map(|joint| format!(", {} of those of the single search over all architectures", percent(joint.share(best)))).unwrap_or_default(),
-                    rival.map(|rival| format!(", {} of those of MOGA-II (reimplementation)", percent(rival.share(best)))).unwrap_or_default(),
+                @let fraction = fronts.together.fraction(best);
+                @let rival = report.moga2.as_ref().and_then(|moga2| moga2.joint.as_ref());
+                (judged(class(fraction), format!(
+                    "{} of the designs of the front of all architectures{}{}", percent(fraction),
+                    report.joint.as_ref().map(|joint| format!(", {} of those of the single search over all architectures", percent(joint.fraction(best)))).unwrap_or_default(),
+                    rival.map(|rival| format!(", {} of those of MOGA-II (reimplementation)", percent(rival.fraction(best)))).unwrap_or_default(),
                 )))
             }
         }

@@ -4,11 +4,11 @@ use maud::{Markup, html};
 
 use super::optional;
 use crate::report::Report;
-use kinefront_model::mechanism::{Architecture, VARIABLES};
+use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES};
 
 /// Lists where a reader of the paper finds each of its figures and tables on the page.
 pub(super) fn guide(report: &Report) -> Markup {
-    let whole = report.rivals.is_some();
+    let whole = report.moga2.is_some();
     let mut places = vec![
         ("Fig. 1, the manipulators", "pictures", "Pictures of designs"),
         (
@@ -67,7 +67,7 @@ pub(super) fn made(report: &Report) -> Markup {
     let study = &report.study;
     html! {
         p {
-            "This report was made by Kinefront " (env!("CARGO_PKG_VERSION")) " in " (report.taken.as_secs()) " s on "
+            "This report was made by Kinefront " (env!("CARGO_PKG_VERSION")) " in " (report.duration.as_secs()) " s on "
             (rayon::current_num_threads()) " threads. "
             @if study.optimizer.time_limit_s.is_some() { "Searches may have ended at their time limit, so their results depend on the machine." }
             @else { "The results depend on the random seed but not on the number of threads." }
@@ -88,12 +88,12 @@ pub(super) fn made(report: &Report) -> Markup {
         } }
         div.scroll { table {
             caption { "Bounds of the design variables [m]." }
-            thead { tr { th { "" } @for variable in VARIABLES { th.number { (variable.symbol()) } } } }
+            thead { tr { th { "" } @for variable in DESIGN_VARIABLES { th.number { (variable.symbol()) } } } }
             tbody { @for (name, end) in [("lower", 0), ("upper", 1)] { tr {
-                td { (name) } @for variable in VARIABLES { td.number { (study.bounds.range(variable)[end]) } }
+                td { (name) } @for variable in DESIGN_VARIABLES { td.number { (study.bounds.range(variable)[end]) } }
             } } }
         } }
-        @if report.rivals.is_some() { (parameters(report)) }
+        @if report.moga2.is_some() { (parameters(report)) }
         div.scroll { table {
             caption {
                 "The flexible model of each leg: a chain of springs from the base to the centre of the platform, "

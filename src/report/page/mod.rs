@@ -10,14 +10,14 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{Figure, Picture, Report};
+use super::{DesignPicture, Figure, Report};
 use crate::text::number;
 
 const STYLE: &str = include_str!("style.css");
 
 /// Returns the page as text.
 pub(super) fn html(report: &Report) -> String {
-    let title = if report.of_paper && report.rivals.is_some() {
+    let title = if report.of_paper && report.moga2.is_some() {
         "Comparison of planar parallel manipulators: reproduction of the 2010 paper".to_owned()
     } else {
         format!("Kinefront report: {}", report.study.name)
@@ -117,7 +117,7 @@ fn drawing(figure: &Figure) -> PreEscaped<String> {
     )
 }
 
-fn image(picture: &Picture) -> Markup {
+fn image(picture: &DesignPicture) -> Markup {
     let data = STANDARD.encode(&picture.png);
     html! { img src={ "data:image/png;base64," (data) } alt=(picture.caption); }
 }
@@ -136,8 +136,8 @@ fn optional(value: Option<f64>) -> Markup {
 }
 
 /// Formats a fraction as a percentage.
-fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
+fn percent(fraction: f64) -> String {
+    let percent = 100.0 * fraction;
     if percent == 0.0 {
         "0 %".to_owned()
     } else if percent.abs() < 10.0 {

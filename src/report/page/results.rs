@@ -3,10 +3,10 @@
 use maud::{Markup, html};
 
 use super::{cell, figures, image, percent};
-use crate::report::{AT_BOUND, Fit, Front, Report, Trend, lightest_where};
+use crate::report::{AT_BOUND, Fit, Front, Report, Trend, lightest_intervals};
 use crate::text::{number, short};
 use kinefront_model::evaluation::{Constraint, Evaluation};
-use kinefront_model::mechanism::{VARIABLES, Variable};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable};
 
 /// Workspace radii at which architectures are compared, as fractions of the largest radius.
 const LEVELS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95];
@@ -14,7 +14,7 @@ const LEVELS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95];
 /// Returns the radii at which architectures are compared, rounded to two digits of the largest radius \[m\].
 pub(super) fn levels(largest: f64) -> Vec<f64> {
     let decade = libm::pow(10.0, libm::floor(libm::log10(largest.max(f64::MIN_POSITIVE))) - 1.0);
-    let round = |share: f64| (share * largest / decade).round() * decade;
+    let round = |fraction: f64| (fraction * largest / decade).round() * decade;
     let mut levels: Vec<f64> = LEVELS.into_iter().map(round).filter(|&level| level > 0.0).collect();
     levels.dedup();
     levels
@@ -22,7 +22,7 @@ pub(super) fn levels(largest: f64) -> Vec<f64> {
 
 pub(super) fn comparison(report: &Report) -> Markup {
     let fronts = &report.fronts;
-    let stretches = lightest_where(fronts);
+    let stretches = lightest_intervals(fronts);
     let total = fronts.together.largest();
     let shares = fronts.alone.iter().map(|(architecture, _)| {
         let of = stretches.iter().filter(|(winner, _)| winner == architecture);
@@ -32,8 +32,8 @@ pub(super) fn comparison(report: &Report) -> Markup {
     let levels = levels(total);
     html! {
         ul.facts {
-            @for (architecture, share) in shares {
-                li { b { (percent(share)) } span { "of the range of workspace radii up to " (number(total)) " m: the " (architecture) " is the lightest" } }
+            @for (architecture, fraction) in shares {
+                li { b { (percent(fraction)) } span { "of the range of workspace radii up to " (number(total)) " m: the " (architecture) " is the lightest" } }
             }
         }
         @if stretches.len() <= 12 {
@@ -139,7 +139,7 @@ pub(super) fn verdict(r_squared: f64) -> (&'static str, &'static str) {
 
 /// Returns the trend that the paper claims for a variable and the verdict on it.
 fn said(trend: &Trend) -> Markup {
-    let (what, word, class) = if trend.variable == Variable::PlatformBarRadius {
+    let (what, word, class) = if trend.variable == DesignVariable::PlatformBarRadius {
         match trend.is_quadratic() {
             Some(true) => ("quadratic", "holds", "holds"),
             Some(false) => ("quadratic", "an upward parabola is not clearly better", "fails"),
@@ -202,7 +202,7 @@ pub(super) fn variables(report: &Report) -> Markup {
 }
 
 pub(super) fn constraints(report: &Report) -> Markup {
-    let asked: Vec<Constraint> = Constraint::asked(&report.model.thresholds).collect();
+    let required: Vec<Constraint> = Constraint::required(&report.model.thresholds).collect();
     html! {
         p {
             "The active constraints are those that fail first just beyond R_w: they would have to be relaxed for the "
@@ -213,18 +213,18 @@ pub(super) fn constraints(report: &Report) -> Markup {
             caption { "Percentage of the drawn designs of each front at which a constraint is active." }
             thead { tr {
                 th { "architecture" }
-                @for &constraint in &asked { th.number { (constraint.id()) } }
+                @for &constraint in &required { th.number { (constraint.id()) } }
             } }
             tbody { @for (architecture, front) in &report.fronts.alone { tr {
                 td { (architecture) }
-                @for &constraint in &asked {
+                @for &constraint in &required {
                     @let count = front.shown().filter(|member| member.active().any(|active| active == constraint)).count();
                     td.number { @if count > 0 { (percent(count as f64 / front.shown.len() as f64)) } @else { "–" } }
                 }
             } } }
         } }
         p {
-            @for (index, constraint) in asked.iter().enumerate() {
+            @for (index, constraint) in required.iter().enumerate() {
                 @if index > 0 { "; " }
                 (constraint.id()) ": " (constraint.name().replace('_', " "))
             }
@@ -255,7 +255,7 @@ fn numbers(evaluation: &Evaluation) -> Markup {
     let values = evaluation.design.values();
     let active: Vec<&str> = evaluation.active().map(|constraint| constraint.id()).collect();
     html! { div.numbers {
-        @for (variable, value) in VARIABLES.into_iter().zip(values) {
+        @for (variable, value) in DESIGN_VARIABLES.into_iter().zip(values) {
             span { (variable.symbol()) " " b { (number(value)) } " m" }
         }
         span { "mass " b { (number(evaluation.mass)) } " kg" }

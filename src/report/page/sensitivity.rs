@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::results::levels;
 use super::{cell, change, figures, optional};
-use crate::report::{Front, READINGS, Reading, Report, Variation};
+use crate::report::{ALTERNATIVES, Alternative, Front, Report, Variation};
 use crate::text::{number, short};
 use kinefront_model::mechanism::Architecture;
 
@@ -13,11 +13,11 @@ pub(super) fn sensitivity(report: &Report) -> Markup {
         return html! {};
     };
     let evaluations = report.options.sensitivity.unwrap_or_default();
-    let tried = |reading: &&Reading| others.iter().any(|other| other.name() == reading.name);
-    let left_out: Vec<&str> = READINGS
+    let tried = |alternative: &&Alternative| others.iter().any(|other| other.name() == alternative.name);
+    let left_out: Vec<&str> = ALTERNATIVES
         .iter()
-        .filter(|reading| !tried(reading))
-        .map(|reading| reading.name)
+        .filter(|alternative| !tried(alternative))
+        .map(|alternative| alternative.name)
         .collect();
     html! {
         p {
@@ -40,7 +40,7 @@ pub(super) fn sensitivity(report: &Report) -> Markup {
                     @if report.references.iter().any(|reference| reference.stated_radius.is_some()) {
                         tr { td { "stated by the source" } @for reference in &report.references { (optional(reference.stated_radius)) } }
                     }
-                    @for variation in report.variations.iter().filter(|variation| variation.moves_designs()) {
+                    @for variation in report.variations.iter().filter(|variation| variation.affects_evaluation()) {
                         tr { td { (variation.name()) } @for radius in &variation.references { (cell(*radius)) } }
                     }
                 }
@@ -111,7 +111,7 @@ fn varied(variations: &[Variation], architecture: Architecture, base: &Front) ->
                             },
                             None => td colspan=(levels.len() + 1) { "no feasible design" }
                         }
-                        td { (variation.reading.map(|reading| reading.meaning).unwrap_or_default()) }
+                        td { (variation.alternative.map(|alternative| alternative.meaning).unwrap_or_default()) }
                     }
                 }
             }

@@ -6,7 +6,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::Sample;
-use super::mesh::Mesh;
+use super::mesh::FieldMesh;
 
 /// Largest number of steps of false position for a point of a contour.
 const REFINEMENTS: u32 = 120;
@@ -16,7 +16,7 @@ const CLOSE: f64 = 1e-14;
 /// Computes the polylines on which `pick` of the samples equals `level`; each point lies on the contour of the field
 /// `at` itself, not of its interpolation.
 pub(super) fn contour(
-    mesh: &Mesh,
+    mesh: &FieldMesh,
     level: f64,
     at: &(impl Fn(DVec2) -> Option<Sample> + Sync),
     pick: impl Fn(&Sample) -> f64 + Sync,
@@ -82,20 +82,20 @@ fn crossing(
     let mut halve = false;
     for _ in 0..REFINEMENTS {
         let width = high - low;
-        let share = if halve || at_low == at_high {
+        let fraction = if halve || at_low == at_high {
             0.5 * (low + high)
         } else {
             ((low * at_high - high * at_low) / (at_high - at_low)).clamp(low, high)
         };
-        let point = start.lerp(end, share);
+        let point = start.lerp(end, fraction);
         let value = value_at(point)?;
         if value.abs() <= close || width < CLOSE {
             return Some(point);
         }
         if (value > 0.0) == (at_low > 0.0) {
-            (low, at_low) = (share, value);
+            (low, at_low) = (fraction, value);
         } else {
-            (high, at_high) = (share, value);
+            (high, at_high) = (fraction, value);
         }
         halve = high - low > 0.5 * width;
     }

@@ -4,7 +4,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::Sample;
-use kinefront_model::lanes::padded;
+use kinefront_model::lanes::padded_length;
 use kinefront_model::mechanism::ReachReason;
 
 /// Number of halvings along a side that the edge of reach cuts: an accuracy of 2⁻³² of a cell.
@@ -13,7 +13,7 @@ const HALVINGS: u32 = 32;
 /// The surface to mesh: it has a sample at every reachable position.
 pub(super) trait Surface: Sync {
     /// Returns the samples at many positions; the length of the columns is a multiple of
-    /// [`MOST_LANES`](kinefront_model::lanes::MOST_LANES).
+    /// [`MAX_LANES`](kinefront_model::lanes::MAX_LANES).
     fn row(&self, xs: &[f64], ys: &[f64]) -> Vec<Option<Sample>>;
     /// Returns the sample at one position.
     fn at(&self, position: DVec2) -> Option<Sample>;
@@ -24,14 +24,14 @@ pub(super) trait Surface: Sync {
 }
 
 /// Nodes of a grid, row by row from the lower left corner.
-pub(super) struct Layout {
+pub(super) struct NodeGrid {
     pub(super) low: DVec2,
     pub(super) step: f64,
     pub(super) columns: usize,
     pub(super) rows: usize,
 }
 
-impl Layout {
+impl NodeGrid {
     fn position(&self, node: usize) -> DVec2 {
         let (column, row) = (node % self.columns, node / self.columns);
         self.low + DVec2::new(column as f64, row as f64) * self.step
@@ -75,7 +75,7 @@ struct Cut {
 }
 
 /// A mesh of triangles with reachable vertices.
-pub(super) struct Mesh {
+pub(super) struct FieldMesh {
     pub(super) vertices: Vec<Vertex>,
     /// Counterclockwise.
     pub(super) triangles: Vec<[u32; 3]>,
@@ -83,17 +83,17 @@ pub(super) struct Mesh {
     pub(super) outline: Vec<([u32; 2], ReachReason)>,
 }
 
-impl Mesh {
+impl FieldMesh {
     /// Builds the mesh of the reachable part of `surface`. Rows are computed in parallel; the result does not depend on
     /// their distribution over threads.
-    pub(super) fn new(layout: &Layout, surface: &impl Surface) -> Self {
+    pub(super) fn new(layout: &NodeGrid, surface: &impl Surface) -> Self {
         let count = layout.columns * layout.rows;
         let nodes: Vec<Option<Sample>> = (0..layout.rows)
             .into_par_iter()
             .flat_map_iter(|row| {
                 let first = row * layout.columns;
                 let position = |column: usize| layout.position(first + column.min(layout.columns - 1));
-                let (xs, ys): (Vec<f64>, Vec<f64>) = (0..padded(layout.columns))
+                let (xs, ys): (Vec<f64>, Vec<f64>) = (0..padded_length(layout.columns))
                     .map(|column| position(column).into())
                     .unzip();
                 surface.row(&xs, &ys).into_iter().take(layout.columns)
@@ -116,7 +116,7 @@ impl Mesh {
             })
             .collect();
 
-        let mut mesh = Mesh {
+        let mut mesh = FieldMesh {
             vertices: Vec::with_capacity(count),
             triangles: Vec::with_capacity(2 * count),
             outline: Vec::new(),
@@ -186,7 +186,7 @@ impl Mesh {
 }
 
 /// Finds the last reachable point on the side from a reachable node to an unreachable one.
-fn cut(layout: &Layout, surface: &impl Surface, inner: usize, outer: usize, sample: Sample) -> Cut {
+fn cut(layout: &NodeGrid, surface: &impl Surface, inner: usize, outer: usize, sample: Sample) -> Cut {
     let (mut inside, mut outside) = (layout.position(inner), layout.position(outer));
     for _ in 0..HALVINGS {
         let position = 0.5 * (inside + outside);

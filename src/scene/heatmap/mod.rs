@@ -12,7 +12,7 @@ mod mesh;
 use glam::DVec2;
 
 use self::contour::{chains, contour};
-use self::mesh::{Layout, Mesh, Surface};
+use self::mesh::{FieldMesh, NodeGrid, Surface};
 use super::Field;
 use kinefront_model::evaluation::Model;
 use kinefront_model::mechanism::{Design, Leg, ReachReason};
@@ -165,13 +165,13 @@ impl<L: Leg> Sampler<'_, L> {
         };
         let size = high - low;
         let step = size.max_element() / settings.cells.max(2) as f64;
-        let layout = Layout {
+        let layout = NodeGrid {
             low,
             step,
             columns: (size.x / step).ceil() as usize + 1,
             rows: (size.y / step).ceil() as usize + 1,
         };
-        let mesh = Mesh::new(&layout, self);
+        let mesh = FieldMesh::new(&layout, self);
         let threshold = self.field.threshold(self.model);
         let at = |position| self.at(position);
         heatmap.cells = (layout.columns - 1) * (layout.rows - 1);
@@ -186,7 +186,7 @@ impl<L: Leg> Sampler<'_, L> {
 }
 
 /// Returns the edge of reach as polylines, each with a single reason.
-fn edges(mesh: &Mesh) -> Vec<Edge> {
+fn edges(mesh: &FieldMesh) -> Vec<Edge> {
     let mut edges = Vec::new();
     for reason in [
         ReachReason::OutOfReach,

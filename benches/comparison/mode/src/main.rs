@@ -48,7 +48,7 @@ fn main() {
         let designs: Vec<String> = asked
             .iter()
             .map(|x| {
-                let place = x.get(5).map_or(0.0, |share| share * architectures.len() as f64);
+                let place = x.get(5).map_or(0.0, |fraction| fraction * architectures.len() as f64);
                 let architecture = architectures[(place as usize).min(architectures.len() - 1)];
                 format!("{architecture} R={} r={} Lb={} rj={} rp={}", x[0], x[1], x[2], x[3], x[4])
             })

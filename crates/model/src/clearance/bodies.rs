@@ -2,12 +2,12 @@
 
 use glam::{DVec2, DVec3};
 
-use super::FARTHEST;
-use super::capsule::{Capsule, Clearance, Member, Neighbour};
+use super::NUMBER_LIMIT;
+use super::capsule::{Capsule, Clearance, MemberId, Neighbour};
 use super::distance::{may_be_nearer, squared};
 use super::layers::BodySettings;
 use crate::lanes::{Planar, Real};
-use crate::mechanism::{Axis, Design, Leg, Manipulator, MemberKind, Members, Posture};
+use crate::mechanism::{Design, Leg, Manipulator, MemberAxis, MemberKind, Members, Posture};
 use crate::spatial::{LEGS, nearest_on_segment};
 
 /// Number of rows of members: the proximal members of the legs, the distal members of the legs, and the platform bars.
@@ -17,7 +17,7 @@ const DISTAL: usize = 1;
 const PLATFORM: usize = 2;
 
 /// Largest number of pairs of members that are not joined: 3 + 3 + 6 between legs, 9 + 6 with the platform bars.
-const MOST_PAIRS: usize = 27;
+const MAX_PAIRS: usize = 27;
 
 /// Pair of members that are not joined.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,22 +42,22 @@ pub struct Bodies {
     /// Half the length of a slider, and half the length of its axis \[m\].
     slider: [f64; 2],
     /// Pairs that are not joined, in increasing order of the lower bound of their clearance.
-    pairs: [Pair; MOST_PAIRS],
+    pairs: [Pair; MAX_PAIRS],
     count: usize,
 }
 
 /// Axes of all members at a pose, indexed by `LEGS · row + leg`.
-type Axes<V> = [Axis<V>; ROWS * LEGS];
+type Axes<V> = [MemberAxis<V>; ROWS * LEGS];
 
 impl Bodies {
     /// Prepares the members of `design`, whose legs are of type `L`.
     pub fn new<L: Leg>(design: &Design, settings: &BodySettings) -> Self {
         let kinds = [L::PROXIMAL, Some(L::DISTAL), Some(MemberKind::PlatformBar)];
         // The limit keeps squares and sums finite, whatever radii a design has.
-        let radii = kinds.map(|kind| kind.map_or(0.0, |kind| settings.radius(kind, design).min(FARTHEST)));
-        let height = |kind| settings.height(kind, design).clamp(-FARTHEST, FARTHEST);
+        let radii = kinds.map(|kind| kind.map_or(0.0, |kind| settings.radius(kind, design).min(NUMBER_LIMIT)));
+        let height = |kind| settings.height(kind, design).clamp(-NUMBER_LIMIT, NUMBER_LIMIT);
         let heights = kinds.map(|kind| kind.map_or(0.0, height));
-        let half_length = settings.slider_half_length(design).min(FARTHEST);
+        let half_length = settings.slider_half_length(design).min(NUMBER_LIMIT);
         let none = Pair {
             places: [0; 2],
             radii: 0.0,
@@ -70,7 +70,7 @@ impl Bodies {
             heights,
             platform_radius: design.platform_radius,
             slider: [half_length, (half_length - radii[PROXIMAL]).max(0.0)],
-            pairs: [none; MOST_PAIRS],
+            pairs: [none; MAX_PAIRS],
             count: 0,
         };
         bodies.pair_up();
@@ -132,7 +132,7 @@ impl Bodies {
     /// Returns the axis of the proximal member. For a leg without one it returns that of the distal member, which no
     /// pair uses.
     #[inline(always)]
-    fn proximal<V: Real, L: Leg>(&self, members: &Members<V>) -> Axis<V> {
+    fn proximal<V: Real, L: Leg>(&self, members: &Members<V>) -> MemberAxis<V> {
         match (&members.proximal, L::PROXIMAL) {
             (Some(axis), Some(MemberKind::Slider)) => axis.extended(axis.length.splat(self.slider[1])),
             (Some(axis), _) => *axis,
@@ -141,9 +141,9 @@ impl Bodies {
     }
 
     #[inline(always)]
-    fn platform_bar<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> Axis<V> {
+    fn platform_bar<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> MemberAxis<V> {
         let like = arm.x;
-        Axis {
+        MemberAxis {
             from: position.plus(arm),
             direction: arm.scaled(like.splat(-1.0 / self.platform_radius)),
             length: like.splat(self.platform_radius),
@@ -162,7 +162,7 @@ impl Bodies {
     /// their layers or the circles around their axes show that they cannot be nearer than the smallest clearance found
     /// so far.
     #[inline(always)]
-    pub fn below<V: Real, L: Leg>(
+    pub fn compute_clearance_up_to<V: Real, L: Leg>(
         &self,
         legs: &[L; LEGS],
         position: Planar<V>,
@@ -192,7 +192,7 @@ impl Bodies {
             let near = may_be_nearer(a, b, least + limit.splat(pair.radii));
             if V::any(near) {
                 let found = Self::gap(pair, &axes).smaller(least);
-                least = found.where_set(near, least);
+                least = found.select(near, least);
             }
         }
         least
@@ -212,7 +212,7 @@ impl Bodies {
         let pairs = self.pairs[..self.count].iter();
         let (distance, found) = ends
             .chain(pairs.map(|pair| (Self::gap(pair, &axes), Found::Pair(pair))))
-            .map(|(distance, found)| (distance.clamp(-FARTHEST, FARTHEST), found))
+            .map(|(distance, found)| (distance.clamp(-NUMBER_LIMIT, NUMBER_LIMIT), found))
             .reduce(|least, next| if next.0 < least.0 { next } else { least })
             .expect("a manipulator has pairs of members");
         match found {
@@ -279,8 +279,8 @@ impl Bodies {
         }
     }
 
-    fn member(&self, place: usize) -> Member {
-        Member {
+    fn member(&self, place: usize) -> MemberId {
+        MemberId {
             leg: place % LEGS,
             kind: self.kinds[place / LEGS].expect("legs of this type have this member"),
         }
@@ -319,8 +319,8 @@ fn nearest_points(a: &Capsule, b: &Capsule) -> [DVec3; 2] {
         }
     }
     let foot = |at: DVec3, of: &Capsule| {
-        let share = nearest_on_segment(flat(at), flat(of.from), flat(of.to));
-        of.from.lerp(of.to, share)
+        let fraction = nearest_on_segment(flat(at), flat(of.from), flat(of.to));
+        of.from.lerp(of.to, fraction)
     };
     [
         [a.from, foot(a.from, b)],

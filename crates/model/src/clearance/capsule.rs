@@ -8,14 +8,14 @@ use crate::mechanism::MemberKind;
 
 /// A member of a manipulator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Member {
+pub struct MemberId {
     /// Index of the leg; for a platform bar, index of the leg to which the bar runs.
     pub leg: usize,
     /// Kind of the member.
     pub kind: MemberKind,
 }
 
-impl fmt::Display for Member {
+impl fmt::Display for MemberId {
     /// Writes the name, for example `leg1_link` or `platform_bar3`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (number, kind) = (self.leg + 1, self.kind.name());
@@ -30,7 +30,7 @@ impl fmt::Display for Member {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Neighbour {
     /// Another member.
-    Member(Member),
+    Member(MemberId),
     /// End of a slider's rail, located at a base joint `A_i`.
     RailEnd {
         /// Index of the leg to which the rail belongs.
@@ -54,7 +54,7 @@ impl fmt::Display for Neighbour {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capsule {
     /// The member that the capsule represents.
-    pub member: Member,
+    pub member: MemberId,
     /// Centre of the sphere at the proximal end.
     pub from: DVec3,
     /// Centre of the sphere at the distal end.
@@ -69,7 +69,7 @@ pub struct Clearance {
     /// Distance between the two surfaces \[m\]; where they overlap, the negative depth of penetration.
     pub distance: f64,
     /// First member of the pair.
-    pub member: Member,
+    pub member: MemberId,
     /// Second member of the pair, or the end of the rail.
     pub neighbour: Neighbour,
     /// Points of the two axes that are nearest to each other, or the end of a slider and the end of its rail.

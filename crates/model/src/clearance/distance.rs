@@ -4,13 +4,13 @@
 //! gives the same bits on every instruction set. The tests compare it with the result of a library (`parry3d-f64`).
 
 use crate::lanes::Real;
-use crate::mechanism::Axis;
+use crate::mechanism::MemberAxis;
 
 /// Returns the squared distance between two axes \[m²\]; 0 where they cross.
 ///
 /// Two segments in a plane that do not cross are nearest to each other at an end of one of them.
 #[inline(always)]
-pub(super) fn squared<V: Real>(a: &Axis<V>, b: &Axis<V>) -> V {
+pub(super) fn squared<V: Real>(a: &MemberAxis<V>, b: &MemberAxis<V>) -> V {
     let zero = a.length.splat(0.0);
     let way = b.from.minus(a.from);
     let (cos, sin) = (a.direction.dot(b.direction), a.direction.cross(b.direction));
@@ -23,7 +23,7 @@ pub(super) fn squared<V: Real>(a: &Axis<V>, b: &Axis<V>) -> V {
         .smaller(to_segment(far_b, a.length))
         .smaller(to_segment(near_a, b.length).smaller(to_segment(far_a, b.length)));
     let cross = zero.exceeds(near_b[1] * far_b[1]) & zero.exceeds(near_a[1] * far_a[1]);
-    zero.where_set(cross, of_ends)
+    zero.select(cross, of_ends)
 }
 
 /// Returns the squared distance from a point to a segment of the given length. The coordinates of the point are
@@ -37,7 +37,7 @@ fn to_segment<V: Real>([along, across]: [V; 2], length: V) -> V {
 /// Returns whether the distance between two axes could be smaller than `distance`. The test compares the circles around
 /// the axes, which costs a fifth of [`squared`].
 #[inline(always)]
-pub(super) fn may_be_nearer<V: Real>(a: &Axis<V>, b: &Axis<V>, distance: V) -> V::Mask {
+pub(super) fn may_be_nearer<V: Real>(a: &MemberAxis<V>, b: &MemberAxis<V>, distance: V) -> V::Mask {
     let half = distance.splat(0.5);
     let (half_a, half_b) = (half * a.length, half * b.length);
     let way = b.from.minus(a.from);

@@ -17,8 +17,8 @@ mod distance;
 mod layers;
 
 pub use bodies::Bodies;
-pub use capsule::{Capsule, Clearance, Member, Neighbour};
+pub use capsule::{Capsule, Clearance, MemberId, Neighbour};
 pub use layers::{BodySettings, Layers};
 
 /// Largest magnitude of a reported distance, and upper limit for the dimensions of members \[m\].
-pub(crate) const FARTHEST: f64 = 1e100;
+pub(crate) const NUMBER_LIMIT: f64 = 1e100;

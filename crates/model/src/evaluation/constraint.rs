@@ -79,15 +79,15 @@ impl Constraint {
 
     /// Returns whether the constraint is required: g7 is required if the study states a clearance, all others always
     /// are.
-    pub fn is_asked(self, thresholds: &Thresholds) -> bool {
+    pub fn is_required(self, thresholds: &Thresholds) -> bool {
         self != Constraint::Clearance || thresholds.clearance.is_some()
     }
 
     /// Returns the constraints that are required.
-    pub fn asked(thresholds: &Thresholds) -> impl Iterator<Item = Constraint> {
+    pub fn required(thresholds: &Thresholds) -> impl Iterator<Item = Constraint> {
         Self::ALL
             .into_iter()
-            .filter(|constraint| constraint.is_asked(thresholds))
+            .filter(|constraint| constraint.is_required(thresholds))
     }
 
     /// Returns the smallest value allowed; if g7 is not required, its threshold is 0, at which members touch.
@@ -119,11 +119,11 @@ impl Constraint {
     pub fn value(self, design: &Design, values: &PoseValues, sign: f64) -> Option<f64> {
         let value = match self {
             Constraint::Assembly => design.link_length + design.platform_radius,
-            Constraint::Reach => values.slack,
+            Constraint::Reach => values.limit_margin,
             Constraint::Dexterity => values.inverse_condition,
-            Constraint::StiffnessXy => values.rigidity.k_xy,
-            Constraint::StiffnessZ => values.rigidity.k_z,
-            Constraint::StiffnessPhiZ => values.rigidity.k_phi_z,
+            Constraint::StiffnessXy => values.stiffness_values.k_xy,
+            Constraint::StiffnessZ => values.stiffness_values.k_z,
+            Constraint::StiffnessPhiZ => values.stiffness_values.k_phi_z,
             Constraint::DeterminantSign => sign * values.determinant,
             Constraint::Clearance => return values.clearance,
         };
@@ -142,7 +142,7 @@ impl Constraint {
 
 /// One constraint of one design: its smallest value over the regular workspace, and the pose at which it occurs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ConstraintReport {
+pub struct ConstraintResult {
     /// The constraint.
     pub constraint: Constraint,
     /// Smallest value; `None` if no reachable pose has one.
@@ -150,7 +150,7 @@ pub struct ConstraintReport {
     /// Smallest value allowed.
     pub threshold: f64,
     /// Whether the study requires the constraint. A constraint that is not required is never violated and never active.
-    pub asked: bool,
+    pub required: bool,
     /// Relative margin ([`Constraint::margin`]); −1 if there is no value.
     pub margin: f64,
     /// Whether the constraint is among those that fail first just beyond `R_w` in the home window; for an infeasible
@@ -160,9 +160,9 @@ pub struct ConstraintReport {
     pub pose: Option<Pose>,
 }
 
-impl ConstraintReport {
+impl ConstraintResult {
     /// Returns the margin, if the study requires the constraint.
-    pub fn asked_margin(&self) -> Option<f64> {
-        self.asked.then_some(self.margin)
+    pub fn required_margin(&self) -> Option<f64> {
+        self.required.then_some(self.margin)
     }
 }

@@ -7,7 +7,7 @@
 
 /// Sizing problem to be solved.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Problem {
+pub(super) struct SizingProblem {
     /// Radii at which the solution starts \[m\].
     pub start: [f64; 2],
     /// Ranges of the radii \[m\].
@@ -17,14 +17,14 @@ pub(super) struct Problem {
 }
 
 /// Ratios of the stiffness to the required stiffness at a set of poses, one column for each kind of stiffness.
-pub(super) trait Shares {
+pub(super) trait StiffnessRatios {
     /// Returns the ratios at all poses for bars of the given radii.
-    fn of_all(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3];
+    fn ratios_at_all(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3];
     /// Selects some of the poses. It may refine the sampling about the `weakest`; poses that it adds to the set are
     /// selected too.
     fn choose(&mut self, poses: &[usize], weakest: &[usize]);
     /// Returns the ratios at the selected poses for bars of the given radii.
-    fn of_chosen(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3];
+    fn ratios_at_selected(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3];
 }
 
 /// Number of rounds that select poses, and number of linearisations on the selected poses in each round.
@@ -59,28 +59,28 @@ const THINNEST: f64 = 1e-5;
 /// Bars whose smallest ratio exceeds 1 by no more than this are left unchanged.
 const SPARE: f64 = 5e-4;
 
-/// Linearised constraint `share + slopes · change ≥ 0`, with all quantities in logarithms.
-struct Line {
-    share: f64,
+/// Linearised constraint `fraction + slopes · change ≥ 0`, with all quantities in logarithms.
+struct LinearConstraint {
+    fraction: f64,
     slopes: [f64; 2],
 }
 
 /// Returns the radii of smallest mass at which every ratio is at least 1; `None` if the ranges contain no such radii.
-pub(super) fn lightest(problem: &Problem, shares: &mut impl Shares) -> Option<[f64; 2]> {
+pub(super) fn lightest(problem: &SizingProblem, ratios: &mut impl StiffnessRatios) -> Option<[f64; 2]> {
     let upper = problem.ranges.map(|range| libm::log(range[1]));
     let lower = problem.ranges.map(|[low, high]| libm::log(low.max(THINNEST * high)));
     let inside = |at: [f64; 2]| [at[0].clamp(lower[0], upper[0]), at[1].clamp(lower[1], upper[1])];
-    if weakest(&shares.of_all(upper.map(libm::exp))) < 1.0 {
+    if weakest(&ratios.ratios_at_all(upper.map(libm::exp))) < 1.0 {
         return None;
     }
     let mut at = inside([0, 1].map(|k| libm::log(problem.start[k].max(THINNEST * problem.ranges[k][1]))));
     let mut chosen: Vec<usize> = Vec::new();
     for round in 0..ROUNDS[0] {
-        let mut all = shares.of_all(at.map(libm::exp));
+        let mut all = ratios.ratios_at_all(at.map(libm::exp));
         if round == 0 {
             // Both radii are first scaled alike to come close to the constraints.
             at = scaled(at, weakest(&all), &inside);
-            all = shares.of_all(at.map(libm::exp));
+            all = ratios.ratios_at_all(at.map(libm::exp));
         } else if weakest(&all) > 1.0 - SPARE {
             break;
         }
@@ -96,11 +96,12 @@ pub(super) fn lightest(problem: &Problem, shares: &mut impl Shares) -> Option<[f
         }
         chosen.sort_unstable();
         chosen.dedup();
-        shares.choose(&chosen, &weak);
+        ratios.choose(&chosen, &weak);
         let mut trust = TRUST;
         for _ in 0..ROUNDS[1] {
-            let base = shares.of_chosen(at.map(libm::exp));
-            let stepped = [[at[0] + STEP, at[1]], [at[0], at[1] + STEP]].map(|at| shares.of_chosen(at.map(libm::exp)));
+            let base = ratios.ratios_at_selected(at.map(libm::exp));
+            let stepped =
+                [[at[0] + STEP, at[1]], [at[0], at[1] + STEP]].map(|at| ratios.ratios_at_selected(at.map(libm::exp)));
             let lines = lines(&base, &stepped);
             let next = inside(change(at, &lines, problem, trust));
             let moved = (next[0] - at[0]).abs().max((next[1] - at[1]).abs());
@@ -116,7 +117,7 @@ pub(super) fn lightest(problem: &Problem, shares: &mut impl Shares) -> Option<[f
     let mut held = upper;
     let mut short: Option<[f64; 2]> = None;
     for _ in 0..6 {
-        let weakest = weakest(&shares.of_all(at.map(libm::exp)));
+        let weakest = weakest(&ratios.ratios_at_all(at.map(libm::exp)));
         if weakest >= 1.0 {
             held = at;
             if weakest < 1.0 + SPARE {
@@ -143,18 +144,18 @@ fn weakest(columns: &[Vec<f64>; 3]) -> f64 {
     columns
         .iter()
         .flatten()
-        .fold(f64::INFINITY, |least, &share| least.min(share))
+        .fold(f64::INFINITY, |least, &fraction| least.min(fraction))
 }
 
 /// Returns the constraints, linearised by difference quotients.
-fn lines(base: &[Vec<f64>; 3], stepped: &[[Vec<f64>; 3]; 2]) -> Vec<Line> {
+fn lines(base: &[Vec<f64>; 3], stepped: &[[Vec<f64>; 3]; 2]) -> Vec<LinearConstraint> {
     let mut lines = Vec::with_capacity(3 * base[0].len());
     for kind in 0..3 {
-        for (index, &share) in base[kind].iter().enumerate() {
-            if share > 0.0 && share < FAR {
-                lines.push(Line {
-                    share: libm::log(share),
-                    slopes: [0, 1].map(|k| (stepped[k][kind][index] / share - 1.0) / STEP),
+        for (index, &fraction) in base[kind].iter().enumerate() {
+            if fraction > 0.0 && fraction < FAR {
+                lines.push(LinearConstraint {
+                    fraction: libm::log(fraction),
+                    slopes: [0, 1].map(|k| (stepped[k][kind][index] / fraction - 1.0) / STEP),
                 });
             }
         }
@@ -174,27 +175,27 @@ fn between(at: [f64; 2], low: [f64; 2], high: [f64; 2]) -> bool {
 
 /// Returns the point of smallest mass within `trust` of `at` that satisfies `lines`; if none does, the point that is
 /// nearest to satisfying them.
-fn change(at: [f64; 2], lines: &[Line], problem: &Problem, trust: f64) -> [f64; 2] {
+fn change(at: [f64; 2], lines: &[LinearConstraint], problem: &SizingProblem, trust: f64) -> [f64; 2] {
     // Smallest change of the second logarithm that a line requires, as `[constant, slope]` in the change of the first,
     // for lines that can be violated within `trust`. A line without a second slope requires a change of the first
     // instead.
-    let mut asked: Vec<[f64; 2]> = Vec::with_capacity(lines.len());
+    let mut required: Vec<[f64; 2]> = Vec::with_capacity(lines.len());
     let mut low = -trust;
     for line in lines {
         let [first, second] = line.slopes;
-        if line.share >= (first.max(0.0) + second.max(0.0)) * trust {
+        if line.fraction >= (first.max(0.0) + second.max(0.0)) * trust {
             continue;
         }
         if second > 1e-6 {
-            asked.push([-line.share / second, -first / second]);
+            required.push([-line.fraction / second, -first / second]);
         } else if first > 1e-6 {
-            low = low.max(-line.share / first);
+            low = low.max(-line.fraction / first);
         }
     }
     let mut low = low.min(trust);
     let mut high = trust;
     let second = |first: f64| {
-        asked.iter().fold(-trust, |most: f64, [constant, slope]| {
+        required.iter().fold(-trust, |most: f64, [constant, slope]| {
             most.max(constant + slope * first)
         })
     };

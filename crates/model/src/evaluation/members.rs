@@ -3,17 +3,17 @@
 use glam::DVec3;
 
 use super::{Model, Unreachable};
-use crate::clearance::{Bodies, Member};
+use crate::clearance::{Bodies, MemberId};
 use crate::kinematics::Jacobian;
 use crate::mechanism::{Design, Leg, Manipulator, MemberKind};
 use crate::spatial::{LEGS, Pose};
-use crate::stiffness::{Share, StiffnessModel};
+use crate::stiffness::{Contribution, StiffnessModel};
 
 /// A member at a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MemberReport {
     /// The member.
-    pub member: Member,
+    pub member: MemberId,
     /// Proximal end of the axis in the base frame \[m\]. For a telescopic leg it is the inner end of the rod, if that
     /// protrudes behind the base joint; for a slider it is the centre of an end face.
     pub from: DVec3,
@@ -27,9 +27,9 @@ pub struct MemberReport {
     pub mass: f64,
     /// Fraction of the compliance at the pose that the member contributes; `None` if the platform is infinitely
     /// compliant.
-    pub share: Option<Share>,
+    pub contribution: Option<Contribution>,
     /// Fraction that the actuator driving the member contributes, if an actuator drives it.
-    pub actuator: Option<Share>,
+    pub actuator: Option<Contribution>,
 }
 
 impl Model {
@@ -47,15 +47,15 @@ impl Model {
         let posture = manipulator
             .posture(pose)
             .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
-        let shares = StiffnessModel::new::<L>(design, &self.material, &self.actuators)
-            .and_then(|stiffness| stiffness.shares(&manipulator, &posture, &Jacobian::new(&posture)));
+        let contributions = StiffnessModel::new::<L>(design, &self.material, &self.actuators)
+            .and_then(|stiffness| stiffness.contributions(&manipulator, &posture, &Jacobian::new(&posture)));
         let of_leg = self.legs_mass(design) / (LEGS * L::BARS) as f64;
         let of_platform = self.platform_mass(design) / LEGS as f64;
         let capsules = Bodies::new::<L>(design, &self.bodies).capsules(&manipulator, pose.position, &posture);
         let members = capsules.into_iter().map(|capsule| {
             let kind = capsule.member.kind;
             let leg = capsule.member.leg;
-            let of_leg_shares = shares.as_ref().map(|shares| &shares[leg]);
+            let of_leg_shares = contributions.as_ref().map(|contributions| &contributions[leg]);
             let ends = match (kind, manipulator.legs[leg].actuator_axis(&posture.legs[leg])) {
                 // The axis of a capsule ends before the end faces of the block.
                 (MemberKind::Slider, Some(axis)) => {
@@ -81,12 +81,14 @@ impl Model {
                     MemberKind::PlatformBar => of_platform,
                     _ => of_leg,
                 },
-                share: of_leg_shares.map(|shares| match kind {
-                    MemberKind::PlatformBar => shares.platform,
-                    kind if kind == L::DISTAL => shares.distal,
-                    _ => shares.proximal,
+                contribution: of_leg_shares.map(|contributions| match kind {
+                    MemberKind::PlatformBar => contributions.platform,
+                    kind if kind == L::DISTAL => contributions.distal,
+                    _ => contributions.proximal,
                 }),
-                actuator: of_leg_shares.filter(|_| driven).map(|shares| shares.actuator),
+                actuator: of_leg_shares
+                    .filter(|_| driven)
+                    .map(|contributions| contributions.actuator),
             }
         });
         Ok(members.collect())

@@ -11,20 +11,20 @@
 //! ```
 
 mod constraint;
-mod layout;
 mod lightest;
 mod members;
 mod model;
 mod pose;
+mod pose_columns;
 mod sizing;
 mod worst;
 
-pub use crate::stiffness::Share;
-pub use constraint::{Constraint, ConstraintReport};
+pub use crate::stiffness::Contribution;
+pub use constraint::{Constraint, ConstraintResult};
 pub use members::MemberReport;
 pub use model::{GridChoice, Model, ModelSettings};
-pub use pose::{PoseReport, Unreachable};
-pub use sizing::{BarRanges, Demand};
+pub use pose::{PoseEvaluation, Unreachable};
+pub use sizing::{BarRanges, WorkspaceTarget};
 
 use crate::mechanism::Design;
 use crate::spatial::Pose;
@@ -43,7 +43,7 @@ pub struct Evaluation {
     /// Home orientation `φ_c` exactly as on the grid \[deg\], in \[0, 360); `None` for an infeasible design.
     pub home_phi_deg: Option<f64>,
     /// Reports of the constraints, in the order of [`Constraint::ALL`].
-    pub constraints: [ConstraintReport; Constraint::ALL.len()],
+    pub constraints: [ConstraintResult; Constraint::ALL.len()],
     /// Dimensionless measure, for optimizers, of how far the design is from having a workspace: 0 for a feasible
     /// design, otherwise the smallest mean over a window of the summed relative shortfalls at the centre. A window with
     /// both signs of `det A` counts 1 more, and the relative shortfall of g1 is added.
@@ -57,7 +57,7 @@ impl Evaluation {
     }
 
     /// Returns the report of one constraint.
-    pub fn constraint(&self, constraint: Constraint) -> &ConstraintReport {
+    pub fn constraint(&self, constraint: Constraint) -> &ConstraintResult {
         &self.constraints[constraint as usize]
     }
 

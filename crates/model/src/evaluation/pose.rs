@@ -7,11 +7,11 @@ use crate::clearance::Clearance;
 use crate::kinematics::Jacobian;
 use crate::mechanism::{Design, Leg, ReachReason, Shortfall};
 use crate::spatial::{LEGS, Pose};
-use crate::stiffness::Rigidity;
+use crate::stiffness::StiffnessValues;
 
 /// Values of a design at a reachable pose.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PoseReport {
+pub struct PoseEvaluation {
     /// Actuator values \[m or rad\].
     pub actuators: [f64; LEGS],
     /// `B_i` in the base frame \[m\]; `A_i` for a telescopic leg.
@@ -19,13 +19,13 @@ pub struct PoseReport {
     /// `C_i` in the base frame \[m\].
     pub c: [[f64; 2]; LEGS],
     /// Limit margin: smallest distance to a joint limit or to the end of reach \[m\].
-    pub slack: f64,
+    pub limit_margin: f64,
     /// `κ_F⁻¹`.
     pub inverse_condition: f64,
     /// `det A / ℓ`.
     pub determinant: f64,
     /// `k_xy`, `k_z`, `k_φz`.
-    pub rigidity: Rigidity,
+    pub stiffness_values: StiffnessValues,
     /// Clearance of the nearest pair of members that are not joined.
     pub clearance: Clearance,
     /// Stiffness matrix `K` at `P` in base axes, linear components first.
@@ -43,7 +43,7 @@ pub struct Unreachable {
 }
 
 fn words(shortfall: &Shortfall) -> String {
-    let distance = -shortfall.slack;
+    let distance = -shortfall.limit_margin;
     match shortfall.reason {
         ReachReason::OutOfReach => format!("out of reach by {distance:.6} m"),
         ReachReason::BelowLimit => format!("actuator {distance:.6} m below its lower limit"),
@@ -57,11 +57,11 @@ impl Model {
     ///
     /// # Errors
     /// The leg that does not reach the pose, and why.
-    pub fn pose(&self, design: &Design, pose: &Pose) -> Result<PoseReport, Unreachable> {
+    pub fn pose(&self, design: &Design, pose: &Pose) -> Result<PoseEvaluation, Unreachable> {
         with_leg!(design.architecture, L => self.pose_of::<L>(design, pose))
     }
 
-    fn pose_of<L: Leg>(&self, design: &Design, pose: &Pose) -> Result<PoseReport, Unreachable> {
+    fn pose_of<L: Leg>(&self, design: &Design, pose: &Pose) -> Result<PoseEvaluation, Unreachable> {
         let checker = self.checker::<L>(design);
         let posture = checker
             .manipulator
@@ -69,14 +69,14 @@ impl Model {
             .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
         let jacobian = Jacobian::new(&posture);
         let stiffness = checker.stiffness_at(&posture, &jacobian);
-        Ok(PoseReport {
+        Ok(PoseEvaluation {
             actuators: [0, 1, 2].map(|i| checker.manipulator.legs[i].actuator(&posture.legs[i])),
             b: posture.legs.map(|leg| leg.b.to_array()),
             c: posture.arms.map(|arm| (pose.position + arm).to_array()),
-            slack: posture.slack,
+            limit_margin: posture.limit_margin,
             inverse_condition: jacobian.inverse_condition(checker.length),
             determinant: jacobian.determinant() / checker.length,
-            rigidity: stiffness.rigidity(self.stiffness_definition),
+            stiffness_values: stiffness.stiffness_values(self.stiffness_definition),
             clearance: checker.nearest(pose.position, &posture),
             stiffness: stiffness.matrix(),
         })

@@ -10,13 +10,13 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::layout::{Layout, Place};
-use super::lightest::{Problem, Shares, lightest};
+use super::lightest::{SizingProblem, StiffnessRatios, lightest};
+use super::pose_columns::{DiscPose, PoseColumns};
 use super::{GridChoice, Model};
 use crate::mechanism::{Design, Leg};
 use crate::spatial::{LEGS, Rotation, unit};
 use crate::stiffness::StiffnessModel;
-use crate::workspace::{PoseChecker, Turn, ValueColumns};
+use crate::workspace::{OrientationGrid, PoseChecker, ValueColumns};
 
 /// Number of directions of a ring over a sector of 120°.
 const DIRECTIONS: usize = 16;
@@ -38,7 +38,7 @@ pub struct BarRanges {
 
 /// Workspace radius for which bars are sized.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Demand {
+pub enum WorkspaceTarget {
     /// A given radius \[m\].
     Radius(f64),
     /// Largest radius that the geometry allows with the thickest bars.
@@ -47,17 +47,17 @@ pub enum Demand {
 
 impl Model {
     /// Returns `design` with the lightest bars within `ranges` that provide the required stiffness on the disc of the
-    /// workspace radius `demand`. The design's own bars are the starting point. Returns `None` if the geometry or the
+    /// workspace radius `target`. The design's own bars are the starting point. Returns `None` if the geometry or the
     /// ranges do not allow such bars.
     ///
     /// The disc and the orientations are sampled, the latter as on the reference grid. The other constraints are
     /// checked only at the centre and on the rim, and the clearance with members as thick as the design's own bars. The
     /// home orientation is the one in which the design is stiffest before it is sized.
-    pub fn sized(&self, design: &Design, ranges: &BarRanges, demand: Demand) -> Option<Design> {
+    pub fn sized(&self, design: &Design, ranges: &BarRanges, target: WorkspaceTarget) -> Option<Design> {
         if design.link_length + design.platform_radius < 0.5 * design.base_radius {
             return None;
         }
-        with_leg!(design.architecture, L => Sizer::<L>::new(self, design, ranges).sized(demand))
+        with_leg!(design.architecture, L => Sizer::<L>::new(self, design, ranges).sized(target))
     }
 }
 
@@ -69,19 +69,19 @@ struct Sizer<'a, L> {
     checker: PoseChecker<L>,
     /// Arms in every orientation, as on the reference grid.
     arms: Vec<[DVec2; LEGS]>,
-    turn: Turn,
+    turn: OrientationGrid,
     sectors: usize,
-    laid: Layout,
-    places: Vec<Place>,
+    laid: PoseColumns,
+    places: Vec<DiscPose>,
     disc_radius: f64,
     /// Poses of `laid` that are selected for sizing.
-    chosen: Layout,
+    chosen: PoseColumns,
     values: ValueColumns,
 }
 
 impl<'a, L: Leg> Sizer<'a, L> {
     fn new(model: &'a Model, design: &Design, ranges: &'a BarRanges) -> Self {
-        let turn = *model.sampling(GridChoice::Reference).turn();
+        let turn = *model.sampling(GridChoice::Reference).orientation_grid();
         let checker = model.checker::<L>(design);
         let arms = (0..turn.count)
             .map(|k| checker.manipulator.arms(&Rotation::new(turn.phi_deg(k).to_radians())))
@@ -94,15 +94,15 @@ impl<'a, L: Leg> Sizer<'a, L> {
             arms,
             turn,
             sectors: if model.is_symmetric(design) { 1 } else { LEGS },
-            laid: Layout::default(),
+            laid: PoseColumns::default(),
             places: Vec::new(),
             disc_radius: 0.0,
-            chosen: Layout::default(),
+            chosen: PoseColumns::default(),
             values: ValueColumns::default(),
         }
     }
 
-    fn sized(mut self, demand: Demand) -> Option<Design> {
+    fn sized(mut self, target: WorkspaceTarget) -> Option<Design> {
         self.set_bars([self.ranges.leg[1], self.ranges.platform[1]]);
         // The candidates are the orientations with a feasible centre that belong to a whole window of such
         // orientations.
@@ -112,15 +112,15 @@ impl<'a, L: Leg> Sizer<'a, L> {
         if candidates.is_empty() {
             return None;
         }
-        let radius = match demand {
-            Demand::Radius(radius) => radius,
-            Demand::Largest => self.largest(&candidates)?,
+        let radius = match target {
+            WorkspaceTarget::Radius(radius) => radius,
+            WorkspaceTarget::Largest => self.largest(&candidates)?,
         };
         let home = self.home(radius, &candidates)?;
         let window: Vec<usize> = self.turn.window(home).collect();
         self.lay_disc(radius, &window);
         let bar_mass = self.with_bars([1.0, 1.0]);
-        let problem = Problem {
+        let problem = SizingProblem {
             start: [self.design.leg_bar_radius, self.design.platform_bar_radius],
             ranges: [self.ranges.leg, self.ranges.platform],
             mass: [self.model.legs_mass(&bar_mass), self.model.platform_mass(&bar_mass)],
@@ -171,18 +171,18 @@ impl<'a, L: Leg> Sizer<'a, L> {
         self.disc_radius = radius;
         self.places.clear();
         for &orientation in orientations {
-            self.places.push(Place {
+            self.places.push(DiscPose {
                 orientation,
                 radius: 0.0,
                 angle: 0.0,
                 spacing,
                 refined: false,
             });
-            for (ring, share) in RINGS.iter().enumerate() {
+            for (ring, fraction) in RINGS.iter().enumerate() {
                 let turn = if ring % 2 == 0 { 0.0 } else { 0.5 };
-                self.places.extend((0..DIRECTIONS * self.sectors).map(|k| Place {
+                self.places.extend((0..DIRECTIONS * self.sectors).map(|k| DiscPose {
                     orientation,
-                    radius: share * radius,
+                    radius: fraction * radius,
                     angle: (k as f64 + turn) * step,
                     spacing,
                     refined: false,
@@ -217,7 +217,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
             let radius = place.radius + out * spacing[0];
             if radius > 0.0 && radius <= self.disc_radius {
                 let angle = place.angle + round * spacing[1];
-                self.places.push(Place {
+                self.places.push(DiscPose {
                     radius,
                     angle,
                     spacing,
@@ -240,7 +240,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
                     let own = values.determinant.signum();
                     values.determinant != 0.0
                         && *sign.get_or_insert(own) == own
-                        && self.checker.thresholds.hold(&values)
+                        && self.checker.thresholds.are_met_by(&values)
                 })
             });
             signs[orientation] = sign.filter(|_| good);
@@ -297,11 +297,11 @@ impl<'a, L: Leg> Sizer<'a, L> {
             return homes.first().copied();
         }
         let count = self.lay_ring(radius, &orientations);
-        let shares = self.of_all([self.design.leg_bar_radius, self.design.platform_bar_radius]);
+        let ratios = self.ratios_at_all([self.design.leg_bar_radius, self.design.platform_bar_radius]);
         let mut weakest = vec![f64::INFINITY; self.arms.len()];
         for (&orientation, first) in orientations.iter().zip((0..).step_by(count)) {
             for index in first..first + count {
-                weakest[orientation] = shares
+                weakest[orientation] = ratios
                     .iter()
                     .fold(weakest[orientation], |least, column| least.min(column[index]));
             }
@@ -319,10 +319,10 @@ impl<'a, L: Leg> Sizer<'a, L> {
     }
 }
 
-impl<L: Leg> Shares for Sizer<'_, L> {
-    fn of_all(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3] {
+impl<L: Leg> StiffnessRatios for Sizer<'_, L> {
+    fn ratios_at_all(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3] {
         self.set_bars(bars);
-        self.without_clearance(|sizer| sizer.laid.shares(&sizer.checker, &mut sizer.values))
+        self.without_clearance(|sizer| sizer.laid.ratios(&sizer.checker, &mut sizer.values))
     }
 
     fn choose(&mut self, poses: &[usize], weakest: &[usize]) {
@@ -332,7 +332,7 @@ impl<L: Leg> Shares for Sizer<'_, L> {
         }
         self.laid.unpad();
         for place in before..self.places.len() {
-            let Place {
+            let DiscPose {
                 orientation,
                 radius,
                 angle,
@@ -346,8 +346,8 @@ impl<L: Leg> Shares for Sizer<'_, L> {
         self.chosen = self.laid.chosen(&poses);
     }
 
-    fn of_chosen(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3] {
+    fn ratios_at_selected(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3] {
         self.set_bars(bars);
-        self.without_clearance(|sizer| sizer.chosen.shares(&sizer.checker, &mut sizer.values))
+        self.without_clearance(|sizer| sizer.chosen.ratios(&sizer.checker, &mut sizer.values))
     }
 }

@@ -1,18 +1,19 @@
 //! Report of an evaluation, derived from the search: smallest values and the poses where they occur, active
 //! constraints, violation.
 
-use super::{Constraint, ConstraintReport, Evaluation, Model};
+use super::{Constraint, ConstraintResult, Evaluation, Model};
 use crate::mechanism::{Design, Leg};
 use crate::spatial::Pose;
 use crate::workspace::{
-    Grid, Oriented, PoseChecker, PoseValues, Positions, RegularWorkspace, ValueColumns, WorkspaceSampling, search,
+    Grid, OrientationLanes, PoseChecker, PoseValues, Positions, RegularWorkspace, ValueColumns, WorkspaceSampling,
+    search,
 };
 
 /// Largest number of rings of a disc, besides its centre, on which values are evaluated; smooth fields need no more.
-const MOST_RINGS: f64 = 24.0;
+const MAX_RINGS: f64 = 24.0;
 
 /// Smallest violation of an infeasible design: 0 is reserved for feasible designs.
-const LEAST_VIOLATION: f64 = 1e-9;
+const SMALLEST_VIOLATION: f64 = 1e-9;
 
 /// Evaluates the design that is prepared in `checker`.
 pub(super) fn evaluate<L: Leg>(
@@ -23,7 +24,7 @@ pub(super) fn evaluate<L: Leg>(
 ) -> Evaluation {
     let found = search(checker, sampling, design.base_radius, model.is_symmetric(design));
     let assembled = design.link_length + design.platform_radius >= 0.5 * design.base_radius;
-    let reporter = Reporter {
+    let reporter = ConstraintSearch {
         model,
         checker,
         design,
@@ -49,27 +50,27 @@ pub(super) fn evaluate<L: Leg>(
     }
 }
 
-struct Reporter<'a, L> {
+struct ConstraintSearch<'a, L> {
     model: &'a Model,
     checker: &'a PoseChecker<L>,
     design: &'a Design,
     found: &'a RegularWorkspace,
 }
 
-type Reports = [ConstraintReport; Constraint::ALL.len()];
+type ConstraintResults = [ConstraintResult; Constraint::ALL.len()];
 
-impl<L: Leg> Reporter<'_, L> {
+impl<L: Leg> ConstraintSearch<'_, L> {
     /// Returns reports without values, except for g1, which needs no pose.
-    fn blank(&self) -> Reports {
+    fn blank(&self) -> ConstraintResults {
         Constraint::ALL.map(|constraint| {
             let threshold = constraint.threshold(self.design, &self.checker.thresholds);
             let value = matches!(constraint, Constraint::Assembly)
                 .then(|| self.design.link_length + self.design.platform_radius);
-            ConstraintReport {
+            ConstraintResult {
                 constraint,
                 value,
                 threshold,
-                asked: constraint.is_asked(&self.checker.thresholds),
+                required: constraint.is_required(&self.checker.thresholds),
                 margin: value.map_or(-1.0, |value| constraint.margin(value, threshold, self.design)),
                 active: value.is_some_and(|value| !constraint.holds(value, threshold)),
                 pose: None,
@@ -78,7 +79,13 @@ impl<L: Leg> Reporter<'_, L> {
     }
 
     /// Lowers the reports to the values at one pose, with `det A` multiplied by `sign`.
-    fn visit(&self, reports: &mut Reports, values: &Result<PoseValues, f64>, pose: impl Fn() -> Pose, sign: f64) {
+    fn visit(
+        &self,
+        reports: &mut ConstraintResults,
+        values: &Result<PoseValues, f64>,
+        pose: impl Fn() -> Pose,
+        sign: f64,
+    ) {
         for report in reports {
             if let Some(value) = self.value(report.constraint, values, sign) {
                 self.lower(report, value, &pose);
@@ -87,7 +94,7 @@ impl<L: Leg> Reporter<'_, L> {
     }
 
     /// Lowers a report to the value at a pose, if that is smaller.
-    fn lower(&self, report: &mut ConstraintReport, value: f64, pose: impl FnOnce() -> Pose) {
+    fn lower(&self, report: &mut ConstraintResult, value: f64, pose: impl FnOnce() -> Pose) {
         if report.value.is_none_or(|smallest| value < smallest) {
             report.value = Some(value);
             report.margin = report.constraint.margin(value, report.threshold, self.design);
@@ -102,30 +109,30 @@ impl<L: Leg> Reporter<'_, L> {
         match (constraint, values) {
             (Constraint::Assembly, _) => None,
             (_, Ok(values)) => constraint.value(self.design, values, sign),
-            (Constraint::Reach, Err(slack)) => Some(*slack),
+            (Constraint::Reach, Err(limit_margin)) => Some(*limit_margin),
             (_, Err(_)) => None,
         }
     }
 
     /// Marks as active the constraints that fail at one pose.
-    fn mark_failing(&self, reports: &mut Reports, values: &Result<PoseValues, f64>, sign: f64) {
+    fn mark_failing(&self, reports: &mut ConstraintResults, values: &Result<PoseValues, f64>, sign: f64) {
         for report in reports {
             // A limit margin of exactly 0 can belong to an unreachable pose (a leg at its very end, or without length).
             let unreached = report.constraint == Constraint::Reach && values.is_err();
             let broken = |value: f64| !report.constraint.holds(value, report.threshold);
             let value = self.value(report.constraint, values, sign);
-            report.active |= unreached || report.asked && value.is_some_and(broken);
+            report.active |= unreached || report.required && value.is_some_and(broken);
         }
     }
 
     /// Returns the smallest values over the regular workspace. The constraints that fail just beyond it are active.
-    fn over_workspace(&self, home: usize, grid: &Grid) -> Reports {
+    fn over_workspace(&self, home: usize, grid: &Grid) -> ConstraintResults {
         let found = self.found;
         let centre = self.model.workspace.centre;
         let sign = found.orientations[home].centre_sign.unwrap_or(1.0);
         let mut reports = self.blank();
         let spacing = self.design.base_radius / grid.ray_steps() as f64;
-        let rings = (found.radius / spacing).ceil().clamp(1.0, MOST_RINGS) as usize;
+        let rings = (found.radius / spacing).ceil().clamp(1.0, MAX_RINGS) as usize;
         let mut disc = Positions::default();
         disc.push(centre);
         for direction in &found.directions {
@@ -143,7 +150,7 @@ impl<L: Leg> Reporter<'_, L> {
         let indices: Vec<f64> = (0..disc.xs.len()).map(|index| index as f64).collect();
         for index in found.turn.window(home) {
             let orientation = &found.orientations[index];
-            let oriented = Oriented {
+            let oriented = OrientationLanes {
                 arms: &orientation.arms,
                 sign,
             };
@@ -162,7 +169,7 @@ impl<L: Leg> Reporter<'_, L> {
     }
 
     /// Marks as active the constraints that fail just beyond the workspace radius, in the orientations that limit it.
-    fn mark_beyond(&self, reports: &mut Reports, sign: f64) {
+    fn mark_beyond(&self, reports: &mut ConstraintResults, sign: f64) {
         let mut values = ValueColumns::default();
         for &(index, beyond) in &self.found.limits {
             let mut rim = Positions::default();
@@ -184,7 +191,7 @@ impl<L: Leg> Reporter<'_, L> {
     /// The best orientation is the one with the smallest shortfall at the centre, the best window the one with the
     /// smallest mean shortfall. The constraints that fail at a centre pose of the best window are active; if there are
     /// none, those that fail just beyond the limits that the search recorded.
-    fn at_best_centre(&self) -> (Reports, f64) {
+    fn at_best_centre(&self) -> (ConstraintResults, f64) {
         let found = self.found;
         let centre = self.model.workspace.centre;
         let shortfalls: Vec<(f64, f64)> = (0..found.orientations.len())
@@ -227,7 +234,7 @@ impl<L: Leg> Reporter<'_, L> {
             self.mark_beyond(&mut reports, sign_of(best_home));
         }
         let assembly = (-reports[Constraint::Assembly as usize].margin).max(0.0);
-        (reports, (mean(best_home) + assembly).max(LEAST_VIOLATION))
+        (reports, (mean(best_home) + assembly).max(SMALLEST_VIOLATION))
     }
 
     /// Returns the sum of the relative shortfalls of g2 … g7 at a pose, and the sign of `det A` (0 if it vanishes or
@@ -241,10 +248,10 @@ impl<L: Leg> Reporter<'_, L> {
             Constraint::Clearance,
         ];
         let thresholds = &self.checker.thresholds;
-        let asked = || AT_POSES.iter().filter(|constraint| constraint.is_asked(thresholds));
+        let required = || AT_POSES.iter().filter(|constraint| constraint.is_required(thresholds));
         match values {
             Ok(values) => {
-                let sum = asked()
+                let sum = required()
                     .filter_map(|constraint| {
                         let threshold = constraint.threshold(self.design, thresholds);
                         let value = constraint.value(self.design, values, 1.0)?;
@@ -262,9 +269,9 @@ impl<L: Leg> Reporter<'_, L> {
                 )
             }
             // At an unreachable pose no other constraint has a value: each counts as missed entirely.
-            Err(slack) => {
-                let missed = Constraint::Reach.margin(*slack, 0.0, self.design);
-                (asked().count() as f64 - missed, 0.0)
+            Err(limit_margin) => {
+                let missed = Constraint::Reach.margin(*limit_margin, 0.0, self.design);
+                (required().count() as f64 - missed, 0.0)
             }
         }
     }

@@ -56,7 +56,7 @@ pub fn forward<L: Leg>(
         if error.amax() <= tolerance {
             return Ok(pose);
         }
-        let rate = Vector3::from_fn(|i, _| jacobian.drive[i] * error[i]);
+        let rate = Vector3::from_fn(|i, _| jacobian.transmission[i] * error[i]);
         let step = jacobian
             .direct()
             .try_inverse()

@@ -30,7 +30,7 @@ pub struct Jacobian<V = f64> {
     /// Third column of `A`: `(C_i − P) × u_i` \[m\].
     pub moment: [V; LEGS],
     /// Diagonal of `B`: the transmissions.
-    pub drive: [V; LEGS],
+    pub transmission: [V; LEGS],
 }
 
 impl Jacobian {
@@ -42,7 +42,7 @@ impl Jacobian {
             ux: [legs[0].u.x, legs[1].u.x, legs[2].u.x],
             uy: [legs[0].u.y, legs[1].u.y, legs[2].u.y],
             moment: [0, 1, 2].map(|i| cross(posture.arms[i], legs[i].u)),
-            drive: [legs[0].drive, legs[1].drive, legs[2].drive],
+            transmission: [legs[0].transmission, legs[1].transmission, legs[2].transmission],
         }
     }
 
@@ -80,11 +80,11 @@ impl<V: Real> Jacobian<V> {
     #[inline(always)]
     pub fn inverse_condition(&self, length: f64) -> V {
         let planar = self.adjugate_row_xy();
-        let (ux, uy, m, d) = (&self.ux, &self.uy, &self.moment, &self.drive);
+        let (ux, uy, m, d) = (&self.ux, &self.uy, &self.moment, &self.transmission);
         let like = ux[0];
         let (zero, one) = (like.splat(0.0), like.splat(1.0));
         let (length, to_lever) = (like.splat(length), like.splat(1.0 / (length * length)));
-        let drive = [d[0] * d[0], d[1] * d[1], d[2] * d[2]];
+        let transmission = [d[0] * d[0], d[1] * d[1], d[2] * d[2]];
         let mut forward = zero;
         let mut inverse = zero;
         let mut determinant = zero;
@@ -94,13 +94,13 @@ impl<V: Real> Jacobian<V> {
             let vy = m[j] * ux[k] - ux[j] * m[k];
             let w = length * planar[i];
             determinant = determinant + m[i] * planar[i];
-            forward = forward + drive[i] * (vx * vx + vy * vy + w * w);
-            inverse = inverse + drive[j] * drive[k] * (one + m[i] * m[i] * to_lever);
+            forward = forward + transmission[i] * (vx * vx + vy * vy + w * w);
+            inverse = inverse + transmission[j] * transmission[k] * (one + m[i] * m[i] * to_lever);
         }
         let serial = d[0] * d[1] * d[2];
         let scale = forward * inverse;
         let condition = like.splat(LEGS as f64) * (determinant * serial).abs() / scale.sqrt();
         // At an isotropic pose, rounding may give a value above 1.
-        condition.smaller(one).where_set(scale.exceeds(zero), zero)
+        condition.smaller(one).select(scale.exceeds(zero), zero)
     }
 }

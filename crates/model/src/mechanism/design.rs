@@ -23,7 +23,7 @@ pub struct Design {
 
 /// One of the five real design variables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Variable {
+pub enum DesignVariable {
     /// `R`, [`Design::base_radius`].
     BaseRadius,
     /// `r`, [`Design::platform_radius`].
@@ -37,41 +37,41 @@ pub enum Variable {
 }
 
 /// The real variables in the order of the design vector.
-pub const VARIABLES: [Variable; 5] = [
-    Variable::BaseRadius,
-    Variable::PlatformRadius,
-    Variable::LinkLength,
-    Variable::LegBarRadius,
-    Variable::PlatformBarRadius,
+pub const DESIGN_VARIABLES: [DesignVariable; 5] = [
+    DesignVariable::BaseRadius,
+    DesignVariable::PlatformRadius,
+    DesignVariable::LinkLength,
+    DesignVariable::LegBarRadius,
+    DesignVariable::PlatformBarRadius,
 ];
 
-impl Variable {
+impl DesignVariable {
     /// Returns the key in design texts, JSON and CSV: `R`, `r`, `Lb`, `rj`, `rp`.
     pub fn key(self) -> &'static str {
         match self {
-            Variable::BaseRadius => "R",
-            Variable::PlatformRadius => "r",
-            Variable::LinkLength => "Lb",
-            Variable::LegBarRadius => "rj",
-            Variable::PlatformBarRadius => "rp",
+            DesignVariable::BaseRadius => "R",
+            DesignVariable::PlatformRadius => "r",
+            DesignVariable::LinkLength => "Lb",
+            DesignVariable::LegBarRadius => "rj",
+            DesignVariable::PlatformBarRadius => "rp",
         }
     }
 
     /// Returns the symbol in the paper, as text: `R`, `r`, `L_b`, `r_j`, `r_p`.
     pub fn symbol(self) -> &'static str {
         match self {
-            Variable::BaseRadius => "R",
-            Variable::PlatformRadius => "r",
-            Variable::LinkLength => "L_b",
-            Variable::LegBarRadius => "r_j",
-            Variable::PlatformBarRadius => "r_p",
+            DesignVariable::BaseRadius => "R",
+            DesignVariable::PlatformRadius => "r",
+            DesignVariable::LinkLength => "L_b",
+            DesignVariable::LegBarRadius => "r_j",
+            DesignVariable::PlatformBarRadius => "r_p",
         }
     }
 
     /// Returns whether zero is a legal value: a bar radius may be 0 (an infinitely compliant bar), any other dimension
     /// may not.
     pub fn may_be_zero(self) -> bool {
-        matches!(self, Variable::LegBarRadius | Variable::PlatformBarRadius)
+        matches!(self, DesignVariable::LegBarRadius | DesignVariable::PlatformBarRadius)
     }
 }
 
@@ -118,7 +118,7 @@ pub enum DesignError {
     /// The value is NaN, infinite, negative, or a zero for a dimension that must be positive.
     #[error("{key} is {value}; it must be {wanted}")]
     OutOfDomain {
-        /// Key of the variable ([`Variable::key`]).
+        /// Key of the variable ([`DesignVariable::key`]).
         key: &'static str,
         /// Value given.
         value: f64,
@@ -129,7 +129,7 @@ pub enum DesignError {
     /// this ratio the number of steps is too large.
     #[error("{key} is {ratio:.0} times R; it must be at most 1000 times R, which sets the step of the grid")]
     OutOfProportion {
-        /// Key of the variable ([`Variable::key`]).
+        /// Key of the variable ([`DesignVariable::key`]).
         key: &'static str,
         /// Ratio of the variable to `R`.
         ratio: f64,
@@ -140,13 +140,13 @@ impl Design {
     /// Largest ratio of `r` or `L_b` to `R` that is accepted.
     pub const MAX_RATIO: f64 = 1000.0;
 
-    /// Creates the design with the real variables given in the order of [`VARIABLES`].
+    /// Creates the design with the real variables given in the order of [`DESIGN_VARIABLES`].
     ///
     /// # Errors
     /// Returns a [`DesignError`] if a value is not a positive finite length (bar radii may be 0), or if `r` or `L_b`
     /// exceeds [`Design::MAX_RATIO`] times `R`.
     pub fn new(architecture: Architecture, working_mode: WorkingMode, values: [f64; 5]) -> Result<Self, DesignError> {
-        for (variable, value) in VARIABLES.into_iter().zip(values) {
+        for (variable, value) in DESIGN_VARIABLES.into_iter().zip(values) {
             let legal = value.is_finite() && (value > 0.0 || (variable.may_be_zero() && value == 0.0));
             if !legal {
                 return Err(DesignError::OutOfDomain {
@@ -160,7 +160,10 @@ impl Design {
                 });
             }
         }
-        for (variable, value) in [(Variable::PlatformRadius, values[1]), (Variable::LinkLength, values[2])] {
+        for (variable, value) in [
+            (DesignVariable::PlatformRadius, values[1]),
+            (DesignVariable::LinkLength, values[2]),
+        ] {
             let ratio = value / values[0];
             if ratio > Self::MAX_RATIO {
                 return Err(DesignError::OutOfProportion {
@@ -192,7 +195,7 @@ impl Design {
         })
     }
 
-    /// Returns the real variables in the order of [`VARIABLES`] \[m\].
+    /// Returns the real variables in the order of [`DESIGN_VARIABLES`] \[m\].
     pub fn values(&self) -> [f64; 5] {
         [
             self.base_radius,

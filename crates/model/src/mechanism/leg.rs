@@ -194,9 +194,9 @@ pub struct LegPosture {
     /// `|B_iC_i|`: `L_b`, or `ρ_i` of a telescopic leg \[m\].
     pub length: f64,
     /// Transmission `B_ii`: speed of `C_i` along `u_i` per unit of actuator speed; 0 at a serial singularity.
-    pub drive: f64,
+    pub transmission: f64,
     /// Limit margin: smallest distance to a joint limit or to the end of reach \[m\], ≥ 0.
-    pub slack: f64,
+    pub limit_margin: f64,
 }
 
 /// Quantities of one leg that the constraints need, at several poses at once; valid in the lanes where the leg reaches
@@ -210,14 +210,14 @@ pub struct LegLanes<V: Real> {
     /// `(C_i − P) · u_i` \[m\].
     pub along: V,
     /// Transmission `B_ii`.
-    pub drive: V,
+    pub transmission: V,
     /// Length of the distal bar in the beam model \[m\].
     pub distal: V,
     /// `u_i · (B_i − A_i)` and `u_i × (B_i − A_i)` of the proximal bar, for leg types that have one \[m\].
     pub proximal: Option<Planar<V>>,
     /// Limit margin: smallest distance to a joint limit or to the end of reach \[m\]; not above 0 where the leg does
     /// not reach the pose.
-    pub slack: V,
+    pub limit_margin: V,
     /// Lanes where the leg reaches the pose.
     pub reachable: V::Mask,
 }
@@ -239,7 +239,7 @@ pub enum ReachReason {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shortfall {
     /// Limit margin: signed distance to the violated limit \[m\], ≤ 0.
-    pub slack: f64,
+    pub limit_margin: f64,
     /// Violated limit.
     pub reason: ReachReason,
 }
@@ -323,7 +323,7 @@ pub struct Posture {
     /// Postures of legs 1, 2, 3.
     pub legs: [LegPosture; LEGS],
     /// Limit margin: smallest distance of any leg to a joint limit or to the end of reach \[m\]; the value of g2.
-    pub slack: f64,
+    pub limit_margin: f64,
 }
 
 impl<L: Leg> Manipulator<L> {
@@ -360,7 +360,7 @@ impl<L: Leg> Manipulator<L> {
             [Ok(first), Ok(second), Ok(third)] => Ok(Posture {
                 arms: *arms,
                 legs: [first, second, third],
-                slack: first.slack.min(second.slack).min(third.slack),
+                limit_margin: first.limit_margin.min(second.limit_margin).min(third.limit_margin),
             }),
             _ => Err(worst(&solved)),
         }
@@ -373,7 +373,7 @@ fn worst(solved: &[Result<LegPosture, Shortfall>; LEGS]) -> (usize, Shortfall) {
     let mut found: Option<(usize, Shortfall)> = None;
     for (index, leg) in solved.iter().enumerate() {
         if let Err(shortfall) = leg
-            && found.is_none_or(|(_, other)| shortfall.slack < other.slack)
+            && found.is_none_or(|(_, other)| shortfall.limit_margin < other.limit_margin)
         {
             found = Some((index, *shortfall));
         }

@@ -32,7 +32,7 @@ impl MemberKind {
 
 /// Axis of a member in the plane, at several poses at once.
 #[derive(Clone, Copy)]
-pub struct Axis<V> {
+pub struct MemberAxis<V> {
     /// Proximal end \[m\].
     pub from: Planar<V>,
     /// Unit vector towards the distal end.
@@ -41,7 +41,7 @@ pub struct Axis<V> {
     pub length: V,
 }
 
-impl<V: Real> Axis<V> {
+impl<V: Real> MemberAxis<V> {
     /// Creates the axis of the given direction and length whose distal end is `tip`.
     #[inline(always)]
     pub fn back_from(tip: Planar<V>, direction: Planar<V>, length: V) -> Self {
@@ -74,9 +74,9 @@ impl<V: Real> Axis<V> {
 pub struct Members<V> {
     /// Axis of the proximal member ([`super::Leg::PROXIMAL`]). For a slider, it starts at the
     /// centre of the slider, has the direction of the rail and length 0.
-    pub proximal: Option<Axis<V>>,
+    pub proximal: Option<MemberAxis<V>>,
     /// Axis of the distal member ([`super::Leg::DISTAL`]).
-    pub distal: Axis<V>,
+    pub distal: MemberAxis<V>,
     /// Distance of a slider's centre from the lower and the upper end of its rail \[m\].
     pub rail: Option<[V; 2]>,
 }

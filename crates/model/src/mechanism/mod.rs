@@ -12,12 +12,12 @@ mod rpr;
 mod rrr;
 mod text;
 
-pub use design::{Design, DesignError, VARIABLES, Variable, WorkingMode};
+pub use design::{DESIGN_VARIABLES, Design, DesignError, DesignVariable, WorkingMode};
 pub use leg::{
     Actuator, BarLength, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, Manipulator,
     Posture, ReachReason, Segment, Shortfall,
 };
-pub use member::{Axis, MemberKind, Members};
+pub use member::{MemberAxis, MemberKind, Members};
 pub use prr::PrrLeg;
 pub use rpr::RprLeg;
 pub use rrr::RrrLeg;

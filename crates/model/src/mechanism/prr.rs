@@ -4,8 +4,8 @@
 use glam::DVec2;
 
 use super::{
-    Actuator, Axis, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, MemberKind,
-    Members, ReachReason, Segment, Shortfall,
+    Actuator, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, MemberAxis,
+    MemberKind, Members, ReachReason, Segment, Shortfall,
 };
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, HALF_SQRT_3, LEGS, cross};
@@ -49,7 +49,7 @@ impl Leg for PrrLeg {
         let reach = self.link - height.abs();
         if reach < 0.0 {
             return Err(Shortfall {
-                slack: reach,
+                limit_margin: reach,
                 reason: ReachReason::OutOfReach,
             });
         }
@@ -58,13 +58,13 @@ impl Leg for PrrLeg {
         let actuator = along + self.sign * foot;
         if actuator < 0.0 {
             return Err(Shortfall {
-                slack: actuator,
+                limit_margin: actuator,
                 reason: ReachReason::BelowLimit,
             });
         }
         if actuator > self.travel {
             return Err(Shortfall {
-                slack: self.travel - actuator,
+                limit_margin: self.travel - actuator,
                 reason: ReachReason::AboveLimit,
             });
         }
@@ -74,8 +74,8 @@ impl Leg for PrrLeg {
             b,
             u,
             length: self.link,
-            drive: u.dot(self.axis),
-            slack: reach.min(actuator).min(self.travel - actuator),
+            transmission: u.dot(self.axis),
+            limit_margin: reach.min(actuator).min(self.travel - actuator),
         })
     }
 
@@ -96,31 +96,31 @@ impl Leg for PrrLeg {
         let foot = (reach * (link + height.abs())).sqrt();
         let actuator = along + like.splat(self.sign) * foot;
         let within = reach.smaller(actuator.smaller(travel - actuator));
-        let slack = within.where_set(reach.at_least(zero), reach);
+        let limit_margin = within.select(reach.at_least(zero), reach);
 
         let to_unit = 1.0 / self.link;
-        let drive = like.splat(-self.sign * to_unit) * foot;
-        let u = Planar::new(drive, like.splat(to_unit) * height);
+        let transmission = like.splat(-self.sign * to_unit) * foot;
+        let u = Planar::new(transmission, like.splat(to_unit) * height);
         LegLanes {
             u: Planar::new(u.x * axis.x - u.y * axis.y, u.x * axis.y + u.y * axis.x),
             moment: arm.cross(u),
             along: arm.dot(u),
-            drive,
+            transmission,
             distal: link,
             proximal: None,
-            slack,
-            reachable: slack.at_least(zero),
+            limit_margin,
+            reachable: limit_margin.at_least(zero),
         }
     }
 
     #[inline(always)]
     fn members<V: Real>(&self, c: Planar<V>, u: Planar<V>) -> Members<V> {
         let like = c.x;
-        let link = Axis::back_from(c, u, like.splat(self.link));
+        let link = MemberAxis::back_from(c, u, like.splat(self.link));
         let axis = Planar::splat(like, self.axis);
         let along = link.from.minus(Planar::splat(like, self.anchor)).dot(axis);
         Members {
-            proximal: Some(Axis {
+            proximal: Some(MemberAxis {
                 from: link.from,
                 direction: axis,
                 length: like.splat(0.0),

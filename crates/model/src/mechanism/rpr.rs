@@ -4,7 +4,7 @@
 use glam::DVec2;
 
 use super::{
-    Actuator, Axis, BarLength, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings,
+    Actuator, BarLength, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, MemberAxis,
     MemberKind, Members, ReachReason, Segment, Shortfall,
 };
 use crate::lanes::{Planar, Real};
@@ -50,19 +50,19 @@ impl Leg for RprLeg {
         let length = leg.length();
         if length < self.shortest {
             return Err(Shortfall {
-                slack: length - self.shortest,
+                limit_margin: length - self.shortest,
                 reason: ReachReason::BelowLimit,
             });
         }
         if length > self.longest {
             return Err(Shortfall {
-                slack: self.longest - length,
+                limit_margin: self.longest - length,
                 reason: ReachReason::AboveLimit,
             });
         }
         if length == 0.0 {
             return Err(Shortfall {
-                slack: 0.0,
+                limit_margin: 0.0,
                 reason: ReachReason::Degenerate,
             });
         }
@@ -70,8 +70,8 @@ impl Leg for RprLeg {
             b: self.anchor,
             u: leg / length,
             length,
-            drive: 1.0,
-            slack: (length - self.shortest).min(self.longest - length),
+            transmission: 1.0,
+            limit_margin: (length - self.shortest).min(self.longest - length),
         })
     }
 
@@ -81,20 +81,20 @@ impl Leg for RprLeg {
         let leg = position.plus(arm.minus(Planar::splat(like, self.anchor)));
         let length = leg.dot(leg).sqrt();
         let (zero, one) = (like.splat(0.0), like.splat(1.0));
-        let slack = (length - like.splat(self.shortest)).smaller(like.splat(self.longest) - length);
+        let limit_margin = (length - like.splat(self.shortest)).smaller(like.splat(self.longest) - length);
         let u = leg.scaled(one / length);
         LegLanes {
             u,
             moment: arm.cross(u),
             along: arm.dot(u),
-            drive: one,
+            transmission: one,
             distal: match self.bar {
                 BarLength::Current => length,
                 BarLength::Longest => like.splat(self.longest),
             },
             proximal: None,
-            slack,
-            reachable: slack.at_least(zero) & length.exceeds(zero),
+            limit_margin,
+            reachable: limit_margin.at_least(zero) & length.exceeds(zero),
         }
     }
 
@@ -107,13 +107,13 @@ impl Leg for RprLeg {
         let distal = if rod > self.shortest {
             // Length by which the rod protrudes behind the joint at the base.
             let behind = (like.splat(rod) - length).larger(like.splat(0.0));
-            Axis {
+            MemberAxis {
                 from: anchor.minus(u.scaled(behind)),
                 direction: u,
                 length: length + behind,
             }
         } else {
-            Axis {
+            MemberAxis {
                 from: anchor,
                 direction: u,
                 length,

@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::{
-    Actuator, Axis, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, MemberKind,
-    Members, ReachReason, Segment, Shortfall,
+    Actuator, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, MemberAxis,
+    MemberKind, Members, ReachReason, Segment, Shortfall,
 };
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, cross};
@@ -38,16 +38,16 @@ impl Leg for RrrLeg {
         let chord = c - self.anchor;
         let distance = chord.length();
         let half = 0.5 * distance;
-        let slack = 2.0 * self.link - distance;
-        if slack < 0.0 {
+        let limit_margin = 2.0 * self.link - distance;
+        if limit_margin < 0.0 {
             return Err(Shortfall {
-                slack,
+                limit_margin,
                 reason: ReachReason::OutOfReach,
             });
         }
         if distance == 0.0 {
             return Err(Shortfall {
-                slack: 0.0,
+                limit_margin: 0.0,
                 reason: ReachReason::Degenerate,
             });
         }
@@ -60,8 +60,8 @@ impl Leg for RrrLeg {
             b,
             u,
             length: self.link,
-            drive: cross(crank, u),
-            slack,
+            transmission: cross(crank, u),
+            limit_margin,
         })
     }
 
@@ -78,18 +78,18 @@ impl Leg for RrrLeg {
         let to_unit = like.splat(1.0 / self.link);
         let u = chord.scaled(half).minus(chord.perp().scaled(elbow)).scaled(to_unit);
         // (B − A) × u = (B − A) × (C − A)/L, to which only the component of B − A normal to the chord contributes.
-        let drive = -(elbow * square * to_unit);
+        let transmission = -(elbow * square * to_unit);
 
         let reachable = like.splat(4.0 * self.link * self.link).at_least(square) & square.exceeds(zero);
-        let slack = like.splat(2.0 * self.link) - square.sqrt();
+        let limit_margin = like.splat(2.0 * self.link) - square.sqrt();
         LegLanes {
             u,
             moment: arm.cross(u),
             along: arm.dot(u),
-            drive,
+            transmission,
             distal: like.splat(self.link),
-            proximal: Some(Planar::new((quarter - ratio) * square * to_unit, -drive)),
-            slack: slack.larger(zero).where_set(reachable, slack.smaller(zero)),
+            proximal: Some(Planar::new((quarter - ratio) * square * to_unit, -transmission)),
+            limit_margin: limit_margin.larger(zero).select(reachable, limit_margin.smaller(zero)),
             reachable,
         }
     }
@@ -98,10 +98,10 @@ impl Leg for RrrLeg {
     fn members<V: Real>(&self, c: Planar<V>, u: Planar<V>) -> Members<V> {
         let like = c.x;
         let length = like.splat(self.link);
-        let link = Axis::back_from(c, u, length);
+        let link = MemberAxis::back_from(c, u, length);
         let anchor = Planar::splat(like, self.anchor);
         Members {
-            proximal: Some(Axis {
+            proximal: Some(MemberAxis {
                 from: anchor,
                 direction: link.from.minus(anchor).scaled(like.splat(1.0 / self.link)),
                 length,

@@ -3,7 +3,7 @@
 
 use std::str::FromStr;
 
-use super::{Architecture, Design, DesignError, VARIABLES, WorkingMode};
+use super::{Architecture, DESIGN_VARIABLES, Design, DesignError, WorkingMode};
 
 /// Reason why a text is not a valid design, architecture or working mode.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -107,7 +107,7 @@ impl Design {
         let mut words = text.split_whitespace();
         let architecture: Architecture = words.next().ok_or(TextError::Empty)?.parse()?;
         let mut working_mode = None;
-        let mut values = [None; VARIABLES.len()];
+        let mut values = [None; DESIGN_VARIABLES.len()];
         for word in words {
             let (key, value) = word
                 .split_once('=')
@@ -118,11 +118,11 @@ impl Design {
                 }
                 continue;
             }
-            let index = VARIABLES
+            let index = DESIGN_VARIABLES
                 .iter()
                 .position(|variable| variable.key() == key)
                 .ok_or_else(|| TextError::UnknownKey(key.to_owned()))?;
-            let key = VARIABLES[index].key();
+            let key = DESIGN_VARIABLES[index].key();
             let number: f64 = value.parse().map_err(|_| TextError::NotANumber {
                 key,
                 text: value.to_owned(),
@@ -131,8 +131,8 @@ impl Design {
                 return Err(TextError::Repeated(key));
             }
         }
-        let mut numbers = [0.0; VARIABLES.len()];
-        for ((number, value), variable) in numbers.iter_mut().zip(values).zip(VARIABLES) {
+        let mut numbers = [0.0; DESIGN_VARIABLES.len()];
+        for ((number, value), variable) in numbers.iter_mut().zip(values).zip(DESIGN_VARIABLES) {
             *number = value.ok_or(TextError::Missing(variable.key()))?;
         }
         Ok(Design::new(
@@ -154,7 +154,7 @@ impl FromStr for Design {
 impl std::fmt::Display for Design {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}", self.architecture)?;
-        for (variable, value) in VARIABLES.into_iter().zip(self.values()) {
+        for (variable, value) in DESIGN_VARIABLES.into_iter().zip(self.values()) {
             write!(f, " {}={value}", variable.key())?;
         }
         if self.working_mode != WorkingMode::ALL_PLUS {

@@ -66,7 +66,7 @@ impl Reduced {
     #[inline(always)]
     fn along_line<V: Real>(&self, leg: &LegLanes<V>) -> V {
         let like = leg.moment;
-        let compliance = leg.drive * leg.drive * like.splat(self.actuator)
+        let compliance = leg.transmission * leg.transmission * like.splat(self.actuator)
             + leg.distal * like.splat(self.leg_axial)
             + like.splat(self.platform_base)
             + leg.moment * leg.moment * like.splat(self.platform_moment);
@@ -133,7 +133,7 @@ impl Reduced {
 impl StiffnessModel {
     /// Computes `k_xy`, `k_z` and `k_φz` according to `definition`; valid in the lanes where all legs reach the pose.
     #[inline(always)]
-    pub(crate) fn rigidity_lanes<V: Real>(
+    pub(crate) fn stiffness_value_lanes<V: Real>(
         &self,
         definition: StiffnessDefinition,
         legs: &[LegLanes<V>; LEGS],
@@ -181,7 +181,7 @@ impl StiffnessModel {
                 for entry in 0..k.len() {
                     k[entry] = k0[entry] + k1[entry] + k2[entry];
                 }
-                let (k_xy, k_phi_z) = Self::in_plane_rigidity(&in_plane, definition);
+                let (k_xy, k_phi_z) = Self::in_plane_stiffness_values(&in_plane, definition);
                 [k_xy, vertical_schur(&k), k_phi_z]
             }
         }

@@ -6,14 +6,14 @@
 //! once, reduced to the three values that the constraints need.
 
 mod bar;
+mod contributions;
 pub mod joint_model;
 mod lanes;
 pub mod planar;
-mod shares;
 
 pub use bar::{BarCompliance, Material};
+pub use contributions::{Contribution, LegContributions};
 pub use planar::{ActuatorStiffness, PlanarStiffness, StiffnessModel};
-pub use shares::{LegShares, Share};
 
 /// Definition of the stiffness along and about an axis (docs/model.md, section 4.5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub enum StiffnessDefinition {
 
 /// The three stiffness values that the accuracy requirements bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rigidity {
+pub struct StiffnessValues {
     /// `k_xy`: smallest translational stiffness in the plane \[N/m\].
     pub k_xy: f64,
     /// `k_z`: translational stiffness out of the plane \[N/m\].

@@ -9,7 +9,7 @@ use glam::DVec2;
 use nalgebra::{Matrix3, Matrix6};
 
 use super::lanes::Reduced;
-use super::{BarCompliance, Material, Rigidity, StiffnessDefinition};
+use super::{BarCompliance, Material, StiffnessDefinition, StiffnessValues};
 use crate::kinematics::Jacobian;
 use crate::lanes::{Planar, Real};
 use crate::mechanism::{Actuator, Design, Leg, LegPosture, Manipulator, Posture};
@@ -105,7 +105,7 @@ impl StiffnessModel {
             along_line(&self.leg_bar, u, bar.to - bar.from, posture.length)
         });
         [
-            posture.drive * posture.drive * self.actuator,
+            posture.transmission * posture.transmission * self.actuator,
             leg.distal_length(posture) * self.leg_bar.axial,
             along_line(&self.platform_bar, u, arm, self.platform_radius),
             proximal,
@@ -191,7 +191,7 @@ impl StiffnessModel {
 
     /// Computes `k_xy` and `k_φz` according to `definition` from the upper triangle of an in-plane block.
     #[inline(always)]
-    pub fn in_plane_rigidity<V: Real>(k: &[V; 6], definition: StiffnessDefinition) -> (V, V) {
+    pub fn in_plane_stiffness_values<V: Real>(k: &[V; 6], definition: StiffnessDefinition) -> (V, V) {
         let [xx, xy, xm, yy, ym, mm] = *k;
         match definition {
             StiffnessDefinition::Stiffness => (smaller_eigenvalue(xx, xy, yy), mm),
@@ -202,8 +202,8 @@ impl StiffnessModel {
                 let rotational = mm - (xm * xm * yy - two * xm * ym * xy + ym * ym * xx) / planar;
                 let translational = smaller_eigenvalue(xx - xm * xm / mm, xy - xm * ym / mm, yy - ym * ym / mm);
                 (
-                    translational.larger(zero).where_set(mm.exceeds(zero), zero),
-                    rotational.larger(zero).where_set(planar.exceeds(zero), zero),
+                    translational.larger(zero).select(mm.exceeds(zero), zero),
+                    rotational.larger(zero).select(planar.exceeds(zero), zero),
                 )
             }
         }
@@ -218,13 +218,13 @@ impl PlanarStiffness {
     };
 
     /// Computes `k_xy`, `k_z` and `k_φz` according to `definition`.
-    pub fn rigidity(&self, definition: StiffnessDefinition) -> Rigidity {
-        let (k_xy, k_phi_z) = StiffnessModel::in_plane_rigidity(&self.in_plane, definition);
+    pub fn stiffness_values(&self, definition: StiffnessDefinition) -> StiffnessValues {
+        let (k_xy, k_phi_z) = StiffnessModel::in_plane_stiffness_values(&self.in_plane, definition);
         let k_z = match definition {
             StiffnessDefinition::Stiffness => self.out_of_plane[0],
             StiffnessDefinition::Compliance => vertical_schur(&self.out_of_plane),
         };
-        Rigidity { k_xy, k_z, k_phi_z }
+        StiffnessValues { k_xy, k_z, k_phi_z }
     }
 
     /// Returns the full 6×6 matrix, linear first, at `P` in base axes.
@@ -334,5 +334,5 @@ pub(super) fn vertical_schur<V: Real>(k: &[V; 6]) -> V {
     let (zero, two) = (k[0].splat(0.0), k[0].splat(2.0));
     let minor = k[3] * k[5] - k[4] * k[4];
     let taken = (k[1] * k[1] * k[5] - two * k[1] * k[2] * k[4] + k[2] * k[2] * k[3]) / minor;
-    (k[0] - taken).larger(zero).where_set(minor.exceeds(zero), zero)
+    (k[0] - taken).larger(zero).select(minor.exceeds(zero), zero)
 }

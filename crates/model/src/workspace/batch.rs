@@ -1,27 +1,27 @@
 //! Feasibility of many poses and the smallest values over them, computed in loops that are compiled for every
 //! instruction set.
 //!
-//! Positions are passed as two columns that can be read up to a multiple of [`MOST_LANES`]; entries beyond the
+//! Positions are passed as two columns that can be read up to a multiple of [`MAX_LANES`]; entries beyond the
 //! requested poses are computed and ignored.
 
 use glam::DVec2;
 use pulp::{Simd, WithSimd};
 
 use super::PoseChecker;
-use crate::lanes::{Lanes, MOST_LANES, Planar, Real, padded};
+use crate::lanes::{Lanes, MAX_LANES, Planar, Real, padded_length};
 use crate::mechanism::Leg;
 use crate::spatial::LEGS;
 
 /// Orientation in which poses are evaluated.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Oriented<'a> {
+pub(crate) struct OrientationLanes<'a> {
     /// `C_i − P` in base axes \[m\].
     pub arms: &'a [DVec2; LEGS],
     /// Required sign of `det A`.
     pub sign: f64,
 }
 
-impl Oriented<'_> {
+impl OrientationLanes<'_> {
     #[inline(always)]
     pub(super) fn lanes<S: Simd>(&self, simd: S) -> ([Planar<Lanes<S>>; LEGS], Lanes<S>) {
         let sign = Lanes::all(simd, self.sign);
@@ -39,7 +39,7 @@ impl Oriented<'_> {
 /// Counts the poses before the first infeasible one; the result is `count` if all are feasible.
 struct Leading<'a, L> {
     checker: &'a PoseChecker<L>,
-    oriented: Oriented<'a>,
+    oriented: OrientationLanes<'a>,
     xs: &'a [f64],
     ys: &'a [f64],
     count: usize,
@@ -58,9 +58,9 @@ impl<L: Leg> WithSimd for Leading<'_, L> {
                 break;
             }
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            let leading = self.checker.good_lanes(position, &arms, sign).leading();
-            if leading < Lanes::<S>::COUNT {
-                return (at + leading).min(self.count);
+            let count_leading_set = self.checker.feasible_lanes(position, &arms, sign).count_leading_set();
+            if count_leading_set < Lanes::<S>::COUNT {
+                return (at + count_leading_set).min(self.count);
             }
             at += Lanes::<S>::COUNT;
         }
@@ -71,7 +71,7 @@ impl<L: Leg> WithSimd for Leading<'_, L> {
 /// Writes 1 for each feasible pose and 0 for each infeasible one.
 struct Good<'a, L> {
     checker: &'a PoseChecker<L>,
-    oriented: Oriented<'a>,
+    oriented: OrientationLanes<'a>,
     xs: &'a [f64],
     ys: &'a [f64],
     good: &'a mut [f64],
@@ -87,7 +87,7 @@ impl<L: Leg> WithSimd for Good<'_, L> {
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         for ((x, y), good) in xs.iter().zip(ys).zip(Lanes::<S>::column_mut(self.good)) {
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            one.where_set(self.checker.good_lanes(position, &arms, sign), zero)
+            one.select(self.checker.feasible_lanes(position, &arms, sign), zero)
                 .store(good);
         }
     }
@@ -111,7 +111,7 @@ pub(crate) type Minima = [Minimum; QUANTITIES];
 
 struct Smallest<'a, L> {
     checker: &'a PoseChecker<L>,
-    oriented: Oriented<'a>,
+    oriented: OrientationLanes<'a>,
     xs: &'a [f64],
     ys: &'a [f64],
     /// Indices 0, 1, 2, … of the poses.
@@ -137,30 +137,32 @@ impl<L: Leg> WithSimd for Smallest<'_, L> {
             let (found, directions) = self.checker.lanes_without_clearance(position, &arms);
             let reachable = found.reachable;
             // Only a clearance below the smallest one so far matters, and none matters at an unreachable pose.
-            let limit = values[6].where_set(reachable, sign.splat(f64::NEG_INFINITY));
-            let clearance = self.checker.clearance_below(position, &arms, &directions, limit);
+            let limit = values[6].select(reachable, sign.splat(f64::NEG_INFINITY));
+            let clearance = self
+                .checker
+                .compute_clearance_up_to(position, &arms, &directions, limit);
             macro_rules! lower {
                 ($($k:literal: $value:expr,)+) => {$({
                     let smaller = values[$k].exceeds($value);
-                    values[$k] = $value.where_set(smaller, values[$k]);
-                    indices[$k] = index.where_set(smaller, indices[$k]);
+                    values[$k] = $value.select(smaller, values[$k]);
+                    indices[$k] = index.select(smaller, indices[$k]);
                 })+};
             }
             lower! {
-                0: found.slack,
-                1: found.inverse_condition.where_set(reachable, infinite),
-                2: found.k_xy.where_set(reachable, infinite),
-                3: found.k_z.where_set(reachable, infinite),
-                4: found.k_phi_z.where_set(reachable, infinite),
-                5: (found.determinant * sign).where_set(reachable, infinite),
-                6: clearance.where_set(reachable, infinite),
+                0: found.limit_margin,
+                1: found.inverse_condition.select(reachable, infinite),
+                2: found.k_xy.select(reachable, infinite),
+                3: found.k_z.select(reachable, infinite),
+                4: found.k_phi_z.select(reachable, infinite),
+                5: (found.determinant * sign).select(reachable, infinite),
+                6: clearance.select(reachable, infinite),
             }
         }
         let mut minima = [Minimum {
             value: f64::INFINITY,
             index: 0,
         }; QUANTITIES];
-        let mut lanes = [[0.0; MOST_LANES]; 2];
+        let mut lanes = [[0.0; MAX_LANES]; 2];
         for (minimum, (value, index)) in minima.iter_mut().zip(values.into_iter().zip(indices)) {
             value.store(&mut Lanes::<S>::column_mut(&mut lanes[0])[0]);
             index.store(&mut Lanes::<S>::column_mut(&mut lanes[1])[0]);
@@ -178,9 +180,15 @@ impl<L: Leg> WithSimd for Smallest<'_, L> {
 impl<L: Leg> PoseChecker<L> {
     /// Returns the number of poses, among the first `count` positions, before the first infeasible one; `count` if all
     /// are feasible.
-    pub(super) fn leading(&self, oriented: Oriented<'_>, xs: &[f64], ys: &[f64], count: usize) -> usize {
+    pub(super) fn count_leading_feasible(
+        &self,
+        oriented: OrientationLanes<'_>,
+        xs: &[f64],
+        ys: &[f64],
+        count: usize,
+    ) -> usize {
         // A column that ends early must not be mistaken for one of feasible poses.
-        assert!(xs.len() == ys.len() && xs.len() >= padded(count));
+        assert!(xs.len() == ys.len() && xs.len() >= padded_length(count));
         self.instructions.run(Leading {
             checker: self,
             oriented,
@@ -191,8 +199,8 @@ impl<L: Leg> PoseChecker<L> {
     }
 
     /// Writes 1 for each position at which the pose is feasible and 0 for every other position.
-    pub(super) fn mark_good(&self, oriented: Oriented<'_>, xs: &[f64], ys: &[f64], good: &mut [f64]) {
-        assert!(xs.len() == ys.len() && xs.len() == good.len() && xs.len().is_multiple_of(MOST_LANES));
+    pub(super) fn mark_feasible(&self, oriented: OrientationLanes<'_>, xs: &[f64], ys: &[f64], good: &mut [f64]) {
+        assert!(xs.len() == ys.len() && xs.len() == good.len() && xs.len().is_multiple_of(MAX_LANES));
         self.instructions.run(Good {
             checker: self,
             oriented,
@@ -203,17 +211,17 @@ impl<L: Leg> PoseChecker<L> {
     }
 
     /// Returns the smallest values over many positions in one orientation; `indices` numbers the positions from 0. The
-    /// columns have equal lengths, a multiple of [`MOST_LANES`]. Only clearances below `clearance` are determined; if
+    /// columns have equal lengths, a multiple of [`MAX_LANES`]. Only clearances below `clearance` are determined; if
     /// there are none, `clearance` itself is returned.
     pub(crate) fn smallest(
         &self,
-        oriented: Oriented<'_>,
+        oriented: OrientationLanes<'_>,
         xs: &[f64],
         ys: &[f64],
         indices: &[f64],
         clearance: f64,
     ) -> Minima {
-        assert!(xs.len() == ys.len() && xs.len() == indices.len() && xs.len().is_multiple_of(MOST_LANES));
+        assert!(xs.len() == ys.len() && xs.len() == indices.len() && xs.len().is_multiple_of(MAX_LANES));
         self.instructions.run(Smallest {
             checker: self,
             oriented,

@@ -2,12 +2,12 @@
 
 use glam::DVec2;
 
-use crate::clearance::{Bodies, Clearance, FARTHEST};
+use crate::clearance::{Bodies, Clearance, NUMBER_LIMIT};
 use crate::kinematics::Jacobian;
 use crate::lanes::{InstructionSet, Planar, Real};
 use crate::mechanism::{Leg, Manipulator, Posture};
 use crate::spatial::LEGS;
-use crate::stiffness::{PlanarStiffness, Rigidity, StiffnessDefinition, StiffnessModel};
+use crate::stiffness::{PlanarStiffness, StiffnessDefinition, StiffnessModel, StiffnessValues};
 
 /// Smallest values allowed at a feasible pose (g3 … g7).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,11 +26,11 @@ pub struct Thresholds {
 
 impl Thresholds {
     /// Returns whether the values of a reachable pose satisfy all thresholds.
-    pub fn hold(&self, values: &PoseValues) -> bool {
+    pub fn are_met_by(&self, values: &PoseValues) -> bool {
         values.inverse_condition >= self.inverse_condition
-            && values.rigidity.k_xy >= self.k_xy
-            && values.rigidity.k_phi_z >= self.k_phi_z
-            && values.rigidity.k_z >= self.k_z
+            && values.stiffness_values.k_xy >= self.k_xy
+            && values.stiffness_values.k_phi_z >= self.k_phi_z
+            && values.stiffness_values.k_z >= self.k_z
             && self
                 .clearance
                 .is_none_or(|least| values.clearance.is_some_and(|clearance| clearance >= least))
@@ -41,13 +41,13 @@ impl Thresholds {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseValues {
     /// Limit margin: smallest distance to a joint limit or to the end of reach \[m\].
-    pub slack: f64,
+    pub limit_margin: f64,
     /// `det A / ℓ`: signed, dimensionless.
     pub determinant: f64,
     /// `κ_F⁻¹`.
     pub inverse_condition: f64,
     /// `k_xy`, `k_z`, `k_φz`.
-    pub rigidity: Rigidity,
+    pub stiffness_values: StiffnessValues,
     /// Smallest clearance between members that are not joined \[m\]; `None` if it is not required.
     pub clearance: Option<f64>,
 }
@@ -57,18 +57,20 @@ impl PoseValues {
     /// returns only finite numbers.
     pub(super) fn finite(mut self) -> Self {
         for value in [
-            &mut self.slack,
+            &mut self.limit_margin,
             &mut self.determinant,
             &mut self.inverse_condition,
-            &mut self.rigidity.k_xy,
-            &mut self.rigidity.k_z,
-            &mut self.rigidity.k_phi_z,
+            &mut self.stiffness_values.k_xy,
+            &mut self.stiffness_values.k_z,
+            &mut self.stiffness_values.k_phi_z,
         ] {
             if !value.is_finite() {
                 *value = 0.0;
             }
         }
-        self.clearance = self.clearance.map(|clearance| clearance.clamp(-FARTHEST, FARTHEST));
+        self.clearance = self
+            .clearance
+            .map(|clearance| clearance.clamp(-NUMBER_LIMIT, NUMBER_LIMIT));
         self
     }
 }
@@ -76,11 +78,11 @@ impl PoseValues {
 /// [`PoseValues`] at several poses at once.
 #[derive(Clone, Copy)]
 pub struct PoseLanes<V: Real> {
-    /// Mask of the poses that every leg reaches; elsewhere only `slack` is meaningful.
+    /// Mask of the poses that every leg reaches; elsewhere only `limit_margin` is meaningful.
     pub reachable: V::Mask,
     /// Limit margin: smallest distance to a joint limit or to the end of reach \[m\]; at most 0 where a leg does not
     /// reach the pose.
-    pub slack: V,
+    pub limit_margin: V,
     /// `det A / ℓ`.
     pub determinant: V,
     /// `κ_F⁻¹`.
@@ -99,10 +101,10 @@ impl PoseLanes<f64> {
     /// Returns the values of a single pose, if it is reachable.
     pub fn reached(&self) -> Option<PoseValues> {
         let values = PoseValues {
-            slack: self.slack,
+            limit_margin: self.limit_margin,
             determinant: self.determinant,
             inverse_condition: self.inverse_condition,
-            rigidity: Rigidity {
+            stiffness_values: StiffnessValues {
                 k_xy: self.k_xy,
                 k_z: self.k_z,
                 k_phi_z: self.k_phi_z,
@@ -138,18 +140,18 @@ impl<L: Leg> PoseChecker<L> {
     /// It evaluates one pose at a time by the plain closed form. Evaluations use [`PoseChecker::lanes`] instead, which
     /// is compared with this function.
     #[inline]
-    pub fn good_sign(&self, position: DVec2, arms: &[DVec2; LEGS]) -> Option<f64> {
+    pub fn feasible_sign(&self, position: DVec2, arms: &[DVec2; LEGS]) -> Option<f64> {
         let posture = self.manipulator.posture_at(position, arms).ok()?;
         let jacobian = Jacobian::new(&posture);
         let determinant = jacobian.determinant();
         if determinant == 0.0 || jacobian.inverse_condition(self.length) < self.thresholds.inverse_condition {
             return None;
         }
-        let (k_xy, k_phi_z) = self.in_plane_rigidity(&self.in_plane(&posture, &jacobian));
+        let (k_xy, k_phi_z) = self.in_plane_stiffness_values(&self.in_plane(&posture, &jacobian));
         if !(k_xy >= self.thresholds.k_xy && k_phi_z >= self.thresholds.k_phi_z) {
             return None;
         }
-        let k_z = self.vertical_rigidity(&posture, &jacobian);
+        let k_z = self.vertical_stiffness(&posture, &jacobian);
         let clear = |least: f64| self.nearest(position, &posture).distance >= least;
         (k_z >= self.thresholds.k_z && self.thresholds.clearance.is_none_or(clear)).then(|| determinant.signum())
     }
@@ -161,7 +163,7 @@ impl<L: Leg> PoseChecker<L> {
         let (mut values, directions) = self.lanes_without_clearance(position, arms);
         if self.thresholds.clearance.is_some() {
             let limit = position.x.splat(f64::INFINITY);
-            values.clearance = Some(self.clearance_below(position, arms, &directions, limit));
+            values.clearance = Some(self.compute_clearance_up_to(position, arms, &directions, limit));
         }
         values
     }
@@ -170,7 +172,7 @@ impl<L: Leg> PoseChecker<L> {
     /// `directions` are the directions of the legs as [`PoseChecker::lanes_without_clearance`] returns them. The result
     /// is meaningless where a leg does not reach the pose.
     #[inline(always)]
-    pub(super) fn clearance_below<V: Real>(
+    pub(super) fn compute_clearance_up_to<V: Real>(
         &self,
         position: Planar<V>,
         arms: &[Planar<V>; LEGS],
@@ -178,7 +180,7 @@ impl<L: Leg> PoseChecker<L> {
         limit: V,
     ) -> V {
         self.bodies
-            .below(&self.manipulator.legs, position, arms, directions, limit)
+            .compute_clearance_up_to(&self.manipulator.legs, position, arms, directions, limit)
     }
 
     /// Returns all values except the clearance at several poses at once, and the unit vectors `u_i` of the legs.
@@ -199,15 +201,17 @@ impl<L: Leg> PoseChecker<L> {
             ux: [legs[0].u.x, legs[1].u.x, legs[2].u.x],
             uy: [legs[0].u.y, legs[1].u.y, legs[2].u.y],
             moment: [legs[0].moment, legs[1].moment, legs[2].moment],
-            drive: [legs[0].drive, legs[1].drive, legs[2].drive],
+            transmission: [legs[0].transmission, legs[1].transmission, legs[2].transmission],
         };
         let [k_xy, k_z, k_phi_z] = match &self.stiffness {
-            Some(model) => model.rigidity_lanes(self.definition, &legs, arms, &jacobian),
+            Some(model) => model.stiffness_value_lanes(self.definition, &legs, arms, &jacobian),
             None => [like.splat(0.0); 3],
         };
         let values = PoseLanes {
             reachable: legs[0].reachable & legs[1].reachable & legs[2].reachable,
-            slack: legs[0].slack.smaller(legs[1].slack.smaller(legs[2].slack)),
+            limit_margin: legs[0]
+                .limit_margin
+                .smaller(legs[1].limit_margin.smaller(legs[2].limit_margin)),
             determinant: jacobian.determinant() * like.splat(1.0 / self.length),
             inverse_condition: jacobian.inverse_condition(self.length),
             k_xy,
@@ -220,7 +224,7 @@ impl<L: Leg> PoseChecker<L> {
 
     /// Returns the mask of the feasible poses, at which `det A` has the given sign (±1).
     #[inline(always)]
-    pub(super) fn good_lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS], sign: V) -> V::Mask {
+    pub(super) fn feasible_lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS], sign: V) -> V::Mask {
         let (values, directions) = self.lanes_without_clearance(position, arms);
         let least = &self.thresholds;
         let good = values.reachable
@@ -234,8 +238,10 @@ impl<L: Leg> PoseChecker<L> {
             // examined.
             Some(least) if V::any(good) => {
                 let least = sign.splat(least);
-                let limit = least.where_set(good, sign.splat(f64::NEG_INFINITY));
-                good & self.clearance_below(position, arms, &directions, limit).at_least(least)
+                let limit = least.select(good, sign.splat(f64::NEG_INFINITY));
+                good & self
+                    .compute_clearance_up_to(position, arms, &directions, limit)
+                    .at_least(least)
             }
             _ => good,
         }
@@ -248,14 +254,14 @@ impl<L: Leg> PoseChecker<L> {
 
     /// Returns all values at a posture except the clearance.
     pub fn values_at(&self, posture: &Posture, jacobian: &Jacobian) -> PoseValues {
-        let (k_xy, k_phi_z) = self.in_plane_rigidity(&self.in_plane(posture, jacobian));
+        let (k_xy, k_phi_z) = self.in_plane_stiffness_values(&self.in_plane(posture, jacobian));
         PoseValues {
-            slack: posture.slack,
+            limit_margin: posture.limit_margin,
             determinant: jacobian.determinant() / self.length,
             inverse_condition: jacobian.inverse_condition(self.length),
-            rigidity: Rigidity {
+            stiffness_values: StiffnessValues {
                 k_xy,
-                k_z: self.vertical_rigidity(posture, jacobian),
+                k_z: self.vertical_stiffness(posture, jacobian),
                 k_phi_z,
             },
             clearance: None,
@@ -274,19 +280,19 @@ impl<L: Leg> PoseChecker<L> {
 
     /// Returns `k_xy` and `k_φz` of an in-plane block.
     #[inline]
-    pub fn in_plane_rigidity(&self, in_plane: &[f64; 6]) -> (f64, f64) {
-        StiffnessModel::in_plane_rigidity(in_plane, self.definition)
+    pub fn in_plane_stiffness_values(&self, in_plane: &[f64; 6]) -> (f64, f64) {
+        StiffnessModel::in_plane_stiffness_values(in_plane, self.definition)
     }
 
     /// Returns `k_z`, computing no more of the out-of-plane block than its definition needs.
     #[inline]
-    pub fn vertical_rigidity(&self, posture: &Posture, jacobian: &Jacobian) -> f64 {
+    pub fn vertical_stiffness(&self, posture: &Posture, jacobian: &Jacobian) -> f64 {
         match (&self.stiffness, self.definition) {
             (None, _) => 0.0,
             (Some(model), StiffnessDefinition::Stiffness) => model.vertical(&self.manipulator, posture),
             (Some(model), definition) => {
                 let stiffness = model.stiffness(&self.manipulator, posture, jacobian);
-                stiffness.rigidity(definition).k_z
+                stiffness.stiffness_values(definition).k_z
             }
         }
     }

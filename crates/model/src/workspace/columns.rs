@@ -3,13 +3,13 @@
 use glam::DVec2;
 use pulp::{Simd, WithSimd};
 
-use super::batch::Oriented;
+use super::batch::OrientationLanes;
 use super::{PoseChecker, PoseLanes, PoseValues, Thresholds};
-use crate::clearance::FARTHEST;
-use crate::lanes::{Lanes, MOST_LANES, Planar, Real, padded};
+use crate::clearance::NUMBER_LIMIT;
+use crate::lanes::{Lanes, MAX_LANES, Planar, Real, padded_length};
 use crate::mechanism::Leg;
 use crate::spatial::LEGS;
-use crate::stiffness::Rigidity;
+use crate::stiffness::StiffnessValues;
 
 /// Positions, one column for each component.
 #[derive(Debug, Default)]
@@ -48,7 +48,7 @@ impl Positions {
     /// Pads the columns to the length that loops read. The padding repeats the first position, which changes no
     /// smallest value.
     pub fn pad(&mut self) {
-        let length = padded(self.xs.len());
+        let length = padded_length(self.xs.len());
         for column in [&mut self.xs, &mut self.ys] {
             column.resize(length, column.first().copied().unwrap_or(0.0));
         }
@@ -58,9 +58,9 @@ impl Positions {
 /// Values at many poses, one padded column for each quantity.
 #[derive(Debug, Clone, Default)]
 pub struct ValueColumns {
-    /// 1 where every leg reaches the pose, 0 elsewhere; there only `slack` is meaningful.
+    /// 1 where every leg reaches the pose, 0 elsewhere; there only `limit_margin` is meaningful.
     reachable: Vec<f64>,
-    slack: Vec<f64>,
+    limit_margin: Vec<f64>,
     determinant: Vec<f64>,
     inverse_condition: Vec<f64>,
     k_xy: Vec<f64>,
@@ -75,7 +75,7 @@ impl ValueColumns {
         self.clearance.resize(if clearance { length } else { 0 }, 0.0);
         for column in [
             &mut self.reachable,
-            &mut self.slack,
+            &mut self.limit_margin,
             &mut self.determinant,
             &mut self.inverse_condition,
             &mut self.k_xy,
@@ -92,15 +92,19 @@ impl ValueColumns {
     /// Returns the limit margin \[m\], which is at most 0, if a leg does not reach the pose.
     pub fn get(&self, index: usize) -> Result<PoseValues, f64> {
         if self.reachable[index] == 0.0 {
-            // Where the distance is beyond the number range, `-FARTHEST` is reported instead.
-            let slack = self.slack[index];
-            return Err(if slack > -FARTHEST { slack.min(0.0) } else { -FARTHEST });
+            // Where the distance is beyond the number range, `-NUMBER_LIMIT` is reported instead.
+            let limit_margin = self.limit_margin[index];
+            return Err(if limit_margin > -NUMBER_LIMIT {
+                limit_margin.min(0.0)
+            } else {
+                -NUMBER_LIMIT
+            });
         }
         Ok(PoseValues {
-            slack: self.slack[index],
+            limit_margin: self.limit_margin[index],
             determinant: self.determinant[index],
             inverse_condition: self.inverse_condition[index],
-            rigidity: Rigidity {
+            stiffness_values: StiffnessValues {
                 k_xy: self.k_xy[index],
                 k_z: self.k_z[index],
                 k_phi_z: self.k_phi_z[index],
@@ -113,7 +117,7 @@ impl ValueColumns {
     /// Returns the ratios of `k_xy`, `k_z` and `k_φz` to their thresholds at the first `count` poses, one column each.
     /// A ratio is `f64::MAX` where a leg does not reach the pose, because it is not the stiffness that is insufficient
     /// there.
-    pub(crate) fn rigidity_shares(&self, thresholds: &Thresholds, count: usize) -> [Vec<f64>; 3] {
+    pub(crate) fn stiffness_ratios(&self, thresholds: &Thresholds, count: usize) -> [Vec<f64>; 3] {
         [
             (&self.k_xy, thresholds.k_xy),
             (&self.k_z, thresholds.k_z),
@@ -126,9 +130,9 @@ impl ValueColumns {
                 .take(count)
                 .map(|(value, reachable)| {
                     // If one operand is NaN, `max` returns the other one.
-                    let share = (value / threshold.max(f64::MIN_POSITIVE)).max(0.0);
+                    let fraction = (value / threshold.max(f64::MIN_POSITIVE)).max(0.0);
                     if *reachable > 0.0 {
-                        share.min(f64::MAX)
+                        fraction.min(f64::MAX)
                     } else {
                         f64::MAX
                     }
@@ -138,10 +142,10 @@ impl ValueColumns {
     }
 
     #[inline(always)]
-    fn writer<S: Simd>(&mut self) -> Writer<'_, S> {
-        Writer {
+    fn writer<S: Simd>(&mut self) -> ColumnWriter<'_, S> {
+        ColumnWriter {
             reachable: Lanes::<S>::column_mut(&mut self.reachable),
-            slack: Lanes::<S>::column_mut(&mut self.slack),
+            limit_margin: Lanes::<S>::column_mut(&mut self.limit_margin),
             determinant: Lanes::<S>::column_mut(&mut self.determinant),
             inverse_condition: Lanes::<S>::column_mut(&mut self.inverse_condition),
             k_xy: Lanes::<S>::column_mut(&mut self.k_xy),
@@ -155,9 +159,9 @@ impl ValueColumns {
 /// Part of a column that one step of a loop reads or writes.
 type Group<S> = [<S as Simd>::f64s; 2];
 
-struct Writer<'a, S: Simd> {
+struct ColumnWriter<'a, S: Simd> {
     reachable: &'a mut [Group<S>],
-    slack: &'a mut [Group<S>],
+    limit_margin: &'a mut [Group<S>],
     determinant: &'a mut [Group<S>],
     inverse_condition: &'a mut [Group<S>],
     k_xy: &'a mut [Group<S>],
@@ -166,12 +170,12 @@ struct Writer<'a, S: Simd> {
     clearance: &'a mut [Group<S>],
 }
 
-impl<S: Simd> Writer<'_, S> {
+impl<S: Simd> ColumnWriter<'_, S> {
     #[inline(always)]
     fn put(&mut self, group: usize, values: PoseLanes<Lanes<S>>) {
-        let (one, zero) = (values.slack.splat(1.0), values.slack.splat(0.0));
-        one.where_set(values.reachable, zero).store(&mut self.reachable[group]);
-        values.slack.store(&mut self.slack[group]);
+        let (one, zero) = (values.limit_margin.splat(1.0), values.limit_margin.splat(0.0));
+        one.select(values.reachable, zero).store(&mut self.reachable[group]);
+        values.limit_margin.store(&mut self.limit_margin[group]);
         values.determinant.store(&mut self.determinant[group]);
         values.inverse_condition.store(&mut self.inverse_condition[group]);
         values.k_xy.store(&mut self.k_xy[group]);
@@ -186,7 +190,7 @@ impl<S: Simd> Writer<'_, S> {
 /// Computes the values at many positions in one orientation.
 struct AtPositions<'a, L> {
     checker: &'a PoseChecker<L>,
-    oriented: Oriented<'a>,
+    oriented: OrientationLanes<'a>,
     xs: &'a [f64],
     ys: &'a [f64],
     values: &'a mut ValueColumns,
@@ -260,7 +264,7 @@ impl ArmColumns {
     /// value.
     pub fn pad(&mut self) {
         for column in &mut self.0 {
-            column.resize(padded(column.len()), column.first().copied().unwrap_or(0.0));
+            column.resize(padded_length(column.len()), column.first().copied().unwrap_or(0.0));
         }
     }
 }
@@ -299,13 +303,13 @@ impl<L: Leg> WithSimd for AtPoses<'_, L> {
 
 impl<L: Leg> PoseChecker<L> {
     /// Computes the values at many positions in one orientation. The columns have equal lengths, a multiple of
-    /// [`MOST_LANES`].
+    /// [`MAX_LANES`].
     pub fn at_positions(&self, arms: &[DVec2; LEGS], xs: &[f64], ys: &[f64], values: &mut ValueColumns) {
-        assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MOST_LANES));
+        assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MAX_LANES));
         values.resize(xs.len(), self.thresholds.clearance.is_some());
         self.instructions.run(AtPositions {
             checker: self,
-            oriented: Oriented { arms, sign: 1.0 },
+            oriented: OrientationLanes { arms, sign: 1.0 },
             xs,
             ys,
             values,

@@ -22,26 +22,26 @@ pub struct PlainWorkspace {
 
 /// Marches all rays and returns the radii of all windows.
 ///
-/// `good_sign` returns the sign of `det A` for a position of `P` and the arms of an orientation if the pose is
+/// `feasible_sign` returns the sign of `det A` for a position of `P` and the arms of an orientation if the pose is
 /// feasible, otherwise `None`. `step_base` is the base radius `R`, of which the ray step is a fraction.
 pub fn plain<L: Leg>(
     manipulator: &Manipulator<L>,
     sampling: &WorkspaceSampling,
     step_base: f64,
-    good_sign: impl Fn(DVec2, &[DVec2; LEGS]) -> Option<f64>,
+    feasible_sign: impl Fn(DVec2, &[DVec2; LEGS]) -> Option<f64>,
 ) -> PlainWorkspace {
     let (spec, grid) = (sampling.spec(), sampling.grid());
-    let (count, half) = (grid.orientations(), sampling.turn().half_window);
+    let (count, half) = (grid.orientations(), sampling.orientation_grid().half_window);
     let step = step_base / grid.ray_steps() as f64;
     let rays: Vec<(f64, f64)> = (0..count)
         .map(|k| {
             let arms = manipulator.arms(&Rotation::new((k as f64 * grid.phi_step_deg()).to_radians()));
-            let Some(sign) = good_sign(spec.centre, &arms) else {
+            let Some(sign) = feasible_sign(spec.centre, &arms) else {
                 return (0.0, 0.0);
             };
             let radii = (0..grid.directions()).map(|d| {
                 let direction = unit((d as f64 * 360.0 / grid.directions() as f64).to_radians());
-                let good = |radius: f64| good_sign(spec.centre + direction * radius, &arms) == Some(sign);
+                let good = |radius: f64| feasible_sign(spec.centre + direction * radius, &arms) == Some(sign);
                 let mut steps = 1.0;
                 while good(steps * step) {
                     steps += 1.0;

@@ -10,9 +10,9 @@
 
 use glam::DVec2;
 
-use super::batch::Oriented;
+use super::batch::OrientationLanes;
 use super::rings::{Reach, Rings};
-use super::{ArmColumns, Grid, PoseChecker, Turn, ValueColumns, WorkspaceSampling};
+use super::{ArmColumns, Grid, OrientationGrid, PoseChecker, ValueColumns, WorkspaceSampling};
 use crate::mechanism::Leg;
 use crate::spatial::{LEGS, Rotation, unit};
 
@@ -48,7 +48,7 @@ pub struct RegularWorkspace {
     /// Orientations of the grid.
     pub orientations: Vec<Orientation>,
     /// Spacing of the orientations, and the windows over them.
-    pub turn: Turn,
+    pub turn: OrientationGrid,
     /// Orientations of the home window whose `R(φ)` equals `radius`, each with a radius just beyond it at which a pose
     /// is infeasible in some direction \[m\]. Without a home orientation, one such orientation of a window that turned
     /// out to be empty, if there was one.
@@ -63,7 +63,7 @@ pub struct RegularWorkspace {
 fn orientations<L: Leg>(
     checker: &PoseChecker<L>,
     spec: &WorkspaceSpec,
-    turn: &Turn,
+    turn: &OrientationGrid,
 ) -> (Vec<Orientation>, ValueColumns) {
     let mut orientations: Vec<Orientation> = (0..turn.count)
         .map(|k| {
@@ -81,7 +81,7 @@ fn orientations<L: Leg>(
         orientation.centre_sign = centres
             .get(index)
             .ok()
-            .filter(|values| values.determinant != 0.0 && checker.thresholds.hold(values))
+            .filter(|values| values.determinant != 0.0 && checker.thresholds.are_met_by(values))
             .map(|values| values.determinant.signum());
     }
     (orientations, centres)
@@ -97,7 +97,7 @@ pub fn search<L: Leg>(
     step_base: f64,
     symmetric: bool,
 ) -> RegularWorkspace {
-    let (spec, grid, turn) = (sampling.spec(), sampling.grid(), *sampling.turn());
+    let (spec, grid, turn) = (sampling.spec(), sampling.grid(), *sampling.orientation_grid());
     let (orientations, centres) = orientations(checker, spec, &turn);
     let sector = if symmetric && grid.directions().is_multiple_of(LEGS) {
         grid.directions() / LEGS
@@ -196,7 +196,7 @@ impl<L: Leg> Search<'_, L> {
             order,
             found,
         } = self;
-        let oriented = |k: usize| Oriented {
+        let oriented = |k: usize| OrientationLanes {
             arms: &found.orientations[k].arms,
             // The centres of a leading window are feasible and have one sign.
             sign: found.orientations[k].centre_sign.unwrap_or(1.0),

@@ -8,7 +8,7 @@
 
 use glam::DVec2;
 
-use super::batch::Oriented;
+use super::batch::OrientationLanes;
 use super::{Grid, PoseChecker, Positions};
 use crate::mechanism::Leg;
 
@@ -77,10 +77,10 @@ impl Rings {
 
     /// Returns the number of poses of rings `first` to `last`, counted ring after ring, before the first infeasible
     /// one.
-    fn leading<L: Leg>(
+    fn count_leading_feasible<L: Leg>(
         &mut self,
         checker: &PoseChecker<L>,
-        oriented: Oriented<'_>,
+        oriented: OrientationLanes<'_>,
         first: usize,
         last: usize,
     ) -> usize {
@@ -93,18 +93,18 @@ impl Rings {
         }
         let count = self.positions.xs.len();
         self.positions.pad();
-        checker.leading(oriented, &self.positions.xs, &self.positions.ys, count)
+        checker.count_leading_feasible(oriented, &self.positions.xs, &self.positions.ys, count)
     }
 
     /// Returns whether one ring is feasible, and records the result in `reach`.
     fn probe<L: Leg>(
         &mut self,
         checker: &PoseChecker<L>,
-        oriented: Oriented<'_>,
+        oriented: OrientationLanes<'_>,
         reach: &mut Reach,
         ring: usize,
     ) -> bool {
-        let good = self.leading(checker, oriented, ring, ring) == self.directions.len();
+        let good = self.count_leading_feasible(checker, oriented, ring, ring) == self.directions.len();
         if good {
             reach.probed = reach.probed.max(ring);
             if ring == reach.good + 1 {
@@ -122,7 +122,7 @@ impl Rings {
     pub fn estimate<L: Leg>(
         &mut self,
         checker: &PoseChecker<L>,
-        oriented: Oriented<'_>,
+        oriented: OrientationLanes<'_>,
         reach: &mut Reach,
         hint: usize,
         farthest: usize,
@@ -155,13 +155,19 @@ impl Rings {
     }
 
     /// Marches outwards from ring `reach.good` to ring `last`, or to the first ring that fails.
-    pub fn march<L: Leg>(&mut self, checker: &PoseChecker<L>, oriented: Oriented<'_>, reach: &mut Reach, last: usize) {
+    pub fn march<L: Leg>(
+        &mut self,
+        checker: &PoseChecker<L>,
+        oriented: OrientationLanes<'_>,
+        reach: &mut Reach,
+        last: usize,
+    ) {
         let count = self.directions.len();
         while reach.good < last {
             let first = reach.good + 1;
             let end = (first + BLOCK / count).min(last);
-            let leading = self.leading(checker, oriented, first, end);
-            reach.good += leading / count;
+            let count_leading_feasible = self.count_leading_feasible(checker, oriented, first, end);
+            reach.good += count_leading_feasible / count;
             if reach.good < end {
                 reach.failing = reach.failing.min(reach.good + 1);
                 return;
@@ -176,7 +182,13 @@ impl Rings {
     /// once; the smallest radius over the directions is the same as if every ray were marched to its own end. Each
     /// halving depends on the one before. Where few directions are left, all midpoints that the next halvings could
     /// need are therefore evaluated together.
-    pub fn halve<L: Leg>(&mut self, checker: &PoseChecker<L>, oriented: Oriented<'_>, reach: &mut Reach, grid: &Grid) {
+    pub fn halve<L: Leg>(
+        &mut self,
+        checker: &PoseChecker<L>,
+        oriented: OrientationLanes<'_>,
+        reach: &mut Reach,
+        grid: &Grid,
+    ) {
         let mut bracket = [(reach.failing - 1) as f64 * self.step, reach.failing as f64 * self.step];
         let mut middles = Middles::new(&self.directions);
         middles.look(checker, oriented, self.centre, &[bracket[1]]);
@@ -244,7 +256,7 @@ impl Middles {
     }
 
     /// Evaluates the poses of the failing directions at all `radii`.
-    fn look<L: Leg>(&mut self, checker: &PoseChecker<L>, oriented: Oriented<'_>, centre: DVec2, radii: &[f64]) {
+    fn look<L: Leg>(&mut self, checker: &PoseChecker<L>, oriented: OrientationLanes<'_>, centre: DVec2, radii: &[f64]) {
         self.directions = self.failing.iter().map(|&index| self.directions[index]).collect();
         self.failing = (0..self.directions.len()).collect();
         self.positions.clear();
@@ -255,7 +267,7 @@ impl Middles {
         }
         self.positions.pad();
         self.good.resize(self.positions.xs.len(), 0.0);
-        checker.mark_good(oriented, &self.positions.xs, &self.positions.ys, &mut self.good);
+        checker.mark_feasible(oriented, &self.positions.xs, &self.positions.ys, &mut self.good);
     }
 
     /// Returns whether any direction fails at the radius of index `radius`; if so, drops the directions that do not

@@ -1,13 +1,13 @@
 //! A workspace to be found, and the grid that it is sampled on.
 
-use super::{Grid, GridError, Turn, WorkspaceSpec};
+use super::{Grid, GridError, OrientationGrid, WorkspaceSpec};
 
 /// A [`WorkspaceSpec`] and a [`Grid`] that fit each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorkspaceSampling {
     spec: WorkspaceSpec,
     grid: Grid,
-    turn: Turn,
+    orientation_grid: OrientationGrid,
 }
 
 impl WorkspaceSampling {
@@ -16,8 +16,12 @@ impl WorkspaceSampling {
     /// # Errors
     /// [`GridError::WindowNotWhole`] when half the rotation range is no whole number of the grid's orientation steps.
     pub fn new(spec: WorkspaceSpec, grid: Grid) -> Result<Self, GridError> {
-        let turn = Turn::new(&grid, &spec)?;
-        Ok(Self { spec, grid, turn })
+        let orientation_grid = OrientationGrid::new(&grid, &spec)?;
+        Ok(Self {
+            spec,
+            grid,
+            orientation_grid,
+        })
     }
 
     /// The workspace to be found.
@@ -31,7 +35,7 @@ impl WorkspaceSampling {
     }
 
     /// The orientations that are sampled, and the windows over them.
-    pub fn turn(&self) -> &Turn {
-        &self.turn
+    pub fn orientation_grid(&self) -> &OrientationGrid {
+        &self.orientation_grid
     }
 }

@@ -2,7 +2,7 @@
 //! segments in space by `parry3d`.
 
 use kinefront_model::clearance::{BodySettings, Layers};
-use kinefront_model::evaluation::{Model, ModelSettings, PoseReport};
+use kinefront_model::evaluation::{Model, ModelSettings, PoseEvaluation};
 use kinefront_model::mechanism::{Architecture, Design, Leg, WorkingMode};
 use kinefront_model::spatial::{Pose, Rotation};
 use kinefront_model::with_leg;
@@ -43,7 +43,7 @@ fn anchor(design: &Design, index: usize) -> [f64; 2] {
     [design.base_radius * angle.cos(), design.base_radius * angle.sin()]
 }
 
-fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseReport) -> Vec<Body> {
+fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluation) -> Vec<Body> {
     let layers = &model.bodies.layers;
     let diameter = 2.0 * design.leg_bar_radius.max(design.platform_bar_radius);
     let body = |name: String, joints: &[String], ends: [[f64; 2]; 2], layer: f64, radius: f64| Body {
@@ -60,8 +60,8 @@ fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseReport) -> V
         let number = leg + 1;
         let toward = |from: [f64; 2], to: [f64; 2], length: f64| {
             let way = [to[0] - from[0], to[1] - from[1]];
-            let share = length / way[0].hypot(way[1]);
-            [from[0] + share * way[0], from[1] + share * way[1]]
+            let fraction = length / way[0].hypot(way[1]);
+            [from[0] + fraction * way[0], from[1] + fraction * way[1]]
         };
         match design.architecture {
             Architecture::Prr => {
@@ -159,7 +159,7 @@ impl Found {
     }
 }
 
-fn oracle(model: &Model, design: &Design, pose: &Pose, report: &PoseReport, fault: Fault) -> Found {
+fn oracle(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluation, fault: Fault) -> Found {
     let mut bodies = bodies(model, design, pose, report);
     match fault {
         Fault::LeftOut(name) => bodies.retain(|body| !body.name.contains(name)),
@@ -278,7 +278,7 @@ fn compare(architecture: Architecture, poses: usize, faults: &[Fault]) -> (usize
                 continue;
             };
             // Within rounding of a singularity of a leg, its directions are undefined and the last digits are lost.
-            if report.slack < 1e-9 {
+            if report.limit_margin < 1e-9 {
                 continue;
             }
             let Found {

@@ -49,7 +49,7 @@ proptest! {
     fn rigidities_are_what_their_definition_says(design in design(0.01), pose in pose()) {
         let (closed, general) = forms(&design, &LegSettings::default(), &pose)
             .ok_or_else(|| TestCaseError::reject("out of reach"))?;
-        let values = closed.rigidity(StiffnessDefinition::Stiffness);
+        let values = closed.stiffness_values(StiffnessDefinition::Stiffness);
         let block = Matrix2::new(general[(0, 0)], general[(0, 1)], general[(1, 0)], general[(1, 1)]);
         let smallest = block.symmetric_eigenvalues().min();
         prop_assert!((values.k_xy - smallest).abs() <= 1e-8 * block.norm());
@@ -60,7 +60,7 @@ proptest! {
         if let Some(inverse) = closed.matrix().try_inverse()
             && closed.matrix().norm() * inverse.norm() < 1e9
         {
-            let free = closed.rigidity(StiffnessDefinition::Compliance);
+            let free = closed.stiffness_values(StiffnessDefinition::Compliance);
             let block = Matrix2::new(inverse[(0, 0)], inverse[(0, 1)], inverse[(1, 0)], inverse[(1, 1)]);
             let softest = 1.0 / block.symmetric_eigenvalues().max();
             prop_assert!((free.k_xy / softest - 1.0).abs() < 1e-5, "{} {softest}", free.k_xy);

@@ -33,7 +33,7 @@ fn joints_close<L: Leg>(design: &Design, pose: &Pose) -> Check {
         if let Some(bar) = manipulator.legs[i].proximal_bar(leg) {
             prop_assert!((bar.from.distance(bar.to) - design.link_length).abs() < tolerance);
         }
-        prop_assert!(leg.slack >= 0.0);
+        prop_assert!(leg.limit_margin >= 0.0);
     }
     Ok(())
 }
@@ -46,7 +46,12 @@ fn jacobian_is_the_derivative<L: Leg>(design: &Design, pose: &Pose) -> Check {
     };
     let jacobian = Jacobian::new(&posture);
     // Finite differences are meaningless where a leg is nearly stretched out.
-    if posture.slack < 0.02 || jacobian.drive.iter().any(|drive| drive.abs() < 0.05) {
+    if posture.limit_margin < 0.02
+        || jacobian
+            .transmission
+            .iter()
+            .any(|transmission| transmission.abs() < 0.05)
+    {
         return Err(TestCaseError::reject("the property does not apply"));
     }
     let step = 1e-6;
@@ -69,7 +74,7 @@ fn jacobian_is_the_derivative<L: Leg>(design: &Design, pose: &Pose) -> Check {
                 change = libm::remainder(change, 2.0 * std::f64::consts::PI);
             }
             let rate = change / (2.0 * step);
-            let wanted = row[leg] / jacobian.drive[leg];
+            let wanted = row[leg] / jacobian.transmission[leg];
             prop_assert!(
                 (rate - wanted).abs() < 1e-5 * (1.0 + wanted.abs()),
                 "{rate} instead of {wanted}"
@@ -84,7 +89,7 @@ fn forward_undoes_inverse<L: Leg>(design: &Design, pose: &Pose) -> Check {
     let Ok(posture) = manipulator.posture(pose) else {
         return Err(TestCaseError::reject("the property does not apply"));
     };
-    if Jacobian::new(&posture).inverse_condition(design.platform_radius) < 0.1 || posture.slack < 0.05 {
+    if Jacobian::new(&posture).inverse_condition(design.platform_radius) < 0.1 || posture.limit_margin < 0.05 {
         return Err(TestCaseError::reject("the property does not apply"));
     }
     let target = actuators(&manipulator, pose).expect("reachable");
@@ -114,7 +119,7 @@ fn condition_is_its_definition<L: Leg>(design: &Design, pose: &Pose, length: f64
     let inverse = jacobian.direct().try_inverse();
     prop_assert!(inverse.is_some());
     if let Some(inverse) = inverse {
-        let normal = scale * inverse * Matrix3::from_diagonal(&Vector3::from(jacobian.drive));
+        let normal = scale * inverse * Matrix3::from_diagonal(&Vector3::from(jacobian.transmission));
         // tr(JᵀJ)·tr((JᵀJ)⁻¹) = ‖J‖²·‖J⁻¹‖²; squaring the matrix first would cost half the digits.
         let condition = normal.norm() * normal.try_inverse().expect("not singular").norm() / 3.0;
         prop_assert!((value * condition - 1.0).abs() < 1e-6, "{value} {condition}");
@@ -159,7 +164,7 @@ proptest! {
             .pose(&design, &pose)
             .map_err(|unreachable| TestCaseError::reject(unreachable.to_string()))?;
         prop_assert!(report.stiffness.iter().all(|entry| entry.is_finite()));
-        let k = report.rigidity;
+        let k = report.stiffness_values;
         prop_assert!([k.k_xy, k.k_z, k.k_phi_z, report.inverse_condition, report.determinant]
             .iter()
             .all(|value| value.is_finite()));

@@ -20,20 +20,20 @@ fn compare<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<(), Te
     match checker.manipulator.posture_at(pose.position, &arms) {
         Err((_, shortfall)) => {
             prop_assert!(!found.reachable);
-            prop_assert!((found.slack - shortfall.slack).abs() < 1e-13);
+            prop_assert!((found.limit_margin - shortfall.limit_margin).abs() < 1e-13);
         }
         Ok(posture) => {
             let jacobian = Jacobian::new(&posture);
             let values = checker.values_at(&posture, &jacobian);
             prop_assert!(found.reachable);
-            prop_assert!((found.slack - values.slack).abs() < 1e-13);
+            prop_assert!((found.limit_margin - values.limit_margin).abs() < 1e-13);
             // Digits are lost where a leg is nearly stretched out or the lines of the legs nearly meet, and in the
             // stiffness that remains when other motions are free.
-            let distance = values.slack.min(1.0) * values.determinant.abs().min(1.0);
+            let distance = values.limit_margin.min(1.0) * values.determinant.abs().min(1.0);
             let tolerance = 1e-12 / (distance * distance);
             if tolerance < 1e-6 {
                 let stiffness = checker.stiffness_at(&posture, &jacobian);
-                let held = stiffness.rigidity(StiffnessDefinition::Stiffness);
+                let held = stiffness.stiffness_values(StiffnessDefinition::Stiffness);
                 let in_plane = stiffness.in_plane[0] + stiffness.in_plane[3];
                 // If motion in the plane is free, its block is inverted, which loses digits in proportion to the
                 // condition number of the block.
@@ -55,9 +55,14 @@ fn compare<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<(), Te
                     values.inverse_condition,
                     values.inverse_condition,
                 )?;
-                close("k_xy", found.k_xy, values.rigidity.k_xy, in_plane)?;
-                close("k_z", found.k_z, values.rigidity.k_z, held.k_z)?;
-                close("k_phi_z", found.k_phi_z, values.rigidity.k_phi_z, free * held.k_phi_z)?;
+                close("k_xy", found.k_xy, values.stiffness_values.k_xy, in_plane)?;
+                close("k_z", found.k_z, values.stiffness_values.k_z, held.k_z)?;
+                close(
+                    "k_phi_z",
+                    found.k_phi_z,
+                    values.stiffness_values.k_phi_z,
+                    free * held.k_phi_z,
+                )?;
             }
         }
     }

@@ -87,11 +87,11 @@ fn poses_agree_with_the_finite_element_solver() {
         );
         let off = difference(&report.stiffness, &matrix(&case["stiffness_matrix"]));
         assert!(off < 1e-7, "{design} at {pose:?}: stiffness off by {off:e}");
-        let soft = compliance.pose(&design, &pose).expect("reachable").rigidity;
+        let soft = compliance.pose(&design, &pose).expect("reachable").stiffness_values;
         for (value, key) in [
-            (report.rigidity.k_xy, "k_xy"),
-            (report.rigidity.k_z, "k_z"),
-            (report.rigidity.k_phi_z, "k_phi_z"),
+            (report.stiffness_values.k_xy, "k_xy"),
+            (report.stiffness_values.k_z, "k_z"),
+            (report.stiffness_values.k_phi_z, "k_phi_z"),
             (soft.k_xy, "k_xy_compliance"),
             (soft.k_z, "k_z_compliance"),
             (soft.k_phi_z, "k_phi_z_compliance"),

@@ -27,13 +27,13 @@ enum Form {
 fn plain_of<L: Leg>(model: &Model, design: &Design, form: Form) -> PlainWorkspace {
     let checker: PoseChecker<L> = model.checker(design);
     let good = |position: DVec2, arms: &[DVec2; LEGS]| match form {
-        Form::Plain => checker.good_sign(position, arms),
+        Form::Plain => checker.feasible_sign(position, arms),
         Form::Reduced => {
             let [a, b, c] = *arms;
             let values = checker
                 .lanes::<f64>(position.into(), &[a.into(), b.into(), c.into()])
                 .reached()?;
-            (values.determinant != 0.0 && checker.thresholds.hold(&values)).then(|| values.determinant.signum())
+            (values.determinant != 0.0 && checker.thresholds.are_met_by(&values)).then(|| values.determinant.signum())
         }
     };
     plain(
@@ -221,14 +221,14 @@ proptest! {
         for report in &found.constraints {
             prop_assert!(report.margin.is_finite() && report.value.is_none_or(f64::is_finite));
             if found.is_feasible() {
-                prop_assert!(report.margin >= 0.0 || !report.asked, "{report:?}");
+                prop_assert!(report.margin >= 0.0 || !report.required, "{report:?}");
                 prop_assert_eq!(report.pose.is_none(), report.constraint == Constraint::Assembly);
             }
         }
         prop_assert!(found.active().next().is_some(), "no constraint is active");
         // The reported clearance is that of the nearest pair over the workspace.
         let told = found.constraint(Constraint::Clearance);
-        prop_assert_eq!(told.asked, clearance.is_some());
+        prop_assert_eq!(told.required, clearance.is_some());
         let nearest = model.nearest(&found).map(|nearest| nearest.distance);
         let close = |nearest: f64| told.value.is_some_and(|value| (nearest - value).abs() < 1e-7);
         prop_assert!(nearest.map_or(told.value.is_none(), close), "{:?} for {:?}", nearest, told);

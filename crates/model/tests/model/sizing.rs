@@ -1,6 +1,6 @@
 //! Compares the lightest bars for a geometry with evaluations and an exhaustive search.
 
-use kinefront_model::evaluation::{BarRanges, Demand, GridChoice, Model};
+use kinefront_model::evaluation::{BarRanges, GridChoice, Model, WorkspaceTarget};
 use kinefront_model::mechanism::{Design, WorkingMode};
 use proptest::prelude::*;
 
@@ -11,8 +11,8 @@ const RANGES: BarRanges = BarRanges {
     platform: [0.0, 0.1],
 };
 
-fn sized(model: &Model, design: &Design, demand: Demand) -> Option<Design> {
-    model.sized(design, &RANGES, demand)
+fn sized(model: &Model, design: &Design, target: WorkspaceTarget) -> Option<Design> {
+    model.sized(design, &RANGES, target)
 }
 
 fn radius(model: &Model, design: &Design) -> f64 {
@@ -24,7 +24,7 @@ fn radius(model: &Model, design: &Design) -> f64 {
 #[test]
 fn no_lighter_pair_of_radii_is_found_by_trying_all() {
     let model = Model::default();
-    for (text, demand) in [
+    for (text, target) in [
         ("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056", 1.2),
         ("3-PRR R=1.412 r=0.319 Lb=0.620 rj=0.026 rp=0.023", 0.22),
         ("3-PRR R=3.872 r=1.947 Lb=1.977 rj=0.039 rp=0.096", 1.58),
@@ -32,9 +32,9 @@ fn no_lighter_pair_of_radii_is_found_by_trying_all() {
         ("3-RRR R=0.7 r=0.11 Lb=0.56 rj=0.03 rp=0.02", 0.45),
     ] {
         let design: Design = text.parse().expect("a design");
-        let found = sized(&model, &design, Demand::Radius(demand)).expect("there are such bars");
+        let found = sized(&model, &design, WorkspaceTarget::Radius(target)).expect("there are such bars");
         let reached = radius(&model, &found);
-        assert!(reached >= 0.995 * demand, "{text}: {reached} instead of {demand}");
+        assert!(reached >= 0.995 * target, "{text}: {reached} instead of {target}");
         let least = model.mass(&found);
         // r_j ranges from three times thinner to three times thicker; for each r_j, bisection finds the lightest r_p.
         let lightest = (-20..=20)
@@ -74,7 +74,7 @@ fn what_cannot_be_had_is_none() {
         .parse()
         .expect("a design");
     assert_eq!(
-        sized(&model, &design, Demand::Radius(3.0)),
+        sized(&model, &design, WorkspaceTarget::Radius(3.0)),
         None,
         "the geometry does not allow the radius"
     );
@@ -82,17 +82,21 @@ fn what_cannot_be_had_is_none() {
         leg: [0.0, 0.01],
         platform: [0.0, 0.01],
     };
-    let found = model.sized(&design, &thin, Demand::Radius(1.0));
+    let found = model.sized(&design, &thin, WorkspaceTarget::Radius(1.0));
     assert_eq!(found, None, "the ranges of the bars do not allow the radius");
     let apart = Design {
         base_radius: 8.0,
         ..design
     };
-    assert_eq!(sized(&model, &apart, Demand::Largest), None, "the legs do not reach");
+    assert_eq!(
+        sized(&model, &apart, WorkspaceTarget::Largest),
+        None,
+        "the legs do not reach"
+    );
     // The weakest pose of this design is at the centre.
     let text = "3-RPR R=1.5770 r=0.6257 Lb=1.22825 rj=0.0219 rp=0.0324";
     let centre: Design = text.parse().expect("a design");
-    let found = sized(&model, &centre, Demand::Largest).expect("bars");
+    let found = sized(&model, &centre, WorkspaceTarget::Largest).expect("bars");
     assert!(radius(&model, &found) > 0.15);
     // Bars are also sized for an asymmetric working mode, a centre away from O and a given home orientation.
     let model = super::strategies::model(|settings| {
@@ -103,7 +107,7 @@ fn what_cannot_be_had_is_none() {
         working_mode: WorkingMode::new([true, true, false]),
         ..design
     };
-    let found = sized(&model, &design, Demand::Largest).expect("bars");
+    let found = sized(&model, &design, WorkspaceTarget::Largest).expect("bars");
     assert!(radius(&model, &found) > 0.0);
 }
 
@@ -116,7 +120,7 @@ proptest! {
         let model = Model::default();
         let strongest = Design { leg_bar_radius: 0.1, platform_bar_radius: 0.1, ..design };
         let most = radius(&model, &strongest);
-        let Some(found) = sized(&model, &design, Demand::Largest) else {
+        let Some(found) = sized(&model, &design, WorkspaceTarget::Largest) else {
             prop_assert!(most < 0.05 * design.base_radius, "the strongest bars have a workspace of {}", most);
             return Ok(());
         };

@@ -7,29 +7,29 @@ use crate::explorer::{Better, Quantity, Store};
 /// Quantity and scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(from = "(String, bool)", into = "(String, bool)")]
-pub struct Axis {
+pub struct ScatterAxis {
     pub(super) quantity: Quantity,
     pub(super) log: bool,
 }
 
 /// Returns a pair of axes; the first is logarithmic if `log` is true.
-pub fn axes(x: Quantity, y: Quantity, log: bool) -> [Axis; 2] {
+pub fn axes(x: Quantity, y: Quantity, log: bool) -> [ScatterAxis; 2] {
     [
-        Axis { quantity: x, log },
-        Axis {
+        ScatterAxis { quantity: x, log },
+        ScatterAxis {
             quantity: y,
             log: false,
         },
     ]
 }
 
-impl From<Axis> for (String, bool) {
-    fn from(axis: Axis) -> Self {
+impl From<ScatterAxis> for (String, bool) {
+    fn from(axis: ScatterAxis) -> Self {
         (axis.quantity.key(), axis.log)
     }
 }
 
-impl From<(String, bool)> for Axis {
+impl From<(String, bool)> for ScatterAxis {
     fn from((key, log): (String, bool)) -> Self {
         Self {
             quantity: Quantity::find(&key).unwrap_or(Quantity::Mass),
@@ -38,7 +38,7 @@ impl From<(String, bool)> for Axis {
     }
 }
 
-impl Axis {
+impl ScatterAxis {
     pub(super) fn place(self, value: f64) -> f64 {
         if self.log { value.max(1e-12).log10() } else { value }
     }
@@ -56,7 +56,7 @@ impl Axis {
 /// Range of the feasible designs on both axes, updated with those that were added to the store.
 #[derive(Default)]
 pub(super) struct Extent {
-    axes: Option<[Axis; 2]>,
+    axes: Option<[ScatterAxis; 2]>,
     era: u64,
     seen: usize,
     low: [f64; 2],
@@ -64,7 +64,7 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    pub(super) fn update(&mut self, axes: [Axis; 2], era: u64, store: &Store) {
+    pub(super) fn update(&mut self, axes: [ScatterAxis; 2], era: u64, store: &Store) {
         if self.axes != Some(axes) || self.era != era || self.seen > store.len() {
             *self = Self {
                 axes: Some(axes),
@@ -106,7 +106,7 @@ impl Extent {
     }
 }
 
-pub(super) fn tick(axis: Axis, mark: GridMark) -> String {
+pub(super) fn tick(axis: ScatterAxis, mark: GridMark) -> String {
     if axis.log {
         let value = 10f64.powf(mark.value);
         if !(1e-3..1e5).contains(&value) {

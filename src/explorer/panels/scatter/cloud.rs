@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
 
-use crate::explorer::filter::Sieve;
+use crate::explorer::filter::PreparedFilter;
 use crate::explorer::{Store, theme};
 
 /// View that a picture shows; a different view requires a new picture.
@@ -54,7 +54,7 @@ const SMALL: [u8; 5] = [0, 0b01110, 0b01110, 0b01110, 0];
 /// Number of designs above which all marks are small.
 const CROWD: usize = 100_000;
 
-struct Picture {
+struct CloudImage {
     view: View,
     pixels: Vec<Color32>,
     /// Rank of the design that each pixel shows; a design never covers one of a higher rank.
@@ -65,7 +65,7 @@ struct Picture {
     drawn: usize,
 }
 
-impl Picture {
+impl CloudImage {
     fn new(view: View) -> Self {
         let count = view.size[0] * view.size[1];
         Self {
@@ -78,7 +78,7 @@ impl Picture {
     }
 
     /// Draws designs until `deadline`; returns whether any was drawn.
-    fn draw(&mut self, store: &Store, sieve: &Sieve<'_>, deadline: Instant) -> bool {
+    fn draw(&mut self, store: &Store, prepare: &PreparedFilter<'_>, deadline: Instant) -> bool {
         let before = self.drawn;
         let [(x, x_log), (y, y_log)] = self.view.style.axes;
         let (xs, ys) = (store.column(x), store.column(y));
@@ -102,9 +102,9 @@ impl Picture {
                     continue;
                 }
                 let feasible = store.is_feasible(id);
-                let lit = sieve.passes(id);
+                let passes_filter = prepare.passes(id);
                 let index = theme::index(store.architecture(id)) % MARKS.len();
-                let (rank, color) = match (lit, feasible) {
+                let (rank, color) = match (passes_filter, feasible) {
                     (true, true) => (4, theme::mix(colors[index], ground, 0.85)),
                     (true, false) => (3, theme::infeasible(dark)),
                     (false, true) => (2, theme::mix(colors[index], ground, 0.16)),
@@ -144,18 +144,25 @@ impl Picture {
 /// The picture on screen, and the one that will replace it.
 #[derive(Default)]
 pub struct Cloud {
-    shown: Option<Picture>,
-    coming: Option<Picture>,
+    shown: Option<CloudImage>,
+    coming: Option<CloudImage>,
     texture: Option<TextureHandle>,
 }
 
 impl Cloud {
     /// Draws the designs of the store that `view` shows, for at most `budget`; returns whether all of them are drawn.
-    pub fn advance(&mut self, ctx: &Context, store: &Store, sieve: &Sieve<'_>, view: &View, budget: Duration) -> bool {
+    pub fn advance(
+        &mut self,
+        ctx: &Context,
+        store: &Store,
+        prepare: &PreparedFilter<'_>,
+        view: &View,
+        budget: Duration,
+    ) -> bool {
         let deadline = Instant::now() + budget;
         if let Some(shown) = self.shown.as_mut().filter(|shown| shown.view == *view) {
             self.coming = None;
-            let changed = shown.draw(store, sieve, deadline);
+            let changed = shown.draw(store, prepare, deadline);
             let done = shown.drawn == store.len();
             if changed {
                 self.upload(ctx);
@@ -164,9 +171,9 @@ impl Cloud {
         }
         let coming = match &mut self.coming {
             Some(coming) if coming.view == *view => coming,
-            other => other.insert(Picture::new(view.clone())),
+            other => other.insert(CloudImage::new(view.clone())),
         };
-        coming.draw(store, sieve, deadline);
+        coming.draw(store, prepare, deadline);
         let done = coming.drawn == store.len();
         // After a change of store, filter, axes or theme, an incomplete new picture is better than a complete old one.
         let stale = self.shown.as_ref().is_none_or(|shown| shown.view.style != view.style);
@@ -196,7 +203,7 @@ impl Cloud {
 
     /// Returns the id of the design nearest to `place`, at most `reach` pixels away along each axis.
     pub fn at(&self, place: [f64; 2], reach: isize) -> Option<usize> {
-        let Picture { view, ids, .. } = self.shown.as_ref()?;
+        let CloudImage { view, ids, .. } = self.shown.as_ref()?;
         let View { size, low, high, .. } = view;
         let column = ((place[0] - low[0]) / (high[0] - low[0]) * size[0] as f64) as isize;
         let row = ((high[1] - place[1]) / (high[1] - low[1]) * size[1] as f64) as isize;

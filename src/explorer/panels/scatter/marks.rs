@@ -17,7 +17,7 @@ impl Scatter {
             Color32::from_gray(30)
         };
         let ground = theme::ground(dark);
-        let sieve = session.document().filter.sieve(session.store());
+        let prepare = session.document().filter.prepare(session.store());
         let (mut lines, mut marks) = (Vec::new(), Vec::new());
         let plain = self.axes.map(|axis| axis.quantity) == [Quantity::Mass, Quantity::Radius];
         let front = session.front();
@@ -39,15 +39,19 @@ impl Scatter {
             );
         }
         for architecture in &session.study().architectures {
-            for lit in [false, true] {
+            for passes_filter in [false, true] {
                 let points: Vec<[f64; 2]> = front
                     .iter()
                     .filter(|entry| entry.row.design.architecture == *architecture)
-                    .filter(|entry| sieve.passes(entry.id) == lit)
+                    .filter(|entry| prepare.passes(entry.id) == passes_filter)
                     .map(|entry| self.place(&entry.row))
                     .collect();
                 let color = theme::architecture(*architecture, dark);
-                let color = if lit { color } else { theme::mix(color, ground, 0.3) };
+                let color = if passes_filter {
+                    color
+                } else {
+                    theme::mix(color, ground, 0.3)
+                };
                 marks.push((
                     Points::new("", points)
                         .radius(4.0)
@@ -96,10 +100,10 @@ impl Scatter {
         }
         if let Some(known) = session.known() {
             let at = self.place(&Row::new(0, &known.evaluation));
-            let color = if session.is_what_if() {
-                theme::WHAT_IF
+            let color = if session.is_modified() {
+                theme::MODIFIED
             } else {
-                theme::CHOSEN
+                theme::SELECTED
             };
             marks.push((ring(at, 8.0, color), None));
             marks.push((ring(at, 9.0, color), None));

@@ -9,8 +9,8 @@ use std::time::Duration;
 use egui::{Align2, Color32, ComboBox, Pos2, Response, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 use egui_plot::{Plot, PlotImage, PlotPoint, PlotTransform};
 
-pub use self::axis::{Axis, axes};
 use self::axis::{Extent, decades, tick};
+pub use self::axis::{ScatterAxis, axes};
 use self::cloud::{Cloud, Style, View};
 use crate::explorer::{Better, Quantity, Row, Session, theme};
 
@@ -19,7 +19,7 @@ const BUDGET: Duration = Duration::from_millis(4);
 
 /// The scatter with its axes and view.
 pub struct Scatter {
-    axes: [Axis; 2],
+    axes: [ScatterAxis; 2],
     cloud: Cloud,
     extent: Extent,
     /// Whether the view is fitted to the designs in every frame.
@@ -30,11 +30,11 @@ pub struct Scatter {
 impl Default for Scatter {
     fn default() -> Self {
         Self::new([
-            Axis {
+            ScatterAxis {
                 quantity: Quantity::Mass,
                 log: true,
             },
-            Axis {
+            ScatterAxis {
                 quantity: Quantity::Radius,
                 log: false,
             },
@@ -44,7 +44,7 @@ impl Default for Scatter {
 
 impl Scatter {
     /// Creates a scatter with the given axes.
-    pub fn new(axes: [Axis; 2]) -> Self {
+    pub fn new(axes: [ScatterAxis; 2]) -> Self {
         Self {
             axes,
             cloud: Cloud::default(),
@@ -55,7 +55,7 @@ impl Scatter {
     }
 
     /// Returns the axes.
-    pub fn axes(&self) -> [Axis; 2] {
+    pub fn axes(&self) -> [ScatterAxis; 2] {
         self.axes
     }
 
@@ -160,7 +160,7 @@ impl Scatter {
                                 .selectable_label(axis.quantity == quantity, quantity.title())
                                 .clicked()
                             {
-                                *axis = Axis {
+                                *axis = ScatterAxis {
                                     quantity,
                                     log: quantity.is_logarithmic(),
                                 };
@@ -246,7 +246,7 @@ impl Scatter {
             );
             response.clone().on_hover_text_at_pointer(text);
             if response.clicked() {
-                session.choose_design(crate::explorer::Chosen {
+                session.choose_design(crate::explorer::Selected {
                     design,
                     origin: crate::explorer::Origin::Reference(index),
                 });
@@ -285,8 +285,8 @@ impl Scatter {
                 dark,
             },
         };
-        let sieve = session.document().filter.sieve(session.store());
-        if !self.cloud.advance(ui.ctx(), session.store(), &sieve, &view, BUDGET) {
+        let prepare = session.document().filter.prepare(session.store());
+        if !self.cloud.advance(ui.ctx(), session.store(), &prepare, &view, BUDGET) {
             ui.ctx().request_repaint();
         }
     }
@@ -308,14 +308,14 @@ impl Scatter {
         let frame = transform.frame();
         let centre = frame.left_top() + Vec2::new(34.0, 34.0);
         let painter = ui.painter_at(*frame);
-        let stroke = Stroke::new(2.0, theme::SOUND);
+        let stroke = Stroke::new(2.0, theme::SATISFIED);
         painter.arrow(centre - 12.0 * vector.normalized(), 24.0 * vector.normalized(), stroke);
         painter.text(
             centre + Vec2::new(20.0, 0.0),
             Align2::LEFT_CENTER,
             "better",
             egui::FontId::proportional(12.0),
-            theme::SOUND,
+            theme::SATISFIED,
         );
     }
 }
@@ -336,7 +336,7 @@ pub fn hover(ui: &mut Ui, id: usize, row: &Row, session: &Session) {
     ui.label(format!("R {base:.3}  r {platform:.3}  L_b {link:.3} m"));
     ui.label(format!("r_j {:.1}  r_p {:.1} mm", 1e3 * leg, 1e3 * bar));
     if row.radius == 0.0 {
-        ui.colored_label(theme::BROKEN, "infeasible");
+        ui.colored_label(theme::VIOLATED, "infeasible");
     }
     if let Some(note) = session.document().notes.get(&id) {
         ui.label(egui::RichText::new(note).italics());

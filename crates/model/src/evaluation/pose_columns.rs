@@ -8,7 +8,7 @@ use crate::workspace::{ArmColumns, PoseChecker, Positions, ValueColumns};
 
 /// Place of a pose in the disc.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct DiscPose {
     pub orientation: usize,
     pub radius: f64,
     pub angle: f64,
@@ -19,14 +19,14 @@ pub(super) struct Place {
 
 /// Poses, stored in columns.
 #[derive(Default)]
-pub(super) struct Layout {
+pub(super) struct PoseColumns {
     /// Number of poses, without padding.
     pub count: usize,
     pub positions: Positions,
     pub arms: ArmColumns,
 }
 
-impl Layout {
+impl PoseColumns {
     pub fn clear(&mut self) {
         self.count = 0;
         self.positions.clear();
@@ -74,8 +74,8 @@ impl Layout {
     }
 
     /// Returns the ratios of the stiffness at the poses to the thresholds: `k_xy`, `k_z`, `k_φz`.
-    pub fn shares<L: Leg>(&self, checker: &PoseChecker<L>, values: &mut ValueColumns) -> [Vec<f64>; 3] {
+    pub fn ratios<L: Leg>(&self, checker: &PoseChecker<L>, values: &mut ValueColumns) -> [Vec<f64>; 3] {
         self.values(checker, values);
-        values.rigidity_shares(&checker.thresholds, self.count)
+        values.stiffness_ratios(&checker.thresholds, self.count)
     }
 }

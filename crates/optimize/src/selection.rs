@@ -112,10 +112,10 @@ fn scaled(front: &[[f64; 2]]) -> Vec<[f64; 2]> {
             })
     };
     let ranges = [range(0), range(1)];
-    let share = |value: f64, [low, high]: [f64; 2]| if high > low { (value - low) / (high - low) } else { 0.0 };
+    let fraction = |value: f64, [low, high]: [f64; 2]| if high > low { (value - low) / (high - low) } else { 0.0 };
     front
         .iter()
-        .map(|point| [share(point[0], ranges[0]), share(point[1], ranges[1])])
+        .map(|point| [fraction(point[0], ranges[0]), fraction(point[1], ranges[1])])
         .collect()
 }
 
@@ -167,8 +167,8 @@ mod tests {
         // The members crowd at one end of the front.
         let front: Vec<[f64; 2]> = (0..=200)
             .map(|k| {
-                let share = libm::pow(f64::from(k) / 200.0, 3.0);
-                [share, (1.0 - share) * (1.0 - share)]
+                let fraction = libm::pow(f64::from(k) / 200.0, 3.0);
+                [fraction, (1.0 - fraction) * (1.0 - fraction)]
             })
             .collect();
         let chosen = spread(&front, 12);

@@ -15,7 +15,7 @@ use crate::spatial::LEGS;
 /// Contribution of an actuator or bar to three compliances of the platform, as fractions of each compliance. The
 /// contributions of all actuators and bars sum to 1.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Share {
+pub struct Contribution {
     /// Fraction of the compliance to a force in the plane, averaged over the directions of the force.
     pub in_plane: f64,
     /// Fraction of the compliance to a force along z.
@@ -26,53 +26,53 @@ pub struct Share {
 
 /// Contributions of the actuator and bars of one leg.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct LegShares {
+pub struct LegContributions {
     /// Contribution of the actuator.
-    pub actuator: Share,
+    pub actuator: Contribution,
     /// Contribution of the proximal bar; zero if there is none.
-    pub proximal: Share,
+    pub proximal: Contribution,
     /// Contribution of the distal bar.
-    pub distal: Share,
+    pub distal: Contribution,
     /// Contribution of the platform bar.
-    pub platform: Share,
+    pub platform: Contribution,
 }
 
 impl StiffnessModel {
     /// Computes the contributions of all actuators and bars at a posture; returns `None` if the stiffness is singular
     /// or a compliance is not finite and positive.
-    pub fn shares<L: Leg>(
+    pub fn contributions<L: Leg>(
         &self,
         manipulator: &Manipulator<L>,
         posture: &Posture,
         jacobian: &Jacobian,
-    ) -> Option<[LegShares; LEGS]> {
-        let mut shares = [LegShares::default(); LEGS];
-        self.add_in_plane(&mut shares, manipulator, posture, jacobian)?;
-        self.add_vertical(&mut shares, manipulator, posture)?;
-        Some(shares)
+    ) -> Option<[LegContributions; LEGS]> {
+        let mut contributions = [LegContributions::default(); LEGS];
+        self.add_in_plane(&mut contributions, manipulator, posture, jacobian)?;
+        self.add_vertical(&mut contributions, manipulator, posture)?;
+        Some(contributions)
     }
 
     fn add_in_plane<L: Leg>(
         &self,
-        shares: &mut [LegShares; LEGS],
+        contributions: &mut [LegContributions; LEGS],
         manipulator: &Manipulator<L>,
         posture: &Posture,
         jacobian: &Jacobian,
     ) -> Option<()> {
         let compliance = symmetric(&self.in_plane(manipulator, posture, jacobian)).try_inverse()?;
         let (in_plane, rotation) = (compliance[(0, 0)] + compliance[(1, 1)], compliance[(2, 2)]);
-        for (index, shares) in shares.iter_mut().enumerate() {
+        for (index, contributions) in contributions.iter_mut().enumerate() {
             let parts = self.line_compliances(&manipulator.legs[index], &posture.legs[index], posture.arms[index]);
             let line = Vector3::new(jacobian.ux[index], jacobian.uy[index], jacobian.moment[index]);
             // Components: force along the leg's line for a unit force along x, a unit force along y, and a unit torque.
             let forces = (compliance * line) / parts.iter().sum::<f64>();
-            let of = |part: f64| Share {
+            let of = |part: f64| Contribution {
                 in_plane: part * (forces.x * forces.x + forces.y * forces.y) / in_plane,
                 rotation: part * forces.z * forces.z / rotation,
                 vertical: 0.0,
             };
             let [actuator, distal, platform, proximal] = parts.map(of);
-            *shares = LegShares {
+            *contributions = LegContributions {
                 actuator,
                 proximal,
                 distal,
@@ -84,7 +84,7 @@ impl StiffnessModel {
 
     fn add_vertical<L: Leg>(
         &self,
-        shares: &mut [LegShares; LEGS],
+        contributions: &mut [LegContributions; LEGS],
         manipulator: &Manipulator<L>,
         posture: &Posture,
     ) -> Option<()> {
@@ -103,12 +103,12 @@ impl StiffnessModel {
         }
         let compliance = stiffness.iter().sum::<Matrix3<f64>>().try_inverse()?;
         let displacement: Vector3<f64> = compliance.column(0).into();
-        for (index, shares) in shares.iter_mut().enumerate() {
+        for (index, contributions) in contributions.iter_mut().enumerate() {
             let wrench = stiffness[index] * displacement;
             let [platform, distal, proximal] = parts[index].map(|part| wrench.dot(&(part * wrench)) / displacement.x);
-            shares.platform.vertical = platform;
-            shares.distal.vertical = distal;
-            shares.proximal.vertical = proximal;
+            contributions.platform.vertical = platform;
+            contributions.distal.vertical = distal;
+            contributions.proximal.vertical = proximal;
         }
         finite(&[displacement.x])
     }
@@ -144,12 +144,12 @@ mod tests {
         let pose = Pose::new(0.1, -0.07, 0.6);
         let posture = checker.manipulator.posture(&pose).expect("reachable");
         let model = checker.stiffness.expect("stiff");
-        let shares = model
-            .shares(&checker.manipulator, &posture, &Jacobian::new(&posture))
+        let contributions = model
+            .contributions(&checker.manipulator, &posture, &Jacobian::new(&posture))
             .expect("stiff");
-        let values = |share: Share| [share.in_plane, share.vertical, share.rotation];
-        let sum = |of: &dyn Fn(&LegShares) -> [f64; 3]| {
-            shares
+        let values = |contribution: Contribution| [contribution.in_plane, contribution.vertical, contribution.rotation];
+        let sum = |of: &dyn Fn(&LegContributions) -> [f64; 3]| {
+            contributions
                 .iter()
                 .map(of)
                 .fold([0.0; 3], |sum, each| [0, 1, 2].map(|k| sum[k] + each[k]))

@@ -6,7 +6,7 @@ use super::{Grid, GridError, WorkspaceSpec};
 
 /// Evenly spaced orientations: the full turn of a grid, or the single window of a prescribed home orientation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn {
+pub struct OrientationGrid {
     first_deg: f64,
     step_deg: f64,
     /// Number of orientations.
@@ -16,7 +16,7 @@ pub struct Turn {
     home_is_given: bool,
 }
 
-impl Turn {
+impl OrientationGrid {
     /// Returns the orientations of `grid` that `spec` requires.
     ///
     /// # Errors
