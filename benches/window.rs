@@ -12,7 +12,7 @@ use egui_kittest::Harness;
 use kinefront::explorer::{Explorer, InitialContent, Session, StudyEditor};
 use kinefront::recording::LiveScene;
 use kinefront::study::{
-    BUILTIN, Batch, DesignProblem, Event, FrontMember, GenerationSummary, EndReason, RunSummary, RunTimes, Started,
+    BUILTIN, Batch, DesignProblem, EndReason, Event, FrontMember, GenerationSummary, RunSummary, RunTimes, Started,
     Study, Subscriber,
 };
 use kinefront_model::evaluation::{Evaluation, GridChoice};

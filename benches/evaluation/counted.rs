@@ -165,7 +165,7 @@ impl Real for Counted {
         self.value > other.value
     }
 
-    fn where_set(self, mask: bool, other: Self) -> Self {
+    fn select(self, mask: bool, other: Self) -> Self {
         Self::made(
             if mask { self.value } else { other.value },
             Operation::Choice,

@@ -30,7 +30,7 @@ use kinefront_model::stiffness::joint_model;
 use kinefront_model::with_leg;
 use kinefront_model::workspace::plain::plain;
 use kinefront_model::workspace::{PoseChecker, ValueColumns};
-use kinefront_optimize::{FrontDe, FrontDeSettings, sobol, transmission};
+use kinefront_optimize::{FrontDe, FrontDeSettings, sobol, run};
 use rayon::prelude::*;
 
 use self::counted::{Operations, operations};
@@ -271,7 +271,7 @@ fn clearance(criterion: &mut Criterion) {
             group.bench_function(BenchmarkId::new(name, architecture), |bencher| {
                 bencher.iter(|| {
                     let mut algorithm = FrontDe::new(problem.variables(), FrontDeSettings::default(), 1);
-                    transmission(&problem, &mut algorithm, EVALUATIONS).iter().count()
+                    run(&problem, &mut algorithm, EVALUATIONS).iter().count()
                 });
             });
         }

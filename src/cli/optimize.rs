@@ -7,8 +7,9 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, OnceLock};
 use std::thread::{Builder, JoinHandle};
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use kinefront::recording::Recorder;
-use kinefront::study::{AlgorithmName, EndReason, Event, RunControl, RunFolder, RunReport, RunSummary, Study, spawn};
+use kinefront::study::{AlgorithmName, EndReason, Event, RunControl, RunReport, RunSummary, RunWriter, Study, spawn};
 use kinefront_model::mechanism::Architecture;
 use miette::{Report, miette};
 
@@ -23,7 +24,7 @@ pub struct OptimizeArguments {
     /// Study file, or name of a built-in study [default: paper].
     study: Option<String>,
     /// Algorithm; overrides that of the study.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = algorithms())]
     algorithm: Option<AlgorithmName>,
     /// Number of evaluations; overrides that of the study.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
@@ -51,7 +52,7 @@ pub struct OptimizeArguments {
 pub fn run(arguments: &OptimizeArguments) -> Result<Ending, Failure> {
     let study = study(arguments)?;
     let path = arguments.out.clone().unwrap_or_else(|| free_folder(&study));
-    let folder = RunFolder::create(&path, &study).map_err(|error| Failure::Input(Report::from_err(error)))?;
+    let folder = RunWriter::create(&path, &study).map_err(|error| Failure::Input(Report::from_err(error)))?;
     let recorder = Recorder::create(&path.join("recording.rrd"), &study)
         .map_err(|error| Failure::Input(Report::from_err(error)))?;
 
@@ -213,4 +214,10 @@ fn tell(study: &Study, summary: &RunSummary, path: &Path, arguments: &OptimizeAr
         writeln!(out, "wrote {}", path.display())?;
     }
     Ok(())
+}
+
+/// Parser of the names of the algorithms, which error messages list.
+fn algorithms() -> impl TypedValueParser<Value = AlgorithmName> {
+    PossibleValuesParser::new(AlgorithmName::ALL.map(AlgorithmName::name))
+        .try_map(|name| AlgorithmName::find(&name).ok_or("unknown algorithm"))
 }

@@ -117,8 +117,7 @@ pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
 fn failure(error: ReportError) -> Failure {
     let input = matches!(
         error,
-        ReportError::NoRun(_)
-            | ReportError::Study(_)
+        ReportError::Folder(_)
             | ReportError::Table(_)
             | ReportError::Differing { .. }
             | ReportError::NothingFeasible

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use kinefront::study::Study;
+use kinefront::study::{Study, read_table};
 use kinefront_model::mechanism::Design;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
@@ -43,8 +43,7 @@ impl SubjectArguments {
             None if beside.exists() => Study::read(&beside)?,
             study => load_study(study.as_deref())?,
         };
-        let text = design_text(table, id).wrap_err_with(|| format!("cannot read {row}"))?;
-        let design = Design::parse(&text, study.working_mode).into_diagnostic()?;
+        let design = find_design(table, &study, id).wrap_err_with(|| format!("cannot read {row}"))?;
         Ok((study, design, format!("{}, design #{id}", study_name(table))))
     }
 }
@@ -56,43 +55,17 @@ fn study_name(table: &Path) -> String {
     name.to_string_lossy().into_owned()
 }
 
-/// Returns the design in the row with the given id, as text.
-fn design_text(table: &Path, id: &str) -> Result<String> {
-    let mut reader = csv::Reader::from_path(table).into_diagnostic()?;
-    let header = reader.headers().into_diagnostic()?.clone();
-    let column = |name: &str| {
-        header
-            .iter()
-            .position(|title| title == name)
-            .ok_or_else(|| miette!("{} has no column `{name}`", table.display()))
-    };
-    let (ids, architecture, mode) = (column("id")?, column("architecture")?, column("working_mode")?);
-    let lengths: Vec<(&str, usize)> = ["R", "r", "Lb", "rj", "rp"]
-        .into_iter()
-        .map(|name| Ok((name, column(name)?)))
-        .collect::<Result<_>>()?;
-    let mut known = Vec::new();
-    for record in reader.records() {
-        let record = record.into_diagnostic()?;
-        if &record[ids] == id {
-            let lengths: Vec<String> = lengths
-                .iter()
-                .map(|(name, k)| format!("{name}={}", &record[*k]))
-                .collect();
-            return Ok(format!(
-                "{} {} mode={}",
-                &record[architecture],
-                lengths.join(" "),
-                &record[mode]
-            ));
-        }
-        known.push(record[ids].to_owned());
+/// Returns the design in the row with the given id.
+fn find_design(table: &Path, study: &Study, id: &str) -> Result<Design> {
+    let rows = read_table(table, study).into_diagnostic()?;
+    if let Some(entry) = rows.iter().find(|entry| entry.id.to_string() == id) {
+        return Ok(entry.row.design);
     }
-    if known.is_empty() {
+    if rows.is_empty() {
         return Err(miette!("{} has no designs", table.display()));
     }
-    let some: Vec<&str> = known.iter().take(8).map(String::as_str).collect();
-    let more = if known.len() > some.len() { ", …" } else { "" };
+    let some: Vec<String> = rows.iter().take(8).map(|entry| entry.id.to_string()).collect();
+    let more = if rows.len() > some.len() { ", …" } else { "" };
     Err(miette!(
         "{} has no design #{id}; it has #{}{more}",
         table.display(),

@@ -8,6 +8,7 @@ use super::{Phase, Session};
 use crate::export::{ExportError, ExportSubject, Format, export, front_to_parquet};
 use crate::recording::{record_design, save_copy};
 use crate::report::{Options, Report, Source};
+use crate::study::{Cell, Column, TableRow, table_bytes};
 use kinefront_model::evaluation::GridChoice;
 
 /// Writes a file atomically: an existing file is either replaced completely or left unchanged.
@@ -322,34 +323,22 @@ fn replacing(path: &Path, write: impl FnOnce(&Path) -> Result<(), String>) -> Re
 
 /// Returns the front as a CSV table, which begins with the columns common to all tables of designs.
 fn front_table(session: &Session) -> Result<Vec<u8>, String> {
-    let mut table = csv::Writer::from_writer(Vec::new());
-    let header = crate::study::TABLE_HEADER
-        .into_iter()
-        .map(str::to_owned)
-        .chain(["workspace_radius_reference_m", "verified", "starred", "note"].map(str::to_owned));
-    let write = |table: &mut csv::Writer<Vec<u8>>| -> Result<(), csv::Error> {
-        table.write_record(header)?;
-        for entry in session.front() {
-            let design = &entry.row.design;
-            let mut record = vec![
-                entry.id.to_string(),
-                entry.row.generation.to_string(),
-                design.architecture.to_string(),
-                design.working_mode.to_string(),
-            ];
-            record.extend(design.values().map(|value| value.to_string()));
-            record.push(entry.row.mass.to_string());
-            record.push(entry.row.radius.to_string());
-            record.push(entry.row.phi.map(|phi| phi.to_string()).unwrap_or_default());
-            record.push((entry.row.radius > 0.0).to_string());
-            record.push(entry.reference_radius.to_string());
-            record.push(entry.verified.to_string());
-            record.push(session.document().stars.contains(&entry.id).to_string());
-            record.push(session.document().notes.get(&entry.id).cloned().unwrap_or_default());
-            table.write_record(record)?;
-        }
-        Ok(())
-    };
-    write(&mut table).map_err(|error| error.to_string())?;
-    table.into_inner().map_err(|error| error.to_string())
+    use Column::{Note, ReferenceRadius, Starred, Verified};
+    let columns = || Column::common().chain([ReferenceRadius, Verified, Starred, Note]);
+    let document = session.document();
+    let rows = session.front().iter().map(|entry| {
+        let row = TableRow {
+            id: entry.id,
+            row: entry.row,
+            reference_radius: Some(entry.reference_radius),
+        };
+        let cell = |column| match column {
+            Verified => Cell::Flag(entry.verified),
+            Starred => Cell::Flag(document.stars.contains(&entry.id)),
+            Note => Cell::Text(document.notes.get(&entry.id).cloned().unwrap_or_default().into()),
+            column => column.cell(&row),
+        };
+        columns().map(cell).collect()
+    });
+    table_bytes(columns(), rows).map_err(|error| error.to_string())
 }

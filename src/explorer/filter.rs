@@ -1,9 +1,10 @@
 //! The filter that applies to all panels, and its text format.
 
+use crate::study::Column;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-use super::{Quantity, Store};
+use super::Store;
 use kinefront_model::mechanism::Architecture;
 
 /// Criteria for designs; those that do not pass the filter are dimmed.
@@ -33,15 +34,17 @@ impl Filter {
     }
 
     /// Returns the range of a quantity, if the filter has one.
-    pub fn range(&self, quantity: Quantity) -> Option<[f64; 2]> {
-        self.ranges.get(&quantity.key()).copied()
+    pub fn range(&self, quantity: Column) -> Option<[f64; 2]> {
+        self.ranges.get(&*quantity.name()).copied()
     }
 
     /// Sets or removes the range of a quantity.
-    pub fn set_range(&mut self, quantity: Quantity, range: Option<[f64; 2]>) {
+    pub fn set_range(&mut self, quantity: Column, range: Option<[f64; 2]>) {
         match range {
-            Some([low, high]) => self.ranges.insert(quantity.key(), [low.min(high), low.max(high)]),
-            None => self.ranges.remove(&quantity.key()),
+            Some([low, high]) => self
+                .ranges
+                .insert(quantity.name().into_owned(), [low.min(high), low.max(high)]),
+            None => self.ranges.remove(&*quantity.name()),
         };
     }
 
@@ -54,7 +57,7 @@ impl Filter {
             ranges: self
                 .ranges
                 .iter()
-                .filter_map(|(key, range)| Some((store.column(Quantity::find(key)?), *range)))
+                .filter_map(|(key, range)| Some((store.column(Column::find_quantity(key)?), *range)))
                 .collect(),
         }
     }
@@ -72,8 +75,8 @@ impl Filter {
     pub fn parse(text: &str) -> Result<Self, String> {
         let filter: Filter = toml::from_str(text).map_err(|error| format!("not a filter: {}", error.message()))?;
         for (key, [low, high]) in &filter.ranges {
-            if Quantity::find(key).is_none() {
-                let known: Vec<String> = Quantity::all().into_iter().map(Quantity::key).collect();
+            if Column::find_quantity(key).is_none() {
+                let known: Vec<_> = Column::quantities().map(Column::name).collect();
                 return Err(format!(
                     "the filter has a range of the unknown quantity `{key}`; expected one of {}",
                     known.join(", ")
@@ -114,12 +117,9 @@ mod tests {
             hidden: vec![Architecture::ALL[1]],
             ranges: BTreeMap::new(),
         };
-        filter.set_range(Quantity::Mass, Some([10.0, 2.5]));
-        filter.set_range(
-            Quantity::DesignVariable(DesignVariable::LinkLength),
-            Some([0.5, 1.0 / 3.0]),
-        );
-        assert_eq!(filter.range(Quantity::Mass), Some([2.5, 10.0]));
+        filter.set_range(Column::Mass, Some([10.0, 2.5]));
+        filter.set_range(Column::Dimension(DesignVariable::LinkLength), Some([0.5, 1.0 / 3.0]));
+        assert_eq!(filter.range(Column::Mass), Some([2.5, 10.0]));
         assert_eq!(Filter::parse(&filter.to_text()), Ok(filter));
     }
 

@@ -1,7 +1,7 @@
 //! The front as the window shows it.
 
 use super::Row;
-use crate::study::FrontMember;
+use crate::study::{Column, FrontMember};
 use kinefront_optimize::{Archive, Evaluated, Outcome};
 
 /// A non-dominated design.
@@ -39,8 +39,8 @@ pub fn front_of(store: &super::Store) -> Vec<FrontEntry> {
     let mut archive = Archive::default();
     for id in (0..store.len()).filter(|&id| store.is_feasible(id)) {
         let objectives = [
-            store.column(super::Quantity::Mass)[id],
-            -store.column(super::Quantity::Radius)[id],
+            store.column(Column::Mass)[id],
+            -store.column(Column::WorkspaceRadius)[id],
         ];
         let outcome = Outcome {
             objectives,

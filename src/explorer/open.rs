@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
-
 use super::front::front_of;
 use super::{FrontEntry, Store};
 use crate::recording;
-use crate::study::{GenerationSummary, Row, Study, TableError, read_table};
+use crate::study::{
+    Column, GenerationSummary, Row, RunFolder, RunFolderError, Study, StudyError, TableError, TableFault,
+};
 
 /// A run that was read from its files.
 #[derive(Debug)]
@@ -28,9 +28,12 @@ pub enum OpenError {
     /// The path is neither a run folder nor a recording.
     #[error("{} is not a run: expected a folder with study.toml and designs.csv or a recording (.rrd)", .0.display())]
     NoRun(PathBuf),
-    /// The study of the run cannot be read.
-    #[error("{0}")]
-    Study(String),
+    /// The run folder cannot be read.
+    #[error(transparent)]
+    Folder(#[from] RunFolderError),
+    /// The study in a recording is invalid.
+    #[error(transparent)]
+    Study(#[from] Box<StudyError>),
     /// A table of the run cannot be read.
     #[error(transparent)]
     Table(#[from] TableError),
@@ -45,31 +48,27 @@ pub enum OpenError {
 /// Returns an [`OpenError`] that names the file and says what is wrong in it.
 pub fn open(path: &Path) -> Result<Opened, OpenError> {
     if path.extension().is_some_and(|extension| extension == "rrd") {
-        let inside = path.with_file_name("designs.csv");
         // A recording beside tables is of the same run, and the tables are more exact.
         return match path.parent() {
-            Some(folder) if inside.exists() && folder.join("study.toml").exists() => open_folder(folder),
+            Some(folder) if RunFolder::is_at(folder) => open_folder(folder),
             _ => open_recording(path),
         };
     }
     let folder = if path.is_dir() { Some(path) } else { path.parent() };
     match folder {
-        Some(folder) if folder.join("designs.csv").exists() && folder.join("study.toml").exists() => {
-            open_folder(folder)
-        }
+        Some(folder) if RunFolder::is_at(folder) => open_folder(folder),
         _ => Err(OpenError::NoRun(path.to_owned())),
     }
 }
 
 fn open_folder(folder: &Path) -> Result<Opened, OpenError> {
-    let study = Study::read(&folder.join("study.toml")).map_err(|error| OpenError::Study(error.to_string()))?;
+    let run = RunFolder::open(folder)?;
     let mut store = Store::default();
-    for entry in read_table(&folder.join("designs.csv"), &study)? {
+    for entry in run.designs()? {
         store.push(&entry.row);
     }
-    let front_path = folder.join("front.csv");
-    let front = if front_path.exists() {
-        read_table(&front_path, &study)?
+    let front = match run.front()? {
+        Some(front) => front
             .into_iter()
             .map(|entry| FrontEntry {
                 id: entry.id,
@@ -77,29 +76,28 @@ fn open_folder(folder: &Path) -> Result<Opened, OpenError> {
                 row: entry.row,
                 verified: true,
             })
-            .collect()
-    } else {
-        front_of(&store)
+            .collect(),
+        None => front_of(&store),
     };
     Ok(Opened {
-        study,
+        study: run.study().clone(),
         store,
         front,
-        history: history(&folder.join("run.json")),
+        // A run without a history can be opened, because only the curves need it.
+        history: run.report().map(|report| report.history).unwrap_or_default(),
     })
 }
 
 fn open_recording(path: &Path) -> Result<Opened, OpenError> {
     let recorded = recording::read_run(path)?;
-    let study = Study::parse(&recorded.study, &path.display().to_string())
-        .map_err(|error| OpenError::Study(error.to_string()))?;
+    let study = Study::parse(&recorded.study, &path.display().to_string()).map_err(Box::new)?;
     let mut store = Store::default();
     for (index, record) in recorded.designs.iter().enumerate() {
-        let text = |name: &str| record.texts.get(name).map(String::as_str);
-        let number = |name: &str| record.numbers.get(name).copied();
-        let row = Row::read(&study, record.generation, text, number).map_err(|message| TableError {
+        let text = |column: Column| record.texts.get(&*column.name()).map(String::as_str);
+        let number = |column: Column| record.numbers.get(&*column.name()).copied();
+        let row = Row::read(&study, record.generation, text, number).map_err(|error| TableError {
             path: path.to_owned(),
-            message: format!("design #{index}: {message}"),
+            fault: TableFault::Design { index, error },
         })?;
         store.push(&row);
     }
@@ -110,17 +108,4 @@ fn open_recording(path: &Path) -> Result<Opened, OpenError> {
         front,
         history: Vec::new(),
     })
-}
-
-/// Reads the summaries of the generations; a run without them can be opened, because only the curves need them.
-fn history(path: &Path) -> Vec<GenerationSummary> {
-    #[derive(Deserialize)]
-    struct GenerationHistory {
-        history: Vec<GenerationSummary>,
-    }
-    std::fs::read(path)
-        .ok()
-        .and_then(|bytes| serde_json::from_slice::<GenerationHistory>(&bytes).ok())
-        .map(|report| report.history)
-        .unwrap_or_default()
 }

@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use super::Intake;
 use crate::recording::Recorder;
-use crate::study::{RunControl, RunFolder, Study, Subscriber};
+use crate::study::{RunControl, RunWriter, Study, Subscriber};
 
 /// Number of events that a channel can hold; the run waits while one is full.
 const CHANNEL: usize = 64;
@@ -95,7 +95,7 @@ impl Running {
         let mut subscribers = Vec::new();
         let mut threads = Vec::new();
 
-        let tables = RunFolder::create(&path, &study).map_err(|error| error.to_string())?;
+        let tables = RunWriter::create(&path, &study).map_err(|error| error.to_string())?;
         let recorder = Recorder::create(&path.join("recording.rrd"), &study).map_err(|error| error.to_string())?;
         let mut listen = |name: &str, work: Box<dyn FnOnce(&_) + Send>| -> Result<(), String> {
             let (sender, receiver) = sync_channel(CHANNEL);

@@ -23,6 +23,7 @@
 //! | `frames FILE.csv` | records the duration of every frame from here on, written at `quit` |
 //! | `quit` | closes the window |
 
+use crate::study::Column;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -30,7 +31,7 @@ use egui::{Context, ViewportCommand};
 
 use super::files::Purpose;
 use super::panels::Panel;
-use super::{Explorer, Phase, Quantity};
+use super::{Explorer, Phase};
 use crate::scene::{EllipsoidKind, Field};
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::DESIGN_VARIABLES;
@@ -71,7 +72,7 @@ enum Step {
     Pause,
     Resume,
     Stop,
-    Filter(Quantity, [f64; 2]),
+    Filter(Column, [f64; 2]),
     File(Purpose, PathBuf),
     Frames(PathBuf),
     Quit,
@@ -242,7 +243,7 @@ fn step(line: &str) -> Option<Step> {
         "stop" => Step::Stop,
         "filter" => {
             let mut words = rest.split_whitespace();
-            let quantity = Quantity::find(words.next()?)?;
+            let quantity = Column::find_quantity(words.next()?)?;
             let mut number = || words.next()?.parse::<f64>().ok();
             Step::Filter(quantity, [number()?, number()?])
         }

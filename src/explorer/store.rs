@@ -1,6 +1,6 @@
 //! All evaluated designs of a run, stored in columns: about 200 bytes per design, so that a million fit in memory.
 
-use crate::study::Row;
+use crate::study::{Column, Row};
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, WorkingMode};
 
@@ -55,7 +55,7 @@ impl Store {
         for (column, margin) in self.margins.iter_mut().zip(row.margins) {
             column.push(margin.unwrap_or(f64::NAN));
         }
-        self.clearance.push(row.clearance.unwrap_or(f64::NAN));
+        self.clearance.push(row.clearance().unwrap_or(f64::NAN));
         self.active.push(row.active);
     }
 
@@ -87,7 +87,10 @@ impl Store {
             mass: self.mass[id],
             radius: self.radius[id],
             phi: Some(self.phi[id]).filter(|phi| phi.is_finite()),
-            clearance: Some(self.clearance[id]).filter(|clearance| clearance.is_finite()),
+            values: Constraint::ALL.map(|constraint| match constraint {
+                Constraint::Clearance => Some(self.clearance[id]).filter(|clearance| clearance.is_finite()),
+                _ => None,
+            }),
             violation: self.violation[id],
             margins: std::array::from_fn(|k| Some(self.margins[k][id]).filter(|margin| margin.is_finite())),
             active: self.active[id],
@@ -113,17 +116,17 @@ impl Store {
         self.radius[id] > 0.0
     }
 
-    /// Returns all values of a quantity, in the order of the ids.
-    pub fn column(&self, quantity: super::Quantity) -> &[f64] {
-        use super::Quantity as Q;
+    /// Returns all values of one of the [quantities](Column::quantities), in the order of the ids; none for any other column.
+    pub fn column(&self, quantity: Column) -> &[f64] {
         match quantity {
-            Q::Mass => &self.mass,
-            Q::Radius => &self.radius,
-            Q::DesignVariable(variable) => &self.values[variable as usize],
-            Q::Phi => &self.phi,
-            Q::Violation => &self.violation,
-            Q::Clearance => &self.clearance,
-            Q::Margin(constraint) => &self.margins[constraint as usize],
+            Column::Mass => &self.mass,
+            Column::WorkspaceRadius => &self.radius,
+            Column::Dimension(variable) => &self.values[variable as usize],
+            Column::HomePhi => &self.phi,
+            Column::Violation => &self.violation,
+            Column::Value(Constraint::Clearance) => &self.clearance,
+            Column::Margin(constraint) => &self.margins[constraint as usize],
+            _ => &[],
         }
     }
 

@@ -9,15 +9,17 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::parser::parse_message_type;
 
+use crate::study::{Column, ColumnType};
+
 /// A column with its values.
-enum Column {
+enum ParquetColumn {
     Int(Vec<Option<i64>>),
     Number(Vec<Option<f64>>),
     Truth(Vec<Option<bool>>),
     Text(Vec<Option<String>>),
 }
 
-impl Column {
+impl ParquetColumn {
     /// Parses the values of a column. A column of Kinefront's tables has a known type; any other column contains
     /// numbers or, failing that, texts. An empty text is a missing value.
     fn new(name: &str, texts: &[&str]) -> Result<Self, String> {
@@ -33,11 +35,12 @@ impl Column {
             };
             texts.iter().enumerate().map(parse).collect()
         }
-        match name {
-            "id" | "generation" => read(name, texts).map(Self::Int),
-            "feasible" | "verified" | "starred" | "on_joint_front" => read(name, texts).map(Self::Truth),
-            "architecture" | "working_mode" | "active" | "mark" | "note" => read(name, texts).map(Self::Text),
-            _ => read(name, texts)
+        match Column::find(name).map(Column::kind) {
+            Some(ColumnType::Integer) => read(name, texts).map(Self::Int),
+            Some(ColumnType::Number) => read(name, texts).map(Self::Number),
+            Some(ColumnType::Flag) => read(name, texts).map(Self::Truth),
+            Some(ColumnType::Text) => read(name, texts).map(Self::Text),
+            None => read(name, texts)
                 .map(Self::Number)
                 .or_else(|_| read(name, texts).map(Self::Text)),
         }
@@ -67,18 +70,18 @@ pub fn front_to_parquet(table: &[u8]) -> Result<Vec<u8>, String> {
         .records()
         .collect::<Result<_, _>>()
         .map_err(|error| error.to_string())?;
-    let columns: Vec<Column> = header
+    let columns: Vec<ParquetColumn> = header
         .iter()
         .enumerate()
         .map(|(place, name)| {
             let texts: Vec<&str> = records.iter().map(|record| &record[place]).collect();
-            Column::new(name, &texts)
+            ParquetColumn::new(name, &texts)
         })
         .collect::<Result<_, _>>()?;
     write(&header, &columns).map_err(|error| error.to_string())
 }
 
-fn write(header: &csv::StringRecord, columns: &[Column]) -> Result<Vec<u8>, ParquetError> {
+fn write(header: &csv::StringRecord, columns: &[ParquetColumn]) -> Result<Vec<u8>, ParquetError> {
     let fields: Vec<String> = header
         .iter()
         .zip(columns)
@@ -100,19 +103,19 @@ fn write(header: &csv::StringRecord, columns: &[Column]) -> Result<Vec<u8>, Parq
             (values.iter().flatten().map(make).collect(), levels)
         }
         match column {
-            Column::Int(values) => {
+            ParquetColumn::Int(values) => {
                 let (values, levels) = split(values, |value| *value);
                 writer.typed::<Int64Type>().write_batch(&values, Some(&levels), None)?;
             }
-            Column::Number(values) => {
+            ParquetColumn::Number(values) => {
                 let (values, levels) = split(values, |value| *value);
                 writer.typed::<DoubleType>().write_batch(&values, Some(&levels), None)?;
             }
-            Column::Truth(values) => {
+            ParquetColumn::Truth(values) => {
                 let (values, levels) = split(values, |value| *value);
                 writer.typed::<BoolType>().write_batch(&values, Some(&levels), None)?;
             }
-            Column::Text(values) => {
+            ParquetColumn::Text(values) => {
                 let (values, levels) = split(values, |value| ByteArray::from(value.as_str()));
                 writer
                     .typed::<ByteArrayType>()

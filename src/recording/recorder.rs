@@ -9,7 +9,7 @@ use rerun::{Scalars, SeriesLines, TimeColumn};
 use super::scatter::{FrontPoint, INFEASIBLE_COLOR, PlotRange, front_points, points, selected, staircase};
 use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
 use super::{blueprint, colors, columns, design, paths, timelines};
-use crate::study::{Batch, Event, GenerationSummary, RunSummary, Study};
+use crate::study::{Batch, Event, GenerationSummary, Row, RunSummary, Study, TableRow};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Architecture;
 
@@ -40,8 +40,8 @@ pub struct Recorder {
     model: Model,
     architectures: Vec<Architecture>,
     frame: PlotRange,
-    /// Rows not yet written: id, generation, evaluation.
-    pending: Vec<(usize, usize, Evaluation)>,
+    /// Rows not yet written.
+    pending: Vec<TableRow>,
     front: Vec<FrontPoint>,
     front_changed: bool,
     frame_changed: bool,
@@ -136,8 +136,11 @@ impl Recorder {
             1.5,
         )?;
         let rows = batch.evaluations.iter().enumerate();
-        self.pending
-            .extend(rows.map(|(offset, e)| (batch.first_id + offset, batch.generation, e.clone())));
+        self.pending.extend(rows.map(|(offset, evaluation)| TableRow {
+            id: batch.first_id + offset,
+            row: Row::new(batch.generation, evaluation),
+            reference_radius: None,
+        }));
         if self.pending.len() >= ROWS {
             self.write_pending()?;
         }
@@ -252,17 +255,17 @@ impl Recorder {
         if self.pending.is_empty() {
             return Ok(());
         }
-        let time = |name, pick: fn(&(usize, usize, Evaluation)) -> usize| {
-            TimeColumn::new_sequence(name, self.pending.iter().map(move |row| pick(row) as i64))
-        };
+        let pending = &self.pending;
         let times = [
-            time(timelines::EVALUATION, |row| row.0),
-            time(timelines::GENERATION, |row| row.1),
+            TimeColumn::new_sequence(timelines::EVALUATION, pending.iter().map(|entry| entry.id as i64)),
+            TimeColumn::new_sequence(
+                timelines::GENERATION,
+                pending.iter().map(|entry| i64::from(entry.row.generation)),
+            ),
         ];
-        let evaluations: Vec<&Evaluation> = self.pending.iter().map(|(_, _, evaluation)| evaluation).collect();
         self.writer
             .stream()
-            .send_columns(paths::DESIGNS, times, columns::designs(&evaluations)?)?;
+            .send_columns(paths::DESIGNS, times, columns::designs(pending)?)?;
         self.pending.clear();
         self.writer.check()
     }

@@ -2,19 +2,16 @@
 
 use std::path::PathBuf;
 
-use crate::study::{FolderError, StudyError, TableError};
+use crate::study::{FolderError, RunFolderError, TableError};
 use kinefront_model::workspace::GridError;
 
 /// Reason why a report cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// The folder is not a run folder.
-    #[error("{} holds no run: expected a folder with study.toml and designs.csv", .0.display())]
-    NoRun(PathBuf),
-    /// The study of a run cannot be read.
+    /// A run folder cannot be read.
     #[error(transparent)]
-    Study(#[from] Box<StudyError>),
-    /// The table of designs of a run cannot be read.
+    Folder(#[from] RunFolderError),
+    /// A table of a run cannot be read.
     #[error(transparent)]
     Table(#[from] TableError),
     /// The runs cannot be compared because their studies differ.

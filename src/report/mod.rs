@@ -29,7 +29,7 @@ pub use reference::EvaluatedReference;
 pub use source::Source;
 pub use write::free;
 
-use crate::study::{AlgorithmName, BUILTIN, Study};
+use crate::study::{AlgorithmName, BUILTIN, RunFolderError, Study};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Architecture;
 
@@ -149,7 +149,9 @@ impl Report {
     /// [`ReportError`].
     pub fn of_paper(options: Options, tell: &mut dyn FnMut(&str)) -> Result<Self, ReportError> {
         let start = Instant::now();
-        let study = BUILTIN[0].study().map_err(Box::new)?;
+        let study = BUILTIN[0]
+            .study()
+            .map_err(|error| RunFolderError::Study(Box::new(error)))?;
         let mut searches = |algorithm: AlgorithmName| -> Result<Vec<Source>, ReportError> {
             let alone = study.architectures.iter().map(|&architecture| vec![architecture]);
             let all = std::iter::once(study.architectures.clone());

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::sync_channel;
 
 use super::ReportError;
-use crate::study::{Event, Row, RunControl, RunTimes, Study, read_table, spawn};
+use crate::study::{Event, Row, RunControl, RunFolder, RunTimes, Study, spawn};
 use kinefront_model::evaluation::Evaluation;
 
 /// A search with all the designs that it evaluated.
@@ -29,31 +29,14 @@ impl Source {
     /// # Errors
     /// [`ReportError`] if the folder is not a run folder or one of its files is invalid.
     pub fn read(folder: &Path) -> Result<Self, ReportError> {
-        let (study, designs) = (folder.join("study.toml"), folder.join("designs.csv"));
-        if !study.exists() || !designs.exists() {
-            return Err(ReportError::NoRun(folder.to_owned()));
-        }
-        let study = Study::read(&study).map_err(|error| ReportError::Study(Box::new(error)))?;
-        let rows = read_table(&designs, &study)?
-            .into_iter()
-            .map(|entry| entry.row)
-            .collect();
-        // Only the folder's name: a published report must not reveal its path.
-        let name = folder.canonicalize().ok();
-        let name = name
-            .as_deref()
-            .unwrap_or(folder)
-            .file_name()
-            .unwrap_or(folder.as_os_str());
-        let read_run_info = read_run_info(&folder.join("run.json"));
+        let run = RunFolder::open(folder)?;
+        let report = run.report();
         Ok(Self {
-            name: name.to_string_lossy().into_owned(),
-            times: read_run_info.as_ref().map(|read_run_info| read_run_info.times),
-            version: read_run_info
-                .map(|read_run_info| read_run_info.kinefront_version)
-                .unwrap_or_default(),
-            study,
-            rows,
+            name: run.name(),
+            study: run.study().clone(),
+            rows: run.designs()?.into_iter().map(|entry| entry.row).collect(),
+            times: report.as_ref().map(|report| report.times),
+            version: report.map(|report| report.kinefront_version).unwrap_or_default(),
         })
     }
 
@@ -95,17 +78,4 @@ impl Source {
             }),
         }
     }
-}
-
-/// The fields of `run.json` that a report uses.
-#[derive(serde::Deserialize)]
-struct RunInfo {
-    times: RunTimes,
-    kinefront_version: String,
-}
-
-/// Reads `run.json`; returns `None` if it is missing or invalid. A report does not depend on it, because a run that was
-/// killed leaves none.
-fn read_run_info(path: &Path) -> Option<RunInfo> {
-    serde_json::from_slice(&std::fs::read(path).ok()?).ok()
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{Report, ReportError, chart, page};
-use crate::study::{FolderError, front_table, write_whole};
+use crate::study::{Cell, Column, FolderError, Row, TableRow, table_bytes, write_whole};
 use kinefront_model::evaluation::Evaluation;
 
 impl Report {
@@ -37,11 +37,23 @@ impl Report {
         }
         let members = self.fronts.alone.iter().flat_map(|(_, front)| front.shown());
         let joint = |member: &Evaluation| self.fronts.together.members.contains(member);
-        let table =
-            front_table(members.map(|member| (member, joint(member)))).map_err(|message| ReportError::Figure {
-                name: "fronts.csv".to_owned(),
-                message,
-            })?;
+        let columns = || Column::of_designs().chain([Column::OnJointFront]);
+        let rows = members.enumerate().map(|(id, member)| {
+            let entry = TableRow {
+                id,
+                row: Row::new(0, member),
+                reference_radius: None,
+            };
+            let cell = |column| match column {
+                Column::OnJointFront => Cell::Flag(joint(member)),
+                column => column.cell(&entry),
+            };
+            columns().map(cell).collect()
+        });
+        let table = table_bytes(columns(), rows).map_err(|error| ReportError::Figure {
+            name: "fronts.csv".to_owned(),
+            message: error.to_string(),
+        })?;
         write_whole(&folder.join("fronts.csv"), &table)?;
         // The page is written last: if it exists, the report is complete.
         write_whole(&folder.join("index.html"), page::html(self).as_bytes())?;

@@ -91,10 +91,11 @@ impl FrontMember {
 }
 
 /// Reason why a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndReason {
     /// The budget of evaluations was used up.
+    #[default]
     Completed,
     /// The time limit was reached.
     TimeUp,

@@ -6,10 +6,10 @@ mod error;
 mod events;
 mod faults;
 mod file;
-mod folder;
 mod optimizer;
 mod problem;
 mod run;
+mod run_folder;
 mod sections;
 mod stopping;
 mod table;
@@ -20,12 +20,15 @@ pub use error::StudyError;
 pub use events::{Batch, EndReason, Event, FrontMember, GenerationSummary, RunSummary, RunTimes, Started, Subscriber};
 pub use faults::Fault;
 pub use file::Study;
-pub use folder::{FolderError, RunFolder, RunReport, TABLE_HEADER, front_table, write_whole};
 pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnation};
 pub use problem::DesignProblem;
 pub use run::spawn;
+pub use run_folder::{FolderError, RunFolder, RunFolderError, RunReport, RunWriter, write_whole};
 pub use sections::{
     ActuatorSection, Bounds, GridSection, Grids, LengthChoice, MaterialSection, ModelSection, ReferenceDesign,
     RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
 };
-pub use table::{Row, TableError, TableRow, read_table};
+pub use table::{
+    Better, Cell, Column, ColumnType, Row, RowError, TableError, TableFault, TableRow, TableWriter, read_table,
+    table_bytes,
+};

@@ -5,10 +5,11 @@ use serde::{Deserialize, Serialize};
 use kinefront_optimize::{FrontDeSettings, Moga2Settings, Nsga2Settings};
 
 /// Name of an algorithm.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum AlgorithmName {
     /// Differential evolution along the front, with the lightest bars for each geometry.
+    #[default]
     FrontDe,
     /// MOGA-II (reimplementation), the paper's optimizer.
     Moga2,
@@ -19,6 +20,11 @@ pub enum AlgorithmName {
 impl AlgorithmName {
     /// All algorithms.
     pub const ALL: [AlgorithmName; 3] = [AlgorithmName::FrontDe, AlgorithmName::Moga2, AlgorithmName::Nsga2];
+
+    /// Returns the algorithm of a name.
+    pub fn find(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|algorithm| algorithm.name() == name)
+    }
 
     /// Returns the name of the algorithm, as in study files and command-line arguments.
     pub fn name(self) -> &'static str {

@@ -195,7 +195,7 @@ fn bodies_are_drawn_where_they_are_looked_for() {
         assert!((mass - evaluation.mass).abs() < 1e-9 * mass);
         let shares = members
             .iter()
-            .flat_map(|report| [report.fraction, report.actuator])
+            .flat_map(|report| [report.contribution, report.actuator])
             .flatten();
         let sum = shares.fold([0.0; 3], |sum: [f64; 3], fraction| {
             [

@@ -3,10 +3,10 @@
 use egui::accesskit::{Role, Toggled};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use kinefront::explorer::{Origin, Phase, Quantity};
-use kinefront::study::Outcome;
+use kinefront::explorer::{Origin, Phase};
+use kinefront::study::{Column, EndReason};
 use kinefront_model::evaluation::MemberReport;
-use kinefront_model::mechanism::{MemberKind, Variable};
+use kinefront_model::mechanism::{MemberKind, DesignVariable};
 
 use super::support::{click_at, idle_window, opened_window, set_slider, until};
 
@@ -17,7 +17,7 @@ fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_re
     window.get_by_label("▶ Start").click();
     window.run_steps(4);
     until(&mut window, "the run ends", |explorer| {
-        *explorer.session().phase() == Phase::Finished(Outcome::Completed)
+        *explorer.session().phase() == Phase::Finished(EndReason::Completed)
     });
     let session = window.state().session();
     assert_eq!(session.store().len(), 300);
@@ -100,7 +100,7 @@ fn a_run_is_paused_stepped_resumed_stopped_and_started_again() {
     });
     window.get_by_label("⏹ Stop").click();
     until(&mut window, "the run stops", |explorer| {
-        *explorer.session().phase() == Phase::Finished(Outcome::Stopped)
+        *explorer.session().phase() == Phase::Finished(EndReason::Stopped)
     });
     let designs = window.state().session().store().len();
     assert!(designs < 30_000 && window.state().session().front().iter().all(|entry| entry.verified));
@@ -172,16 +172,16 @@ fn one_filter_holds_everywhere() {
 
     let (low, high) = (0.3, 0.9);
     window.state_mut().session_mut().history.edit(|document| {
-        document.filter.set_range(Quantity::Radius, Some([low, high]));
+        document.filter.set_range(Column::WorkspaceRadius, Some([low, high]));
     });
     window.key_press(Key::ArrowRight);
     window.run_steps(2);
     let session = window.state().session();
-    let sieve = session.document().filter.sieve(session.store());
+    let sieve = session.document().filter.prepare(session.store());
     let passes_filter = (0..session.store().len()).filter(|&id| sieve.passes(id)).count();
     let inside = session
         .store()
-        .column(Quantity::Radius)
+        .column(Column::WorkspaceRadius)
         .iter()
         .filter(|r| (low..=high).contains(*r))
         .count();
@@ -252,7 +252,7 @@ fn pointing_at_a_bar_tells_what_it_is() {
     window.get_by_label(&name);
     let mass = format!("mass {} kg", kinefront::text::number(report.mass));
     window.get_by_label(&mass);
-    let fraction = report.fraction.expect("a stiff design");
+    let fraction = report.contribution.expect("a stiff design");
     let words = format!(
         "contribution to the compliance at this pose: {:.1} % in the plane",
         100.0 * fraction.in_plane
@@ -266,8 +266,8 @@ fn pointing_at_a_bar_tells_what_it_is() {
 #[test]
 fn any_two_quantities_stand_against_each_other() {
     let mut window = opened_window();
-    for (k, quantity) in Quantity::all().into_iter().enumerate() {
-        let scatter = kinefront::explorer::axes(quantity, Quantity::Variable(Variable::BaseRadius), k % 2 == 0);
+    for (k, quantity) in Column::quantities().enumerate() {
+        let scatter = kinefront::explorer::axes(quantity, Column::Dimension(DesignVariable::BaseRadius), k % 2 == 0);
         window.state_mut().set_axes(scatter);
         window.run_steps(3);
     }

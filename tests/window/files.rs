@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use kinefront::explorer::{Explorer, Origin, Phase, Subject, open};
+use kinefront::explorer::{Explorer, Origin, Phase, InitialContent, open};
 use kinefront::recording::read_run;
 
 use super::support::{idle_window, opened_window, run_folder, small_study, until, window};
 
 /// Returns a window with a finished run.
 fn finished() -> super::support::Window {
-    let mut window = window(Subject::Study {
+    let mut window = window(InitialContent::Study {
         study: Box::new(small_study()),
         path: None,
         start: true,
@@ -170,7 +170,7 @@ fn the_front_is_exported_with_stars_and_notes() {
     let header = reader.headers().expect("a header").clone();
     assert_eq!(
         header.iter().take(13).collect::<Vec<_>>(),
-        kinefront::study::TABLE_HEADER
+        kinefront::study::Column::common().map(|column| column.name()).collect::<Vec<_>>()
     );
     let starred = header.iter().position(|title| title == "starred").expect("starred");
     let rows: Vec<csv::StringRecord> = reader.records().map(|record| record.expect("a row")).collect();
@@ -339,8 +339,8 @@ fn layout_axes_and_recent_files_are_remembered() {
         .state_mut()
         .act(&ctx, kinefront::explorer::Purpose::OpenFolder, run_folder());
     let axes = kinefront::explorer::axes(
-        kinefront::explorer::Quantity::Radius,
-        kinefront::explorer::Quantity::Mass,
+        kinefront::study::Column::WorkspaceRadius,
+        kinefront::study::Column::Mass,
         true,
     );
     window.state_mut().set_axes(axes);
@@ -349,7 +349,7 @@ fn layout_axes_and_recent_files_are_remembered() {
     let memory: &'static Memory = Box::leak(Box::new(memory));
     let again = egui_kittest::Harness::builder().build_eframe(move |cc| {
         cc.storage = Some(memory);
-        let subject = Subject::Study {
+        let subject = InitialContent::Study {
             study: Box::new(small_study()),
             path: None,
             start: false,

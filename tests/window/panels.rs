@@ -24,7 +24,7 @@ fn session() -> Session {
         document.notes.insert(front[1], "the one to build".to_owned());
         document
             .filter
-            .set_range(kinefront::explorer::Quantity::Radius, Some([0.2, 1.5]));
+            .set_range(kinefront::study::Column::WorkspaceRadius, Some([0.2, 1.5]));
     });
     for _ in 0..2000 {
         session.update();

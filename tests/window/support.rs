@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use egui::accesskit::{Action, ActionData, ActionRequest, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use kinefront::explorer::{Explorer, Subject};
+use kinefront::explorer::{Explorer, InitialContent};
 use kinefront::study::Study;
 
 /// Returns a small study, which runs quickly and has all three architectures.
@@ -27,7 +27,7 @@ pub fn run_folder() -> PathBuf {
 pub type Window = Harness<'static, Explorer>;
 
 /// Opens a window on `subject`, without the embedded viewer.
-pub fn window(subject: Subject) -> Window {
+pub fn window(subject: InitialContent) -> Window {
     Harness::builder()
         .with_size(egui::vec2(1600.0, 1000.0))
         .with_step_dt(1.0 / 60.0)
@@ -36,7 +36,7 @@ pub fn window(subject: Subject) -> Window {
 }
 
 pub fn idle_window() -> Window {
-    window(Subject::Study {
+    window(InitialContent::Study {
         study: Box::new(small_study()),
         path: None,
         start: false,
@@ -44,7 +44,7 @@ pub fn idle_window() -> Window {
 }
 
 pub fn opened_window() -> Window {
-    let mut window = window(Subject::Run(run_folder()));
+    let mut window = window(InitialContent::Run(run_folder()));
     until(&mut window, "the design is verified", |explorer| {
         explorer.session().known().is_some_and(|known| known.verified)
     });

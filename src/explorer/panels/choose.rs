@@ -1,8 +1,9 @@
 //! The choose panel: knee and extreme designs, weighted ranking, representatives of the front, filter, kept designs.
 
+use crate::study::Column;
 use egui::{DragValue, ScrollArea, Slider, Ui};
 
-use crate::explorer::{Filter, Quantity, Session, theme};
+use crate::explorer::{Filter, Session, theme};
 use kinefront_optimize::{groups, ranking};
 
 /// The panel that supports the choice of a design.
@@ -130,7 +131,7 @@ fn filter(ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
     ui.checkbox(&mut edited.feasible_only, "feasible only");
     let keys: Vec<String> = edited.ranges.keys().cloned().collect();
     for key in keys {
-        let Some(quantity) = Quantity::find(&key) else {
+        let Some(quantity) = Column::find_quantity(&key) else {
             continue;
         };
         ui.horizontal(|ui| {
@@ -153,8 +154,8 @@ fn filter(ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
     egui::ComboBox::from_id_salt("add range")
         .selected_text("add a range")
         .show_ui(ui, |ui| {
-            for quantity in Quantity::all() {
-                if !edited.ranges.contains_key(&quantity.key())
+            for quantity in Column::quantities() {
+                if !edited.ranges.contains_key(&*quantity.name())
                     && ui.selectable_label(false, quantity.title()).clicked()
                 {
                     let column = session.store().column(quantity);

@@ -1,10 +1,11 @@
 //! Parallel coordinates of variables, objectives and margins, with a brush on every axis.
 
+use crate::study::{Better, Column};
 use std::sync::Arc;
 
 use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 
-use crate::explorer::{Better, Quantity, Session, theme};
+use crate::explorer::{Session, theme};
 use kinefront_model::evaluation::{Constraint, Model};
 use kinefront_model::mechanism::DESIGN_VARIABLES;
 
@@ -33,13 +34,13 @@ struct Drawn {
     dark: bool,
 }
 
-fn axes(model: &Model) -> Vec<Quantity> {
-    let mut axes: Vec<Quantity> = DESIGN_VARIABLES.map(Quantity::DesignVariable).to_vec();
-    axes.extend([Quantity::Mass, Quantity::Radius]);
+fn axes(model: &Model) -> Vec<Column> {
+    let mut axes: Vec<Column> = DESIGN_VARIABLES.map(Column::Dimension).to_vec();
+    axes.extend([Column::Mass, Column::WorkspaceRadius]);
     axes.extend(
         Constraint::required(&model.thresholds)
             .filter(|&constraint| constraint != Constraint::DeterminantSign)
-            .map(Quantity::Margin),
+            .map(Column::Margin),
     );
     axes
 }
@@ -75,7 +76,12 @@ impl ParallelPanel {
             let points: Vec<Pos2> = axes
                 .iter()
                 .enumerate()
-                .map(|(index, axis)| Pos2::new(place(index), self.height(index, *axis, axis.of(&row), plot)))
+                .map(|(index, axis)| {
+                    Pos2::new(
+                        place(index),
+                        self.height(index, *axis, row.number(*axis).unwrap_or(f64::NAN), plot),
+                    )
+                })
                 .collect();
             painter.line(
                 points,
@@ -137,7 +143,7 @@ impl ParallelPanel {
     }
 
     /// Returns the vertical screen coordinate of a value on an axis.
-    fn height(&self, index: usize, axis: Quantity, value: f64, plot: Rect) -> f32 {
+    fn height(&self, index: usize, axis: Column, value: f64, plot: Rect) -> f32 {
         let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
         let scale = |value: f64| {
             if axis.is_logarithmic() {
@@ -151,7 +157,7 @@ impl ParallelPanel {
     }
 
     /// Returns the value at a vertical screen coordinate of an axis.
-    fn value(&self, index: usize, axis: Quantity, y: f32, plot: Rect) -> f64 {
+    fn value(&self, index: usize, axis: Column, y: f32, plot: Rect) -> f64 {
         let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
         let fraction = f64::from(((plot.bottom() - y) / plot.height()).clamp(0.0, 1.0));
         if axis.is_logarithmic() {
@@ -162,7 +168,7 @@ impl ParallelPanel {
         }
     }
 
-    fn brush(&mut self, response: &egui::Response, session: &mut Session, axes: &[Quantity], plot: Rect) {
+    fn brush(&mut self, response: &egui::Response, session: &mut Session, axes: &[Column], plot: Rect) {
         let Some(pointer) = response.interact_pointer_pos() else {
             self.brushing = None;
             return;
@@ -191,7 +197,7 @@ impl ParallelPanel {
         }
     }
 
-    fn lines(&mut self, ui: &Ui, session: &Session, axes: &[Quantity], plot: Rect) {
+    fn lines(&mut self, ui: &Ui, session: &Session, axes: &[Column], plot: Rect) {
         let store = session.store();
         let dark = ui.visuals().dark_mode;
         // The sample changes only when the number of designs has doubled.
@@ -216,7 +222,10 @@ impl ParallelPanel {
             .map(|axis| {
                 let column = store.column(*axis);
                 let values = sample.iter().map(|&id| column[id]);
-                let front = session.front().iter().map(|entry| axis.of(&entry.row));
+                let front = session
+                    .front()
+                    .iter()
+                    .map(|entry| entry.row.number(*axis).unwrap_or(f64::NAN));
                 let range = values
                     .chain(front)
                     .filter(|value| value.is_finite())
@@ -224,9 +233,9 @@ impl ParallelPanel {
                         [low.min(value), high.max(value)]
                     });
                 let range = match axis {
-                    Quantity::DesignVariable(variable) => session.study().bounds.range(*variable),
+                    Column::Dimension(variable) => session.study().bounds.range(*variable),
                     // Margins have no upper bound, and those near 0 matter most.
-                    Quantity::Margin(_) => [range[0].min(0.0), range[1].clamp(0.1, 10.0)],
+                    Column::Margin(_) => [range[0].min(0.0), range[1].clamp(0.1, 10.0)],
                     _ => range,
                 };
                 if range[0] < range[1] {
@@ -240,7 +249,7 @@ impl ParallelPanel {
         let ground = theme::ground(dark);
         let mut mesh = Mesh::default();
         let spacing = plot.width() / (axes.len() - 1) as f32;
-        let mut line = |values: &dyn Fn(Quantity) -> f64, color: Color32, width: f32| {
+        let mut line = |values: &dyn Fn(Column) -> f64, color: Color32, width: f32| {
             let mut before: Option<Pos2> = None;
             for (index, axis) in axes.iter().enumerate() {
                 let value = values(*axis);
@@ -267,7 +276,11 @@ impl ParallelPanel {
                 if prepare.passes(entry.id) == passes_filter {
                     let color = theme::architecture(entry.row.design.architecture, dark);
                     let fraction = if passes_filter { 0.7 } else { 0.15 };
-                    line(&|axis| axis.of(&entry.row), theme::mix(color, ground, fraction), 1.3);
+                    line(
+                        &|axis| entry.row.number(axis).unwrap_or(f64::NAN),
+                        theme::mix(color, ground, fraction),
+                        1.3,
+                    );
                 }
             }
         }

@@ -1,9 +1,10 @@
 //! The front panel: a table of the front, which can be sorted and searched, with stars and notes.
 
+use crate::study::Column;
 use egui::{Align, Label, RichText, Sense, Ui};
-use egui_extras::{Column, TableBuilder};
+use egui_extras::TableBuilder;
 
-use crate::explorer::{FrontEntry, Origin, Quantity, Session, theme};
+use crate::explorer::{FrontEntry, Origin, Session, theme};
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::DESIGN_VARIABLES;
 
@@ -13,7 +14,7 @@ enum Key {
     Star,
     Id,
     Architecture,
-    Number(Quantity),
+    Number(Column),
 }
 
 /// The panel with the table of the front.
@@ -28,7 +29,7 @@ pub struct TablePanel {
 impl Default for TablePanel {
     fn default() -> Self {
         Self {
-            key: Key::Number(Quantity::Mass),
+            key: Key::Number(Column::Mass),
             descending: false,
             search: String::new(),
             starred_only: false,
@@ -70,15 +71,19 @@ impl TablePanel {
         ]
         .into_iter()
         .chain(
-            [Quantity::Mass, Quantity::Radius, Quantity::Phi].map(|quantity| (Key::Number(quantity), quantity.title())),
+            [Column::Mass, Column::WorkspaceRadius, Column::HomePhi]
+                .map(|quantity| (Key::Number(quantity), quantity.title())),
         )
         .chain(DESIGN_VARIABLES.map(|variable| {
             (
-                Key::Number(Quantity::DesignVariable(variable)),
-                Quantity::DesignVariable(variable).title(),
+                Key::Number(Column::Dimension(variable)),
+                Column::Dimension(variable).title(),
             )
         }))
-        .chain([(Key::Number(Quantity::Clearance), Quantity::Clearance.title())])
+        .chain([(
+            Key::Number(Column::Value(Constraint::Clearance)),
+            Column::Value(Constraint::Clearance).title(),
+        )])
         .collect();
         let (mut clicked, mut starred) = (None, None);
         egui::ScrollArea::horizontal()
@@ -88,11 +93,14 @@ impl TablePanel {
                     .id_salt("front")
                     .striped(true)
                     .sense(Sense::click())
-                    .column(Column::exact(22.0))
-                    .column(Column::initial(52.0))
-                    .columns(Column::initial(96.0).at_least(40.0).clip(true), columns.len() - 2)
-                    .column(Column::initial(70.0))
-                    .column(Column::remainder().clip(true))
+                    .column(egui_extras::Column::exact(22.0))
+                    .column(egui_extras::Column::initial(52.0))
+                    .columns(
+                        egui_extras::Column::initial(96.0).at_least(40.0).clip(true),
+                        columns.len() - 2,
+                    )
+                    .column(egui_extras::Column::initial(70.0))
+                    .column(egui_extras::Column::remainder().clip(true))
                     .min_scrolled_height(0.0);
                 if selected != self.last_chosen
                     && let Some(row) = order
@@ -147,8 +155,8 @@ impl TablePanel {
                                         Key::Architecture if passes_filter && Some(entry.id) != selected => text.color(
                                             theme::architecture(entry.row.design.architecture, ui.visuals().dark_mode),
                                         ),
-                                        Key::Number(Quantity::Clearance)
-                                            if Quantity::Clearance.of(&entry.row) < 0.0 =>
+                                        Key::Number(Column::Value(Constraint::Clearance))
+                                            if entry.row.clearance().is_some_and(|clearance| clearance < 0.0) =>
                                         {
                                             text.color(theme::VIOLATED)
                                         }
@@ -202,7 +210,7 @@ impl TablePanel {
                 Key::Star => f64::from(u8::from(!document.stars.contains(&entry.id))),
                 Key::Id => entry.id as f64,
                 Key::Architecture => theme::index(entry.row.design.architecture) as f64,
-                Key::Number(quantity) => quantity.of(&entry.row),
+                Key::Number(quantity) => entry.row.number(quantity).unwrap_or(f64::NAN),
             }
         };
         order.sort_by(|&a, &b| number(a).total_cmp(&number(b)));
@@ -218,7 +226,7 @@ fn cell(entry: &FrontEntry, key: Key) -> String {
         Key::Star => String::new(),
         Key::Id => format!("#{}", entry.id),
         Key::Architecture => entry.row.design.architecture.to_string(),
-        Key::Number(quantity) => theme::number(quantity.of(&entry.row)),
+        Key::Number(quantity) => theme::number(entry.row.number(quantity).unwrap_or(f64::NAN)),
     }
 }
 

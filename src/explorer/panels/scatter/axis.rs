@@ -1,19 +1,20 @@
 //! An axis of the scatter: its quantity, range and ticks.
 
+use crate::study::{Better, Column};
 use egui_plot::{GridInput, GridMark, PlotBounds};
 
-use crate::explorer::{Better, Quantity, Store};
+use crate::explorer::Store;
 
-/// Quantity and scale of an axis.
+/// Column and scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(from = "(String, bool)", into = "(String, bool)")]
 pub struct ScatterAxis {
-    pub(super) quantity: Quantity,
+    pub(super) quantity: Column,
     pub(super) log: bool,
 }
 
 /// Returns a pair of axes; the first is logarithmic if `log` is true.
-pub fn axes(x: Quantity, y: Quantity, log: bool) -> [ScatterAxis; 2] {
+pub fn axes(x: Column, y: Column, log: bool) -> [ScatterAxis; 2] {
     [
         ScatterAxis { quantity: x, log },
         ScatterAxis {
@@ -25,14 +26,14 @@ pub fn axes(x: Quantity, y: Quantity, log: bool) -> [ScatterAxis; 2] {
 
 impl From<ScatterAxis> for (String, bool) {
     fn from(axis: ScatterAxis) -> Self {
-        (axis.quantity.key(), axis.log)
+        (axis.quantity.name().into_owned(), axis.log)
     }
 }
 
 impl From<(String, bool)> for ScatterAxis {
     fn from((key, log): (String, bool)) -> Self {
         Self {
-            quantity: Quantity::find(&key).unwrap_or(Quantity::Mass),
+            quantity: Column::find_quantity(&key).unwrap_or(Column::Mass),
             log,
         }
     }

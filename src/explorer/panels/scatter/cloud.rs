@@ -27,7 +27,7 @@ pub struct View {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Style {
     /// Quantities of the axes, and whether each axis is logarithmic.
-    pub axes: [(super::Quantity, bool); 2],
+    pub axes: [(super::Column, bool); 2],
     /// Number of the store that the ids belong to.
     pub era: u64,
     /// Text of the filter.

@@ -1,10 +1,11 @@
 //! Marks drawn over the cloud: the front, its knee, the references, and the selected design.
 
+use crate::study::Column;
 use egui::{Align2, Color32};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points, Text};
 
 use super::Scatter;
-use crate::explorer::{Quantity, Row, Session, theme};
+use crate::explorer::{Row, Session, theme};
 use kinefront_optimize::knee;
 
 impl Scatter {
@@ -19,7 +20,7 @@ impl Scatter {
         let ground = theme::ground(dark);
         let prepare = session.document().filter.prepare(session.store());
         let (mut lines, mut marks) = (Vec::new(), Vec::new());
-        let plain = self.axes.map(|axis| axis.quantity) == [Quantity::Mass, Quantity::Radius];
+        let plain = self.axes.map(|axis| axis.quantity) == [Column::Mass, Column::WorkspaceRadius];
         let front = session.front();
         if plain && !front.is_empty() {
             let mut steps: Vec<[f64; 2]> = Vec::new();

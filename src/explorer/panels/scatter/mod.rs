@@ -4,6 +4,7 @@ mod axis;
 mod cloud;
 mod marks;
 
+use crate::study::{Better, Column};
 use std::time::Duration;
 
 use egui::{Align2, Color32, ComboBox, Pos2, Response, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
@@ -12,7 +13,7 @@ use egui_plot::{Plot, PlotImage, PlotPoint, PlotTransform};
 use self::axis::{Extent, decades, tick};
 pub use self::axis::{ScatterAxis, axes};
 use self::cloud::{Cloud, Style, View};
-use crate::explorer::{Better, Quantity, Row, Session, theme};
+use crate::explorer::{Row, Session, theme};
 
 /// Time that a frame may spend on drawing the cloud.
 const BUDGET: Duration = Duration::from_millis(4);
@@ -31,11 +32,11 @@ impl Default for Scatter {
     fn default() -> Self {
         Self::new([
             ScatterAxis {
-                quantity: Quantity::Mass,
+                quantity: Column::Mass,
                 log: true,
             },
             ScatterAxis {
-                quantity: Quantity::Radius,
+                quantity: Column::WorkspaceRadius,
                 log: false,
             },
         ])
@@ -66,7 +67,8 @@ impl Scatter {
     }
 
     fn place(&self, row: &Row) -> [f64; 2] {
-        self.axes.map(|axis| axis.place(axis.quantity.of(row)))
+        self.axes
+            .map(|axis| axis.place(row.number(axis.quantity).unwrap_or(f64::NAN)))
     }
 
     /// Draws the panel.
@@ -155,7 +157,7 @@ impl Scatter {
                     .selected_text(axis.quantity.title())
                     .width(130.0)
                     .show_ui(ui, |ui| {
-                        for quantity in Quantity::all() {
+                        for quantity in Column::quantities() {
                             if ui
                                 .selectable_label(axis.quantity == quantity, quantity.title())
                                 .clicked()
@@ -296,7 +298,7 @@ impl Scatter {
         let Some(transform) = self.transform else {
             return;
         };
-        let way = |quantity: Quantity| match quantity.better() {
+        let way = |quantity: Column| match quantity.better() {
             Some(Better::Lower) => -1.0,
             Some(Better::Higher) => 1.0,
             None => 0.0,

@@ -1,0 +1,87 @@
+//! Contents of `run.json`.
+
+use serde::{Deserialize, Serialize};
+
+use crate::study::{AlgorithmName, EndReason, GenerationSummary, RunSummary, RunTimes, Study};
+use kinefront_model::mechanism::Architecture;
+
+/// Contents of `run.json`.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RunReport {
+    /// Version of the program.
+    pub kinefront_version: String,
+    /// Name of the study.
+    pub study: String,
+    /// Algorithm of the search.
+    pub algorithm: AlgorithmName,
+    /// Architectures searched.
+    pub architectures: Vec<Architecture>,
+    /// Random seed.
+    pub seed: u64,
+    /// Worker threads used.
+    pub threads: usize,
+    /// Why the run ended.
+    pub outcome: EndReason,
+    /// Designs evaluated.
+    pub evaluations: usize,
+    /// Feasible designs.
+    pub feasible: usize,
+    /// Generations.
+    pub generations: usize,
+    /// Designs of `front.csv`.
+    pub front_size: usize,
+    /// Designs of the front on the reference grid that are infeasible or dominated on the fine grid.
+    pub front_dropped_by_verification: usize,
+    /// Designs of the verified front before it was thinned.
+    pub front_verified: usize,
+    /// Reference point of the hypervolumes.
+    pub hypervolume_reference: HypervolumeReference,
+    /// Hypervolume of the front on the reference grid \[kg·m\].
+    pub hypervolume_kg_m: f64,
+    /// Hypervolume of the verified front \[kg·m\].
+    pub verified_hypervolume_kg_m: f64,
+    /// Times taken by the stages of the run.
+    pub times: RunTimes,
+    /// State after each generation.
+    pub history: Vec<GenerationSummary>,
+}
+
+/// Reference point of a hypervolume.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct HypervolumeReference {
+    /// Mass \[kg\].
+    pub mass_kg: f64,
+    /// Workspace radius \[m\].
+    pub workspace_radius_m: f64,
+}
+
+impl RunReport {
+    /// Creates the report on a run of `study`.
+    pub fn new(study: &Study, summary: &RunSummary) -> Self {
+        let last = summary.history.last();
+        Self {
+            kinefront_version: env!("CARGO_PKG_VERSION").to_owned(),
+            study: study.name.clone(),
+            algorithm: study.optimizer.algorithm,
+            architectures: study.architectures.clone(),
+            seed: study.optimizer.seed,
+            threads: summary.threads,
+            outcome: summary.outcome,
+            evaluations: last.map_or(0, |last| last.evaluations),
+            feasible: last.map_or(0, |last| last.feasible),
+            generations: summary.history.len(),
+            front_size: summary.front.len(),
+            front_dropped_by_verification: summary.dropped,
+            front_verified: summary.verified,
+            hypervolume_reference: HypervolumeReference {
+                mass_kg: study.hypervolume.reference_mass_kg,
+                workspace_radius_m: 0.0,
+            },
+            hypervolume_kg_m: last.map_or(0.0, |last| last.hypervolume),
+            verified_hypervolume_kg_m: summary.verified_hypervolume,
+            times: summary.times,
+            history: summary.history.clone(),
+        }
+    }
+}

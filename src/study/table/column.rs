@@ -1,0 +1,288 @@
+//! The columns of a table of designs: the one definition that CSV, Parquet, recordings, window and terminal follow.
+
+use std::borrow::Cow;
+use std::fmt;
+
+use kinefront_model::evaluation::Constraint;
+use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable};
+
+use super::TableRow;
+
+/// A column of a table of designs.
+///
+/// ```
+/// use kinefront::study::{Column, ColumnType};
+///
+/// let names: Vec<_> = Column::of_designs().map(Column::name).collect();
+/// assert_eq!(names[..5], ["id", "generation", "architecture", "working_mode", "R"]);
+/// assert_eq!(Column::find("mass_kg"), Some(Column::Mass));
+/// assert_eq!(Column::Mass.kind(), ColumnType::Number);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Column {
+    /// Id of the design in its run, from 0.
+    Id,
+    /// Generation in which the design was evaluated, from 1.
+    Generation,
+    /// Architecture.
+    Architecture,
+    /// Working mode, a sign per leg.
+    WorkingMode,
+    /// One of the five dimensions \[m\].
+    Dimension(DesignVariable),
+    /// Mass in motion \[kg\].
+    Mass,
+    /// Workspace radius `R_w` \[m\].
+    WorkspaceRadius,
+    /// Home orientation `φ_c` \[deg\].
+    HomePhi,
+    /// Whether the design is feasible.
+    Feasible,
+    /// Relative margin of a constraint; missing where the study does not require the constraint.
+    Margin(Constraint),
+    /// Smallest value of a constraint over the regular workspace; that of g7 is the clearance \[m\].
+    Value(Constraint),
+    /// Ids of the active constraints, joined by `+`.
+    Active,
+    /// Constraint violation; 0 for a feasible design.
+    Violation,
+    /// Workspace radius on the reference grid \[m\], in a verified front.
+    ReferenceRadius,
+    /// What the design stands out by on its front: `lightest`, `knee` or `largest`.
+    Mark,
+    /// Whether the design is on the front of all architectures together.
+    OnJointFront,
+    /// Whether the design was verified on the fine grid.
+    Verified,
+    /// Whether the user has starred the design.
+    Starred,
+    /// The user's note on the design.
+    Note,
+}
+
+/// Type of the values of a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColumnType {
+    /// Whole numbers.
+    Integer,
+    /// Floating-point numbers.
+    Number,
+    /// True or false.
+    Flag,
+    /// Texts.
+    Text,
+}
+
+/// Direction in which the values of a column are better.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Better {
+    /// Smaller values are better.
+    Lower,
+    /// Larger values are better.
+    Higher,
+}
+
+/// One value of a row.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cell {
+    /// There is no value; an empty text in CSV.
+    Missing,
+    /// A whole number.
+    Integer(u64),
+    /// A floating-point number, written as the shortest text that parses to the same number.
+    Number(f64),
+    /// True or false.
+    Flag(bool),
+    /// A text.
+    Text(Cow<'static, str>),
+}
+
+impl From<Option<f64>> for Cell {
+    fn from(number: Option<f64>) -> Self {
+        number.map_or(Cell::Missing, Cell::Number)
+    }
+}
+
+impl fmt::Display for Cell {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Cell::Missing => Ok(()),
+            Cell::Integer(number) => number.fmt(f),
+            Cell::Number(number) => number.fmt(f),
+            Cell::Flag(flag) => flag.fmt(f),
+            Cell::Text(text) => text.fmt(f),
+        }
+    }
+}
+
+impl Column {
+    /// The columns of every table of designs, in their order; the columns of `designs.csv` begin with them.
+    pub fn common() -> impl Iterator<Item = Column> {
+        [Self::Id, Self::Generation, Self::Architecture, Self::WorkingMode]
+            .into_iter()
+            .chain(DESIGN_VARIABLES.map(Self::Dimension))
+            .chain([Self::Mass, Self::WorkspaceRadius, Self::HomePhi, Self::Feasible])
+    }
+
+    /// The columns of `designs.csv`, in their order.
+    pub fn of_designs() -> impl Iterator<Item = Column> {
+        Self::common()
+            .chain(Constraint::ALL.map(Self::Margin))
+            .chain(Constraint::ALL.map(Self::Value))
+            .chain([Self::Active, Self::Violation])
+    }
+
+    /// The columns of `front.csv`, in their order.
+    pub fn of_front() -> impl Iterator<Item = Column> {
+        Self::of_designs().chain([Self::ReferenceRadius, Self::Mark])
+    }
+
+    /// Every column that a table may have.
+    fn all() -> impl Iterator<Item = Column> {
+        Self::of_front().chain([Self::OnJointFront, Self::Verified, Self::Starred, Self::Note])
+    }
+
+    /// The numerical columns that an axis, a filter or a column of the window can show: objectives, dimensions, margins, then
+    /// the others.
+    pub fn quantities() -> impl Iterator<Item = Column> {
+        [Self::Mass, Self::WorkspaceRadius]
+            .into_iter()
+            .chain(DESIGN_VARIABLES.map(Self::Dimension))
+            .chain(Constraint::ALL.map(Self::Margin))
+            .chain([Self::Value(Constraint::Clearance), Self::HomePhi, Self::Violation])
+    }
+
+    /// The column of a name.
+    pub fn find(name: &str) -> Option<Column> {
+        Self::all().find(|column| column.name() == name)
+    }
+
+    /// The numerical column of a name that an axis, a filter or a column of the window can show.
+    pub fn find_quantity(name: &str) -> Option<Column> {
+        Self::quantities().find(|column| column.name() == name)
+    }
+
+    /// Name in CSV, Parquet, recordings and filters.
+    pub fn name(self) -> Cow<'static, str> {
+        Cow::Borrowed(match self {
+            Self::Id => "id",
+            Self::Generation => "generation",
+            Self::Architecture => "architecture",
+            Self::WorkingMode => "working_mode",
+            Self::Dimension(variable) => variable.key(),
+            Self::Mass => "mass_kg",
+            Self::WorkspaceRadius => "workspace_radius_m",
+            Self::HomePhi => "phi_deg",
+            Self::Feasible => "feasible",
+            Self::Margin(constraint) => return Cow::Owned(format!("margin_{}", constraint.id())),
+            Self::Value(constraint) => return Cow::Owned(format!("value_{}", constraint.id())),
+            Self::Active => "active",
+            Self::Violation => "violation",
+            Self::ReferenceRadius => "workspace_radius_reference_m",
+            Self::Mark => "mark",
+            Self::OnJointFront => "on_joint_front",
+            Self::Verified => "verified",
+            Self::Starred => "starred",
+            Self::Note => "note",
+        })
+    }
+
+    /// Type of the values.
+    pub fn kind(self) -> ColumnType {
+        match self {
+            Self::Id | Self::Generation => ColumnType::Integer,
+            Self::Architecture | Self::WorkingMode | Self::Active | Self::Mark | Self::Note => ColumnType::Text,
+            Self::Feasible | Self::OnJointFront | Self::Verified | Self::Starred => ColumnType::Flag,
+            Self::Dimension(_)
+            | Self::Mass
+            | Self::WorkspaceRadius
+            | Self::HomePhi
+            | Self::Margin(_)
+            | Self::Value(_)
+            | Self::Violation
+            | Self::ReferenceRadius => ColumnType::Number,
+        }
+    }
+
+    /// Unit of the values; empty for a number without a unit and for texts.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Dimension(_) | Self::WorkspaceRadius | Self::ReferenceRadius => "m",
+            Self::Mass => "kg",
+            Self::HomePhi => "°",
+            Self::Value(constraint) => constraint.unit(),
+            _ => "",
+        }
+    }
+
+    /// Whether a row may have no value.
+    pub fn is_optional(self) -> bool {
+        matches!(self, Self::HomePhi | Self::Margin(_) | Self::Value(_))
+    }
+
+    /// Name to display, without the unit.
+    fn label(self) -> Cow<'static, str> {
+        match self {
+            Self::Mass => "mass in motion".into(),
+            Self::WorkspaceRadius => "R_w".into(),
+            Self::Dimension(variable) => variable.symbol().into(),
+            Self::HomePhi => "φ_c".into(),
+            Self::Margin(constraint) => format!("margin {}", constraint.id()).into(),
+            Self::Value(Constraint::Clearance) => "clearance".into(),
+            Self::Value(constraint) => format!("value {}", constraint.id()).into(),
+            _ => self.name(),
+        }
+    }
+
+    /// Name to display, with the unit.
+    pub fn title(self) -> String {
+        match self.unit() {
+            "" => self.label().into_owned(),
+            unit => format!("{} [{unit}]", self.label()),
+        }
+    }
+
+    /// Short name for the heading of a narrow axis.
+    pub fn short(self) -> Cow<'static, str> {
+        match self {
+            Self::Mass => "mass".into(),
+            Self::Margin(Constraint::DeterminantSign) => "det A".into(),
+            Self::Margin(constraint) => constraint.id().into(),
+            _ => self.label(),
+        }
+    }
+
+    /// Direction in which the values are better, if there is one.
+    pub fn better(self) -> Option<Better> {
+        match self {
+            Self::Mass | Self::Violation => Some(Better::Lower),
+            Self::WorkspaceRadius | Self::Margin(_) | Self::Value(_) => Some(Better::Higher),
+            _ => None,
+        }
+    }
+
+    /// Whether the values differ by orders of magnitude, so that a logarithmic axis suits them.
+    pub fn is_logarithmic(self) -> bool {
+        matches!(self, Self::Mass | Self::Violation)
+    }
+
+    /// The value of an entry. Missing for the columns that only some tables have: whoever writes such a table adds the
+    /// cells itself.
+    pub fn cell(self, entry: &TableRow) -> Cell {
+        let row = &entry.row;
+        match self {
+            Self::Id => Cell::Integer(entry.id as u64),
+            Self::Generation => Cell::Integer(u64::from(row.generation)),
+            Self::Architecture => Cell::Text(row.design.architecture.name().into()),
+            Self::WorkingMode => Cell::Text(row.design.working_mode.to_string().into()),
+            Self::Feasible => Cell::Flag(row.is_feasible()),
+            Self::Active => {
+                let active: Vec<&str> = row.active_constraints().map(Constraint::id).collect();
+                Cell::Text(active.join("+").into())
+            }
+            Self::ReferenceRadius => entry.reference_radius.into(),
+            Self::Mark | Self::OnJointFront | Self::Verified | Self::Starred | Self::Note => Cell::Missing,
+            _ => row.number(self).into(),
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! Tables of designs: their columns, their rows, and the reading and writing of both.
+
+mod column;
+mod read;
+mod row;
+mod write;
+
+pub use column::{Better, Cell, Column, ColumnType};
+pub use read::{TableError, TableFault, read_table};
+pub use row::{Row, RowError, TableRow};
+pub use write::{TableWriter, table_bytes};
