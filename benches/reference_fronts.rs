@@ -22,7 +22,7 @@ use kinefront::study::{BUILTIN, DesignProblem, Study};
 use kinefront_model::evaluation::{BarRanges, Evaluation, GridChoice, Model, WorkspaceTarget};
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design};
 use kinefront_optimize::{
-    Archive, Evaluated, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, run, hypervolume, spread,
+    Archive, Evaluated, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, hypervolume, run, spread,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -251,7 +251,7 @@ impl Search {
             .into_par_iter()
             .map(|run| match run {
                 0 => own(&fine, 8000, 101),
-                3 => run(&coarse, &mut Nsga2::new(coarse.variables(), plain, 101), 100_000),
+                3 => kinefront_optimize::run(&coarse, &mut Nsga2::new(coarse.variables(), plain, 101), 100_000),
                 seed => own(&coarse, 30_000, 100 + seed),
             })
             .collect();

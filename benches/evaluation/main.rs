@@ -30,7 +30,7 @@ use kinefront_model::stiffness::joint_model;
 use kinefront_model::with_leg;
 use kinefront_model::workspace::plain::plain;
 use kinefront_model::workspace::{PoseChecker, ValueColumns};
-use kinefront_optimize::{FrontDe, FrontDeSettings, sobol, run};
+use kinefront_optimize::{FrontDe, FrontDeSettings, run, sobol};
 use rayon::prelude::*;
 
 use self::counted::{Operations, operations};

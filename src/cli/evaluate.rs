@@ -46,7 +46,7 @@ pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
                 writeln!(
                     out,
                     "{}",
-                    to_json(&EvaluationJson::new(&server.model, &evaluation)).map_err(Failure::Runtime)?
+                    to_json(&EvaluationJson::new(&evaluation)).map_err(Failure::Runtime)?
                 )?;
             } else {
                 writeln!(out, "{}", tables::evaluation(&evaluation, &server.model))?;
@@ -81,9 +81,7 @@ impl Server {
             let answer = std::str::from_utf8(&line)
                 .map_err(|_| "the line is not UTF-8".to_owned())
                 .and_then(|text| self.evaluate(text))
-                .and_then(|evaluation| {
-                    to_json(&EvaluationJson::new(&self.model, &evaluation)).map_err(|error| error.to_string())
-                })
+                .and_then(|evaluation| to_json(&EvaluationJson::new(&evaluation)).map_err(|error| error.to_string()))
                 .unwrap_or_else(|message| serde_json::json!({ "error": message }).to_string());
             writeln!(out, "{answer}")?;
             out.flush()?;

@@ -57,7 +57,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             facts.add_row(["regular workspace", "none: the design is infeasible"]);
         }
     }
-    if let Some(nearest) = model.nearest(evaluation) {
+    if let Some(nearest) = evaluation.nearest {
         let where_least = if evaluation.is_feasible() {
             "smallest over the workspace"
         } else {

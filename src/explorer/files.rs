@@ -196,7 +196,7 @@ fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
         writing.iter().for_each(Writing::wait);
         let shown = shown
             .as_ref()
-            .map(|(evaluation, name)| (&model, evaluation, name.as_str()));
+            .map(|(evaluation, name)| (&model, &**evaluation, name.as_str()));
         replacing(&path, |part| save_copy(&folder.join("recording.rrd"), part, shown))?;
         Ok(format!("saved {}", path.display()))
     }))

@@ -1,7 +1,10 @@
 //! The front as the window shows it.
 
+use std::sync::Arc;
+
 use super::Row;
 use crate::study::{Column, FrontMember};
+use kinefront_model::evaluation::Evaluation;
 use kinefront_optimize::{Archive, Evaluated, Outcome};
 
 /// A non-dominated design.
@@ -15,6 +18,8 @@ pub struct FrontEntry {
     pub reference_radius: f64,
     /// Whether it was evaluated on the fine grid.
     pub verified: bool,
+    /// Its evaluation on the fine grid, if the run is in the window; a table holds no evaluations.
+    pub evaluation: Option<Arc<Evaluation>>,
 }
 
 impl FrontEntry {
@@ -25,6 +30,7 @@ impl FrontEntry {
             row: Row::new(member.generation, &member.evaluation),
             reference_radius: member.reference_radius,
             verified,
+            evaluation: verified.then(|| Arc::new(member.evaluation.clone())),
         }
     }
 
@@ -55,6 +61,7 @@ pub fn front_of(store: &super::Store) -> Vec<FrontEntry> {
             reference_radius: row.radius,
             row,
             verified: false,
+            evaluation: None,
         })
     });
     members.collect()

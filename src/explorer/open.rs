@@ -75,6 +75,7 @@ fn open_folder(folder: &Path) -> Result<Opened, OpenError> {
                 reference_radius: entry.reference_radius.unwrap_or(entry.row.radius),
                 row: entry.row,
                 verified: true,
+                evaluation: None,
             })
             .collect(),
         None => front_of(&store),

@@ -41,8 +41,8 @@ pub struct Request {
     pub comparing: bool,
     /// Whether the viewer uses light colours.
     pub light: bool,
-    /// Whether the design is verified: it is then drawn again with the values from the fine grid.
-    pub verified: bool,
+    /// Evaluation of the design on the fine grid, if it is known; the scene shows its values.
+    pub verified: Option<Arc<Evaluation>>,
     /// The current front.
     pub front: Arc<Vec<FrontPoint>>,
 }
@@ -51,9 +51,19 @@ pub struct Request {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Known {
     /// Its evaluation.
-    pub evaluation: Evaluation,
+    pub evaluation: Arc<Evaluation>,
     /// Whether the evaluation is from the fine grid.
     pub verified: bool,
+}
+
+impl Known {
+    /// An evaluation on the fine grid.
+    fn verified(evaluation: Arc<Evaluation>) -> Self {
+        Self {
+            evaluation,
+            verified: true,
+        }
+    }
 }
 
 /// Results of the latest requests.
@@ -65,8 +75,8 @@ pub struct Answer {
     pub pins: Vec<Evaluation>,
     /// Number of the last request that was drawn.
     pub drawn: u64,
-    /// Message about the last request that failed.
-    pub trouble: Option<String>,
+    /// Number of the last request that failed, and the message about it.
+    pub trouble: Option<(u64, String)>,
 }
 
 /// Holds at most one item; a later item replaces an earlier one.
@@ -125,7 +135,7 @@ struct Shared {
     requests: Mailbox<(u64, Request)>,
     to_verify: Mailbox<(Arc<Study>, Design)>,
     /// The design verified last, which the scene shows with its values from the fine grid.
-    verified: Mutex<Option<(Arc<Study>, Evaluation)>>,
+    verified: Mutex<Option<(Arc<Study>, Arc<Evaluation>)>>,
     answer: Mutex<Answer>,
     wake: Wake,
 }
@@ -137,10 +147,7 @@ impl Shared {
         let (_, evaluation) = verified
             .as_ref()
             .filter(|(of, evaluation)| of == study && evaluation.design == *design)?;
-        Some(Known {
-            evaluation: evaluation.clone(),
-            verified: true,
-        })
+        Some(Known::verified(Arc::clone(evaluation)))
     }
 
     fn answer(&self, change: impl FnOnce(&mut Answer)) {
@@ -219,16 +226,13 @@ fn verify_requests(shared: &Shared) {
         }
         let (study, design) = wanted;
         if let Ok(model) = study.model() {
-            let evaluation = model.evaluate(&design, GridChoice::Fine);
-            *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) = Some((study, evaluation.clone()));
+            let evaluation = Arc::new(model.evaluate(&design, GridChoice::Fine));
+            *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) = Some((study, Arc::clone(&evaluation)));
             shared.answer(|answer| {
                 if let Some(known) = &mut answer.known
                     && known.evaluation.design == design
                 {
-                    *known = Known {
-                        evaluation,
-                        verified: true,
-                    };
+                    *known = Known::verified(evaluation);
                 }
             });
         }
@@ -270,8 +274,8 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
             answer.known = finer.or(known);
             answer.pins = pins;
             answer.drawn = number;
-            if trouble.is_some() {
-                answer.trouble = trouble;
+            if let Some(trouble) = trouble {
+                answer.trouble = Some((number, trouble));
             }
         });
         standing.request = Some(request);
@@ -294,15 +298,18 @@ fn step(standing: &mut SceneState, shared: &Shared, request: &Request) -> Result
     let model = request.study.model().map_err(|error| error.to_string())?;
     let evaluate = |design: &Design| model.evaluate(design, GridChoice::Reference);
 
-    let verified = request
-        .design
-        .and_then(|design| shared.verified(&request.study, &design));
+    let given = request.verified.clone().map(Known::verified);
+    let verified = request.design.and_then(|design| {
+        given
+            .filter(|known| known.evaluation.design == design)
+            .or_else(|| shared.verified(&request.study, &design))
+    });
     standing.known = match (&request.design, verified, standing.known.take()) {
         (None, ..) => None,
         (Some(_), Some(known), _) => Some(known),
         (Some(design), None, Some(known)) if known.evaluation.design == *design => Some(known),
         (Some(design), None, _) => Some(Known {
-            evaluation: evaluate(design),
+            evaluation: Arc::new(evaluate(design)),
             verified: false,
         }),
     };
@@ -343,7 +350,7 @@ fn step(standing: &mut SceneState, shared: &Shared, request: &Request) -> Result
             .as_ref()
             .is_none_or(|before| before.design != request.design || !Arc::ptr_eq(&before.front, &request.front));
         if moved {
-            let marked = standing.known.as_ref().map(|known| &known.evaluation);
+            let marked = standing.known.as_ref().map(|known| &*known.evaluation);
             scene.front(&request.study, &request.front, marked)?;
         }
         Ok(())

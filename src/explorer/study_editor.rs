@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::study::{BUILTIN, Builtin, Fault, Study, StudyError};
+use toml::{Table, Value};
+use toml_edit::{DocumentMut, Item, TableLike};
+
+use crate::study::{BUILTIN, Builtin, Fault, Study, StudyError, settings};
 
 /// A study being edited.
 #[derive(Debug, Clone)]
@@ -129,14 +132,76 @@ impl StudyEditor {
         if study == self.study && self.faults.is_empty() {
             return;
         }
-        self.faults = study.faults();
-        if self.faults.is_empty() {
-            // The text is generated anew and loses its comments; only editing the text itself preserves them.
-            self.text = toml::to_string(&study).unwrap_or_default();
+        let faults = study.faults();
+        if faults.is_empty() {
+            self.text = self.text_of(&study);
             self.study = study;
+            self.changed = true;
         }
-        self.changed = true;
+        self.faults = faults;
     }
+
+    /// Returns the text of a study: the present text with the values that differ replaced, so that its comments and its
+    /// order stay. A text with faults cannot be followed and is generated anew.
+    fn text_of(&self, study: &Study) -> String {
+        let edited = || {
+            let (before, after) = (Table::try_from(&self.study).ok()?, Table::try_from(study).ok()?);
+            let text = replace_values(&self.text, &before, &after)?;
+            Study::parse(&text, "study")
+                .is_ok_and(|found| found == *study)
+                .then_some(text)
+        };
+        let followed = if self.faults.is_empty() { edited() } else { None };
+        followed.unwrap_or_else(|| toml::to_string(study).unwrap_or_default())
+    }
+}
+
+/// Replaces the values of `text` that differ between two studies. `None` if the text is not TOML, or if something differs
+/// that is not a setting.
+fn replace_values(text: &str, before: &Table, after: &Table) -> Option<String> {
+    let mut document: DocumentMut = text.parse().ok()?;
+    for setting in settings() {
+        let value = setting.value(after);
+        if setting.value(before) == value {
+            continue;
+        }
+        let mut table = document.as_table_mut() as &mut dyn TableLike;
+        for section in setting.section.split('.').filter(|part| !part.is_empty()) {
+            table = table
+                .entry(section)
+                .or_insert_with(toml_edit::table)
+                .as_table_like_mut()?;
+        }
+        match value {
+            Some(value) => {
+                let mut value = edit_value(value)?;
+                let item = table.entry(setting.key).or_insert(Item::None);
+                if let Some(old) = item.as_value() {
+                    *value.decor_mut() = old.decor().clone();
+                }
+                *item = Item::Value(value);
+            }
+            None => {
+                table.remove(setting.key);
+            }
+        }
+    }
+    Some(document.to_string())
+}
+
+/// Converts a value for the text; `None` for what no setting is: dates and tables.
+fn edit_value(value: &Value) -> Option<toml_edit::Value> {
+    Some(match value {
+        Value::String(text) => text.as_str().into(),
+        Value::Integer(number) => (*number).into(),
+        Value::Float(number) => (*number).into(),
+        Value::Boolean(flag) => (*flag).into(),
+        Value::Array(items) => {
+            let items: toml_edit::Array = items.iter().map(edit_value).collect::<Option<_>>()?;
+            items.into()
+        }
+        Value::Datetime(_) | Value::Table(_) => return None,
+    })
 }
 
 #[cfg(test)]
@@ -160,8 +225,34 @@ mod tests {
         assert!(editor.faults().is_empty());
         editor.change(|study| study.optimizer.seed = 7);
         assert!(editor.text().contains("seed = 7") && editor.is_changed());
+        let kept = editor.text().replace("seed = 7", "seed = 1");
+        assert_eq!(kept, BUILTIN[0].text, "everything but the value stays, comments too");
         editor.change(|study| study.bounds.R_m = [2.0, 1.0]);
         assert_eq!(editor.faults()[0].key, "bounds.R_m");
         assert_eq!(editor.study().bounds.R_m, [0.5, 4.0]);
+    }
+
+    #[test]
+    fn values_are_added_to_and_removed_from_a_text() {
+        let mut editor = StudyEditor::paper();
+        editor.set_text("# mine\nname = \"mine\"\n\n[bounds] # wide\nR_m = [1, 2] # m\n".to_owned());
+        editor.change(|study| {
+            study.bounds.R_m = [1.0, 3.0];
+            study.requirements.clearance_min_m = Some(0.005);
+            study.optimizer.front_de.scale = 0.4;
+        });
+        assert!(editor.faults().is_empty(), "{:?}", editor.faults());
+        for part in [
+            "# mine",
+            "[bounds] # wide",
+            "R_m = [1.0, 3.0] # m",
+            "[requirements]",
+            "clearance_min_m = 0.005",
+        ] {
+            assert!(editor.text().contains(part), "{part}: {}", editor.text());
+        }
+        editor.change(|study| study.requirements.clearance_min_m = None);
+        assert!(!editor.text().contains("clearance_min_m"), "{}", editor.text());
+        assert_eq!(editor.study().optimizer.front_de.scale, 0.4);
     }
 }

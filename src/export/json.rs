@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::Prepared;
 use crate::scene::{Body, Frame, Linkage};
-use kinefront_model::evaluation::{Evaluation, Model, PoseEvaluation, Unreachable};
+use kinefront_model::evaluation::{Evaluation, PoseEvaluation, Unreachable};
 use kinefront_model::mechanism::{Actuator, Design};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::Material;
@@ -85,7 +85,7 @@ pub struct EvaluationJson {
 
 impl EvaluationJson {
     /// Creates the output for a design that `model` evaluated.
-    pub fn new(model: &Model, evaluation: &Evaluation) -> Self {
+    pub fn new(evaluation: &Evaluation) -> Self {
         let design = &evaluation.design;
         Self {
             architecture: design.architecture.name(),
@@ -100,7 +100,7 @@ impl EvaluationJson {
             feasible: evaluation.is_feasible(),
             violation: evaluation.violation,
             clearance_m: evaluation.clearance(),
-            clearance_pair: model.nearest(evaluation).map(|nearest| nearest.pair()),
+            clearance_pair: evaluation.nearest.map(|nearest| nearest.pair()),
             constraints: evaluation
                 .constraints
                 .iter()
@@ -330,7 +330,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
         kinefront_version: env!("CARGO_PKG_VERSION"),
         study: &study.name,
         design: subject.title(),
-        evaluation: EvaluationJson::new(model, evaluation),
+        evaluation: EvaluationJson::new(evaluation),
         pose: PoseJson::new(pose, pose.phi.to_degrees()),
         at_pose: (&at(pose)).into(),
         material: (&model.material).into(),

@@ -54,7 +54,7 @@ pub(super) fn card(
         );
     }
     card.push('\n');
-    if let Some(nearest) = model.nearest(evaluation) {
+    if let Some(nearest) = evaluation.nearest {
         card += &format!("- smallest clearance between members: {}\n", text::clearance(&nearest));
     }
     for set in ellipsoids {

@@ -22,7 +22,7 @@ pub enum ReportError {
         /// Name of the other run.
         other: String,
         /// Section or key of the study in which they differ.
-        key: &'static str,
+        key: String,
     },
     /// The runs have no feasible design.
     #[error("no design of the run is feasible: there is no front to report")]

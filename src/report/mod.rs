@@ -276,19 +276,7 @@ fn common_study(sources: &[Source]) -> Result<Study, ReportError> {
     let mut study = first.study.clone();
     for other in others {
         let theirs = &other.study;
-        let same = [
-            ("material", study.material == theirs.material),
-            ("actuators", study.actuators == theirs.actuators),
-            ("requirements", study.requirements == theirs.requirements),
-            ("workspace", study.workspace == theirs.workspace),
-            ("model", study.model == theirs.model),
-            ("bodies", study.bodies == theirs.bodies),
-            ("bounds", study.bounds == theirs.bounds),
-            ("grid.fine", study.grid.fine == theirs.grid.fine),
-            ("working_mode", study.working_mode == theirs.working_mode),
-            ("references", study.references == theirs.references),
-        ];
-        if let Some((key, _)) = same.into_iter().find(|(_, same)| !same) {
+        if let Some(key) = study.differing_key(theirs) {
             return Err(ReportError::Differing {
                 first: first.name.clone(),
                 other: other.name.clone(),
@@ -304,16 +292,9 @@ fn common_study(sources: &[Source]) -> Result<Study, ReportError> {
 
 /// Returns whether a study states the same problem as the paper's study, so that the report may refer to the paper.
 fn is_paper(study: &Study) -> bool {
-    BUILTIN[0].study().is_ok_and(|paper| {
-        study.references == paper.references
-            && study.material == paper.material
-            && study.actuators == paper.actuators
-            && study.requirements == paper.requirements
-            && study.workspace == paper.workspace
-            && study.model == paper.model
-            && study.bodies == paper.bodies
-            && study.bounds == paper.bounds
-    })
+    BUILTIN[0]
+        .study()
+        .is_ok_and(|paper| study.differing_key(&paper).is_none())
 }
 
 /// Converts a name to a file name: its alphanumeric parts in lower case, joined by hyphens.

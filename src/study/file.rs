@@ -6,10 +6,9 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection};
-use super::sections::{
-    ActuatorSection, Bounds, Grids, LengthChoice, MaterialSection, ModelSection, ReferenceDesign, RequirementSection,
-    StiffnessChoice, TelescopicBar, WorkspaceSection,
+use super::settings::{
+    ActuatorSection, AlgorithmName, Bounds, Grids, HypervolumeSection, LengthChoice, MaterialSection, ModelSection,
+    OptimizerSection, ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
 };
 use kinefront_model::clearance::BodySettings;
 use kinefront_model::evaluation::{Model, ModelSettings};

@@ -4,13 +4,11 @@ mod builtin;
 mod control;
 mod error;
 mod events;
-mod faults;
 mod file;
-mod optimizer;
 mod problem;
 mod run;
 mod run_folder;
-mod sections;
+mod settings;
 mod stopping;
 mod table;
 
@@ -18,15 +16,14 @@ pub use builtin::{BUILTIN, Builtin};
 pub use control::RunControl;
 pub use error::StudyError;
 pub use events::{Batch, EndReason, Event, FrontMember, GenerationSummary, RunSummary, RunTimes, Started, Subscriber};
-pub use faults::Fault;
 pub use file::Study;
-pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnation};
 pub use problem::DesignProblem;
 pub use run::spawn;
 pub use run_folder::{FolderError, RunFolder, RunFolderError, RunReport, RunWriter, write_whole};
-pub use sections::{
-    ActuatorSection, Bounds, GridSection, Grids, LengthChoice, MaterialSection, ModelSection, ReferenceDesign,
-    RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
+pub use settings::{
+    ActuatorSection, AlgorithmName, Bounds, Check, Fault, GridSection, Grids, HypervolumeSection, Initial,
+    LengthChoice, MaterialSection, ModelSection, OptimizerSection, ReferenceDesign, RequirementSection, Setting,
+    Stagnation, StiffnessChoice, TelescopicBar, WorkspaceSection, settings,
 };
 pub use table::{
     Better, Cell, Column, ColumnType, Row, RowError, TableError, TableFault, TableRow, TableWriter, read_table,

@@ -6,7 +6,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use kinefront::explorer::{Origin, Phase};
 use kinefront::study::{Column, EndReason};
 use kinefront_model::evaluation::MemberReport;
-use kinefront_model::mechanism::{MemberKind, DesignVariable};
+use kinefront_model::mechanism::{DesignVariable, MemberKind};
 
 use super::support::{click_at, idle_window, opened_window, set_slider, until};
 

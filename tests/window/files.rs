@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use kinefront::explorer::{Explorer, Origin, Phase, InitialContent, open};
+use kinefront::explorer::{Explorer, InitialContent, Origin, Phase, open};
 use kinefront::recording::read_run;
 
 use super::support::{idle_window, opened_window, run_folder, small_study, until, window};
@@ -170,7 +170,9 @@ fn the_front_is_exported_with_stars_and_notes() {
     let header = reader.headers().expect("a header").clone();
     assert_eq!(
         header.iter().take(13).collect::<Vec<_>>(),
-        kinefront::study::Column::common().map(|column| column.name()).collect::<Vec<_>>()
+        kinefront::study::Column::common()
+            .map(|column| column.name())
+            .collect::<Vec<_>>()
     );
     let starred = header.iter().position(|title| title == "starred").expect("starred");
     let rows: Vec<csv::StringRecord> = reader.records().map(|record| record.expect("a row")).collect();

@@ -213,7 +213,7 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
                 ui.end_row();
             }
         });
-    if let Some(nearest) = session.model().nearest(&known.evaluation) {
+    if let Some(nearest) = known.evaluation.nearest {
         let words = format!("nearest pair of members: {}", text::clearance(&nearest));
         if nearest.distance < 0.0 {
             ui.colored_label(theme::VIOLATED, words);

@@ -4,7 +4,7 @@ use egui::{CollapsingHeader, DragValue, ScrollArea, TextEdit, Ui};
 use toml::{Table, Value};
 
 use crate::explorer::{Session, theme};
-use crate::study::{AlgorithmName, Fault, Study};
+use crate::study::{Check, Fault, Initial, Study, settings};
 
 /// The study panel.
 #[derive(Default)]
@@ -65,6 +65,7 @@ fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault]) {
     };
     let mut table = before.clone();
     section(ui, "", &mut table, faults);
+    follow_characteristic_length(&mut table);
     if table != before {
         match table.try_into::<Study>() {
             Ok(study) => session.editor.change(|edited| *edited = study),
@@ -75,34 +76,81 @@ fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault]) {
     }
 }
 
-/// Optional settings of a study: section, key, and initial value.
-const OPTIONAL: [(&str, &str, f64); 5] = [
-    ("requirements", "clearance_min_m", 0.005),
-    ("requirements", "k_xy_min_n_per_m", 1e6),
-    ("requirements", "k_z_min_n_per_m", 1e5),
-    ("requirements", "k_phi_z_min_nm_per_rad", 573.0),
-    ("workspace", "home_phi_deg", 0.0),
-];
+/// A fixed characteristic length needs its value, and any other must not have one.
+fn follow_characteristic_length(table: &mut Table) {
+    let Some(model) = table.get_mut("model").and_then(Value::as_table_mut) else {
+        return;
+    };
+    let key = "characteristic_length_m";
+    if model.get("characteristic_length").and_then(Value::as_str) != Some("fixed") {
+        model.remove(key);
+    } else if !model.contains_key(key)
+        && let Some(initial) = settings()
+            .find(|setting| setting.key == key)
+            .and_then(|setting| setting.initial)
+    {
+        model.insert(key.to_owned(), initial_value(initial));
+    }
+}
 
-fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
-    for (section, key, value) in OPTIONAL {
-        if section == path {
-            let mut stated = table.contains_key(key);
-            if ui.checkbox(&mut stated, format!("set {key}")).changed() {
-                if stated {
-                    table.insert(key.to_owned(), Value::Float(value));
-                } else {
-                    table.remove(key);
-                }
+fn initial_value(initial: Initial) -> Value {
+    match initial {
+        Initial::Number(number) => Value::Float(number),
+        Initial::Count(count) => Value::Integer(count),
+    }
+}
+
+/// Shows a tick for each optional setting of a section.
+fn optional_settings(ui: &mut Ui, path: &str, table: &mut Table) {
+    for setting in settings().filter(|setting| setting.section == path) {
+        let Some(initial) = setting.initial else { continue };
+        let mut stated = table.contains_key(setting.key);
+        let tick = ui.checkbox(&mut stated, format!("set {}", setting.key));
+        if tick.on_hover_text(setting.description.trim()).changed() {
+            if stated {
+                table.insert(setting.key.to_owned(), initial_value(initial));
+            } else {
+                table.remove(setting.key);
             }
         }
     }
+}
+
+/// Shows a tick for each name that may be selected.
+fn selection(ui: &mut Ui, names: &mut Vec<Value>, all: &[&str]) {
+    for name in all {
+        let value = Value::String((*name).to_owned());
+        let mut selected = names.contains(&value);
+        if ui.checkbox(&mut selected, *name).changed() {
+            // The names stay in their usual order; the last one cannot be deselected.
+            let others = names.len() > 1;
+            if selected {
+                names.push(value);
+            } else if others {
+                names.retain(|found| *found != value);
+            }
+            names.sort_by_key(|found| all.iter().position(|name| found.as_str() == Some(name)));
+        }
+    }
+}
+
+fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
+    optional_settings(ui, path, table);
     for (key, value) in table.iter_mut() {
         let path = if path.is_empty() {
             key.clone()
         } else {
             format!("{path}.{key}")
         };
+        let setting = settings().find(|setting| setting.path() == path);
+        let label = |ui: &mut Ui| {
+            let label = ui.label(key.as_str());
+            match setting {
+                Some(setting) => label.on_hover_text(setting.description.trim()),
+                None => label,
+            }
+        };
+        let check = setting.map(|setting| setting.check);
         match value {
             Value::Table(inner) => {
                 CollapsingHeader::new(key.as_str())
@@ -110,10 +158,18 @@ fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
                     .default_open(matches!(key.as_str(), "bounds" | "requirements"))
                     .show(ui, |ui| section(ui, &path, inner, faults));
             }
-            // Other arrays, the architectures and the references, are edited as text.
+            Value::Array(names) if matches!(check, Some(Check::Selection(_))) => {
+                ui.horizontal(|ui| {
+                    label(ui);
+                    if let Some(Check::Selection(all)) = check {
+                        selection(ui, names, &all());
+                    }
+                });
+            }
+            // Other arrays, the references, are edited as text.
             Value::Array(items) if items.iter().all(|item| item.is_float() || item.is_integer()) => {
                 ui.horizontal(|ui| {
-                    let label = ui.label(key.as_str());
+                    let label = label(ui);
                     for item in items {
                         number(ui, item).labelled_by(label.id);
                     }
@@ -122,28 +178,20 @@ fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
             Value::Array(_) => {}
             Value::Float(_) | Value::Integer(_) => {
                 ui.horizontal(|ui| {
-                    let label = ui.label(key.as_str());
+                    let label = label(ui);
                     number(ui, value).labelled_by(label.id);
                 });
             }
             Value::String(text) => {
                 ui.horizontal(|ui| {
-                    let label = ui.label(key.as_str());
-                    let algorithms = AlgorithmName::ALL.map(AlgorithmName::name);
-                    let choices: &[&str] = match key.as_str() {
-                        "stiffness_definition" => &["stiffness", "compliance"],
-                        "characteristic_length" => &["platform_radius", "isotropic"],
-                        "telescopic_bar" => &["current", "longest"],
-                        "algorithm" => &algorithms,
-                        _ => &[],
-                    };
-                    if choices.is_empty() {
-                        ui.add(TextEdit::singleline(text).desired_width(220.0))
-                            .labelled_by(label.id);
-                    } else {
+                    let label = label(ui);
+                    if let Some(Check::Choice(choices)) = check {
                         for choice in choices {
                             ui.selectable_value(text, (*choice).to_owned(), *choice);
                         }
+                    } else {
+                        ui.add(TextEdit::singleline(text).desired_width(220.0))
+                            .labelled_by(label.id);
                     }
                 });
             }

@@ -79,8 +79,9 @@ impl Session {
     pub fn select_named(&mut self, named: &Named) {
         let id = named.name.strip_prefix('#').and_then(|id| id.parse().ok());
         let origin = match id {
-            Some(id) => Origin::Evaluated(id),
-            None => match self.document().kept.iter().position(|kept| kept.design == named.design) {
+            // After a new run, the number may belong to another design.
+            Some(id) if self.store().design(id) == Some(named.design) => Origin::Evaluated(id),
+            _ => match self.document().kept.iter().position(|kept| kept.design == named.design) {
                 Some(index) => Origin::Kept(index),
                 None => Origin::Modified { from: None },
             },

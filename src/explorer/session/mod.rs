@@ -116,6 +116,8 @@ pub struct Session {
     scene: SceneThread,
     answer: Answer,
     requested: u64,
+    /// Number of the last failed request whose message was shown.
+    failure_shown: Option<u64>,
     wake: Wake,
     /// Number of the current store; the ids of one store mean nothing in another.
     era: u64,
@@ -154,6 +156,7 @@ impl Session {
             scene: SceneThread::start(scene, move || waking())?,
             answer: Answer::default(),
             requested: 0,
+            failure_shown: None,
             wake,
             era: 0,
             following: true,

@@ -13,6 +13,8 @@ use super::super::{FrontEntry, Store, StudyEditor};
 use super::{GLANCE, Phase, Session, references};
 use crate::recording::FrontPoint;
 use crate::study::{RunControl, Study, Subscriber, spawn};
+use kinefront_model::evaluation::Evaluation;
+use kinefront_model::mechanism::Design;
 use kinefront_optimize::knee;
 
 impl Session {
@@ -182,7 +184,9 @@ impl Session {
         self.notices
             .retain(|notice| notice.is_error || notice.since.elapsed() < GLANCE);
         self.answer = self.scene.answer();
-        if let Some(trouble) = self.answer.trouble.clone()
+        // A failure is shown once, so that a message that the user dismissed does not come back.
+        if let Some((number, trouble)) = self.answer.trouble.clone()
+            && self.failure_shown.replace(number) != Some(number)
             && self.notices.iter().all(|notice| notice.text != trouble)
         {
             self.notify_error(trouble);
@@ -240,6 +244,25 @@ impl Session {
         self.front_drawn = Some(drawn);
     }
 
+    /// Returns the evaluation of the selected design on the fine grid, if it is known: from the verification of the front,
+    /// which is not repeated for a click, or from the verify thread.
+    fn verified(&self, design: &Design) -> Option<Arc<Evaluation>> {
+        let of_front = || {
+            let id = match self.document().selected.as_ref()?.origin {
+                Origin::Evaluated(id) => id,
+                _ => return None,
+            };
+            self.front[*self.place_on_front.get(&id)?].evaluation.clone()
+        };
+        let answered = || {
+            let known = self.answer.known.as_ref()?;
+            known.verified.then(|| Arc::clone(&known.evaluation))
+        };
+        of_front()
+            .filter(|evaluation| evaluation.design == *design)
+            .or_else(|| answered().filter(|evaluation| evaluation.design == *design))
+    }
+
     /// Requests the current scene from the scene thread.
     fn ask(&mut self) {
         self.draw_front();
@@ -247,11 +270,7 @@ impl Session {
         let design = document.selected.as_ref().map(|selected| selected.design);
         let request = Request {
             study: Arc::clone(&self.as_run),
-            verified: self
-                .answer
-                .known
-                .as_ref()
-                .is_some_and(|known| known.verified && Some(known.evaluation.design) == design),
+            verified: design.and_then(|design| self.verified(&design)),
             design,
             pose: self.staging.pose,
             heatmap_phi: self.staging.heatmap_phi,

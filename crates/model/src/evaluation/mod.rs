@@ -26,6 +26,7 @@ pub use model::{GridChoice, Model, ModelSettings};
 pub use pose::{PoseEvaluation, Unreachable};
 pub use sizing::{BarRanges, WorkspaceTarget};
 
+use crate::clearance::Clearance;
 use crate::mechanism::Design;
 use crate::spatial::Pose;
 
@@ -42,6 +43,8 @@ pub struct Evaluation {
     pub home: Option<Pose>,
     /// Home orientation `φ_c` exactly as on the grid \[deg\], in \[0, 360); `None` for an infeasible design.
     pub home_phi_deg: Option<f64>,
+    /// The nearest pair of members that are not joined, at the pose of the smallest clearance; `None` if no pose has one.
+    pub nearest: Option<Clearance>,
     /// Reports of the constraints, in the order of [`Constraint::ALL`].
     pub constraints: [ConstraintResult; Constraint::ALL.len()],
     /// Dimensionless measure, for optimizers, of how far the design is from having a workspace: 0 for a feasible

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Constraint, Evaluation, Unreachable, worst};
+use super::{Evaluation, Unreachable, worst};
 use crate::clearance::{Bodies, BodySettings, Clearance};
 use crate::kinematics::{CharacteristicLength, Jacobian};
 use crate::lanes::InstructionSet;
@@ -233,11 +233,8 @@ impl Model {
         })
     }
 
-    /// Returns the nearest pair of members of an evaluated design, at the pose of its smallest clearance; `None` if it
-    /// has no clearance.
-    pub fn nearest(&self, evaluation: &Evaluation) -> Option<Clearance> {
-        let pose = evaluation.constraint(Constraint::Clearance).pose?;
-        let design = &evaluation.design;
+    /// Returns the nearest pair of members at a pose that a search has found reachable.
+    pub(super) fn nearest_near(&self, design: &Design, pose: Pose) -> Option<Clearance> {
         // At the very end of a leg's reach, rounding decides whether the leg reaches the pose; slightly nearer to the
         // centre it does.
         let inwards = (self.workspace.centre - pose.position).clamp_length_max(1e-9 * design.base_radius);

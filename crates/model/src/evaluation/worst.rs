@@ -45,6 +45,9 @@ pub(super) fn evaluate<L: Leg>(
         workspace_radius: if home.is_some() { found.radius } else { 0.0 },
         home: home_phi_deg.map(|phi_deg| Pose::new(centre.x, centre.y, phi_deg.to_radians())),
         home_phi_deg,
+        nearest: constraints[Constraint::Clearance as usize]
+            .pose
+            .and_then(|pose| model.nearest_near(design, pose)),
         constraints,
         violation,
     }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::declare::{Check, section};
+
 use kinefront_optimize::{FrontDeSettings, Moga2Settings, Nsga2Settings};
 
 /// Name of an algorithm.
@@ -100,18 +102,10 @@ pub struct Stagnation {
     pub gain: f64,
 }
 
-/// Reference point of the hypervolume: this mass and `R_w` = 0.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct HypervolumeSection {
-    /// Mass of the reference point; heavier designs contribute nothing.
-    pub reference_mass_kg: f64,
-}
-
-impl Default for HypervolumeSection {
-    fn default() -> Self {
-        Self {
-            reference_mass_kg: 2000.0,
-        }
+section! {
+    /// Reference point of the hypervolume: this mass and `R_w` = 0.
+    pub struct HypervolumeSection in "hypervolume" {
+        /// Mass of the reference point; heavier designs contribute nothing.
+        reference_mass_kg: f64 = 2000.0, Check::Positive;
     }
 }

@@ -1,0 +1,26 @@
+//! Which setting differs between two studies.
+
+use toml::Table;
+
+use super::settings;
+use crate::study::Study;
+
+/// Settings by which two runs of one problem may differ: names, architectures, the grid of the search, and the search itself.
+fn is_of_search(path: &str) -> bool {
+    let names = ["name", "description", "architectures"];
+    let sections = ["grid.reference.", "optimizer.", "hypervolume."];
+    names.contains(&path) || sections.iter().any(|section| path.starts_with(section))
+}
+
+impl Study {
+    /// Returns the first setting that makes another study another problem; `None` if designs of both can be compared:
+    /// they are evaluated by the same model, within the same bounds, beside the same reference designs.
+    pub fn differing_key(&self, other: &Study) -> Option<String> {
+        let (ours, theirs) = (Table::try_from(self).ok()?, Table::try_from(other).ok()?);
+        settings()
+            .filter(|setting| setting.value(&ours) != setting.value(&theirs))
+            .map(|setting| setting.path())
+            .find(|path| !is_of_search(path))
+            .or_else(|| (self.references != other.references).then(|| "references".to_owned()))
+    }
+}

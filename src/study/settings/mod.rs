@@ -1,0 +1,18 @@
+//! The settings of a study: each is declared once, and the study file, its faults, the fields of the window and the comparison
+//! of studies follow.
+
+mod compare;
+mod declare;
+mod faults;
+mod list;
+mod optimizer;
+mod sections;
+
+pub use declare::{Check, Initial, Setting};
+pub use faults::Fault;
+pub use list::settings;
+pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnation};
+pub use sections::{
+    ActuatorSection, Bounds, GridSection, Grids, LengthChoice, MaterialSection, ModelSection, ReferenceDesign,
+    RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
+};

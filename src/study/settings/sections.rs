@@ -1,0 +1,248 @@
+//! The sections of a study file, each with the paper's values as defaults.
+
+use serde::{Deserialize, Serialize};
+
+use super::declare::{Check, Initial, section};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignVariable, TextError, WorkingMode};
+use kinefront_model::stiffness::Material;
+use kinefront_model::workspace::{Grid, GridError};
+
+section! {
+    /// Material of every bar.
+    pub struct MaterialSection in "material" {
+        /// Young's modulus `E`.
+        youngs_modulus_pa: f64 = Material::STEEL.youngs_modulus, Check::Positive;
+        /// Shear modulus `G`.
+        shear_modulus_pa: f64 = Material::STEEL.shear_modulus, Check::Positive;
+        /// Density `ν`.
+        density_kg_per_m3: f64 = Material::STEEL.density, Check::Positive;
+    }
+}
+
+section! {
+    /// Stiffness of the actuators.
+    pub struct ActuatorSection in "actuators" {
+        /// Stiffness `K_act` of prismatic actuators.
+        prismatic_stiffness_n_per_m: f64 = 1e7, Check::Positive;
+        /// Stiffness `K_act` of revolute actuators.
+        revolute_stiffness_nm_per_rad: f64 = 1e7, Check::Positive;
+    }
+}
+
+section! {
+    /// Requirements. The stiffness thresholds follow from a wrench and the accuracy required under it; a threshold that is
+    /// set directly takes precedence.
+    pub struct RequirementSection in "requirements" {
+        /// Smallest permitted inverse condition number `κ_F⁻¹` (g3).
+        inverse_condition_min: f64 = 0.1, Check::HalfOpen(0.0, 1.0);
+        /// Force in the plane, in any direction (g4).
+        in_plane_force_n: f64 = 100.0, Check::Positive;
+        /// Largest permitted displacement under the force in the plane.
+        in_plane_displacement_m: f64 = 1e-4, Check::Positive;
+        /// Force along z (g5).
+        vertical_force_n: f64 = 100.0, Check::Positive;
+        /// Largest permitted displacement under the force along z.
+        vertical_displacement_m: f64 = 1e-3, Check::Positive;
+        /// Torque about z (g6).
+        torque_z_nm: f64 = 10.0, Check::Positive;
+        /// Largest permitted rotation under the torque about z.
+        rotation_z_deg: f64 = 1.0, Check::Positive;
+        optional {
+            /// Threshold of g4, if it is set directly.
+            k_xy_min_n_per_m: f64, Check::NonNegative, Initial::Number(1e6);
+            /// Threshold of g5, if it is set directly.
+            k_z_min_n_per_m: f64, Check::NonNegative, Initial::Number(1e5);
+            /// Threshold of g6, if it is set directly.
+            k_phi_z_min_nm_per_rad: f64, Check::NonNegative, Initial::Number(573.0);
+            /// Threshold of g7: smallest permitted clearance of members that are not joined; if omitted, they may collide.
+            clearance_min_m: f64, Check::Within(0.0, 1e3, ", or be omitted if members may collide"), Initial::Number(0.005);
+        }
+    }
+}
+
+section! {
+    /// Required regular workspace.
+    pub struct WorkspaceSection in "workspace" {
+        /// Rotation range `Δφ`.
+        rotation_range_deg: f64 = 20.0, Check::Within(0.0, 350.0, "");
+        /// Centre of the disc, in the base frame.
+        centre_m: [f64; 2] = [0.0, 0.0], Check::Finite;
+        optional {
+            /// Home orientation; if omitted, the best one is determined for each design.
+            home_phi_deg: f64, Check::Within(-360.0, 360.0, ""), Initial::Number(0.0);
+        }
+    }
+}
+
+/// Definition of the stiffness values `k_xy`, `k_z` and `k_φz`: from `K` or from `K⁻¹`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StiffnessChoice {
+    /// Values from the blocks of `K`.
+    Stiffness,
+    /// Values from the inverses of the blocks of `K⁻¹`.
+    Compliance,
+}
+
+/// Definition of the characteristic length.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LengthChoice {
+    /// The platform radius `r`.
+    PlatformRadius,
+    /// The isotropic length `√2·max|w|`.
+    Isotropic,
+    /// The value of the key `characteristic_length_m`.
+    Fixed,
+}
+
+/// Definition of the beam length of a telescopic leg.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TelescopicBar {
+    /// The current leg length `ρ_i`.
+    Current,
+    /// The longest leg length `L_b`.
+    Longest,
+}
+
+section! {
+    /// Modelling choices that the paper leaves open or states inconsistently (docs/model.md, section 11).
+    pub struct ModelSection in "model" {
+        /// Definition of the stiffness values: from the blocks of `K`, or from the inverses of the blocks of `K⁻¹`.
+        stiffness_definition: StiffnessChoice = StiffnessChoice::Stiffness, Check::Choice(&["stiffness", "compliance"]);
+        /// Definition of the characteristic length; `fixed` requires `characteristic_length_m`.
+        characteristic_length: LengthChoice = LengthChoice::PlatformRadius,
+            Check::Choice(&["platform_radius", "isotropic", "fixed"]);
+        /// Number of bars of length `r` in the mass of the platform: 3, or 1 as printed in the paper.
+        platform_bars: u32 = 3, Check::Count(1, 3);
+        /// Beam length of a telescopic leg: its current length, or its longest length `L_b`.
+        telescopic_bar: TelescopicBar = TelescopicBar::Current, Check::Choice(&["current", "longest"]);
+        /// Length of the shortest telescopic leg as a fraction of `L_b`.
+        telescopic_shortest: f64 = 0.5, Check::HalfOpen(0.0, 1.0);
+        optional {
+            /// Value of a fixed characteristic length.
+            characteristic_length_m: f64, Check::Positive, Initial::Number(1.0);
+        }
+    }
+}
+
+section! {
+    /// Bounds of the design variables in the search, as `[lower, upper]`.
+    #[allow(non_snake_case, reason = "keys are the paper's symbols")]
+    pub struct Bounds in "bounds" {
+        /// Base radius `R`.
+        R_m: [f64; 2] = [0.5, 4.0], Check::Any;
+        /// Platform radius `r`.
+        r_m: [f64; 2] = [0.1, 4.0], Check::Any;
+        /// Link length `L_b`.
+        Lb_m: [f64; 2] = [0.5, 4.0], Check::Any;
+        /// Radius `r_j` of the leg bars.
+        rj_m: [f64; 2] = [0.0, 0.1], Check::Any;
+        /// Radius `r_p` of the platform bars.
+        rp_m: [f64; 2] = [0.0, 0.1], Check::Any;
+    }
+}
+
+impl Bounds {
+    /// Returns the range of a variable.
+    pub fn range(&self, variable: DesignVariable) -> [f64; 2] {
+        match variable {
+            DesignVariable::BaseRadius => self.R_m,
+            DesignVariable::PlatformRadius => self.r_m,
+            DesignVariable::LinkLength => self.Lb_m,
+            DesignVariable::LegBarRadius => self.rj_m,
+            DesignVariable::PlatformBarRadius => self.rp_m,
+        }
+    }
+
+    /// Iterates over the variables, each with the key of its range.
+    pub fn keys() -> impl Iterator<Item = (DesignVariable, String)> {
+        DESIGN_VARIABLES
+            .into_iter()
+            .map(|variable| (variable, format!("{}_m", variable.key())))
+    }
+}
+
+/// One sampling grid.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GridSection {
+    /// Spacing of orientations.
+    pub phi_step_deg: f64,
+    /// Number of directions over the full turn.
+    pub directions: usize,
+    /// Number of steps of a ray per length `R`.
+    pub ray_steps: usize,
+    /// Number of halvings of the first failing step of a ray.
+    pub halvings: u32,
+}
+
+impl From<Grid> for GridSection {
+    fn from(grid: Grid) -> Self {
+        Self {
+            phi_step_deg: grid.phi_step_deg(),
+            directions: grid.directions(),
+            ray_steps: grid.ray_steps(),
+            halvings: grid.halvings(),
+        }
+    }
+}
+
+impl TryFrom<&GridSection> for Grid {
+    type Error = GridError;
+
+    fn try_from(section: &GridSection) -> Result<Self, GridError> {
+        Grid::new(
+            section.phi_step_deg,
+            section.directions,
+            section.ray_steps,
+            section.halvings,
+        )
+    }
+}
+
+/// Grids for the search and for the verification.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Grids {
+    /// Reference grid, used in the search.
+    pub reference: GridSection,
+    /// Fine grid, on which reported designs are verified.
+    pub fine: GridSection,
+}
+
+impl Default for Grids {
+    fn default() -> Self {
+        Self {
+            reference: Grid::REFERENCE.into(),
+            fine: Grid::FINE.into(),
+        }
+    }
+}
+
+/// A reference design to compare with, shown as a mark beside the front.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReferenceDesign {
+    /// Name of the design.
+    pub name: String,
+    /// The design as text.
+    pub design: String,
+    /// Mass as stated by the source of the design.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mass_kg: Option<f64>,
+    /// Workspace radius `R_w` as stated by the source of the design.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub workspace_radius_m: Option<f64>,
+}
+
+impl ReferenceDesign {
+    /// Parses the design; `default_mode` is used if the text does not name a working mode.
+    ///
+    /// # Errors
+    /// [`TextError`]; this does not occur for a study that was read without faults.
+    pub fn parse(&self, default_mode: WorkingMode) -> Result<Design, TextError> {
+        Design::parse(&self.design, default_mode)
+    }
+}
