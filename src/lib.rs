@@ -1,24 +1,37 @@
 //! # Kinefront
 //!
-//! A design explorer for planar parallel manipulators: which 3-PRR, 3-RPR and 3-RRR are light **and** have a large
-//! regular dexterous workspace.
+//! A design explorer for planar parallel manipulators. It searches for 3-PRR, 3-RPR and 3-RRR designs that are light
+//! **and** have a large regular dexterous workspace.
 //!
-//! Data flows one way: **[`study`] → [`kinefront_optimize`] → evaluated designs → [`recording`], run folder**. What a design is
-//! worth is one call:
+//! Data flows one way: **[`study`] → [`kinefront_optimize`] → evaluated designs → [`recording`], run folder**. The model
+//! itself is the crate [`kinefront_model`]; a study builds it and runs an algorithm on it:
 //!
 //! ```
-//! use kinefront_model::evaluation::{GridChoice, Model};
+//! use std::sync::Arc;
+//! use std::sync::mpsc::sync_channel;
 //!
-//! let design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056".parse()?;
-//! let evaluation = Model::default().evaluate(&design, GridChoice::Reference)?;
-//! println!("{:.1} kg, R_w {:.3} m", evaluation.mass, evaluation.workspace_radius);
+//! use kinefront::study::{Event, RunControl, Study, spawn};
+//!
+//! let study = Study::parse("architectures = [\"3-PRR\"]\n[optimizer]\nevaluations = 60", "mine")?;
+//! let (sender, events) = sync_channel(64);
+//! let worker = spawn(study, Arc::new(RunControl::default()), vec![sender])?;
+//! let mut evaluated = 0;
+//! for event in events {
+//!     match &*event {
+//!         Event::Evaluated(batch) => evaluated += batch.evaluations.len(),
+//!         Event::Finished(summary) => assert!(summary.front.len() > 1),
+//!         _ => {}
+//!     }
+//! }
+//! worker.join().expect("the worker ends");
+//! assert_eq!(evaluated, 60);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! | module | purpose |
 //! |---|---|
+//! | [`study`] | study files, runs, tables and run folders |
 //! | [`scene`] | named shapes and fields of a design at a pose, independent of any renderer |
-//! | [`study`] | study files, runs, run folders |
 //! | [`export`] | export of a design to the file formats of other programs |
 //! | [`report`] | report pages of a run: figures, pictures, comparison with the paper |
 //! | [`palette`] | colours and their meaning |

@@ -292,9 +292,12 @@ fn common_study(sources: &[Source]) -> Result<Study, ReportError> {
 
 /// Returns whether a study states the same problem as the paper's study, so that the report may refer to the paper.
 fn is_paper(study: &Study) -> bool {
-    BUILTIN[0]
-        .study()
-        .is_ok_and(|paper| study.differing_key(&paper).is_none())
+    BUILTIN[0].study().is_ok_and(|mut paper| {
+        // The grids and the working mode are choices that the paper leaves open.
+        paper.grid.clone_from(&study.grid);
+        paper.working_mode = study.working_mode;
+        study.differing_key(&paper).is_none()
+    })
 }
 
 /// Converts a name to a file name: its alphanumeric parts in lower case, joined by hyphens.

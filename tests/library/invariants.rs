@@ -58,19 +58,33 @@ const LIBRARY: [&str; 5] = ["src/study", "src/scene", "src/export", "src/report"
 fn the_core_crates_depend_on_numbers_alone() {
     for (name, allowed) in [
         ("model", &["glam", "libm", "nalgebra", "pulp", "serde", "thiserror"][..]),
-        ("optimize", &["libm", "rand_chacha", "rand_core", "serde", "sobol_burley", "thiserror"]),
+        (
+            "optimize",
+            &["libm", "rand_chacha", "rand_core", "serde", "sobol_burley", "thiserror"],
+        ),
     ] {
         let text = fs::read_to_string(root().join("crates").join(name).join("Cargo.toml")).expect("a manifest");
         let manifest: toml::Table = text.parse().expect("TOML");
         for dependency in manifest["dependencies"].as_table().expect("dependencies").keys() {
-            assert!(allowed.contains(&dependency.as_str()), "kinefront-{name} uses {dependency}");
+            assert!(
+                allowed.contains(&dependency.as_str()),
+                "kinefront-{name} uses {dependency}"
+            );
         }
     }
 }
 
 #[test]
 fn the_core_crates_do_no_input_or_output_and_read_no_clock() {
-    let words = ["std::fs", "std::io", "std::env", "std::time", "std::thread", "println!", "mul_add"];
+    let words = [
+        "std::fs",
+        "std::io",
+        "std::env",
+        "std::time",
+        "std::thread",
+        "println!",
+        "mul_add",
+    ];
     assert_absent(&CRATES, &words);
     assert_absent(&["crates/model/src"], &["rand"]);
 }
@@ -79,7 +93,15 @@ fn the_core_crates_do_no_input_or_output_and_read_no_clock() {
 #[test]
 fn transcendental_functions_come_from_libm() {
     let platform = [
-        ".sin()", ".cos()", ".tan()", ".atan2(", ".powf(", ".powi(", ".exp()", ".ln()", ".sin_cos()",
+        ".sin()",
+        ".cos()",
+        ".tan()",
+        ".atan2(",
+        ".powf(",
+        ".powi(",
+        ".exp()",
+        ".ln()",
+        ".sin_cos()",
     ];
     assert_absent(&CRATES, &platform);
 }
@@ -106,7 +128,12 @@ fn instruction_sets_are_known_to_the_lanes() {
 #[test]
 fn architectures_are_named_in_mechanism_alone() {
     let legs = [
-        "PrrLeg", "RprLeg", "RrrLeg", "Architecture::Prr", "Architecture::Rpr", "Architecture::Rrr",
+        "PrrLeg",
+        "RprLeg",
+        "RrrLeg",
+        "Architecture::Prr",
+        "Architecture::Rpr",
+        "Architecture::Rrr",
     ];
     let modules = ["clearance", "evaluation", "kinematics", "stiffness", "workspace"];
     for module in modules {
@@ -118,7 +145,14 @@ fn architectures_are_named_in_mechanism_alone() {
 
 #[test]
 fn only_the_recording_and_the_window_know_rerun() {
-    let others = ["src/study", "src/scene", "src/export", "src/report", "src/palette.rs", "src/text.rs"];
+    let others = [
+        "src/study",
+        "src/scene",
+        "src/export",
+        "src/report",
+        "src/palette.rs",
+        "src/text.rs",
+    ];
     assert_absent(&others, &["rerun", "egui", "crate::recording"]);
     assert_absent(&["src/recording"], &["egui", "eframe", "re_viewer", "crate::explorer"]);
 }
@@ -134,8 +168,14 @@ fn a_panel_shows_what_others_computed() {
     assert_absent(&["src/explorer"], &physics);
     for (path, code) in sources("src/explorer") {
         // The places that know the embedded viewer; none but the recording names entities.
-        let knows = ["viewer.rs", "app/mod.rs", "theme.rs"].iter().any(|file| path.ends_with(file));
-        assert!(knows || !code.contains("re_viewer"), "{} knows the viewer", path.display());
+        let knows = ["viewer.rs", "app/mod.rs", "theme.rs"]
+            .iter()
+            .any(|file| path.ends_with(file));
+        assert!(
+            knows || !code.contains("re_viewer"),
+            "{} knows the viewer",
+            path.display()
+        );
         let names = code.contains("rerun::Points") || code.contains("\"/design");
         assert!(!names, "{} names entities", path.display());
     }
@@ -155,7 +195,10 @@ fn every_type_name_stands_once() {
                     .find_map(|keyword| line.strip_prefix(keyword))
                     .and_then(|rest| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next());
                 if let Some(name) = name.filter(|name| !name.is_empty()) {
-                    places.entry(name.to_owned()).or_default().push(path.display().to_string());
+                    places
+                        .entry(name.to_owned())
+                        .or_default()
+                        .push(path.display().to_string());
                 }
             }
         }
@@ -169,7 +212,12 @@ fn every_type_name_stands_once() {
 fn sections(document: &str) -> Vec<String> {
     let text = fs::read_to_string(root().join(document)).expect("a document");
     let headings = text.lines().filter(|line| line.starts_with('#'));
-    let number = |line: &str| line.trim_start_matches('#').split_whitespace().next().map(str::to_owned);
+    let number = |line: &str| {
+        line.trim_start_matches('#')
+            .split_whitespace()
+            .next()
+            .map(str::to_owned)
+    };
     headings.filter_map(number).collect()
 }
 
@@ -177,7 +225,10 @@ fn sections(document: &str) -> Vec<String> {
 #[test]
 fn references_to_the_model_lead_to_its_sections() {
     let model = sections("docs/model.md");
-    assert!(model.contains(&"4.3".to_owned()) && model.contains(&"12".to_owned()), "{model:?}");
+    assert!(
+        model.contains(&"4.3".to_owned()) && model.contains(&"12".to_owned()),
+        "{model:?}"
+    );
     let mut count = 0;
     for place in ["crates", "src", "tests", "benches", "examples"] {
         for path in files(&root().join(place), "rs") {
@@ -185,13 +236,24 @@ fn references_to_the_model_lead_to_its_sections() {
             if path.ends_with("library/invariants.rs") {
                 continue;
             }
-            assert!(!text.contains("SPEC"), "{} refers to a document of others", path.display());
+            assert!(
+                !text.contains("SPEC"),
+                "{} refers to a document of others",
+                path.display()
+            );
             // A reference may be broken over two lines of a comment.
-            let joined = text.replace("\n//! ", " ").replace("\n/// ", " ").replace("\n    /// ", " ");
+            let joined = text
+                .replace("\n//! ", " ")
+                .replace("\n/// ", " ")
+                .replace("\n    /// ", " ");
             for rest in joined.split("docs/model.md, section ").skip(1) {
                 let number: String = rest.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
                 let number = number.trim_end_matches('.').to_owned();
-                assert!(model.contains(&number), "{}: there is no section {number}", path.display());
+                assert!(
+                    model.contains(&number),
+                    "{}: there is no section {number}",
+                    path.display()
+                );
                 count += 1;
             }
         }
@@ -219,22 +281,37 @@ fn documents_refer_to_what_is_there() {
             if file.starts_with("http") {
                 continue;
             }
-            let target = if file.is_empty() { path.clone() } else { path.with_file_name("").join(file) };
+            let target = if file.is_empty() {
+                path.clone()
+            } else {
+                path.with_file_name("").join(file)
+            };
             assert!(target.exists(), "{document} links to {link}");
             if !anchor.is_empty() {
                 let slug = |line: &str| {
                     let kept = line.trim_start_matches('#').trim().to_lowercase();
-                    let kept: String = kept.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-')).collect();
+                    let kept: String = kept
+                        .chars()
+                        .filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-'))
+                        .collect();
                     kept.replace(' ', "-")
                 };
                 let target = fs::read_to_string(&target).expect("a document");
-                let found = target.lines().filter(|line| line.starts_with('#')).any(|line| slug(line) == anchor);
+                let found = target
+                    .lines()
+                    .filter(|line| line.starts_with('#'))
+                    .any(|line| slug(line) == anchor);
                 assert!(found, "{document} links to {link}, which has no such heading");
             }
         }
         for word in text.split('`').skip(1).step_by(2) {
-            let is_file = word.contains('/') && [".rs", ".md", ".json", ".py", ".toml"].iter().any(|end| word.ends_with(end));
-            let is_ours = ["crates/", "src/", "tests/", "docs/", "benches/", "assets/"].iter().any(|start| word.starts_with(start));
+            let is_file = word.contains('/')
+                && [".rs", ".md", ".json", ".py", ".toml"]
+                    .iter()
+                    .any(|end| word.ends_with(end));
+            let is_ours = ["crates/", "src/", "tests/", "docs/", "benches/", "assets/"]
+                .iter()
+                .any(|start| word.starts_with(start));
             if is_file && is_ours && !word.contains('*') {
                 assert!(root().join(word).exists(), "{document} names {word}");
             }
@@ -257,7 +334,9 @@ fn the_interfaces_list_every_column_in_order() {
     let mut rest = text.as_str();
     for column in kinefront::study::Column::of_front() {
         let name = format!("`{}`", column.name());
-        let found = rest.find(&name).unwrap_or_else(|| panic!("{name} is missing, or not in its place"));
+        let found = rest
+            .find(&name)
+            .unwrap_or_else(|| panic!("{name} is missing, or not in its place"));
         rest = &rest[found..];
     }
 }

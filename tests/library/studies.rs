@@ -147,7 +147,19 @@ fn other(setting: &Setting, value: &toml::Value) -> toml::Value {
         }
         (_, Value::Float(number)) => (if *number == 0.0 { 0.5 } else { 0.5 * number }).into(),
         (_, Value::Integer(number)) => (number / 2 + number % 2).into(),
-        (_, Value::Array(items)) => Value::Array(items.iter().map(|item| other(setting, item)).collect()),
+        (_, Value::Array(items)) => {
+            // A bound of 0 stays, so that the other bound stays above it.
+            let zero = Value::Float(0.0);
+            let all_zero = items.iter().all(|item| *item == zero);
+            let change = |item: &Value| {
+                if *item == zero && !all_zero {
+                    zero.clone()
+                } else {
+                    other(setting, item)
+                }
+            };
+            Value::Array(items.iter().map(change).collect())
+        }
         (_, Value::String(_)) => "+-+".into(),
         _ => panic!("{}: {value}", setting.path()),
     }

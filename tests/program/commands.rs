@@ -204,7 +204,7 @@ fn wrong_input_is_refused_in_words() {
         (&["optimize", "--architectures", "3-PRR,4-RRR"], "unknown architecture"),
         (
             &["optimize", "--architectures", "3-PRR,3-PRR"],
-            "names an architecture twice",
+            "contains \"3-PRR\" twice",
         ),
         (&["study", "show", "none"], "paper"),
     ];

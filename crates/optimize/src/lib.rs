@@ -1,13 +1,16 @@
-//! Constrained optimization of two objectives over real and categorical variables; this module is independent of
-//! robots.
+//! # Kinefront: the optimizers
 //!
-//! A [`Problem`] consists of its variables and an evaluation function. An [`Algorithm`] has an ask-and-tell interface:
-//! it is asked for candidates and told their outcomes. Its caller thus decides where candidates are evaluated and can
-//! pause, stop or step between generations. Both objectives are minimised; the constraints are combined into a single
-//! violation, which is 0 for a feasible candidate.
+//! Constrained optimization of two objectives over real and categorical variables. This crate knows nothing of robots.
+//!
+//! A [`Problem`] consists of its variables and an evaluation. An [`Algorithm`] has an ask-and-tell interface: it is asked for
+//! candidates and told their outcomes. Its caller thus decides where candidates are evaluated, and can pause, stop or step
+//! between generations. Both objectives are minimised; the constraints are combined into a single violation, which is 0
+//! for a feasible candidate. [`run`] drives an algorithm in the calling thread.
+//!
+//! ## A problem of one's own
 //!
 //! ```
-//! use kinefront_optimize::{Algorithm, Nsga2, Nsga2Settings, Outcome, Problem, Variable, drive};
+//! use kinefront_optimize::{Nsga2, Nsga2Settings, Outcome, Problem, Variable, run};
 //!
 //! struct Schaffer;
 //! impl Problem for Schaffer {
@@ -20,9 +23,52 @@
 //! }
 //!
 //! let mut algorithm = Nsga2::new(Schaffer.variables(), Nsga2Settings::default(), 1);
-//! let archive = drive(&Schaffer, &mut algorithm, 2000);
+//! let archive = run(&Schaffer, &mut algorithm, 2000);
 //! assert!(archive.iter().all(|member| (-0.1..2.1).contains(&member.x[0])));
 //! ```
+//!
+//! ## An algorithm of one's own
+//!
+//! ```
+//! use kinefront_optimize::{Algorithm, Candidate, Evaluated, Outcome, Problem, Variable, hypervolume, run, sobol};
+//!
+//! /// Samples the space evenly and learns nothing.
+//! struct Sampling {
+//!     points: Vec<Vec<f64>>,
+//!     told: usize,
+//! }
+//!
+//! impl Algorithm for Sampling {
+//!     fn ask(&mut self) -> Vec<Candidate> {
+//!         self.points.drain(..10).map(Candidate::from).collect()
+//!     }
+//!     fn tell(&mut self, evaluated: Vec<Evaluated>) {
+//!         self.told += evaluated.len();
+//!     }
+//! }
+//! # struct Schaffer;
+//! # impl Problem for Schaffer {
+//! #     fn variables(&self) -> Vec<Variable> {
+//! #         vec![Variable::Real { lower: -10.0, upper: 10.0 }]
+//! #     }
+//! #     fn evaluate(&self, x: &[f64]) -> Outcome {
+//! #         Outcome { objectives: [x[0] * x[0], (x[0] - 2.0) * (x[0] - 2.0)], violation: 0.0 }
+//! #     }
+//! # }
+//!
+//! let mut algorithm = Sampling { points: sobol(&Schaffer.variables(), 200, 1), told: 0 };
+//! let archive = run(&Schaffer, &mut algorithm, 200);
+//! assert_eq!(algorithm.told, 200);
+//! let front: Vec<[f64; 2]> = archive.iter().map(|member| member.objectives).collect();
+//! assert!(hypervolume(&front, [4.0, 4.0]) > 10.0);
+//! ```
+//!
+//! | item | purpose |
+//! |---|---|
+//! | [`Problem`], [`Variable`], [`Outcome`], [`Target`] | what is optimized |
+//! | [`Algorithm`], [`FrontDe`], [`Nsga2`], [`Moga2`] | how it is optimized |
+//! | [`Archive`], [`hypervolume()`], [`compare`] | what was found, and how good it is |
+//! | [`knee`], [`spread`], [`ranking`], [`groups`] | choosing from a front |
 
 mod archive;
 mod doe;
