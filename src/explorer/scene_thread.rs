@@ -13,6 +13,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::Duration;
 
+use super::Wake;
 use crate::recording::{FrontPoint, LiveScene, Pinned, Shown, VisibleLayers};
 use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, GridChoice};
@@ -128,8 +129,6 @@ impl<T> Mailbox<T> {
         }
     }
 }
-
-type Wake = Arc<dyn Fn() + Send + Sync>;
 
 struct Shared {
     requests: Mailbox<(u64, Request)>,

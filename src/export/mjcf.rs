@@ -3,11 +3,48 @@
 
 use super::xml::Element;
 use super::{Format, Prepared, inertial, joint_axis, joint_name, rgba};
-use crate::scene::{Body, Solid, SolidShape};
+use crate::scene::{Body, Joint, Solid, SolidShape};
 use kinefront_model::mechanism::Actuator;
 
 pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
-    let linkage = &subject.linkage;
+    let root = Element::new("mujoco")
+        .with("model", subject.identifier())
+        .children(settings())
+        .child(world(subject))
+        .child(Element::new("equality").children(closures(subject)))
+        .child(Element::new("actuator").children(servos(subject)))
+        .child(Element::new("sensor").children(["x", "y", "phi"].map(|axis| {
+            Element::new("jointpos")
+                .with("name", format!("platform_{axis}_value"))
+                .with("joint", format!("platform_{axis}"))
+        })))
+        .child(Element::new("keyframe").child(start(subject)));
+    root.document(&subject.preamble(Format::Mjcf))
+}
+
+/// Units, integrator and stiffness of the contacts and closures.
+fn settings() -> [Element; 3] {
+    [
+        Element::new("compiler")
+            .with("angle", "radian")
+            .with("autolimits", "true"),
+        // The servos have the stiffness K_act, which requires a short time step.
+        Element::new("option")
+            .with("timestep", "0.0001")
+            .with("integrator", "implicitfast")
+            .with("gravity", "0 0 -9.81"),
+        Element::new("default")
+            .child(Element::new("geom").with("contype", "0").with("conaffinity", "0"))
+            .child(
+                Element::new("equality")
+                    .with("solref", "0.0002 1")
+                    .with("solimp", "0.9999 0.9999 0.001 0.5 2"),
+            ),
+    ]
+}
+
+/// Light, base, regular workspace, and the trees of bodies.
+fn world(subject: &Prepared) -> Element {
     let mut world = Element::new("worldbody").child(
         Element::new("light")
             .with("directional", "true")
@@ -27,42 +64,47 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
                 .with("rgba", "0.35 0.7 0.43 0.25"),
         );
     }
-    // Bodies are nested in their parents, so children are created before their parents.
-    let mut inside: Vec<Vec<Element>> = vec![Vec::new(); linkage.bodies.len()];
-    for (place, body) in linkage.bodies.iter().enumerate().rev() {
-        let mut element = element(subject, body);
+    world.children(trees(subject))
+}
+
+/// The bodies, nested in their parents; each tree begins with a body that hangs on the base.
+fn trees(subject: &Prepared) -> Vec<Element> {
+    let bodies = &subject.linkage.bodies;
+    // Children are created before their parents.
+    let mut inside: Vec<Vec<Element>> = vec![Vec::new(); bodies.len()];
+    for (place, body) in bodies.iter().enumerate().rev() {
         // The children were pushed from the last to the first.
         let nested: Vec<Element> = inside[place].drain(..).rev().collect();
-        element = element.children(nested);
-        match body.parent {
-            Some(parent) => inside[parent].push(element),
-            None => inside[place].push(element),
-        }
+        let element = element(subject, body).children(nested);
+        inside[body.parent.unwrap_or(place)].push(element);
     }
-    let roots = linkage
-        .bodies
-        .iter()
-        .enumerate()
-        .filter(|(_, body)| body.parent.is_none());
-    let roots: Vec<Element> = roots.flat_map(|(place, _)| inside[place].clone()).collect();
-    world = world.children(roots);
+    let roots = (0..bodies.len()).filter(|&place| bodies[place].parent.is_none());
+    roots.flat_map(|place| inside[place].clone()).collect()
+}
 
+/// The joints `C_1` to `C_3`, which close the loops.
+fn closures(subject: &Prepared<'_>) -> impl Iterator<Item = Element> {
+    let linkage = &subject.linkage;
     let platform = &linkage.bodies[linkage.platform()];
-    let closures = linkage.closures.iter().enumerate().map(|(leg, closure)| {
+    linkage.closures.iter().enumerate().map(move |(leg, closure)| {
         let [x, y] = closure.on_leg.to_array();
         Element::new("connect")
             .with("name", format!("C{}", leg + 1))
             .with("body1", linkage.bodies[closure.leg].name.clone())
             .with("body2", platform.name.clone())
             .with_numbers("anchor", &[x, y, 0.0])
-    });
-    let driven = || {
-        linkage
-            .bodies
-            .iter()
-            .filter_map(|body| Some((body, body.joint.filter(|joint| joint.actuated)?)))
-    };
-    let actuators = driven().map(|(body, joint)| {
+    })
+}
+
+/// The bodies with an actuated joint, and these joints.
+fn actuated<'a>(subject: &'a Prepared<'_>) -> impl Iterator<Item = (&'a Body, Joint)> {
+    let bodies = subject.linkage.bodies.iter();
+    bodies.filter_map(|body| Some((body, body.joint.filter(|joint| joint.actuated)?)))
+}
+
+/// Position servos whose gain is the study's actuator stiffness.
+fn servos(subject: &Prepared<'_>) -> impl Iterator<Item = Element> {
+    actuated(subject).map(|(body, joint)| {
         let servo = Element::new("position")
             .with("name", format!("{}_servo", body.name))
             .with("joint", joint_name(body))
@@ -72,41 +114,13 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
             Some(limits) => servo.with_numbers("ctrlrange", &limits),
             None => servo,
         }
-    });
-    let start: Vec<f64> = driven().map(|(_, joint)| joint.value).collect();
-    let root = Element::new("mujoco")
-        .with("model", subject.identifier())
-        .child(
-            Element::new("compiler")
-                .with("angle", "radian")
-                .with("autolimits", "true"),
-        )
-        .child(
-            // The servos have the stiffness K_act, which requires a short time step.
-            Element::new("option")
-                .with("timestep", "0.0001")
-                .with("integrator", "implicitfast")
-                .with("gravity", "0 0 -9.81"),
-        )
-        .child(
-            Element::new("default")
-                .child(Element::new("geom").with("contype", "0").with("conaffinity", "0"))
-                .child(
-                    Element::new("equality")
-                        .with("solref", "0.0002 1")
-                        .with("solimp", "0.9999 0.9999 0.001 0.5 2"),
-                ),
-        )
-        .child(world)
-        .child(Element::new("equality").children(closures))
-        .child(Element::new("actuator").children(actuators))
-        .child(Element::new("sensor").children(["x", "y", "phi"].map(|axis| {
-            Element::new("jointpos")
-                .with("name", format!("platform_{axis}_value"))
-                .with("joint", format!("platform_{axis}"))
-        })))
-        .child(Element::new("keyframe").child(Element::new("key").with("name", "start").with_numbers("ctrl", &start)));
-    root.document(&subject.preamble(Format::Mjcf))
+    })
+}
+
+/// The actuator values at the exported pose.
+fn start(subject: &Prepared) -> Element {
+    let values: Vec<f64> = actuated(subject).map(|(_, joint)| joint.value).collect();
+    Element::new("key").with("name", "start").with_numbers("ctrl", &values)
 }
 
 fn element(subject: &Prepared, body: &Body) -> Element {

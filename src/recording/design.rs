@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::card::card;
 use super::draw::Canvas;
-use super::subject::RecordedDesign;
+use super::subject::DrawnDesign;
 use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
 use super::{blueprint, paths, timelines};
 use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour};
@@ -35,7 +35,7 @@ pub fn record_design(
 ) -> Result<(), RecordingError> {
     let model = &study.model().map_err(RecordingError::encode)?;
     let writer = RecordingWriter::create(path, heading)?;
-    let subject = RecordedDesign { model, evaluation };
+    let subject = DrawnDesign { model, evaluation };
     let cylinder = regular_workspace(evaluation, model.workspace.rotation_range_deg);
     let tour = cylinder.and_then(|cylinder| tour(model, &evaluation.design, &cylinder, TOUR_STEPS));
     let still = [subject.home()];
@@ -94,7 +94,7 @@ pub(super) fn record_step(
     evaluation: &Evaluation,
     heading: &str,
 ) -> Result<(), RecordingError> {
-    let subject = RecordedDesign { model, evaluation };
+    let subject = DrawnDesign { model, evaluation };
     let canvas = Canvas::at(writer, moment);
     let home = subject.home();
     if let Ok(scene) = manipulator(model, &evaluation.design, &home) {

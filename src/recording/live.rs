@@ -9,7 +9,7 @@ use rerun::{Transform3D, Vec3D};
 use super::draw::Canvas;
 use super::scatter::{FrontPoint, PlotRange, front_points, selected, staircase};
 use super::stage::{Rows, Stage};
-use super::subject::RecordedDesign;
+use super::subject::DrawnDesign;
 use super::writer::{RecordingError, RecordingWriter};
 use super::{blueprint, colors, paths};
 use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Scene, ellipsoids, manipulator};
@@ -229,7 +229,7 @@ impl LiveScene {
             let (x, y) = (off(index % columns, columns), -off(index / columns, rows_of_pins));
             let transform = Transform3D::from_translation(Vec3D::new(x as f32, y as f32, 0.0));
             rows.borrow_mut().push(&root, &transform);
-            let subject = RecordedDesign {
+            let subject = DrawnDesign {
                 model,
                 evaluation: pin.evaluation,
             };
@@ -296,7 +296,7 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<(), RecordingError> {
         layers,
         ..
     } = *shown;
-    let subject = RecordedDesign { model, evaluation };
+    let subject = DrawnDesign { model, evaluation };
     let home = subject.home();
     let pose = shown.pose.unwrap_or(home);
     if let Ok(mut scene) = manipulator(model, &evaluation.design, &pose) {

@@ -23,12 +23,12 @@ const SPAN_DEG: f64 = 75.0;
 
 /// A design with its evaluation and the model.
 #[derive(Clone, Copy)]
-pub(super) struct RecordedDesign<'a> {
+pub(super) struct DrawnDesign<'a> {
     pub(super) model: &'a Model,
     pub(super) evaluation: &'a Evaluation,
 }
 
-impl RecordedDesign<'_> {
+impl DrawnDesign<'_> {
     pub(super) fn design(&self) -> &Design {
         &self.evaluation.design
     }

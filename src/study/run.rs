@@ -73,84 +73,146 @@ impl Publisher {
 
 fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<(), String> {
     let start = Instant::now();
-    let problem = DesignProblem::new(&study).map_err(|error| error.to_string())?;
-    let mut pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("kinefront-evaluate-{index}"));
-    if let Some(threads) = study.optimizer.threads {
-        pool = pool.num_threads(threads);
-    }
-    let pool = pool
-        .build()
-        .map_err(|error| format!("cannot start the worker threads: {error}"))?;
-    let threads = pool.current_num_threads();
-    let reference = [study.hypervolume.reference_mass_kg, 0.0];
-    let budget = study.optimizer.evaluations;
-    let front_designs = study.optimizer.front_designs;
-    let stopping = Stopping::new(&study.optimizer);
-    let mut algorithm = algorithm(&study, &problem);
+    let mut search = Search::new(&study)?;
     publisher.send(Event::Started(Started {
         study: Arc::new(study),
-        threads,
+        threads: search.pool.current_num_threads(),
     }));
+    let outcome = search.run(start, control, publisher)?;
+    search.times.search_s = start.elapsed().as_secs_f64();
 
-    let mut times = RunTimes::default();
-    let mut archive = Archive::default();
-    let mut members: BTreeMap<usize, FrontMember> = BTreeMap::new();
-    let mut history: Vec<GenerationSummary> = Vec::new();
-    let (mut evaluated_count, mut feasible, mut generation) = (0, 0, 0);
-    let mut outcome = EndReason::Completed;
-    while evaluated_count < budget {
-        if !control.go_on() {
-            outcome = EndReason::Stopped;
-            break;
+    let verifying = Instant::now();
+    let found = std::mem::take(&mut search.members);
+    let dropped_from = found.len();
+    let front = found.into_values().collect();
+    let Some(verified) = verify(front, &search.problem, &search.pool, control, publisher) else {
+        return Ok(());
+    };
+    search.times.verification_s = verifying.elapsed().as_secs_f64();
+    search.times.publish_s = publisher.spent.as_secs_f64();
+    let dropped = dropped_from - verified.len();
+    publisher.send(Event::Finished(search.summary(outcome, &verified, dropped)));
+    Ok(())
+}
+
+/// A search in progress.
+struct Search {
+    problem: DesignProblem,
+    algorithm: Box<dyn Algorithm>,
+    pool: rayon::ThreadPool,
+    stopping: Stopping,
+    /// Number of evaluations allowed.
+    budget: usize,
+    /// Number of designs of the verified front that are kept.
+    front_designs: usize,
+    /// Reference point of the hypervolume.
+    reference: [f64; 2],
+    archive: Archive,
+    /// The members of the archive, by id.
+    members: BTreeMap<usize, FrontMember>,
+    history: Vec<GenerationSummary>,
+    evaluated: usize,
+    feasible: usize,
+    times: RunTimes,
+}
+
+/// A generation that was evaluated: the candidates as completed, and their evaluations.
+struct Generation {
+    values: Vec<Vec<f64>>,
+    evaluations: Vec<Evaluation>,
+}
+
+impl Search {
+    fn new(study: &Study) -> Result<Self, String> {
+        let problem = DesignProblem::new(study).map_err(|error| error.to_string())?;
+        let mut pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("kinefront-evaluate-{index}"));
+        if let Some(threads) = study.optimizer.threads {
+            pool = pool.num_threads(threads);
         }
-        generation += 1;
-        let required = Instant::now();
-        let mut candidates = algorithm.ask();
-        candidates.truncate(budget - evaluated_count);
-        times.optimizer_s += required.elapsed().as_secs_f64();
+        let pool = pool
+            .build()
+            .map_err(|error| format!("cannot start the worker threads: {error}"))?;
+        Ok(Self {
+            algorithm: algorithm(study, &problem),
+            problem,
+            pool,
+            stopping: Stopping::new(&study.optimizer),
+            budget: study.optimizer.evaluations,
+            front_designs: study.optimizer.front_designs,
+            reference: [study.hypervolume.reference_mass_kg, 0.0],
+            archive: Archive::default(),
+            members: BTreeMap::new(),
+            history: Vec::new(),
+            evaluated: 0,
+            feasible: 0,
+            times: RunTimes::default(),
+        })
+    }
 
-        let began = Instant::now();
-        let (values, evaluations): (Vec<Vec<f64>>, Vec<Evaluation>) = pool
-            .install(|| {
-                candidates
-                    .into_par_iter()
-                    .map(|candidate| {
-                        let x = problem.completed(candidate);
-                        problem.evaluation(&x).map(|evaluation| (x, evaluation))
-                    })
-                    .collect::<Result<_, _>>()
-            })
+    /// Searches until the budget is used, or until the search is ended; returns the reason.
+    fn run(&mut self, start: Instant, control: &RunControl, publisher: &mut Publisher) -> Result<EndReason, String> {
+        while self.evaluated < self.budget {
+            if !control.go_on() {
+                return Ok(EndReason::Stopped);
+            }
+            let generation = self.evaluate_generation()?;
+            self.tell(generation, publisher);
+            let spent = self.evaluated >= self.budget;
+            if let Some(reason) = self.stopping.reason(start.elapsed(), &self.history).filter(|_| !spent) {
+                return Ok(reason);
+            }
+        }
+        Ok(EndReason::Completed)
+    }
+
+    /// Asks the algorithm for a generation and evaluates it; the budget may cut the last one short.
+    fn evaluate_generation(&mut self) -> Result<Generation, String> {
+        let asking = Instant::now();
+        let mut candidates = self.algorithm.ask();
+        candidates.truncate(self.budget - self.evaluated);
+        self.times.optimizer_s += asking.elapsed().as_secs_f64();
+
+        let evaluating = Instant::now();
+        let problem = &self.problem;
+        let evaluate = |candidate| {
+            let x = problem.completed(candidate);
+            problem.evaluation(&x).map(|evaluation| (x, evaluation))
+        };
+        let (values, evaluations) = self
+            .pool
+            .install(|| candidates.into_par_iter().map(evaluate).collect::<Result<_, _>>())
             .map_err(|error| error.to_string())?;
-        times.evaluation_s += began.elapsed().as_secs_f64();
+        self.times.evaluation_s += evaluating.elapsed().as_secs_f64();
+        Ok(Generation { values, evaluations })
+    }
 
+    /// Tells the algorithm the outcomes in the order of the candidates, keeps the archive, and sends the events.
+    fn tell(&mut self, Generation { values, evaluations }: Generation, publisher: &mut Publisher) {
         let telling = Instant::now();
+        let (generation, first_id) = (self.history.len() + 1, self.evaluated);
         let mut front_changed = false;
         let mut evaluated = Vec::with_capacity(values.len());
-        for (offset, (x, evaluation)) in values.into_iter().zip(&evaluations).enumerate() {
+        for ((id, x), evaluation) in (first_id..).zip(values).zip(&evaluations) {
             let candidate = Evaluated {
                 x,
                 outcome: DesignProblem::outcome(evaluation),
             };
-            feasible += usize::from(evaluation.is_feasible());
-            let id = evaluated_count + offset;
-            if archive.insert(id, &candidate) {
+            self.feasible += usize::from(evaluation.is_feasible());
+            if self.archive.insert(id, &candidate) {
                 front_changed = true;
-                members.insert(
+                let member = FrontMember {
                     id,
-                    FrontMember {
-                        id,
-                        generation,
-                        evaluation: evaluation.clone(),
-                        reference_radius: evaluation.workspace_radius,
-                    },
-                );
+                    generation,
+                    evaluation: evaluation.clone(),
+                    reference_radius: evaluation.workspace_radius,
+                };
+                self.members.insert(id, member);
             }
             evaluated.push(candidate);
         }
-        let first_id = evaluated_count;
-        evaluated_count += evaluated.len();
-        algorithm.tell(evaluated);
-        times.optimizer_s += telling.elapsed().as_secs_f64();
+        self.evaluated += evaluated.len();
+        self.algorithm.tell(evaluated);
+        self.times.optimizer_s += telling.elapsed().as_secs_f64();
 
         publisher.send(Event::Evaluated(Batch {
             generation,
@@ -158,51 +220,50 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
             evaluations,
         }));
         if front_changed {
-            let kept = archive
-                .iter()
-                .filter_map(|member| members.remove(&member.id))
-                .collect::<Vec<_>>();
-            members = kept.iter().map(|member| (member.id, member.clone())).collect();
-            publisher.send(Event::Front(kept));
+            publisher.send(Event::Front(self.keep_members()));
         }
-        let summary = GenerationSummary {
-            generation,
-            evaluations: evaluated_count,
-            feasible,
-            front_size: archive.len(),
-            hypervolume: hypervolume(archive.iter().map(|member| member.objectives), reference),
-        };
-        history.push(summary);
+        let summary = self.generation_summary(generation);
+        self.history.push(summary);
         publisher.send(Event::Generation(summary));
-        if evaluated_count < budget
-            && let Some(reason) = stopping.reason(start.elapsed(), &history)
-        {
-            outcome = reason;
-            break;
+    }
+
+    /// Drops the members that left the archive; returns the others in its order.
+    fn keep_members(&mut self) -> Vec<FrontMember> {
+        let members = &mut self.members;
+        let kept: Vec<FrontMember> = self
+            .archive
+            .iter()
+            .filter_map(|member| members.remove(&member.id))
+            .collect();
+        self.members = kept.iter().map(|member| (member.id, member.clone())).collect();
+        kept
+    }
+
+    fn generation_summary(&self, generation: usize) -> GenerationSummary {
+        GenerationSummary {
+            generation,
+            evaluations: self.evaluated,
+            feasible: self.feasible,
+            front_size: self.archive.len(),
+            hypervolume: hypervolume(self.archive.iter().map(|member| member.objectives), self.reference),
         }
     }
-    times.search_s = start.elapsed().as_secs_f64();
 
-    let found = members.len();
-    let verifying = Instant::now();
-    let Some(verified) = verify(members.into_values().collect(), &problem, &pool, control, publisher) else {
-        return Ok(());
-    };
-    times.verification_s = verifying.elapsed().as_secs_f64();
-    times.publish_s = publisher.spent.as_secs_f64();
-    let objectives: Vec<[f64; 2]> = verified.iter().map(FrontMember::objectives).collect();
-    let shown = spread(&objectives, front_designs);
-    publisher.send(Event::Finished(RunSummary {
-        outcome,
-        threads,
-        history,
-        dropped: found - verified.len(),
-        verified_hypervolume: hypervolume(objectives, reference),
-        verified: verified.len(),
-        front: shown.into_iter().map(|place| verified[place].clone()).collect(),
-        times,
-    }));
-    Ok(())
+    /// The summary of the run, with the verified front thinned to evenly spread designs.
+    fn summary(self, outcome: EndReason, verified: &[FrontMember], dropped: usize) -> RunSummary {
+        let objectives: Vec<[f64; 2]> = verified.iter().map(FrontMember::objectives).collect();
+        let shown = spread(&objectives, self.front_designs);
+        RunSummary {
+            outcome,
+            threads: self.pool.current_num_threads(),
+            history: self.history,
+            dropped,
+            verified_hypervolume: hypervolume(objectives, self.reference),
+            verified: verified.len(),
+            front: shown.into_iter().map(|place| verified[place].clone()).collect(),
+            times: self.times,
+        }
+    }
 }
 
 fn algorithm(study: &Study, problem: &DesignProblem) -> Box<dyn Algorithm> {

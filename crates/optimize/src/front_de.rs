@@ -18,7 +18,7 @@
 //! - **Crossover**: where differences do not help (many local fronts, separable variables), simulated binary crossover
 //!   and polynomial mutation do. The probability of each of the two operators follows its recent success.
 
-use super::population::{Individual, best, ranked, tournament};
+use super::population::{PopulationMember, best, ranked, tournament};
 use super::random::Random;
 use super::variation::{cross, mutate};
 use super::{Algorithm, Archive, Candidate, Evaluated, Target, Variable, doe};
@@ -107,7 +107,7 @@ struct Niche {
     /// Values of the categorical variables, in the order of the variables.
     categories: Vec<f64>,
     /// Members in the order of the front: feasible members by the first objective, then infeasible ones by violation.
-    population: Vec<Individual>,
+    population: Vec<PopulationMember>,
     evaluated: usize,
     success: Success,
 }
@@ -346,10 +346,10 @@ fn set_categories(variables: &[Variable], x: &mut [f64], categories: &[f64]) {
 
 /// Ranks the candidates and sorts them along the front: feasible ones by the first objective, then infeasible ones by
 /// violation.
-fn along_front(candidates: Vec<Evaluated>) -> Vec<Individual> {
+fn along_front(candidates: Vec<Evaluated>) -> Vec<PopulationMember> {
     let mut members = ranked(candidates);
     members.sort_by(|a, b| {
-        let key = |member: &Individual| {
+        let key = |member: &PopulationMember| {
             let outcome = &member.candidate.outcome;
             (outcome.violation.max(0.0), outcome.objectives[0])
         };

@@ -59,8 +59,8 @@
 //! let mut algorithm = Sampling { points: sobol(&Schaffer.variables(), 200, 1), told: 0 };
 //! let archive = run(&Schaffer, &mut algorithm, 200);
 //! assert_eq!(algorithm.told, 200);
-//! let front: Vec<[f64; 2]> = archive.iter().map(|member| member.objectives).collect();
-//! assert!(hypervolume(&front, [4.0, 4.0]) > 10.0);
+//! let front = archive.iter().map(|member| member.objectives);
+//! assert!(hypervolume(front, [4.0, 4.0]) > 10.0);
 //! ```
 //!
 //! | item | purpose |

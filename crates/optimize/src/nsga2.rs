@@ -5,7 +5,7 @@
 //! generation. A child that equals a member of the population or another child is not evaluated; a further pair of
 //! parents is drawn instead.
 
-use super::population::{Individual, ranked, tournament};
+use super::population::{PopulationMember, ranked, tournament};
 use super::random::Random;
 use super::variation::{cross, mutate};
 use super::{Algorithm, Candidate, Evaluated, Variable, doe};
@@ -46,7 +46,7 @@ pub struct Nsga2 {
     settings: Nsga2Settings,
     random: Random,
     seed: u64,
-    population: Vec<Individual>,
+    population: Vec<PopulationMember>,
 }
 
 /// Number of pairs of parents, per individual of the population, that are drawn before copies are accepted as
@@ -122,7 +122,7 @@ impl Algorithm for Nsga2 {
 }
 
 /// Keeps the best `size` candidates of `pool` by rank and, within the last rank kept, by crowding distance.
-fn survive(pool: Vec<Evaluated>, size: usize) -> Vec<Individual> {
+fn survive(pool: Vec<Evaluated>, size: usize) -> Vec<PopulationMember> {
     let mut members = ranked(pool);
     // The sort is stable: among equals the older member is kept.
     members.sort_by(|a, b| a.rank.cmp(&b.rank).then(b.crowding.total_cmp(&a.crowding)));

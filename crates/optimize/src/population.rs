@@ -9,7 +9,7 @@ use super::{Evaluated, Outcome};
 
 /// A member of a population.
 #[derive(Debug, Clone)]
-pub struct Individual {
+pub struct PopulationMember {
     pub candidate: Evaluated,
     /// Non-domination rank, 0 for a non-dominated member.
     pub rank: usize,
@@ -18,7 +18,7 @@ pub struct Individual {
 }
 
 /// Determines the rank and the crowding distance of each candidate.
-pub fn ranked(candidates: Vec<Evaluated>) -> Vec<Individual> {
+pub fn ranked(candidates: Vec<Evaluated>) -> Vec<PopulationMember> {
     let outcomes: Vec<Outcome> = candidates.iter().map(|candidate| candidate.outcome).collect();
     let ranks = non_dominated_ranks(&outcomes);
     let mut crowding = vec![0.0; outcomes.len()];
@@ -33,7 +33,7 @@ pub fn ranked(candidates: Vec<Evaluated>) -> Vec<Individual> {
         .into_iter()
         .zip(ranks)
         .zip(crowding)
-        .map(|((candidate, rank), crowding)| Individual {
+        .map(|((candidate, rank), crowding)| PopulationMember {
             candidate,
             rank,
             crowding,
@@ -42,7 +42,7 @@ pub fn ranked(candidates: Vec<Evaluated>) -> Vec<Individual> {
 }
 
 /// Draws two members and returns the place of the better one: by rank, then by crowding distance, then at random.
-pub fn tournament(random: &mut Random, population: &[Individual]) -> usize {
+pub fn tournament(random: &mut Random, population: &[PopulationMember]) -> usize {
     let a = random.below(population.len());
     let b = random.below(population.len());
     let coin = random.chance(0.5);

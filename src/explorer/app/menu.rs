@@ -10,94 +10,32 @@ use super::shortcuts::SHORTCUTS;
 use super::{Explorer, layout};
 use crate::export::Format;
 
+/// Entries of the menu "File" that select a file first.
+const FILE_ENTRIES: [(&str, Purpose); 9] = [
+    ("Open… (Ctrl+O)", Purpose::Open),
+    ("Open run folder…", Purpose::OpenFolder),
+    ("Save recording… (Ctrl+S)", Purpose::SaveRecording),
+    ("Save run folder…", Purpose::SaveRun),
+    ("Save study…", Purpose::SaveStudy),
+    ("Create report…", Purpose::Report),
+    ("Export front…", Purpose::ExportFront),
+    ("Record design…", Purpose::RecordDesign),
+    ("Save picture…", Purpose::SavePicture),
+];
+
 impl Explorer {
+    /// Draws the menu bar.
     pub(super) fn menu(&mut self, ui: &mut Ui) {
         egui::MenuBar::new().ui(ui, |ui| {
-            let mut requested = None;
-            ui.menu_button("File", |ui| {
-                for (text, purpose) in [
-                    ("Open… (Ctrl+O)", Purpose::Open),
-                    ("Open run folder…", Purpose::OpenFolder),
-                    ("Save recording… (Ctrl+S)", Purpose::SaveRecording),
-                    ("Save run folder…", Purpose::SaveRun),
-                    ("Save study…", Purpose::SaveStudy),
-                    ("Create report…", Purpose::Report),
-                    ("Export front…", Purpose::ExportFront),
-                    ("Record design…", Purpose::RecordDesign),
-                    ("Save picture…", Purpose::SavePicture),
-                ] {
-                    if ui.button(text).clicked() {
-                        requested = Some(purpose);
-                    }
-                }
-                ui.menu_button("Export design", |ui| {
-                    for format in Format::ALL {
-                        if ui.button(format!("{}…", format.title())).clicked() {
-                            requested = Some(Purpose::ExportDesign(format));
-                        }
-                    }
-                });
-                let recent = self.recent.clone();
-                ui.menu_button("Open recent", |ui| {
-                    for path in recent {
-                        if ui.button(path.display().to_string()).clicked() {
-                            self.act(&ui.ctx().clone(), Purpose::Open, path);
-                        }
-                    }
-                });
-                if ui.button("Quit (Ctrl+Q)").clicked() {
-                    ui.ctx().send_viewport_cmd(ViewportCommand::Close);
-                }
-            });
-            ui.menu_button("Edit", |ui| {
-                let (can_undo, can_redo) = (self.session.history.can_undo(), self.session.history.can_redo());
-                if ui.add_enabled(can_undo, egui::Button::new("Undo (Ctrl+Z)")).clicked() {
-                    self.session.history.undo();
-                }
-                if ui
-                    .add_enabled(can_redo, egui::Button::new("Redo (Ctrl+Shift+Z)"))
-                    .clicked()
-                {
-                    self.session.history.redo();
-                }
-            });
-            ui.menu_button("View", |ui| {
-                for panel in Panel::ALL {
-                    if ui.button(panel.title()).clicked() {
-                        self.show(panel);
-                    }
-                }
-                ui.separator();
-                if ui.button("Reset layout").clicked() {
-                    self.tree = layout();
-                }
-                if ui
-                    .button(if self.dark { "Light theme" } else { "Dark theme" })
-                    .clicked()
-                {
-                    self.dark = !self.dark;
-                    ui.ctx().set_theme(if self.dark {
-                        egui::Theme::Dark
-                    } else {
-                        egui::Theme::Light
-                    });
-                }
-            });
+            let requested = ui.menu_button("File", |ui| self.file_menu(ui)).inner.flatten();
+            ui.menu_button("Edit", |ui| self.edit_menu(ui));
+            ui.menu_button("View", |ui| self.view_menu(ui));
             if ui.button("?").on_hover_text("keyboard shortcuts").clicked() {
                 self.help = !self.help;
             }
             ui.separator();
             ui.strong(&self.session.study().name);
-            let phase = match self.session.phase() {
-                Phase::Ready => "ready",
-                Phase::Searching => "searching",
-                Phase::Paused => "paused",
-                Phase::Verifying { .. } => "verifying",
-                Phase::Finished(_) => "finished",
-                Phase::Failed => "failed",
-                Phase::Opened(_) => "opened",
-            };
-            ui.weak(phase);
+            ui.weak(phase_name(self.session.phase()));
             if self.jobs > 0 {
                 ui.weak("writing a file…");
             }
@@ -105,6 +43,68 @@ impl Explorer {
                 self.ask(&ui.ctx().clone(), purpose);
             }
         });
+    }
+
+    /// Draws the menu "File"; returns the purpose of the file that the user wants to select.
+    fn file_menu(&mut self, ui: &mut Ui) -> Option<Purpose> {
+        let mut requested = None;
+        for (text, purpose) in FILE_ENTRIES {
+            if ui.button(text).clicked() {
+                requested = Some(purpose);
+            }
+        }
+        ui.menu_button("Export design", |ui| {
+            for format in Format::ALL {
+                if ui.button(format!("{}…", format.title())).clicked() {
+                    requested = Some(Purpose::ExportDesign(format));
+                }
+            }
+        });
+        let recent = self.recent.clone();
+        ui.menu_button("Open recent", |ui| {
+            for path in recent {
+                if ui.button(path.display().to_string()).clicked() {
+                    self.act(&ui.ctx().clone(), Purpose::Open, path);
+                }
+            }
+        });
+        if ui.button("Quit (Ctrl+Q)").clicked() {
+            ui.ctx().send_viewport_cmd(ViewportCommand::Close);
+        }
+        requested
+    }
+
+    fn edit_menu(&mut self, ui: &mut Ui) {
+        let history = &mut self.session.history;
+        let undo = egui::Button::new("Undo (Ctrl+Z)");
+        if ui.add_enabled(history.can_undo(), undo).clicked() {
+            history.undo();
+        }
+        let redo = egui::Button::new("Redo (Ctrl+Shift+Z)");
+        if ui.add_enabled(history.can_redo(), redo).clicked() {
+            history.redo();
+        }
+    }
+
+    fn view_menu(&mut self, ui: &mut Ui) {
+        for panel in Panel::ALL {
+            if ui.button(panel.title()).clicked() {
+                self.show(panel);
+            }
+        }
+        ui.separator();
+        if ui.button("Reset layout").clicked() {
+            self.tree = layout();
+        }
+        let (other, theme) = if self.dark {
+            ("Light theme", egui::Theme::Light)
+        } else {
+            ("Dark theme", egui::Theme::Dark)
+        };
+        if ui.button(other).clicked() {
+            self.dark = !self.dark;
+            ui.ctx().set_theme(theme);
+        }
     }
 
     pub(super) fn notices(&mut self, ui: &mut Ui) {
@@ -192,5 +192,17 @@ impl Explorer {
                 ui.separator();
                 ui.weak("scatter: drag to pan, scroll to zoom, right-drag to zoom into a box, double-click to fit");
             });
+    }
+}
+
+fn phase_name(phase: &Phase) -> &'static str {
+    match phase {
+        Phase::Ready => "ready",
+        Phase::Searching => "searching",
+        Phase::Paused => "paused",
+        Phase::Verifying { .. } => "verifying",
+        Phase::Finished(_) => "finished",
+        Phase::Failed => "failed",
+        Phase::Opened(_) => "opened",
     }
 }

@@ -2,7 +2,8 @@
 
 use egui::{Color32, Grid, RichText, ScrollArea, Ui};
 
-use crate::explorer::{Session, theme};
+use crate::explorer::{Named, Session, theme};
+use crate::study::Column;
 use kinefront_model::evaluation::{Constraint, Evaluation};
 use kinefront_model::mechanism::DESIGN_VARIABLES;
 
@@ -27,76 +28,97 @@ impl ComparePanel {
             .into_iter()
             .map(Option::<&_>::cloned)
             .collect();
-        let (mut lift, mut choose) = (None, None);
+        let (mut unpin, mut choose) = (None, None);
         ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
             Grid::new("compare")
                 .num_columns(1 + pins.len())
                 .striped(true)
                 .spacing([14.0, 4.0])
                 .show(ui, |ui| {
-                    ui.label("");
-                    for (index, pin) in pins.iter().enumerate() {
-                        ui.horizontal(|ui| {
-                            let dark = ui.visuals().dark_mode;
-                            let color = theme::architecture(pin.design.architecture, dark);
-                            if ui.button(RichText::new(&pin.name).color(color).strong()).clicked() {
-                                choose = Some(index);
-                            }
-                            let close = ui.small_button("×");
-                            close.widget_info(|| {
-                                egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("Unpin {}", pin.name))
-                            });
-                            if close.clicked() {
-                                lift = Some(index);
-                            }
-                        });
+                    for (index, pin) in names(ui, &pins).into_iter().enumerate() {
+                        match pin {
+                            Some(PinClick::Name) => choose = Some(index),
+                            Some(PinClick::Unpin) => unpin = Some(index),
+                            None => {}
+                        }
                     }
-                    ui.end_row();
-                    ui.label("architecture");
-                    for pin in &pins {
-                        ui.label(pin.design.architecture.to_string());
-                    }
-                    ui.end_row();
-                    let each = |value: fn(&Evaluation) -> f64| {
-                        evaluations.iter().map(move |e| e.as_ref().map(value)).collect()
-                    };
-                    row(ui, "mass [kg]", each(|e| e.mass), Some(Best::Smallest));
-                    row(ui, "R_w [m]", each(|e| e.workspace_radius), Some(Best::Largest));
-                    row(
-                        ui,
-                        "R_w / mass [mm/kg]",
-                        each(|e| 1e3 * e.workspace_radius / e.mass.max(1e-9)),
-                        Some(Best::Largest),
-                    );
-                    for (index, variable) in DESIGN_VARIABLES.into_iter().enumerate() {
-                        let values = pins.iter().map(|pin| Some(pin.design.values()[index])).collect();
-                        row(ui, &format!("{} [m]", variable.symbol()), values, None);
-                    }
-                    for constraint in Constraint::required(&session.model().thresholds) {
-                        let margins = evaluations
-                            .iter()
-                            .map(|e| e.as_ref().map(|e| e.constraint(constraint).margin))
-                            .collect();
-                        row(ui, &format!("margin {}", constraint.id()), margins, Some(Best::Largest));
-                    }
-                    let clearances = evaluations.iter().map(|e| e.as_ref()?.clearance());
-                    row(ui, "clearance [m]", clearances.collect(), Some(Best::Largest));
-                    ui.label("active constraints");
-                    for evaluation in &evaluations {
-                        let active: Vec<&str> =
-                            evaluation.iter().flat_map(|e| e.active().map(Constraint::id)).collect();
-                        ui.label(active.join(" "));
-                    }
-                    ui.end_row();
+                    dimensions(ui, &pins);
+                    results(ui, session, &evaluations);
                 });
         });
         if let Some(index) = choose {
             session.select_named(&pins[index]);
         }
-        if let Some(index) = lift {
+        if let Some(index) = unpin {
             session.history.edit(|document| drop(document.pins.remove(index)));
         }
     }
+}
+
+/// What the user clicked in the heading of a pinned design.
+#[derive(Clone, Copy)]
+enum PinClick {
+    Name,
+    Unpin,
+}
+
+/// Draws the names of the designs and their architectures; returns what was clicked of each.
+fn names(ui: &mut Ui, pins: &[Named]) -> Vec<Option<PinClick>> {
+    ui.label("");
+    let mut clicks = Vec::new();
+    for pin in pins {
+        let click = ui.horizontal(|ui| {
+            let color = theme::architecture(pin.design.architecture, ui.visuals().dark_mode);
+            let name = ui.button(RichText::new(&pin.name).color(color).strong());
+            let close = ui.small_button("×");
+            close.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("Unpin {}", pin.name))
+            });
+            let unpin = close.clicked().then_some(PinClick::Unpin);
+            unpin.or_else(|| name.clicked().then_some(PinClick::Name))
+        });
+        clicks.push(click.inner);
+    }
+    ui.end_row();
+    ui.label("architecture");
+    for pin in pins {
+        ui.label(pin.design.architecture.to_string());
+    }
+    ui.end_row();
+    clicks
+}
+
+fn dimensions(ui: &mut Ui, pins: &[Named]) {
+    for variable in DESIGN_VARIABLES {
+        let values = pins
+            .iter()
+            .map(|pin| Some(pin.design.values()[variable as usize]))
+            .collect();
+        row(ui, &Column::Dimension(variable).title(), values, None);
+    }
+}
+
+/// Draws the objectives, the margins, the clearance and the active constraints.
+fn results(ui: &mut Ui, session: &Session, evaluations: &[Option<Evaluation>]) {
+    let each = |value: &dyn Fn(&Evaluation) -> Option<f64>| -> Vec<Option<f64>> {
+        evaluations.iter().map(|e| value(e.as_ref()?)).collect()
+    };
+    row(ui, "mass [kg]", each(&|e| Some(e.mass)), Some(Best::Smallest));
+    row(ui, "R_w [m]", each(&|e| Some(e.workspace_radius)), Some(Best::Largest));
+    let per_mass = each(&|e| Some(1e3 * e.workspace_radius / e.mass.max(1e-9)));
+    row(ui, "R_w / mass [mm/kg]", per_mass, Some(Best::Largest));
+    for constraint in Constraint::required(&session.model().thresholds) {
+        let margins = each(&|e| Some(e.constraint(constraint).margin));
+        row(ui, &Column::Margin(constraint).title(), margins, Some(Best::Largest));
+    }
+    let clearance = Column::Value(Constraint::Clearance).title();
+    row(ui, &clearance, each(&Evaluation::clearance), Some(Best::Largest));
+    ui.label("active constraints");
+    for evaluation in evaluations {
+        let active: Vec<&str> = evaluation.iter().flat_map(|e| e.active().map(Constraint::id)).collect();
+        ui.label(active.join(" "));
+    }
+    ui.end_row();
 }
 
 #[derive(Clone, Copy)]

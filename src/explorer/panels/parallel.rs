@@ -3,7 +3,9 @@
 use crate::study::{Better, Column};
 use std::sync::Arc;
 
-use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
+use egui::{
+    Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, WidgetType,
+};
 
 use crate::explorer::{Session, theme};
 use kinefront_model::evaluation::{Constraint, Model};
@@ -70,76 +72,53 @@ impl ParallelPanel {
         if let Some((_, mesh)) = &self.drawn {
             painter.add(Shape::Mesh(Arc::clone(mesh)));
         }
-        let place = |index: usize| plot.left() + plot.width() * index as f32 / (axes.len() - 1) as f32;
-        if let Some(known) = session.known() {
-            let row = crate::explorer::Row::new(0, &known.evaluation);
-            let points: Vec<Pos2> = axes
-                .iter()
-                .enumerate()
-                .map(|(index, axis)| {
-                    Pos2::new(
-                        place(index),
-                        self.height(index, *axis, row.number(*axis).unwrap_or(f64::NAN), plot),
-                    )
-                })
-                .collect();
-            painter.line(
-                points,
-                Stroke::new(
-                    2.2,
-                    if session.is_modified() {
-                        theme::MODIFIED
-                    } else {
-                        theme::SELECTED
-                    },
-                ),
-            );
-        }
-        let ink = theme::ink(ui);
-        for (index, axis) in axes.iter().enumerate() {
-            let x = place(index);
-            painter.vline(x, plot.y_range(), Stroke::new(1.0, ink.gamma_multiply(0.7)));
-            let better = match axis.better() {
-                Some(Better::Higher) => " ▲",
-                Some(Better::Lower) => " ▼",
-                None => "",
-            };
-            let font = FontId::proportional(12.0);
-            painter.text(
-                Pos2::new(x, rect.top() + 4.0),
-                Align2::CENTER_TOP,
-                format!("{}{better}", axis.short()),
-                font,
-                ink,
-            );
-            let font = FontId::proportional(9.5);
-            let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
-            let weak = ui.visuals().weak_text_color();
-            painter.text(
-                Pos2::new(x, plot.top() - 3.0),
-                Align2::CENTER_BOTTOM,
-                theme::number(high),
-                font.clone(),
-                weak,
-            );
-            painter.text(
-                Pos2::new(x, plot.bottom() + 3.0),
-                Align2::CENTER_TOP,
-                theme::number(low),
-                font,
-                weak,
-            );
-            if let Some([from, to]) = session.document().filter.range(*axis) {
-                let (top, bottom) = (
-                    self.height(index, *axis, to, plot),
-                    self.height(index, *axis, from, plot),
-                );
-                let brush = Rect::from_min_max(Pos2::new(x - 6.0, top), Pos2::new(x + 6.0, bottom));
-                painter.rect_filled(brush, 2.0, theme::ACTIVE.gamma_multiply(0.45));
-                painter.rect_stroke(brush, 2.0, Stroke::new(1.0, theme::ACTIVE), egui::StrokeKind::Middle);
-            }
+        self.selected_line(&painter, session, &axes, plot);
+        for index in 0..axes.len() {
+            self.axis(ui, &painter, session, &axes, index, plot);
         }
         self.brush(&response, session, &axes, plot);
+    }
+
+    /// Draws the line of the selected design.
+    fn selected_line(&self, painter: &Painter, session: &Session, axes: &[Column], plot: Rect) {
+        let Some(known) = session.known() else { return };
+        let row = crate::explorer::Row::new(0, &known.evaluation);
+        let point = |(index, axis): (usize, &Column)| {
+            let value = row.number(*axis).unwrap_or(f64::NAN);
+            Pos2::new(left_of(index, axes, plot), self.height(index, *axis, value, plot))
+        };
+        let color = if session.is_modified() {
+            theme::MODIFIED
+        } else {
+            theme::SELECTED
+        };
+        painter.line(axes.iter().enumerate().map(point).collect(), Stroke::new(2.2, color));
+    }
+
+    /// Draws an axis with its title, its ends, and the range of the filter.
+    fn axis(&self, ui: &Ui, painter: &Painter, session: &Session, axes: &[Column], index: usize, plot: Rect) {
+        let (axis, x) = (axes[index], left_of(index, axes, plot));
+        let (ink, weak) = (theme::ink(ui), ui.visuals().weak_text_color());
+        painter.vline(x, plot.y_range(), Stroke::new(1.0, ink.gamma_multiply(0.7)));
+        let better = match axis.better() {
+            Some(Better::Higher) => " ▲",
+            Some(Better::Lower) => " ▼",
+            None => "",
+        };
+        let text = |y: f32, align: Align2, text: String, size: f32, color: Color32| {
+            painter.text(Pos2::new(x, y), align, text, FontId::proportional(size), color);
+        };
+        let title = format!("{}{better}", axis.short());
+        text(plot.top() - 36.0, Align2::CENTER_TOP, title, 12.0, ink);
+        let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
+        text(plot.top() - 3.0, Align2::CENTER_BOTTOM, theme::number(high), 9.5, weak);
+        text(plot.bottom() + 3.0, Align2::CENTER_TOP, theme::number(low), 9.5, weak);
+        if let Some([from, to]) = session.document().filter.range(axis) {
+            let (top, bottom) = (self.height(index, axis, to, plot), self.height(index, axis, from, plot));
+            let brush = Rect::from_min_max(Pos2::new(x - 6.0, top), Pos2::new(x + 6.0, bottom));
+            painter.rect_filled(brush, 2.0, theme::ACTIVE.gamma_multiply(0.45));
+            painter.rect_stroke(brush, 2.0, Stroke::new(1.0, theme::ACTIVE), egui::StrokeKind::Middle);
+        }
     }
 
     /// Returns the vertical screen coordinate of a value on an axis.
@@ -217,46 +196,22 @@ impl ParallelPanel {
             .step_by(every)
             .filter(|&id| store.is_feasible(id))
             .collect();
-        self.ranges = axes
-            .iter()
-            .map(|axis| {
-                let column = store.column(*axis);
-                let values = sample.iter().map(|&id| column[id]);
-                let front = session
-                    .front()
-                    .iter()
-                    .map(|entry| entry.row.number(*axis).unwrap_or(f64::NAN));
-                let range = values
-                    .chain(front)
-                    .filter(|value| value.is_finite())
-                    .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-                        [low.min(value), high.max(value)]
-                    });
-                let range = match axis {
-                    Column::Dimension(variable) => session.study().bounds.range(*variable),
-                    // Margins have no upper bound, and those near 0 matter most.
-                    Column::Margin(_) => [range[0].min(0.0), range[1].clamp(0.1, 10.0)],
-                    _ => range,
-                };
-                if range[0] < range[1] {
-                    range
-                } else {
-                    [range[0].min(0.0), range[0].max(0.0) + 1.0]
-                }
-            })
-            .collect();
-        let prepare = session.document().filter.prepare(store);
+        self.ranges = axes.iter().map(|axis| range_of(*axis, session, &sample)).collect();
+        let mesh = self.mesh(session, axes, &sample, plot, dark);
+        self.drawn = Some((drawn, Arc::new(mesh)));
+    }
+
+    /// Draws a line for each sampled design and for each design of the front.
+    fn mesh(&self, session: &Session, axes: &[Column], sample: &[usize], plot: Rect, dark: bool) -> Mesh {
+        let store = session.store();
+        let prepared = session.document().filter.prepare(store);
         let ground = theme::ground(dark);
         let mut mesh = Mesh::default();
-        let spacing = plot.width() / (axes.len() - 1) as f32;
         let mut line = |values: &dyn Fn(Column) -> f64, color: Color32, width: f32| {
             let mut before: Option<Pos2> = None;
             for (index, axis) in axes.iter().enumerate() {
-                let value = values(*axis);
-                let at = Pos2::new(
-                    plot.left() + spacing * index as f32,
-                    self.height(index, *axis, value, plot),
-                );
+                let height = self.height(index, *axis, values(*axis), plot);
+                let at = Pos2::new(left_of(index, axes, plot), height);
                 if let Some(from) = before {
                     segment(&mut mesh, from, at, width, color);
                 }
@@ -264,27 +219,53 @@ impl ParallelPanel {
             }
         };
         // Dimmed designs are drawn first and the front last, so that it is on top.
-        for passes_filter in [false, true] {
-            for &id in sample.iter().filter(|&&id| prepare.passes(id) == passes_filter) {
+        for passes in [false, true] {
+            for &id in sample.iter().filter(|&&id| prepared.passes(id) == passes) {
                 let color = theme::architecture(store.architecture(id), dark);
-                let fraction = if passes_filter { 0.3 } else { 0.07 };
+                let fraction = if passes { 0.3 } else { 0.07 };
                 line(&|axis| store.column(axis)[id], theme::mix(color, ground, fraction), 0.7);
             }
         }
-        for passes_filter in [false, true] {
-            for entry in session.front() {
-                if prepare.passes(entry.id) == passes_filter {
-                    let color = theme::architecture(entry.row.design.architecture, dark);
-                    let fraction = if passes_filter { 0.7 } else { 0.15 };
-                    line(
-                        &|axis| entry.row.number(axis).unwrap_or(f64::NAN),
-                        theme::mix(color, ground, fraction),
-                        1.3,
-                    );
-                }
+        for passes in [false, true] {
+            let front = session.front().iter();
+            for entry in front.filter(|entry| prepared.passes(entry.id) == passes) {
+                let color = theme::architecture(entry.row.design.architecture, dark);
+                let fraction = if passes { 0.7 } else { 0.15 };
+                let value = |axis| entry.row.number(axis).unwrap_or(f64::NAN);
+                line(&value, theme::mix(color, ground, fraction), 1.3);
             }
         }
-        self.drawn = Some((drawn, Arc::new(mesh)));
+        mesh
+    }
+}
+
+/// Horizontal screen coordinate of an axis.
+fn left_of(index: usize, axes: &[Column], plot: Rect) -> f32 {
+    plot.left() + plot.width() * index as f32 / (axes.len() - 1) as f32
+}
+
+/// Range of an axis: that of the sampled designs and the front, or the bounds of a variable.
+fn range_of(axis: Column, session: &Session, sample: &[usize]) -> [f64; 2] {
+    let column = session.store().column(axis);
+    let front = session.front().iter().filter_map(|entry| entry.row.number(axis));
+    let found = sample
+        .iter()
+        .map(|&id| column[id])
+        .chain(front)
+        .filter(|value| value.is_finite())
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+            [low.min(value), high.max(value)]
+        });
+    let range = match axis {
+        Column::Dimension(variable) => session.study().bounds.range(variable),
+        // Margins have no upper bound, and those near 0 matter most.
+        Column::Margin(_) => [found[0].min(0.0), found[1].clamp(0.1, 10.0)],
+        _ => found,
+    };
+    if range[0] < range[1] {
+        range
+    } else {
+        [range[0].min(0.0), range[0].max(0.0) + 1.0]
     }
 }
 

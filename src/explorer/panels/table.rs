@@ -2,7 +2,7 @@
 
 use crate::study::Column;
 use egui::{Align, Label, RichText, Sense, Ui};
-use egui_extras::TableBuilder;
+use egui_extras::{TableBuilder, TableRow};
 
 use crate::explorer::{FrontEntry, Origin, Session, theme};
 use kinefront_model::evaluation::Constraint;
@@ -38,9 +38,61 @@ impl Default for TablePanel {
     }
 }
 
+/// How a row is drawn.
+#[derive(Clone, Copy)]
+struct RowState {
+    /// Whether its design passes the filter.
+    passes: bool,
+    /// Whether its design is the selected one.
+    selected: bool,
+}
+
+/// What the user clicked in the table.
+#[derive(Default)]
+struct Clicked {
+    /// Id of the design to select.
+    design: Option<usize>,
+    /// Id of the design whose star is toggled.
+    star: Option<usize>,
+}
+
+/// The columns that sort the table, with their titles.
+fn sortable() -> Vec<(Key, String)> {
+    let number = |column: Column| (Key::Number(column), column.title());
+    [
+        (Key::Star, "★".to_owned()),
+        (Key::Id, "#".to_owned()),
+        (Key::Architecture, "architecture".to_owned()),
+    ]
+    .into_iter()
+    .chain([Column::Mass, Column::WorkspaceRadius, Column::HomePhi].map(number))
+    .chain(DESIGN_VARIABLES.map(|variable| number(Column::Dimension(variable))))
+    .chain([number(Column::Value(Constraint::Clearance))])
+    .collect()
+}
+
 impl TablePanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        self.search_bar(ui, session);
+        let order = self.order(session);
+        let selected = match session.document().selected.as_ref().map(|selected| &selected.origin) {
+            Some(Origin::Evaluated(id)) => Some(*id),
+            _ => None,
+        };
+        let mut clicked = Clicked::default();
+        egui::ScrollArea::horizontal()
+            .auto_shrink([false, false])
+            .show(ui, |ui| self.table(ui, session, &order, selected, &mut clicked));
+        if let Some(id) = clicked.design {
+            session.choose(id);
+        }
+        if let Some(id) = clicked.star {
+            session.toggle_star_of(id);
+        }
+    }
+
+    fn search_bar(&mut self, ui: &mut Ui, session: &Session) {
         ui.horizontal_wrapped(|ui| {
             let field = ui.add(
                 egui::TextEdit::singleline(&mut self.search)
@@ -56,132 +108,73 @@ impl TablePanel {
                 session.front().len()
             ));
         });
-        let order = self.order(session);
-        let selected = match &session.document().selected {
-            Some(selected) => match selected.origin {
-                Origin::Evaluated(id) => Some(id),
-                _ => None,
-            },
-            None => None,
-        };
-        let columns: Vec<(Key, String)> = [
-            (Key::Star, "★".to_owned()),
-            (Key::Id, "#".to_owned()),
-            (Key::Architecture, "architecture".to_owned()),
-        ]
-        .into_iter()
-        .chain(
-            [Column::Mass, Column::WorkspaceRadius, Column::HomePhi]
-                .map(|quantity| (Key::Number(quantity), quantity.title())),
-        )
-        .chain(DESIGN_VARIABLES.map(|variable| {
-            (
-                Key::Number(Column::Dimension(variable)),
-                Column::Dimension(variable).title(),
+    }
+
+    /// Draws the designs in the given order of their places on the front.
+    fn table(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        order: &[usize],
+        selected: Option<usize>,
+        clicked: &mut Clicked,
+    ) {
+        let columns = sortable();
+        let mut table = TableBuilder::new(ui)
+            .id_salt("front")
+            .striped(true)
+            .sense(Sense::click())
+            .column(egui_extras::Column::exact(22.0))
+            .column(egui_extras::Column::initial(52.0))
+            .columns(
+                egui_extras::Column::initial(96.0).at_least(40.0).clip(true),
+                columns.len() - 2,
             )
-        }))
-        .chain([(
-            Key::Number(Column::Value(Constraint::Clearance)),
-            Column::Value(Constraint::Clearance).title(),
-        )])
-        .collect();
-        let (mut clicked, mut starred) = (None, None);
-        egui::ScrollArea::horizontal()
-            .auto_shrink([false, false])
-            .show(ui, |ui| {
-                let mut table = TableBuilder::new(ui)
-                    .id_salt("front")
-                    .striped(true)
-                    .sense(Sense::click())
-                    .column(egui_extras::Column::exact(22.0))
-                    .column(egui_extras::Column::initial(52.0))
-                    .columns(
-                        egui_extras::Column::initial(96.0).at_least(40.0).clip(true),
-                        columns.len() - 2,
-                    )
-                    .column(egui_extras::Column::initial(70.0))
-                    .column(egui_extras::Column::remainder().clip(true))
-                    .min_scrolled_height(0.0);
-                if selected != self.last_chosen
-                    && let Some(row) = order
-                        .iter()
-                        .position(|&place| Some(session.front()[place].id) == selected)
-                {
-                    table = table.scroll_to_row(row, Some(Align::Center));
-                }
-                self.last_chosen = selected;
-                let filter = session.document().filter.clone();
-                let prepare = filter.prepare(session.store());
-                table
-                    .header(20.0, |mut header| {
-                        for (key, title) in &columns {
-                            header.col(|ui| {
-                                let arrow = match (*key == self.key, self.descending) {
-                                    (false, _) => "",
-                                    (true, false) => " ⏶",
-                                    (true, true) => " ⏷",
-                                };
-                                if ui
-                                    .add(egui::Button::new(format!("{title}{arrow}")).frame(false))
-                                    .clicked()
-                                {
-                                    self.descending = *key == self.key && !self.descending;
-                                    self.key = *key;
-                                }
-                            });
-                        }
-                        header.col(|ui| drop(ui.label("active")));
-                        header.col(|ui| drop(ui.label("note")));
-                    })
-                    .body(|body| {
-                        body.rows(18.0, order.len(), |mut row| {
-                            let entry = &session.front()[order[row.index()]];
-                            let passes_filter = prepare.passes(entry.id);
-                            row.set_selected(Some(entry.id) == selected);
-                            row.col(|ui| {
-                                let star = session.document().stars.contains(&entry.id);
-                                if ui
-                                    .add(egui::Button::new(if star { "★" } else { "☆" }).frame(false))
-                                    .clicked()
-                                {
-                                    starred = Some(entry.id);
-                                }
-                            });
-                            for (key, _) in &columns[1..] {
-                                row.col(|ui| {
-                                    let text = RichText::new(cell(entry, *key));
-                                    let text = if passes_filter { text } else { text.weak() };
-                                    let text = match key {
-                                        Key::Architecture if passes_filter && Some(entry.id) != selected => text.color(
-                                            theme::architecture(entry.row.design.architecture, ui.visuals().dark_mode),
-                                        ),
-                                        Key::Number(Column::Value(Constraint::Clearance))
-                                            if entry.row.clearance().is_some_and(|clearance| clearance < 0.0) =>
-                                        {
-                                            text.color(theme::VIOLATED)
-                                        }
-                                        _ => text,
-                                    };
-                                    ui.add(Label::new(text).selectable(false));
-                                });
-                            }
-                            row.col(|ui| drop(ui.add(Label::new(active(entry)).selectable(false))));
-                            row.col(|ui| {
-                                let note = session.document().notes.get(&entry.id).cloned().unwrap_or_default();
-                                ui.add(Label::new(note).selectable(false));
-                            });
-                            if row.response().clicked() {
-                                clicked = Some(entry.id);
-                            }
-                        });
-                    });
+            .column(egui_extras::Column::initial(70.0))
+            .column(egui_extras::Column::remainder().clip(true))
+            .min_scrolled_height(0.0);
+        // A new selection is scrolled into view once.
+        if selected != self.last_chosen
+            && let Some(row) = order
+                .iter()
+                .position(|&place| Some(session.front()[place].id) == selected)
+        {
+            table = table.scroll_to_row(row, Some(Align::Center));
+        }
+        self.last_chosen = selected;
+        let prepared = session.document().filter.prepare(session.store());
+        table
+            .header(20.0, |mut header| self.header(&mut header, &columns))
+            .body(|body| {
+                body.rows(18.0, order.len(), |mut row| {
+                    let entry = &session.front()[order[row.index()]];
+                    let state = RowState {
+                        passes: prepared.passes(entry.id),
+                        selected: Some(entry.id) == selected,
+                    };
+                    draw_row(&mut row, session, entry, &columns, state, clicked);
+                });
             });
-        if let Some(id) = clicked {
-            session.choose(id);
+    }
+
+    /// Draws the titles; a click sorts the table, a second one in the other direction.
+    fn header(&mut self, header: &mut TableRow<'_, '_>, columns: &[(Key, String)]) {
+        for (key, title) in columns {
+            header.col(|ui| {
+                let arrow = match (*key == self.key, self.descending) {
+                    (false, _) => "",
+                    (true, false) => " ⏶",
+                    (true, true) => " ⏷",
+                };
+                let button = egui::Button::new(format!("{title}{arrow}")).frame(false);
+                if ui.add(button).clicked() {
+                    self.descending = *key == self.key && !self.descending;
+                    self.key = *key;
+                }
+            });
         }
-        if let Some(id) = starred {
-            session.toggle_star_of(id);
-        }
+        header.col(|ui| drop(ui.label("active")));
+        header.col(|ui| drop(ui.label("note")));
     }
 
     /// Returns the positions on the front of the listed designs, in the order of the table.
@@ -218,6 +211,55 @@ impl TablePanel {
             order.reverse();
         }
         order
+    }
+}
+
+fn draw_row(
+    row: &mut TableRow<'_, '_>,
+    session: &Session,
+    entry: &FrontEntry,
+    columns: &[(Key, String)],
+    state: RowState,
+    clicked: &mut Clicked,
+) {
+    let document = session.document();
+    row.set_selected(state.selected);
+    row.col(|ui| {
+        let star = if document.stars.contains(&entry.id) {
+            "★"
+        } else {
+            "☆"
+        };
+        if ui.add(egui::Button::new(star).frame(false)).clicked() {
+            clicked.star = Some(entry.id);
+        }
+    });
+    for (key, _) in &columns[1..] {
+        row.col(|ui| {
+            let text = RichText::new(cell(entry, *key));
+            let text = match key {
+                Key::Number(Column::Value(Constraint::Clearance))
+                    if entry.row.clearance().is_some_and(|clearance| clearance < 0.0) =>
+                {
+                    text.color(theme::VIOLATED)
+                }
+                _ if !state.passes => text.weak(),
+                Key::Architecture if !state.selected => text.color(theme::architecture(
+                    entry.row.design.architecture,
+                    ui.visuals().dark_mode,
+                )),
+                _ => text,
+            };
+            ui.add(Label::new(text).selectable(false));
+        });
+    }
+    row.col(|ui| drop(ui.add(Label::new(active(entry)).selectable(false))));
+    row.col(|ui| {
+        let note = document.notes.get(&entry.id).cloned().unwrap_or_default();
+        ui.add(Label::new(note).selectable(false));
+    });
+    if row.response().clicked() {
+        clicked.design = Some(entry.id);
     }
 }
 

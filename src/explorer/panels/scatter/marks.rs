@@ -6,99 +6,38 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points, Tex
 
 use super::Scatter;
 use crate::explorer::{Row, Session, theme};
+use kinefront_model::mechanism::Architecture;
 use kinefront_optimize::knee;
+
+/// A mark with the text beside it.
+type Mark<'a> = (Points<'a>, Option<Text>);
+
+/// Colours of the lines and texts of a theme, and of its background.
+#[derive(Clone, Copy)]
+struct Colors {
+    ink: Color32,
+    ground: Color32,
+    dark: bool,
+}
 
 impl Scatter {
     /// Returns the lines and marks of the front (a staircase), its designs, the knee, the references and the selected
     /// design.
-    pub(super) fn front<'a>(&self, session: &Session, dark: bool) -> (Vec<Line<'a>>, Vec<(Points<'a>, Option<Text>)>) {
-        let ink = if dark {
-            Color32::from_gray(235)
-        } else {
-            Color32::from_gray(30)
+    pub(super) fn front<'a>(&self, session: &Session, dark: bool) -> (Vec<Line<'a>>, Vec<Mark<'a>>) {
+        let colors = Colors {
+            ink: if dark {
+                Color32::from_gray(235)
+            } else {
+                Color32::from_gray(30)
+            },
+            ground: theme::ground(dark),
+            dark,
         };
-        let ground = theme::ground(dark);
-        let prepare = session.document().filter.prepare(session.store());
         let (mut lines, mut marks) = (Vec::new(), Vec::new());
-        let plain = self.axes.map(|axis| axis.quantity) == [Column::Mass, Column::WorkspaceRadius];
-        let front = session.front();
-        if plain && !front.is_empty() {
-            let mut steps: Vec<[f64; 2]> = Vec::new();
-            for entry in front {
-                let [x, y] = self.place(&entry.row);
-                let before = steps.last().map_or(0.0, |last| last[1]);
-                steps.extend([[x, before], [x, y]]);
-            }
-            if let (Some(&[_, y]), Some(bounds)) = (steps.last(), self.transform) {
-                steps.push([bounds.bounds().max()[0].max(steps[steps.len() - 1][0]), y]);
-            }
-            lines.push(
-                Line::new("", PlotPoints::from(steps))
-                    .color(ink)
-                    .width(1.2)
-                    .allow_hover(false),
-            );
-        }
-        for architecture in &session.study().architectures {
-            for passes_filter in [false, true] {
-                let points: Vec<[f64; 2]> = front
-                    .iter()
-                    .filter(|entry| entry.row.design.architecture == *architecture)
-                    .filter(|entry| prepare.passes(entry.id) == passes_filter)
-                    .map(|entry| self.place(&entry.row))
-                    .collect();
-                let color = theme::architecture(*architecture, dark);
-                let color = if passes_filter {
-                    color
-                } else {
-                    theme::mix(color, ground, 0.3)
-                };
-                marks.push((
-                    Points::new("", points)
-                        .radius(4.0)
-                        .color(color)
-                        .shape(theme::mark(*architecture))
-                        .allow_hover(false),
-                    None,
-                ));
-            }
-        }
-        let objectives: Vec<[f64; 2]> = front.iter().map(|entry| entry.objectives()).collect();
-        if let Some(place) = knee(&objectives) {
-            let at = self.place(&front[place].row);
-            let text = Text::new("", PlotPoint::new(at[0], at[1]), "knee\u{a0}\u{a0}\u{a0}")
-                .color(ink)
-                .anchor(Align2::RIGHT_BOTTOM);
-            marks.push((ring(at, 6.0, ink), Some(text)));
-        }
-        for reference in session.references() {
-            let at = self.place(&Row::new(0, &reference.evaluation));
-            if let (Some([mass, radius]), true) = (reference.stated, plain) {
-                let stated = [self.axes[0].place(mass), self.axes[1].place(radius)];
-                let way = PlotPoints::from(vec![stated, at]);
-                lines.push(
-                    Line::new("", way)
-                        .color(theme::mix(ink, ground, 0.6))
-                        .style(LineStyle::dashed_dense())
-                        .width(1.0)
-                        .allow_hover(false),
-                );
-                marks.push((ring(stated, 4.0, theme::mix(ink, ground, 0.7)), None));
-            }
-            let text = Text::new(
-                "",
-                PlotPoint::new(at[0], at[1]),
-                format!("\u{a0}\u{a0}\u{a0}\u{a0}\u{a0}\u{a0}{}", reference.name),
-            )
-            .color(ink)
-            .anchor(Align2::LEFT_CENTER);
-            let points = Points::new("", vec![at])
-                .shape(MarkerShape::Asterisk)
-                .radius(6.0)
-                .color(ink)
-                .allow_hover(false);
-            marks.push((points, Some(text)));
-        }
+        lines.extend(self.staircase(session, colors));
+        marks.extend(self.designs(session, colors));
+        marks.extend(self.knee(session, colors));
+        self.add_references(session, colors, &mut lines, &mut marks);
         if let Some(known) = session.known() {
             let at = self.place(&Row::new(0, &known.evaluation));
             let color = if session.is_modified() {
@@ -106,10 +45,95 @@ impl Scatter {
             } else {
                 theme::SELECTED
             };
-            marks.push((ring(at, 8.0, color), None));
-            marks.push((ring(at, 9.0, color), None));
+            marks.extend([8.0, 9.0].map(|radius| (ring(at, radius, color), None)));
         }
         (lines, marks)
+    }
+
+    /// Whether the axes are those of the front: mass and workspace radius.
+    fn shows_objectives(&self) -> bool {
+        self.axes.map(|axis| axis.quantity) == [Column::Mass, Column::WorkspaceRadius]
+    }
+
+    /// The edge of the dominated region.
+    fn staircase<'a>(&self, session: &Session, colors: Colors) -> Option<Line<'a>> {
+        let mut steps: Vec<[f64; 2]> = Vec::new();
+        for entry in session.front().iter().filter(|_| self.shows_objectives()) {
+            let [x, y] = self.place(&entry.row);
+            let before = steps.last().map_or(0.0, |last| last[1]);
+            steps.extend([[x, before], [x, y]]);
+        }
+        let &[x, y] = steps.last()?;
+        if let Some(bounds) = self.transform {
+            steps.push([bounds.bounds().max()[0].max(x), y]);
+        }
+        let line = Line::new("", PlotPoints::from(steps));
+        Some(line.color(colors.ink).width(1.2).allow_hover(false))
+    }
+
+    /// The designs of the front by architecture; those that do not pass the filter are dimmed.
+    fn designs<'a>(&self, session: &Session, colors: Colors) -> Vec<Mark<'a>> {
+        let prepared = session.document().filter.prepare(session.store());
+        let of = |architecture: Architecture, passes: bool| {
+            let points: Vec<[f64; 2]> = session
+                .front()
+                .iter()
+                .filter(|entry| entry.row.design.architecture == architecture)
+                .filter(|entry| prepared.passes(entry.id) == passes)
+                .map(|entry| self.place(&entry.row))
+                .collect();
+            let color = theme::architecture(architecture, colors.dark);
+            let color = if passes {
+                color
+            } else {
+                theme::mix(color, colors.ground, 0.3)
+            };
+            let points = Points::new("", points).radius(4.0).color(color);
+            (points.shape(theme::mark(architecture)).allow_hover(false), None)
+        };
+        let architectures = session.study().architectures.iter();
+        architectures
+            .flat_map(|&architecture| [of(architecture, false), of(architecture, true)])
+            .collect()
+    }
+
+    fn knee<'a>(&self, session: &Session, colors: Colors) -> Option<Mark<'a>> {
+        let front = session.front();
+        let objectives: Vec<[f64; 2]> = front.iter().map(|entry| entry.objectives()).collect();
+        let at = self.place(&front[knee(&objectives)?].row);
+        let text = Text::new("", PlotPoint::new(at[0], at[1]), "knee\u{a0}\u{a0}\u{a0}");
+        let text = text.color(colors.ink).anchor(Align2::RIGHT_BOTTOM);
+        Some((ring(at, 6.0, colors.ink), Some(text)))
+    }
+
+    /// The reference designs where this model places them (star), joined to where their source states them (ring).
+    fn add_references<'a>(
+        &self,
+        session: &Session,
+        colors: Colors,
+        lines: &mut Vec<Line<'a>>,
+        marks: &mut Vec<Mark<'a>>,
+    ) {
+        for reference in session.references() {
+            let at = self.place(&Row::new(0, &reference.evaluation));
+            if let (Some([mass, radius]), true) = (reference.stated, self.shows_objectives()) {
+                let stated = [self.axes[0].place(mass), self.axes[1].place(radius)];
+                let line = Line::new("", PlotPoints::from(vec![stated, at]))
+                    .color(theme::mix(colors.ink, colors.ground, 0.6))
+                    .style(LineStyle::dashed_dense())
+                    .width(1.0)
+                    .allow_hover(false);
+                lines.push(line);
+                marks.push((ring(stated, 4.0, theme::mix(colors.ink, colors.ground, 0.7)), None));
+            }
+            let name = format!("{}{}", "\u{a0}".repeat(6), reference.name);
+            let text = Text::new("", PlotPoint::new(at[0], at[1]), name);
+            let points = Points::new("", vec![at]).shape(MarkerShape::Asterisk).radius(6.0);
+            marks.push((
+                points.color(colors.ink).allow_hover(false),
+                Some(text.color(colors.ink).anchor(Align2::LEFT_CENTER)),
+            ));
+        }
     }
 }
 
