@@ -1,7 +1,7 @@
 //! A run in progress in the window, with the files that it writes.
 
 use std::path::PathBuf;
-use std::sync::mpsc::sync_channel;
+use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use super::Intake;
 use crate::recording::Recorder;
-use crate::study::{RunControl, RunWriter, Study, Subscriber};
+use crate::study::{Event, RunControl, RunWriter, Study, Subscriber};
 
 /// Number of events that a channel can hold; the run waits while one is full.
 const CHANNEL: usize = 64;
@@ -72,6 +72,26 @@ struct Clock {
     since: Option<Instant>,
 }
 
+/// The threads that receive the events of a run, and their channels.
+#[derive(Default)]
+struct Listeners {
+    subscribers: Vec<Subscriber>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl Listeners {
+    fn start(&mut self, name: &str, work: impl FnOnce(&Receiver<Arc<Event>>) + Send + 'static) -> Result<(), String> {
+        let (sender, receiver) = sync_channel(CHANNEL);
+        let thread = Builder::new()
+            .name(format!("kinefront-{name}"))
+            .spawn(move || work(&receiver))
+            .map_err(|error| format!("cannot start the run: {error}"))?;
+        self.subscribers.push(sender);
+        self.threads.push(thread);
+        Ok(())
+    }
+}
+
 impl Running {
     /// Starts the run of a study, whose events come from `source`; `wake` is called at every new message.
     ///
@@ -92,54 +112,37 @@ impl Running {
         let path = folder.path().join("run");
         let intake = Arc::new(Intake::new(wake));
         let control = Arc::new(RunControl::default());
-        let mut subscribers = Vec::new();
-        let mut threads = Vec::new();
-
         let tables = RunWriter::create(&path, &study).map_err(|error| error.to_string())?;
         let recorder = Recorder::create(&path.join("recording.rrd"), &study).map_err(|error| error.to_string())?;
-        let mut listen = |name: &str, work: Box<dyn FnOnce(&_) + Send>| -> Result<(), String> {
-            let (sender, receiver) = sync_channel(CHANNEL);
-            subscribers.push(sender);
-            Builder::new()
-                .name(format!("kinefront-{name}"))
-                .spawn(move || work(&receiver))
-                .map(|thread| threads.push(thread))
-                .map_err(|error| format!("cannot start the run: {error}"))
-        };
-        // Each listener keeps the folder until its file is complete.
         let writing = Writing::default();
-        let (held, told, as_run) = (
+        let mut listeners = Listeners::default();
+        // Each listener that writes keeps the folder until its file is complete.
+        let (held, messages, as_run) = (
             (Arc::clone(&folder), writing.begin()),
             Arc::clone(&intake),
             study.clone(),
         );
-        listen(
-            "tables",
-            Box::new(move |events| {
-                if let Err(error) = tables.follow(events, &as_run) {
-                    told.trouble(format!(
-                        "the run continues, but its tables are no longer written: {error}"
-                    ));
-                }
-                drop(held);
-            }),
-        )?;
-        let (held, told) = ((Arc::clone(&folder), writing.begin()), Arc::clone(&intake));
-        listen(
-            "recorder",
-            Box::new(move |events| {
-                if let Err(error) = recorder.follow(events) {
-                    told.trouble(format!(
-                        "the run continues, but its recording is no longer written: {error}"
-                    ));
-                }
-                drop(held);
-            }),
-        )?;
-        let told = Arc::clone(&intake);
-        listen("collector", Box::new(move |events| told.follow(events)))?;
+        listeners.start("tables", move |events| {
+            if let Err(error) = tables.follow(events, &as_run) {
+                messages.trouble(format!(
+                    "the run continues, but its tables are no longer written: {error}"
+                ));
+            }
+            drop(held);
+        })?;
+        let (held, messages) = ((Arc::clone(&folder), writing.begin()), Arc::clone(&intake));
+        listeners.start("recorder", move |events| {
+            if let Err(error) = recorder.follow(events) {
+                messages.trouble(format!(
+                    "the run continues, but its recording is no longer written: {error}"
+                ));
+            }
+            drop(held);
+        })?;
+        let messages = Arc::clone(&intake);
+        listeners.start("collector", move |events| messages.follow(events))?;
         let as_run = Arc::new(study);
-        source((*as_run).clone(), Arc::clone(&control), subscribers)
+        source((*as_run).clone(), Arc::clone(&control), listeners.subscribers)
             .map_err(|error| format!("cannot start the run: {error}"))?;
         Ok(Self {
             study: as_run,
@@ -147,7 +150,7 @@ impl Running {
             intake,
             folder,
             writing,
-            threads,
+            threads: listeners.threads,
             clock: Clock {
                 worked: Duration::ZERO,
                 since: Some(Instant::now()),

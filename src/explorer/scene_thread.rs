@@ -14,9 +14,9 @@ use std::thread::Builder;
 use std::time::Duration;
 
 use super::Wake;
-use crate::recording::{FrontPoint, LiveScene, Pinned, Shown, VisibleLayers};
+use crate::recording::{FrontPoint, LiveScene, Pinned, RecordingError, Shown, VisibleLayers};
 use crate::study::Study;
-use kinefront_model::evaluation::{Evaluation, GridChoice};
+use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 
@@ -317,42 +317,47 @@ fn step(standing: &mut SceneState, shared: &Shared, request: &Request) -> Result
         standing.pins = request.pins.iter().map(|(_, design)| evaluate(design)).collect();
     }
 
-    let Some(scene) = &mut standing.scene else {
+    let Some(mut scene) = standing.scene.take() else {
         return Ok(());
     };
-    let mut draw = || -> Result<(), crate::recording::RecordingError> {
-        if before
-            .as_ref()
-            .is_some_and(|before| before.comparing != request.comparing)
-        {
-            scene.compare(request.comparing)?;
-        }
-        let shown = standing.known.as_ref().map(|known| Shown {
-            model: &model,
-            evaluation: &known.evaluation,
-            pose: request.pose,
-            heatmap_phi: request.heatmap_phi,
-            layers: &request.layers,
-            light: request.light,
-        });
-        scene.design(shown.as_ref())?;
-        if new_pins {
-            let pins: Vec<Pinned<'_>> = request
-                .pins
-                .iter()
-                .zip(&standing.pins)
-                .map(|((name, _), evaluation)| Pinned { evaluation, name })
-                .collect();
-            scene.pins(&model, &pins)?;
-        }
-        let moved = before
-            .as_ref()
-            .is_none_or(|before| before.design != request.design || !Arc::ptr_eq(&before.front, &request.front));
-        if moved {
-            let marked = standing.known.as_ref().map(|known| &*known.evaluation);
-            scene.front(&request.study, &request.front, marked)?;
-        }
-        Ok(())
-    };
-    draw().map_err(|error| format!("the scene cannot be drawn: {error}"))
+    let drawn = draw(&mut scene, standing, before.as_ref(), request, &model, new_pins);
+    standing.scene = Some(scene);
+    drawn.map_err(|error| format!("the scene cannot be drawn: {error}"))
+}
+
+/// Draws what differs from the request before.
+fn draw(
+    scene: &mut LiveScene,
+    state: &SceneState,
+    before: Option<&Request>,
+    request: &Request,
+    model: &Model,
+    new_pins: bool,
+) -> Result<(), RecordingError> {
+    if before.is_some_and(|before| before.comparing != request.comparing) {
+        scene.compare(request.comparing)?;
+    }
+    let shown = state.known.as_ref().map(|known| Shown {
+        model,
+        evaluation: &known.evaluation,
+        pose: request.pose,
+        heatmap_phi: request.heatmap_phi,
+        layers: &request.layers,
+        light: request.light,
+    });
+    scene.design(shown.as_ref())?;
+    if new_pins {
+        let named = request.pins.iter().zip(&state.pins);
+        let pins: Vec<Pinned<'_>> = named
+            .map(|((name, _), evaluation)| Pinned { evaluation, name })
+            .collect();
+        scene.pins(model, &pins)?;
+    }
+    let moved =
+        before.is_none_or(|before| before.design != request.design || !Arc::ptr_eq(&before.front, &request.front));
+    if moved {
+        let marked = state.known.as_ref().map(|known| &*known.evaluation);
+        scene.front(&request.study, &request.front, marked)?;
+    }
+    Ok(())
 }

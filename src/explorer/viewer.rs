@@ -42,6 +42,55 @@ fn take_keys(ctx: &Context) -> Vec<Event> {
     })
 }
 
+/// Options of a viewer that shows views alone and stores the events in `events`.
+fn startup_options(events: Rc<RefCell<Vec<ViewerEvent>>>) -> StartupOptions {
+    let mut options = StartupOptions {
+        persist_state: false,
+        // The welcome screen would load examples from the internet.
+        hide_welcome_screen: true,
+        expect_data_soon: Some(true),
+        // This is called while the renderer is locked, so it must do nothing but store the event.
+        on_event: Some(Rc::new(move |event| events.borrow_mut().push(event))),
+        ..StartupOptions::default()
+    };
+    let panels = &mut options.panel_state_overrides;
+    panels.top = Some(PanelState::Hidden);
+    panels.blueprint = Some(PanelState::Hidden);
+    panels.selection = Some(PanelState::Hidden);
+    panels.time = Some(PanelState::Hidden);
+    options
+}
+
+/// Keys that the viewer must not see in this pass.
+type KeysAside = Arc<Mutex<Vec<Event>>>;
+
+/// The viewer processes keys at the beginning of each pass. They are removed before that and restored after it, unless the
+/// last click was inside the viewer.
+fn take_keys_aside(cc: &eframe::CreationContext<'_>, owns_keys: &Arc<AtomicBool>) -> KeysAside {
+    let aside = KeysAside::default();
+    let (owned, put) = (Arc::clone(owns_keys), Arc::clone(&aside));
+    cc.egui_ctx.on_begin_pass(
+        "kinefront-keys-aside",
+        Arc::new(move |ui| {
+            if !owned.load(Ordering::Relaxed) {
+                *put.lock().unwrap_or_else(PoisonError::into_inner) = take_keys(ui);
+            }
+        }),
+    );
+    aside
+}
+
+/// Restores the keys; must be registered after the viewer, so that it runs after it.
+fn put_keys_back(cc: &eframe::CreationContext<'_>, aside: KeysAside) {
+    cc.egui_ctx.on_begin_pass(
+        "kinefront-keys-back",
+        Arc::new(move |ui| {
+            let keys = std::mem::take(&mut *aside.lock().unwrap_or_else(PoisonError::into_inner));
+            ui.input_mut(|input| input.events.extend(keys));
+        }),
+    );
+}
+
 impl Viewer {
     /// Makes the viewer and the scene that it shows.
     ///
@@ -57,51 +106,19 @@ impl Viewer {
             .enable_all()
             .build()?;
         let events: Rc<RefCell<Vec<ViewerEvent>>> = Rc::default();
-        let queue = Rc::clone(&events);
-        let mut options = StartupOptions {
-            persist_state: false,
-            // The welcome screen would load examples from the internet.
-            hide_welcome_screen: true,
-            expect_data_soon: Some(true),
-            // This is called while the renderer is locked, so it must do nothing but store the event.
-            on_event: Some(Rc::new(move |event| queue.borrow_mut().push(event))),
-            ..StartupOptions::default()
-        };
-        options.panel_state_overrides.top = Some(PanelState::Hidden);
-        options.panel_state_overrides.blueprint = Some(PanelState::Hidden);
-        options.panel_state_overrides.selection = Some(PanelState::Hidden);
-        options.panel_state_overrides.time = Some(PanelState::Hidden);
-
-        // The viewer processes keys at the beginning of each pass. They are removed before that and restored after it,
-        // unless the last click was inside the viewer.
         let owns_keys = Arc::new(AtomicBool::new(false));
-        let aside: Arc<Mutex<Vec<Event>>> = Arc::default();
-        let (owned, put) = (Arc::clone(&owns_keys), Arc::clone(&aside));
-        cc.egui_ctx.on_begin_pass(
-            "kinefront-keys-aside",
-            Arc::new(move |ui| {
-                if !owned.load(Ordering::Relaxed) {
-                    *put.lock().unwrap_or_else(PoisonError::into_inner) = take_keys(ui);
-                }
-            }),
-        );
+        let aside = take_keys_aside(cc, &owns_keys);
         let mut app = re_viewer::App::new(
             MainThreadToken::i_promise_i_am_on_the_main_thread(),
             re_viewer::build_info(),
             AppEnvironment::Custom(APPLICATION_ID.to_owned()),
-            options,
+            startup_options(Rc::clone(&events)),
             cc,
             // With its own registry, the viewer does not look for stored credentials.
             Some(re_redap_client::ConnectionRegistry::new_without_stored_credentials()),
             AsyncRuntimeHandle::new_native(runtime.handle().clone()),
         );
-        cc.egui_ctx.on_begin_pass(
-            "kinefront-keys-back",
-            Arc::new(move |ui| {
-                let keys = std::mem::take(&mut *aside.lock().unwrap_or_else(PoisonError::into_inner));
-                ui.input_mut(|input| input.events.extend(keys));
-            }),
-        );
+        put_keys_back(cc, aside);
         let settings = app.app_options_mut();
         settings.custom_window_decorations = false;
         settings.show_notification_toasts = false;
@@ -118,15 +135,13 @@ impl Viewer {
             }
         });
         let scene = LiveScene::new(Box::new(sink), study)?;
-        Ok((
-            Self {
-                app,
-                events,
-                owns_keys,
-                _runtime: runtime,
-            },
-            scene,
-        ))
+        let viewer = Self {
+            app,
+            events,
+            owns_keys,
+            _runtime: runtime,
+        };
+        Ok((viewer, scene))
     }
 
     /// Processes the received data; must be called before each frame.

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::xml::{Element, numbers};
 use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, text};
-use crate::scene::{Body, Solid, SolidShape};
+use crate::scene::{Body, Joint, Linkage, Solid, SolidShape};
 use kinefront_model::mechanism::Actuator;
 
 /// Limits of force or torque and of speed for all joints: the format requires them and the study does not define them.
@@ -26,68 +26,72 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
         };
         robot.push(link(body, shift));
     }
-    for body in &linkage.bodies {
-        let Some(joint) = body.joint else { continue };
-        let parent = body
-            .parent
-            .map_or("base", |parent| linkage.bodies[parent].name.as_str());
-        let frame = linkage.local_frame(body);
-        let kind = match joint.kind {
-            Actuator::Prismatic => "prismatic",
-            Actuator::Revolute if joint.limits.is_some() => "revolute",
-            Actuator::Revolute => "continuous",
-        };
-        let mut limit = Element::new("limit");
-        if let Some(limits) = joint.limits {
-            let [lower, upper] = limits.map(|value| value - joint.value);
-            limit = limit.with_numbers("lower", &[lower]).with_numbers("upper", &[upper]);
-        }
-        limit = limit
-            .with_numbers("effort", &[EFFORT])
-            .with_numbers("velocity", &[SPEED]);
-        robot.push(
-            hung(&joint_name(body), kind, parent, &body.name, frame.origin, frame.angle)
-                .child(Element::new("axis").with("xyz", joint_axis(joint.kind)))
-                .child(limit),
-        );
-    }
-    let platform = &linkage.bodies[linkage.platform()];
-    let closure = linkage.closures[0];
-    let leg = &linkage.bodies[closure.leg];
-    robot.push(
-        hung(
-            "C1",
-            "continuous",
-            &leg.name,
-            &platform.name,
-            closure.on_leg,
-            platform.frame.angle - leg.frame.angle,
-        )
-        .child(Element::new("axis").with("xyz", joint_axis(Actuator::Revolute))),
-    );
-    // Frames at P and at the cut joints (C_i on the leg and on the platform), so that a program can close the loops
-    // again.
-    let mut frames = vec![("P".to_owned(), platform.name.clone(), -closure.on_platform)];
-    for (leg, cut) in linkage.closures.iter().enumerate().skip(1) {
-        frames.push((
-            format!("C{}_leg", leg + 1),
-            linkage.bodies[cut.leg].name.clone(),
-            cut.on_leg,
-        ));
-        frames.push((
-            format!("C{}_platform", leg + 1),
-            platform.name.clone(),
-            cut.on_platform - closure.on_platform,
-        ));
-    }
-    for (name, parent, at) in frames {
+    let driven = linkage.bodies.iter().filter_map(|body| Some((body, body.joint?)));
+    robot = robot.children(driven.map(|(body, joint)| leg_joint(linkage, body, &joint)));
+    robot.push(platform_joint(linkage));
+    for (name, parent, at) in frames(linkage) {
         robot.push(Element::new("link").with("name", name.clone()));
-        robot.push(hung(&format!("{name}_fixed"), "fixed", &parent, &name, at, 0.0));
+        robot.push(joint_element(
+            &format!("{name}_fixed"),
+            "fixed",
+            &parent,
+            &name,
+            at,
+            0.0,
+        ));
     }
     robot.document(&subject.preamble(Format::Urdf))
 }
 
-fn hung(name: &str, kind: &str, parent: &str, child: &str, at: DVec2, angle: f64) -> Element {
+/// The joint of a body of a leg to its parent; its value is 0 at the exported pose.
+fn leg_joint(linkage: &Linkage, body: &Body, joint: &Joint) -> Element {
+    let parent = body
+        .parent
+        .map_or("base", |parent| linkage.bodies[parent].name.as_str());
+    let frame = linkage.local_frame(body);
+    let kind = match joint.kind {
+        Actuator::Prismatic => "prismatic",
+        Actuator::Revolute if joint.limits.is_some() => "revolute",
+        Actuator::Revolute => "continuous",
+    };
+    let mut limit = Element::new("limit");
+    if let Some(limits) = joint.limits {
+        let [lower, upper] = limits.map(|value| value - joint.value);
+        limit = limit.with_numbers("lower", &[lower]).with_numbers("upper", &[upper]);
+    }
+    limit = limit
+        .with_numbers("effort", &[EFFORT])
+        .with_numbers("velocity", &[SPEED]);
+    joint_element(&joint_name(body), kind, parent, &body.name, frame.origin, frame.angle)
+        .child(Element::new("axis").with("xyz", joint_axis(joint.kind)))
+        .child(limit)
+}
+
+/// The joint `C_1`, on which the platform hangs in the tree.
+fn platform_joint(linkage: &Linkage) -> Element {
+    let platform = &linkage.bodies[linkage.platform()];
+    let closure = linkage.closures[0];
+    let leg = &linkage.bodies[closure.leg];
+    let angle = platform.frame.angle - leg.frame.angle;
+    joint_element("C1", "continuous", &leg.name, &platform.name, closure.on_leg, angle)
+        .child(Element::new("axis").with("xyz", joint_axis(Actuator::Revolute)))
+}
+
+/// Frames at `P` and at the cut joints (`C_i` on the leg and on the platform), so that a program can close the loops again:
+/// name, parent link, and position in its frame.
+fn frames(linkage: &Linkage) -> Vec<(String, String, DVec2)> {
+    let platform = &linkage.bodies[linkage.platform()].name;
+    let origin = linkage.closures[0].on_platform;
+    let mut frames = vec![("P".to_owned(), platform.clone(), -origin)];
+    for (leg, cut) in linkage.closures.iter().enumerate().skip(1) {
+        let name = |side: &str| format!("C{}_{side}", leg + 1);
+        frames.push((name("leg"), linkage.bodies[cut.leg].name.clone(), cut.on_leg));
+        frames.push((name("platform"), platform.clone(), cut.on_platform - origin));
+    }
+    frames
+}
+
+fn joint_element(name: &str, kind: &str, parent: &str, child: &str, at: DVec2, angle: f64) -> Element {
     Element::new("joint")
         .with("name", name)
         .with("type", kind)

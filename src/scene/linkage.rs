@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::Solid;
 use super::manipulator::Sizes;
 use kinefront_model::evaluation::{Model, Unreachable};
-use kinefront_model::mechanism::{Actuator, Design, Leg, LegJoint, LegPart, Manipulator, MemberKind};
+use kinefront_model::mechanism::{Actuator, Design, Leg, LegBody, LegJoint, LegPart, Manipulator, MemberKind};
 use kinefront_model::spatial::{LEGS, Pose, Rotation};
 use kinefront_model::with_leg;
 
@@ -156,72 +156,14 @@ fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage,
     let mut bodies: Vec<Body> = Vec::new();
     let mut last = [0; LEGS];
     for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
-        for (depth, body) in leg.bodies(state).into_iter().enumerate() {
-            let frame = Frame {
-                origin: body.origin,
-                angle: libm::atan2(body.axis.y, body.axis.x),
-            };
-            let local = |solid: Solid| solid.seen_from(frame.origin, frame.angle);
-            let joint = match body.joint {
-                LegJoint::Passive => Joint {
-                    kind: Actuator::Revolute,
-                    actuated: false,
-                    value: 0.0,
-                    limits: None,
-                },
-                LegJoint::Actuated { value, limits } => Joint {
-                    kind: L::ACTUATOR,
-                    actuated: true,
-                    value,
-                    limits,
-                },
-            };
-            let solids: Vec<Solid> = body.parts.iter().map(|part| local(sizes.solid(index, part))).collect();
-            let bars = body.parts.iter().filter_map(|part| match *part {
-                LegPart::Tube { from, to }
-                | LegPart::Rod { from, to }
-                | LegPart::Crank { from, to }
-                | LegPart::Link { from, to } => Some((from, to)),
-                LegPart::Slider { .. } | LegPart::Joint { .. } => None,
-            });
-            let bars = bars
-                .map(|(from, to)| mass_bar(model, &frame, [from, to], design.leg_bar_radius, 1.0))
-                .collect();
+        for (depth, body) in leg.bodies(state).iter().enumerate() {
             last[index] = bodies.len();
-            bodies.push(Body {
-                name: format!("leg{}_{}", index + 1, body.name),
-                parent: (depth > 0).then(|| bodies.len() - 1),
-                frame,
-                height: sizes.height(body.kind),
-                joint: Some(joint),
-                bars,
-                solids,
-            });
+            let parent = (depth > 0).then(|| bodies.len() - 1);
+            bodies.push(leg_body::<L>(model, design, &sizes, index, body, parent));
         }
     }
-    let frame = Frame {
-        origin: pose.position,
-        angle: pose.phi,
-    };
-    // The study may count fewer platform bars than the three that exist (docs/model.md, section 11).
-    let fraction = f64::from(model.platform_bars) / LEGS as f64;
     let ends = posture.arms.map(|arm| pose.position + arm);
-    bodies.push(Body {
-        name: "platform".to_owned(),
-        parent: None,
-        frame,
-        height: sizes.height(MemberKind::PlatformBar),
-        joint: None,
-        bars: ends
-            .map(|c| mass_bar(model, &frame, [c, pose.position], design.platform_bar_radius, fraction))
-            .to_vec(),
-        solids: (0..LEGS)
-            .map(|index| {
-                let bar = sizes.platform_bar(index, ends[index], pose.position);
-                bar.seen_from(frame.origin, frame.angle)
-            })
-            .collect(),
-    });
+    bodies.push(platform_body(model, design, &sizes, pose, ends));
     let closures = [0, 1, 2].map(|index| {
         let on = |frame: &Frame| Rotation::new(-frame.angle).apply(ends[index] - frame.origin);
         Closure {
@@ -231,6 +173,84 @@ fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage,
         }
     });
     Ok(Linkage { bodies, closures })
+}
+
+/// A body of leg `index`; `parent` is the place of the body that it hangs on, or `None` for the base.
+fn leg_body<L: Leg>(
+    model: &Model,
+    design: &Design,
+    sizes: &Sizes,
+    index: usize,
+    body: &LegBody,
+    parent: Option<usize>,
+) -> Body {
+    let frame = Frame {
+        origin: body.origin,
+        angle: libm::atan2(body.axis.y, body.axis.x),
+    };
+    let joint = match body.joint {
+        LegJoint::Passive => Joint {
+            kind: Actuator::Revolute,
+            actuated: false,
+            value: 0.0,
+            limits: None,
+        },
+        LegJoint::Actuated { value, limits } => Joint {
+            kind: L::ACTUATOR,
+            actuated: true,
+            value,
+            limits,
+        },
+    };
+    let solid = |part| sizes.solid(index, part).seen_from(frame.origin, frame.angle);
+    let bars = body.parts.iter().filter_map(|part| match *part {
+        LegPart::Tube { from, to }
+        | LegPart::Rod { from, to }
+        | LegPart::Crank { from, to }
+        | LegPart::Link { from, to } => Some(mass_bar(model, &frame, [from, to], design.leg_bar_radius, 1.0)),
+        LegPart::Slider { .. } | LegPart::Joint { .. } => None,
+    });
+    Body {
+        name: format!("leg{}_{}", index + 1, body.name),
+        parent,
+        frame,
+        height: sizes.height(body.kind),
+        joint: Some(joint),
+        bars: bars.collect(),
+        solids: body.parts.iter().map(solid).collect(),
+    }
+}
+
+/// The platform, with its joints `C_i` at `ends`.
+fn platform_body(model: &Model, design: &Design, sizes: &Sizes, pose: &Pose, ends: [DVec2; LEGS]) -> Body {
+    let frame = Frame {
+        origin: pose.position,
+        angle: pose.phi,
+    };
+    // The study may count fewer platform bars than the three that exist (docs/model.md, section 11).
+    let fraction = f64::from(model.platform_bars) / LEGS as f64;
+    let bars = ends.map(|end| {
+        mass_bar(
+            model,
+            &frame,
+            [end, pose.position],
+            design.platform_bar_radius,
+            fraction,
+        )
+    });
+    let solid = |index: usize| {
+        let bar = sizes.platform_bar(index, ends[index], pose.position);
+        bar.seen_from(frame.origin, frame.angle)
+    };
+    Body {
+        name: "platform".to_owned(),
+        parent: None,
+        frame,
+        height: sizes.height(MemberKind::PlatformBar),
+        joint: None,
+        bars: bars.to_vec(),
+        solids: (0..LEGS).map(solid).collect(),
+    }
 }
 
 fn mass_bar(model: &Model, frame: &Frame, [from, to]: [DVec2; 2], radius: f64, fraction: f64) -> MassBar {

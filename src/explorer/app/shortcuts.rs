@@ -32,11 +32,25 @@ pub(super) const SHORTCUTS: [(&str, &str); 14] = [
 ];
 
 impl Explorer {
+    /// Handles the keys that no text field has taken.
     pub(super) fn shortcuts(&mut self, ctx: &Context) {
-        let pressed = |shortcut: &KeyboardShortcut| ctx.input_mut(|input| input.consume_shortcut(shortcut));
         if ctx.text_edit_focused() {
             return;
         }
+        self.menu_shortcuts(ctx);
+        self.session_keys(ctx);
+        let typed = |text: &str| {
+            let is_typed = |event: &Event| matches!(event, Event::Text(typed) if typed == text);
+            ctx.input(|input| input.events.iter().any(is_typed))
+        };
+        if typed("?") {
+            self.help = !self.help;
+        }
+        self.clipboard(ctx);
+    }
+
+    fn menu_shortcuts(&mut self, ctx: &Context) {
+        let pressed = |shortcut: &KeyboardShortcut| ctx.input_mut(|input| input.consume_shortcut(shortcut));
         // Shortcuts with more modifiers come first: a shortcut also matches while additional modifiers are held.
         if pressed(&REDO) || pressed(&REDO_TOO) {
             self.session.history.redo();
@@ -52,49 +66,50 @@ impl Explorer {
         if pressed(&QUIT) {
             ctx.send_viewport_cmd(ViewportCommand::Close);
         }
+    }
+
+    fn session_keys(&mut self, ctx: &Context) {
+        let session = &mut self.session;
         let key = |key: Key| ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key));
         if key(Key::ArrowRight) {
-            self.session.walk(1);
+            session.walk(1);
         }
         if key(Key::ArrowLeft) {
-            self.session.walk(-1);
+            session.walk(-1);
         }
         if key(Key::K) {
-            self.session.select_knee();
+            session.select_knee();
         }
         if key(Key::P) {
-            self.session.toggle_pin();
+            session.toggle_pin();
         }
         if key(Key::S) {
-            self.session.toggle_star();
+            session.toggle_star();
         }
         if key(Key::G) {
-            self.session.step();
+            session.step();
         }
         if key(Key::F) {
-            self.session
+            let toggle = |feasible_only: &mut bool| *feasible_only = !*feasible_only;
+            session
                 .history
-                .edit(|document| document.filter.feasible_only = !document.filter.feasible_only);
+                .edit(|document| toggle(&mut document.filter.feasible_only));
         }
         if key(Key::Space) {
-            match self.session.phase() {
-                Phase::Searching => self.session.pause(),
-                Phase::Paused => self.session.resume(),
+            match session.phase() {
+                Phase::Searching => session.pause(),
+                Phase::Paused => session.resume(),
                 _ => {}
             }
         }
         if key(Key::Escape) {
+            session.notices.clear();
             self.help = false;
-            self.session.notices.clear();
         }
-        if ctx.input(|input| {
-            input
-                .events
-                .iter()
-                .any(|event| matches!(event, Event::Text(text) if text == "?"))
-        }) {
-            self.help = !self.help;
-        }
+    }
+
+    /// Copies the selected design as text, or selects the design in the clipboard.
+    fn clipboard(&mut self, ctx: &Context) {
         let (copied, pasted) = ctx.input(|input| {
             let copied = input.events.iter().any(|event| matches!(event, Event::Copy));
             let pasted = input.events.iter().find_map(|event| match event {

@@ -8,7 +8,7 @@ use crate::study::{Better, Column};
 use std::time::Duration;
 
 use egui::{Align2, Color32, ComboBox, Pos2, Response, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
-use egui_plot::{Plot, PlotImage, PlotPoint, PlotTransform};
+use egui_plot::{Plot, PlotBounds, PlotImage, PlotPoint, PlotTransform};
 
 use self::axis::{Extent, decades, tick};
 pub use self::axis::{ScatterAxis, axes};
@@ -74,37 +74,11 @@ impl Scatter {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         self.controls(ui, session);
-        let store = session.store();
-        self.extent.update(self.axes, session.era(), store);
-        let mut bounds = self.extent.bounds();
-        for reference in session.references() {
-            let row = Row::new(0, &reference.evaluation);
-            let [x, y] = self.place(&row);
-            if self.fitted && x.is_finite() && y.is_finite() {
-                bounds.extend_with(&PlotPoint::new(x, y));
-            }
-        }
+        let bounds = self.bounds(session);
         let dark = ui.visuals().dark_mode;
         let (lines, marks) = self.front(session, dark);
-        let [x_axis, y_axis] = self.axes;
-        let mut plot = Plot::new("scatter")
-            .x_axis_label(x_axis.title())
-            .y_axis_label(y_axis.title())
-            .allow_scroll(false)
-            .allow_double_click_reset(false)
-            .show_crosshair(false)
-            .cursor_color(Color32::TRANSPARENT)
-            .x_axis_formatter(move |mark, _| tick(x_axis, mark))
-            .y_axis_formatter(move |mark, _| tick(y_axis, mark));
-        if x_axis.log {
-            plot = plot.x_grid_spacer(decades);
-        }
-        if y_axis.log {
-            plot = plot.y_grid_spacer(decades);
-        }
-        let fitted = self.fitted;
-        let cloud = &self.cloud;
-        let shown = plot.show(ui, |plot| {
+        let (fitted, cloud) = (self.fitted, &self.cloud);
+        let shown = self.plot().show(ui, |plot| {
             if fitted {
                 plot.set_plot_bounds(bounds);
             }
@@ -129,22 +103,59 @@ impl Scatter {
                 }
             }
         });
-        let transform = shown.transform;
-        let moved = shown.response.dragged()
-            || ui.input(|input| input.smooth_scroll_delta().y != 0.0) && shown.response.hovered();
-        if moved || shown.response.drag_stopped() {
-            self.fitted = false;
-        }
-        if shown.response.double_clicked() {
-            self.fitted = true;
-        }
-        self.transform = Some(transform);
+        self.transform = Some(shown.transform);
+        self.follow_pointer(ui, &shown.response);
         shown
             .response
             .widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "Scatter of designs"));
         self.pointed(&shown.response, session);
         self.draw_cloud(ui, session, dark);
         self.arrows(ui);
+    }
+
+    /// Bounds that hold every feasible design and every reference design.
+    fn bounds(&mut self, session: &Session) -> PlotBounds {
+        self.extent.update(self.axes, session.era(), session.store());
+        let mut bounds = self.extent.bounds();
+        for reference in session.references().iter().filter(|_| self.fitted) {
+            let [x, y] = self.place(&Row::new(0, &reference.evaluation));
+            if x.is_finite() && y.is_finite() {
+                bounds.extend_with(&PlotPoint::new(x, y));
+            }
+        }
+        bounds
+    }
+
+    /// An empty plot with the axes.
+    fn plot<'a>(&self) -> Plot<'a> {
+        let [x_axis, y_axis] = self.axes;
+        let mut plot = Plot::new("scatter")
+            .x_axis_label(x_axis.title())
+            .y_axis_label(y_axis.title())
+            .allow_scroll(false)
+            .allow_double_click_reset(false)
+            .show_crosshair(false)
+            .cursor_color(Color32::TRANSPARENT)
+            .x_axis_formatter(move |mark, _| tick(x_axis, mark))
+            .y_axis_formatter(move |mark, _| tick(y_axis, mark));
+        if x_axis.log {
+            plot = plot.x_grid_spacer(decades);
+        }
+        if y_axis.log {
+            plot = plot.y_grid_spacer(decades);
+        }
+        plot
+    }
+
+    /// Keeps the bounds where the user moves them; a double click fits them to the designs again.
+    fn follow_pointer(&mut self, ui: &Ui, response: &egui::Response) {
+        let scrolled = ui.input(|input| input.smooth_scroll_delta().y != 0.0) && response.hovered();
+        if response.dragged() || response.drag_stopped() || scrolled {
+            self.fitted = false;
+        }
+        if response.double_clicked() {
+            self.fitted = true;
+        }
     }
 
     fn controls(&mut self, ui: &mut Ui, session: &mut Session) {
