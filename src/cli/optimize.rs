@@ -44,7 +44,7 @@ pub struct OptimizeArguments {
     /// Print run.json to standard output at the end.
     #[arg(long)]
     json: bool,
-    /// Do not show progress.
+    /// Print nothing but errors, and JSON if it is requested.
     #[arg(long, short)]
     quiet: bool,
 }
@@ -57,7 +57,7 @@ pub fn run(arguments: &OptimizeArguments) -> Result<Ending, Failure> {
         .map_err(|error| Failure::Input(Report::from_err(error)))?;
 
     let control = Arc::new(RunControl::default());
-    stop_on_interrupt(&control)?;
+    stop_on_interrupt(&control, arguments.quiet)?;
     let (to_tables, tables) = sync_channel(CHANNEL);
     let (to_recorder, recording) = sync_channel(CHANNEL);
     let (to_terminal, terminal) = sync_channel(CHANNEL);
@@ -144,7 +144,7 @@ fn free_folder(study: &Study) -> PathBuf {
 
 /// Installs a handler for Ctrl-C: the first Ctrl-C stops the run, which still verifies and writes its front; the second
 /// exits the program immediately.
-fn stop_on_interrupt(control: &Arc<RunControl>) -> Result<(), Failure> {
+fn stop_on_interrupt(control: &Arc<RunControl>, quiet: bool) -> Result<(), Failure> {
     // A handler can be set only once in a process, and a process runs this command only once.
     static INTERRUPTED: OnceLock<AtomicBool> = OnceLock::new();
     let interrupted = INTERRUPTED.get_or_init(|| AtomicBool::new(false));
@@ -153,7 +153,11 @@ fn stop_on_interrupt(control: &Arc<RunControl>) -> Result<(), Failure> {
         if interrupted.swap(true, Ordering::SeqCst) {
             std::process::exit(130);
         }
-        eprintln!("\nstopping: finishing the generation and verifying the front (Ctrl-C again to quit immediately)");
+        if !quiet {
+            eprintln!(
+                "\nstopping: finishing the generation and verifying the front (Ctrl-C again to quit immediately)"
+            );
+        }
         control.stop();
     })
     .map_err(Failure::runtime)
@@ -190,7 +194,7 @@ fn tell(study: &Study, summary: &RunSummary, path: &Path, arguments: &OptimizeAr
     if arguments.json {
         let report = serde_json::to_string_pretty(&RunReport::new(study, summary)).map_err(Failure::runtime)?;
         writeln!(out, "{report}")?;
-    } else {
+    } else if !arguments.quiet {
         let last = summary.history.last();
         writeln!(out, "{}", tables::front(summary))?;
         writeln!(

@@ -41,7 +41,7 @@ pub struct ReportArguments {
     /// Scale of the figures' PNG files in pixels per unit; a figure is 640 units wide.
     #[arg(long, value_name = "SCALE", default_value_t = SCALE, value_parser = scale)]
     scale: f32,
-    /// Do not show progress.
+    /// Print nothing but errors.
     #[arg(long, short)]
     quiet: bool,
 }
@@ -109,7 +109,9 @@ pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
     let written = report.and_then(|report| report.write(&folder, arguments.replace));
     spinner.finish_and_clear();
     written.map_err(failure)?;
-    writeln!(std::io::stdout(), "wrote {}", folder.join("index.html").display())?;
+    if !arguments.quiet {
+        writeln!(std::io::stdout(), "wrote {}", folder.join("index.html").display())?;
+    }
     Ok(Ending::Done)
 }
 

@@ -2,7 +2,7 @@
 
 use std::fs::OpenOptions;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use kinefront::study::{BUILTIN, Builtin, Study};
 use miette::miette;
@@ -27,7 +27,7 @@ enum StudyCommand {
     },
     /// Write a new study file with comments.
     New {
-        /// File to write; it must not exist.
+        /// File to write, which must not exist; `-` writes to standard output.
         #[arg(default_value = "study.toml")]
         file: PathBuf,
         /// Built-in study to copy.
@@ -57,6 +57,10 @@ pub fn run(arguments: &StudyArguments) -> Result<Ending, Failure> {
         StudyCommand::Show { name } => write!(out, "{}", builtin(name)?.text)?,
         StudyCommand::New { file, from } => {
             let text = builtin(from)?.text;
+            if file == Path::new("-") {
+                write!(out, "{text}")?;
+                return Ok(Ending::Done);
+            }
             let mut target = OpenOptions::new()
                 .write(true)
                 .create_new(true)

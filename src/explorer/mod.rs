@@ -14,35 +14,24 @@
 //! panel reads it and calls its methods to change it. No panel evaluates designs.
 
 mod app;
-mod document;
+mod data;
 mod files;
-mod filter;
-mod front;
-mod intake;
-mod open;
 mod panels;
-mod running;
-mod scene_thread;
 mod script;
 mod session;
-mod store;
 mod study_editor;
 mod theme;
+mod threads;
 mod viewer;
 
 pub use crate::study::Row;
 pub use app::{Explorer, InitialContent, run};
-pub use document::{Document, History, Named, Origin, Selected};
-pub use files::Purpose;
-pub use filter::Filter;
-pub use front::FrontEntry;
-pub use intake::{Intake, RunMessages};
-pub use open::{OpenError, Opened, open};
+pub use data::{Document, Filter, FrontEntry, History, Named, Origin, Selected, Store};
+pub use files::{OpenError, Opened, Purpose, open};
 pub use panels::scatter::{ScatterAxis, axes};
 pub use panels::{Panel, Panels};
-pub use scene_thread::Known;
 pub use script::Script;
 pub use session::{MOST_PINS, Notice, Phase, ReferenceMark, Session, Staging, Wake};
-pub use store::Store;
 pub use study_editor::StudyEditor;
 pub use theme::dress;
+pub use threads::{Intake, Known, RunMessages};

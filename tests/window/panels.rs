@@ -39,7 +39,7 @@ fn session() -> Session {
 fn size(panel: Panel) -> egui::Vec2 {
     match panel {
         Panel::Scatter => egui::vec2(560.0, 480.0),
-        Panel::Table | Panel::Parallel | Panel::Compare => egui::vec2(820.0, 360.0),
+        Panel::Front | Panel::Parallel | Panel::Compare => egui::vec2(820.0, 360.0),
         Panel::Pose => egui::vec2(400.0, 560.0),
         _ => egui::vec2(420.0, 520.0),
     }

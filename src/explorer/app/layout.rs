@@ -17,9 +17,9 @@ pub(super) fn layout() -> Tree<Panel> {
     let run = tabs(&[Panel::Run, Panel::Study]);
     let scatter = tabs(&[Panel::Scatter]);
     let scene = tabs(&[Panel::Scene]);
-    let below = tabs(&[Panel::Table, Panel::Parallel, Panel::Compare]);
-    let design = tabs(&[Panel::Design, Panel::Choose]);
-    let pose = tabs(&[Panel::Pose, Panel::VisibleLayers]);
+    let below = tabs(&[Panel::Front, Panel::Parallel, Panel::Compare]);
+    let design = tabs(&[Panel::Inspector, Panel::Choose]);
+    let pose = tabs(&[Panel::Pose, Panel::Layers]);
     let mut split = |direction: LinearDir, parts: &[(TileId, f32)]| {
         let mut linear = Linear::new(direction, parts.iter().map(|(tile, _)| *tile).collect());
         for &(tile, fraction) in parts {

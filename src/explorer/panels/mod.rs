@@ -2,6 +2,7 @@
 
 mod choose;
 mod compare;
+mod front;
 mod inspector;
 mod layers;
 mod parallel;
@@ -10,13 +11,13 @@ mod pose;
 mod run;
 pub mod scatter;
 mod study;
-mod table;
 
 use egui::Ui;
 use serde::{Deserialize, Serialize};
 
 use self::choose::ChoosePanel;
 use self::compare::ComparePanel;
+use self::front::FrontPanel;
 use self::inspector::Inspector;
 use self::layers::LayersPanel;
 use self::parallel::ParallelPanel;
@@ -24,7 +25,6 @@ use self::pose::PosePanel;
 use self::run::RunPanel;
 use self::scatter::Scatter;
 use self::study::StudyPanel;
-use self::table::TablePanel;
 use super::Session;
 use super::files::Purpose;
 
@@ -40,17 +40,19 @@ pub enum Panel {
     /// The embedded 3-D viewer.
     Scene,
     /// The inspector of the selected design.
-    Design,
+    #[serde(alias = "Design")]
+    Inspector,
     /// The pose of the selected design.
     Pose,
     /// Layers that are drawn in 3-D.
-    VisibleLayers,
+    Layers,
     /// Pinned designs side by side.
     Compare,
     /// Decision support, and the filter.
     Choose,
     /// The front as a table.
-    Table,
+    #[serde(alias = "Table")]
+    Front,
     /// The plot in parallel coordinates.
     Parallel,
 }
@@ -62,12 +64,12 @@ impl Panel {
         Panel::Study,
         Panel::Scatter,
         Panel::Scene,
-        Panel::Design,
+        Panel::Inspector,
         Panel::Pose,
-        Panel::VisibleLayers,
+        Panel::Layers,
         Panel::Compare,
         Panel::Choose,
-        Panel::Table,
+        Panel::Front,
         Panel::Parallel,
     ];
 
@@ -78,12 +80,12 @@ impl Panel {
             Panel::Study => "Study",
             Panel::Scatter => "Scatter",
             Panel::Scene => "3-D",
-            Panel::Design => "Inspector",
+            Panel::Inspector => "Inspector",
             Panel::Pose => "Pose",
-            Panel::VisibleLayers => "Layers",
+            Panel::Layers => "Layers",
             Panel::Compare => "Compare",
             Panel::Choose => "Choose",
-            Panel::Table => "Front",
+            Panel::Front => "Front",
             Panel::Parallel => "Parallel coordinates",
         }
     }
@@ -96,12 +98,12 @@ pub struct Panels {
     study: StudyPanel,
     /// The scatter panel.
     pub scatter: Scatter,
-    design: Inspector,
+    inspector: Inspector,
     pose: PosePanel,
     layers: LayersPanel,
     compare: ComparePanel,
     choose: ChoosePanel,
-    table: TablePanel,
+    front: FrontPanel,
     parallel: ParallelPanel,
 }
 
@@ -112,9 +114,9 @@ impl Panels {
             Panel::Run => self.run.ui(ui, session),
             Panel::Study => return self.study.ui(ui, session).then_some(Purpose::SaveStudy),
             Panel::Scatter => self.scatter.ui(ui, session),
-            Panel::Design => self.design.ui(ui, session),
+            Panel::Inspector => self.inspector.ui(ui, session),
             Panel::Pose => self.pose.ui(ui, session),
-            Panel::VisibleLayers => self.layers.ui(ui, session),
+            Panel::Layers => self.layers.ui(ui, session),
             Panel::Compare => self.compare.ui(ui, session),
             Panel::Choose => {
                 return self.choose.ui(ui, session).map(|requested| match requested {
@@ -122,7 +124,7 @@ impl Panels {
                     choose::FilterFile::Open => Purpose::OpenFilter,
                 });
             }
-            Panel::Table => self.table.ui(ui, session),
+            Panel::Front => self.front.ui(ui, session),
             Panel::Parallel => self.parallel.ui(ui, session),
             // Drawn by the window, which owns the viewer.
             Panel::Scene => {}

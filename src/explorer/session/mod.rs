@@ -1,18 +1,18 @@
 //! The complete state of the window, independent of any window: the run, its designs, the selection, and the requests
 //! to the scene.
 
-mod choosing;
-mod posing;
-mod running;
+mod control;
+mod pose;
+mod selection;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::document::{Document, History, Named, Origin, Selected};
-use super::running::{Running, Writing};
-use super::scene_thread::{Answer, Known, SceneThread};
+use super::data::{Document, History, Named, Origin, Selected};
+use super::threads::{Answer, Known, SceneThread};
+use super::threads::{Running, Writing};
 use super::{Filter, FrontEntry, Row, Store, StudyEditor};
 use crate::recording::{FrontPoint, LiveScene, VisibleLayers};
 use crate::study::{EndReason, GenerationSummary, Study};

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
 
-use crate::explorer::filter::PreparedFilter;
+use crate::explorer::data::PreparedFilter;
 use crate::explorer::{Store, theme};
 
 /// View that a picture shows; a different view requires a new picture.

@@ -13,7 +13,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::Duration;
 
-use super::Wake;
+use crate::explorer::Wake;
 use crate::recording::{FrontPoint, LiveScene, Pinned, RecordingError, Shown, VisibleLayers};
 use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};

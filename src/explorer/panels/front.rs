@@ -18,7 +18,7 @@ enum Key {
 }
 
 /// The panel with the table of the front.
-pub struct TablePanel {
+pub struct FrontPanel {
     key: Key,
     descending: bool,
     search: String,
@@ -26,7 +26,7 @@ pub struct TablePanel {
     last_chosen: Option<usize>,
 }
 
-impl Default for TablePanel {
+impl Default for FrontPanel {
     fn default() -> Self {
         Self {
             key: Key::Number(Column::Mass),
@@ -71,7 +71,7 @@ fn sortable() -> Vec<(Key, String)> {
     .collect()
 }
 
-impl TablePanel {
+impl FrontPanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         self.search_bar(ui, session);

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::front::front_of;
-use super::{FrontEntry, Store};
+use crate::explorer::data::front_of;
+use crate::explorer::{FrontEntry, Store};
 use crate::recording;
 use crate::study::{
     Column, GenerationSummary, Row, RunFolder, RunFolderError, Study, StudyError, TableError, TableFault,

@@ -1,7 +1,7 @@
 //! Selection of designs by hand, by key and in the scene; modified designs, pins and stars.
 
-use super::super::document::{Named, Origin, Selected};
 use super::{MOST_PINS, Session};
+use crate::explorer::data::{Named, Origin, Selected};
 use crate::recording::Picked;
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design};
 

@@ -3,7 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 
-use super::running::Writing;
+mod open;
+
+pub use open::{OpenError, Opened, open};
+
+use super::threads::Writing;
 use super::{Phase, Session};
 use crate::export::{ExportError, ExportSubject, Format, export, front_to_parquet};
 use crate::recording::{record_design, save_copy};

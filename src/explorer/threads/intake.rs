@@ -3,7 +3,7 @@
 use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::{FrontEntry, Row, Store};
+use crate::explorer::{FrontEntry, Row, Store};
 use crate::study::{Event, GenerationSummary, RunSummary};
 
 /// Messages of a run since the last call of [`Intake::take`].

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::super::document::{Document, Origin, Selected};
-use super::super::open::{Opened, open};
-use super::super::running::Running;
-use super::super::scene_thread::Request;
 use super::super::{FrontEntry, Store, StudyEditor};
 use super::{GLANCE, Phase, Session, references};
+use crate::explorer::data::{Document, Origin, Selected};
+use crate::explorer::files::{Opened, open};
+use crate::explorer::threads::Request;
+use crate::explorer::threads::Running;
 use crate::recording::FrontPoint;
 use crate::study::{RunControl, Study, Subscriber, spawn};
 use kinefront_model::evaluation::Evaluation;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Row;
+use crate::study::Row;
 use crate::study::{Column, FrontMember};
 use kinefront_model::evaluation::Evaluation;
 use kinefront_optimize::{Archive, Evaluated, Outcome};
