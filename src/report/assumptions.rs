@@ -63,7 +63,7 @@ pub const ALTERNATIVES: [Alternative; 15] = [
     },
     Alternative {
         name: "r ≥ 0.5 m",
-        meaning: "a larger lower bound of r, as printed in the 2010 paper, which excludes the paper's own design I",
+        meaning: "a lower bound of r of 0.5 m instead of the one of the study",
         affects_evaluation: false,
         change: |study| study.bounds.r_m[0] = study.bounds.r_m[0].max(0.5),
     },
@@ -81,7 +81,7 @@ pub const ALTERNATIVES: [Alternative; 15] = [
     },
     Alternative {
         name: "τ_z = 100 N·m",
-        meaning: "another required torque: the 2010 paper has 100 N·m in its text and 10 N·m in its inequality",
+        meaning: "a required torque about z of 100 N·m instead of the one of the study",
         affects_evaluation: true,
         change: |study| {
             // A threshold that is set explicitly does not depend on the torque.
@@ -92,7 +92,7 @@ pub const ALTERNATIVES: [Alternative; 15] = [
     },
     Alternative {
         name: "one platform bar",
-        meaning: "only one platform bar counted in the mass, as in the equation of the 2010 paper",
+        meaning: "only one platform bar counted in the mass",
         affects_evaluation: true,
         change: |study| study.model.platform_bars = 1,
     },

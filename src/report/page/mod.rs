@@ -1,8 +1,9 @@
 //! The page of a report: one self-contained HTML file that loads nothing.
 
 mod clearance;
-mod differences;
 mod made;
+mod paper;
+mod references;
 mod results;
 mod sensitivity;
 
@@ -31,13 +32,13 @@ pub(super) fn html(report: &Report) -> String {
         ("fronts", "Pareto fronts", results::fronts(report)),
     ];
     if !report.references.is_empty() {
-        sections.push(("designs", "Reference designs", differences::references(report)));
+        sections.push(("designs", "Reference designs", references::references(report)));
     }
     if report.of_paper {
         sections.push((
             "differences",
             "Differences from the paper and their causes",
-            differences::explained(report),
+            paper::differences(report),
         ));
     }
     sections.push((
@@ -77,7 +78,7 @@ pub(super) fn html(report: &Report) -> String {
                     nav { @for (id, name, _) in &sections { a href={ "#" (id) } { (name) } } }
                 }
                 main {
-                    @if report.of_paper { (made::guide(report)) }
+                    @if report.of_paper { (paper::guide(report)) }
                     @for (id, name, section) in &sections {
                         section id=(id) { h2 { (name) } (section) }
                     }

@@ -2,11 +2,11 @@
 
 use maud::{Markup, html};
 
-use super::{cell, figures, image, percent};
+use super::{cell, figures, image, paper, percent};
 use crate::report::{AT_BOUND, Fit, Front, Report, Trend, lightest_intervals};
 use crate::text::{number, short};
 use kinefront_model::evaluation::{Constraint, Evaluation};
-use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable};
+use kinefront_model::mechanism::DESIGN_VARIABLES;
 
 /// Workspace radii at which architectures are compared, as fractions of the largest radius.
 const LEVELS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95];
@@ -128,35 +128,6 @@ fn polynomial(fit: &Fit) -> String {
     text
 }
 
-/// Returns how well a fit holds, in words and as a CSS class.
-pub(super) fn verdict(r_squared: f64) -> (&'static str, &'static str) {
-    match r_squared {
-        r if r >= 0.95 => ("holds", "holds"),
-        r if r >= 0.8 => ("holds roughly", "partly"),
-        _ => ("does not hold", "fails"),
-    }
-}
-
-/// Returns the trend that the paper claims for a variable and the verdict on it.
-fn said(trend: &Trend) -> Markup {
-    let (what, word, class) = if trend.variable == DesignVariable::PlatformBarRadius {
-        match trend.is_quadratic() {
-            Some(true) => ("quadratic", "holds", "holds"),
-            Some(false) => ("quadratic", "an upward parabola is not clearly better", "fails"),
-            None => ("quadratic", unknown(trend), "partly"),
-        }
-    } else {
-        match &trend.linear {
-            Some(fit) => {
-                let (word, class) = verdict(fit.r_squared);
-                ("linear", word, class)
-            }
-            None => ("linear", unknown(trend), "partly"),
-        }
-    };
-    html! { (what) ": " span class=(class) { (word) } }
-}
-
 /// Returns the reason why there is no fit.
 pub(super) fn unknown(trend: &Trend) -> &'static str {
     if trend.free.len() < trend.points.len() {
@@ -181,7 +152,7 @@ pub(super) fn variables(report: &Report) -> Markup {
             thead { tr {
                 th { "architecture" } th { "variable [m]" }
                 th.number { "designs not at a bound" } th { "straight line" } th.number { "R²" } th { "parabola" } th.number { "R²" }
-                th.number { "rank correlation" } th { "claim of the 2010 paper" }
+                th.number { "rank correlation" } @if report.of_paper { th { "claim of the 2010 paper" } }
             } }
             tbody { @for (architecture, trends) in &report.trends { @for trend in trends {
                 tr {
@@ -194,7 +165,7 @@ pub(super) fn variables(report: &Report) -> Markup {
                         }
                     }
                     td.number { (trend.rank_correlation.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}"))) }
-                    td { (said(trend)) }
+                    @if report.of_paper { td { (paper::claim(trend)) } }
                 }
             } } }
         } }

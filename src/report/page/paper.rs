@@ -1,67 +1,132 @@
-//! Comparison with the reference designs of the study and with the paper: values, causes of differences, claims.
+//! What the page says of the 2010 paper, in reports on its study: where its figures and tables are found, where and why the
+//! numbers differ, what becomes of its claims, and where it is silent.
 
 use maud::{Markup, html};
 
-use super::results::{levels, unknown, verdict};
-use super::{cell, change, optional, percent};
-use crate::report::{EvaluatedReference, Front, Report, Variation};
+use super::references::active;
+use super::results::{levels, unknown};
+use super::{change, percent};
+use crate::report::{Front, Report, Trend, Variation};
 use crate::text::number;
-use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, DesignVariable};
+use kinefront_model::mechanism::{Architecture, DesignVariable};
 use kinefront_optimize::hypervolume;
 
-pub(super) fn references(report: &Report) -> Markup {
-    let stated = |reference: &EvaluatedReference| {
-        let design = &reference.fine.design;
-        html! { tr {
-            td { (reference.name) } td { (design.architecture) }
-            @for value in design.values() { (cell(value)) }
-            (optional(reference.stated_mass)) (cell(reference.fine.mass))
-            @if report.of_paper { td.number { (number(reference.mass_range[0])) " … " (number(reference.mass_range[1])) } }
-            (optional(reference.stated_radius)) (cell(reference.coarse.workspace_radius)) (cell(reference.fine.workspace_radius))
-            td { (active(reference)) }
-        } }
-    };
+/// Lists where a reader of the paper finds each of its figures and tables on the page.
+pub(super) fn guide(report: &Report) -> Markup {
+    let whole = report.moga2.is_some();
+    let mut places = vec![
+        ("Fig. 1, the manipulators", "pictures", "Pictures of designs"),
+        (
+            "Fig. 2 to 4, flexible models of the legs",
+            "made",
+            "How this report was made",
+        ),
+        ("Fig. 5, a regular workspace", "pictures", "Pictures of designs (green)"),
+        (
+            "Fig. 6, Pareto front",
+            "fronts",
+            "Pareto fronts, all architectures together",
+        ),
+        ("Fig. 7, fronts of the three architectures", "fronts", "Pareto fronts"),
+        ("Fig. 8, CAD designs", "pictures", "Pictures of designs, ID-I to ID-III"),
+        (
+            "Fig. 9, R, r and L_b over R_w",
+            "variables",
+            "Trends of the design variables",
+        ),
+        (
+            "Fig. 10, r_j and r_p over R_w",
+            "variables",
+            "Trends of the design variables",
+        ),
+        ("Tab. 1, bounds", "made", "How this report was made"),
+        ("Tab. 3, three Pareto-optimal designs", "designs", "Reference designs"),
+    ];
+    if whole {
+        places.insert(
+            9,
+            (
+                "Tab. 2, the parameters of the algorithm",
+                "made",
+                "How this report was made",
+            ),
+        );
+    }
     html! {
-        div.scroll { table {
-            caption { "Masses in kg, lengths in m. “Stated” values are from the source of the design; all others are from this model." }
-            thead {
-                tr {
-                    th { "design" } th { "architecture" }
-                    @for variable in DESIGN_VARIABLES { th.number { (variable.symbol()) } }
-                    th.number { "mass, stated" } th.number { "mass" }
-                    @if report.of_paper { th.number { "mass range for the rounded bar radii" } }
-                    th.number { "R_w, stated" } th.number { "R_w, reference grid" } th.number { "R_w, fine grid" } th { "active constraints" }
-                }
-            }
-            tbody { @for reference in &report.references { (stated(reference)) } }
-        } }
-        h3 { "Lighter designs found" }
-        div.scroll { table {
-            caption { "The lightest design found with at least the workspace radius of each reference design (fine grid)." }
-            thead { tr {
-                th { "reference design" } th.number { "mass" } th { "" } th { "architecture" }
-                @for variable in DESIGN_VARIABLES { th.number { (variable.symbol()) } }
-                th.number { "mass" } th.number { "R_w" } th.number { "ratio of the masses" }
-            } }
-            tbody { @for reference in &report.references { tr {
-                td { (reference.name) } (cell(reference.fine.mass)) td { "→" }
-                @match &reference.lighter {
-                    Some(found) => {
-                        td { (found.design.architecture) }
-                        @for value in found.design.values() { (cell(value)) }
-                        (cell(found.mass)) (cell(found.workspace_radius))
-                        td.number { (percent(found.mass / reference.fine.mass)) }
-                    }
-                    None => { td colspan="9" { @if reference.fine.is_feasible() { "no lighter design found" } @else { "infeasible in this model" } } }
-                }
-            } } }
-        } }
+        p {
+            "Damien Chablat, Stéphane Caro, Raza Ur-Rehman and Philippe Wenger: "
+            em { "Comparison of Planar Parallel Manipulator Architectures based on a Multi-objective Design Optimization Approach" }
+            ", ASME IDETC/CIE 2010, DETC2010-28650. "
+            @if whole { "The study of the paper was repeated from scratch. This page has each of its figures and tables, and explains " }
+            @else { "The model, requirements and bounds of this run are those of the paper. A section below explains " }
+            a href="#differences" { "where and why the numbers differ" } "."
+        }
+        details open {
+            summary { "Where to find each figure and table of the paper" }
+            table { tbody { @for (paper, id, here) in places { tr { td { (paper) } td { a href={ "#" (id) } { (here) } } } } } }
+        }
     }
 }
 
-fn active(reference: &EvaluatedReference) -> String {
-    let active: Vec<&str> = reference.fine.active().map(|constraint| constraint.id()).collect();
-    active.join(", ")
+/// Tabulates the parameters that the paper gives for its algorithm, with the values used by MOGA-II (reimplementation).
+pub(super) fn parameters(report: &Report) -> Markup {
+    let settings = &report.study.optimizer.moga2;
+    let generations = report.study.optimizer.evaluations / settings.population.max(1);
+    let rows: [(&str, String); 8] = [
+        ("scheduler", "MOGA-II (reimplementation)".to_owned()),
+        ("number of iterations", generations.to_string()),
+        (
+            "directional cross-over probability",
+            settings.directional_crossover.to_string(),
+        ),
+        ("selection probability", settings.selection.to_string()),
+        ("mutation probability", settings.mutation.to_string()),
+        ("DNA string mutation ratio", settings.mutation_ratio.to_string()),
+        (
+            "DOE algorithm, number of designs",
+            format!("Sobol, {}", settings.population),
+        ),
+        (
+            "total number of iterations",
+            report.study.optimizer.evaluations.to_string(),
+        ),
+    ];
+    html! { div.scroll { table {
+        caption {
+            "Parameters of MOGA-II as tabulated in the paper, with the values used by the reimplementation. The "
+            "parameters of the other algorithms are in the study below."
+        }
+        tbody { @for (name, value) in rows { tr { td { (name) } td.number { (value) } } } }
+    } } }
+}
+
+/// Returns how well a fit holds, in words and as a CSS class.
+fn verdict(r_squared: f64) -> (&'static str, &'static str) {
+    match r_squared {
+        r if r >= 0.95 => ("holds", "holds"),
+        r if r >= 0.8 => ("holds roughly", "partly"),
+        _ => ("does not hold", "fails"),
+    }
+}
+
+/// Returns the trend that the paper claims for a variable and the verdict on it.
+pub(super) fn claim(trend: &Trend) -> Markup {
+    let (what, word, class) = if trend.variable == DesignVariable::PlatformBarRadius {
+        match trend.is_quadratic() {
+            Some(true) => ("quadratic", "holds", "holds"),
+            Some(false) => ("quadratic", "an upward parabola is not clearly better", "fails"),
+            None => ("quadratic", unknown(trend), "partly"),
+        }
+    } else {
+        match &trend.linear {
+            Some(fit) => {
+                let (word, class) = verdict(fit.r_squared);
+                ("linear", word, class)
+            }
+            None => ("linear", unknown(trend), "partly"),
+        }
+    };
+    html! { (what) ": " span class=(class) { (word) } }
 }
 
 /// Computes the hypervolume of a front with respect to the reference mass of the study \[kg·m\].
@@ -85,7 +150,8 @@ fn nearest(report: &Report, place: usize, stated: f64) -> Option<(&Variation, f6
 /// Relative difference of `R_w` from the printed value up to which the page gives no explanation.
 const NEAR: f64 = 0.05;
 
-pub(super) fn explained(report: &Report) -> Markup {
+/// Where and why the numbers differ from those of the paper, and what becomes of its claims.
+pub(super) fn differences(report: &Report) -> Markup {
     let masses_agree = report.references.iter().all(|reference| {
         let [low, high] = reference.mass_range;
         reference.stated_mass.is_none_or(|mass| (low..=high).contains(&mass))
@@ -118,8 +184,8 @@ pub(super) fn explained(report: &Report) -> Markup {
                     }
                 }
             }
-            li {
-                strong { "Much lighter designs exist. " }
+            @if report.references.iter().any(|reference| reference.lighter.is_some()) { li {
+                strong { "Lighter designs exist. " }
                 @for reference in &report.references {
                     @if let Some(found) = &reference.lighter {
                         "With at least the workspace of " (reference.name) ": " (number(found.mass)) " kg instead of "
@@ -139,7 +205,7 @@ pub(super) fn explained(report: &Report) -> Markup {
                     "Under this model, therefore, the search of the paper had not converged, or the model of the paper had requirements "
                     "that the paper does not state."
                 }
-            }
+            } }
         }
         h3 { "Claims of the paper and results of this report" }
         (claims(report))
