@@ -16,6 +16,8 @@ struct ControlState {
     steps: usize,
     stop: bool,
     abandon: bool,
+    /// Whether the run waits in [`RunControl::go_on`].
+    waiting: bool,
 }
 
 impl RunControl {
@@ -26,7 +28,10 @@ impl RunControl {
 
     /// Pauses the run after the current generation.
     pub fn pause(&self) {
-        self.change(|state| state.paused = true);
+        self.change(|state| {
+            state.paused = true;
+            state.steps = 0;
+        });
     }
 
     /// Resumes a paused run.
@@ -59,6 +64,11 @@ impl RunControl {
         });
     }
 
+    /// Whether the run is paused and waits: the generation that was in progress is done.
+    pub fn is_waiting(&self) -> bool {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner).waiting
+    }
+
     pub(super) fn is_abandoned(&self) -> bool {
         self.state.lock().unwrap_or_else(PoisonError::into_inner).abandon
     }
@@ -67,8 +77,10 @@ impl RunControl {
     pub(super) fn go_on(&self) -> bool {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         while state.paused && state.steps == 0 && !state.stop {
+            state.waiting = true;
             state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
+        state.waiting = false;
         state.steps = state.steps.saturating_sub(1);
         !state.stop
     }

@@ -6,7 +6,7 @@ use kinefront::scene::{
     regular_workspace, tour,
 };
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model, ModelSettings, PoseEvaluation};
-use kinefront_model::mechanism::{Design, MemberKind};
+use kinefront_model::mechanism::{Actuator, Design, MemberKind};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::StiffnessDefinition;
 use nalgebra::{Matrix3, Vector3};
@@ -91,7 +91,10 @@ fn joints_close_along_every_tour() {
                 let last = match (part(Part::Link), part(Part::Tube), part(Part::Rod)) {
                     (Some(link), None, None) => {
                         near(length(Some(link)).expect("a link"), design.link_length, "link");
-                        if let Some(crank) = part(Part::Crank) {
+                        let crank = part(Part::Crank);
+                        let has_crank = design.architecture.actuator() == Actuator::Revolute;
+                        assert_eq!(crank.is_some(), has_crank, "{design}: a crank");
+                        if let Some(crank) = crank {
                             near(length(Some(crank)).expect("a crank"), design.link_length, "crank");
                             near(apart(crank.1, link.0), 0.0, "gap at B");
                         }
@@ -286,7 +289,9 @@ fn heatmaps_hold_the_values_of_their_poses_and_contours_lie_on_the_threshold() {
                 let off = report(model, design, position, phi).determinant.abs();
                 assert!(off < 1e-9, "{design}: a singularity curve has det A/ℓ = {off:e}");
             }
+            assert!(!heatmap.edges.is_empty(), "{design}: the reach has no edge");
             for edge in &heatmap.edges {
+                assert!(edge.points.len() > 1, "{design}: an edge is a point");
                 for &position in &edge.points {
                     let limit_margin = report(model, design, position, phi).limit_margin;
                     assert!(
@@ -383,12 +388,15 @@ fn a_displacement_matches_the_definition_by_compliance() {
     };
     let model = Model::new(settings).expect("the grids fit");
     let heatmap = Heatmap::new(&model, &design, Field::Displacement, 0.5, HeatmapSettings { cells: 40 });
+    let mut compared = 0;
     for (&position, &value) in heatmap.vertices.iter().zip(&heatmap.values).step_by(11) {
         let k_xy = report(&model, &design, position, 0.5).stiffness_values.k_xy;
         if k_xy > 1.0 {
             assert!((value * k_xy / model.in_plane_force - 1.0).abs() < 1e-6);
+            compared += 1;
         }
     }
+    assert!(compared > 20, "only {compared} values compared");
 }
 
 /// The surface of every solid is closed, faces outwards, and encloses the volume of its shape.
@@ -454,6 +462,7 @@ fn the_linkage_is_the_manipulator_in_bodies() {
                 let frame = found.bodies[body].frame;
                 frame.origin + DVec2::from_angle(frame.angle).rotate(at)
             };
+            assert_eq!(found.closures.len(), 3);
             for (leg, closure) in found.closures.iter().enumerate() {
                 let on_leg = place(closure.leg, closure.on_leg);
                 let on_platform = place(found.platform(), closure.on_platform);

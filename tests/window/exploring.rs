@@ -8,7 +8,7 @@ use kinefront::study::{Column, EndReason};
 use kinefront_model::evaluation::MemberReport;
 use kinefront_model::mechanism::{DesignVariable, MemberKind};
 
-use super::support::{click_at, idle_window, opened_window, set_slider, until};
+use super::support::{click_at, idle_window, opened_window, set_slider, until, until_settled};
 
 #[test]
 fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_restores() {
@@ -83,16 +83,18 @@ fn a_run_is_paused_stepped_resumed_stopped_and_started_again() {
     window.get_by_label("⏸ Pause").click();
     window.run_steps(4);
     assert_eq!(*window.state().session().phase(), Phase::Paused);
-    // The current generation is still completed.
-    std::thread::sleep(std::time::Duration::from_millis(400));
-    window.run_steps(3);
+    // The current generation is still completed, and its messages arrive.
+    until(&mut window, "the run waits", |explorer| explorer.session().is_waiting());
+    until_settled(&mut window);
     let held = window.state().session().generations().len();
     window.get_by_label("⏭ Step").click();
     until(&mut window, "one more generation is done", |explorer| {
         explorer.session().generations().len() == held + 1
     });
-    std::thread::sleep(std::time::Duration::from_millis(200));
-    window.run_steps(3);
+    until(&mut window, "the run waits again", |explorer| {
+        explorer.session().is_waiting()
+    });
+    until_settled(&mut window);
     assert_eq!(window.state().session().generations().len(), held + 1);
     window.get_by_label("▶ Resume").click();
     until(&mut window, "the run continues", |explorer| {
@@ -177,8 +179,15 @@ fn one_filter_holds_everywhere() {
     window.key_press(Key::ArrowRight);
     window.run_steps(2);
     let session = window.state().session();
-    let sieve = session.document().filter.prepare(session.store());
-    let passes_filter = (0..session.store().len()).filter(|&id| sieve.passes(id)).count();
+    let prepared = session.document().filter.prepare(session.store());
+    match session.document().selected.as_ref().map(|selected| &selected.origin) {
+        Some(Origin::Evaluated(id)) => assert!(
+            prepared.passes(*id),
+            "the arrow key selected #{id}, which does not pass"
+        ),
+        other => panic!("{other:?}"),
+    }
+    let passes_filter = (0..session.store().len()).filter(|&id| prepared.passes(id)).count();
     let inside = session
         .store()
         .column(Column::WorkspaceRadius)
@@ -270,10 +279,8 @@ fn any_two_quantities_stand_against_each_other() {
         let scatter = kinefront::explorer::axes(quantity, Column::Dimension(DesignVariable::BaseRadius), k % 2 == 0);
         window.state_mut().set_axes(scatter);
         window.run_steps(3);
+        assert_eq!(window.state().axes(), scatter);
+        let shown = window.query_by_role_and_label(Role::Image, "Scatter of designs");
+        assert!(shown.is_some(), "the scatter of {quantity:?} is missing");
     }
-    assert!(
-        window
-            .query_by_role_and_label(Role::Image, "Scatter of designs")
-            .is_some()
-    );
 }

@@ -208,25 +208,13 @@ fn the_design_is_exported_for_other_programs() {
         window
             .state_mut()
             .act(&ctx, Purpose::ExportDesign(format), path.clone());
-        for _ in 0..500 {
-            window.step();
-            if !window.state().is_busy() {
-                break;
-            }
-            std::thread::sleep(std::time::Duration::from_millis(10));
-        }
+        until(&mut window, "the design is exported", |explorer| !explorer.is_busy());
         let bytes = std::fs::read(&path).expect("an export");
         assert!(bytes.starts_with(begins(format).as_bytes()), "{format:?}");
     }
     let report = folder.path().join("report");
     window.state_mut().act(&ctx, Purpose::Report, report.clone());
-    for _ in 0..6000 {
-        window.step();
-        if !window.state().is_busy() {
-            break;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(10));
-    }
+    until(&mut window, "the report is written", |explorer| !explorer.is_busy());
     let page = std::fs::read_to_string(report.join("index.html")).expect("a page");
     assert!(page.contains("Comparison of the architectures"));
     let front = folder.path().join("front.parquet");

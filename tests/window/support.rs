@@ -62,6 +62,18 @@ pub fn until(window: &mut Window, what: &str, done: impl Fn(&Explorer) -> bool) 
     window.run_steps(3);
 }
 
+/// Draws frames until the number of generations stays the same: the messages on their way have arrived.
+pub fn until_settled(window: &mut Window) {
+    let (mut before, mut same) = (0, 0);
+    while same < 20 {
+        std::thread::sleep(Duration::from_millis(5));
+        window.step();
+        let now = window.state().session().generations().len();
+        same = if now == before { same + 1 } else { 0 };
+        before = now;
+    }
+}
+
 /// Sets a slider to a value, as assistive technology would.
 pub fn set_slider(window: &mut Window, label: &str, value: f64) {
     let (target_node, target_tree) = window

@@ -170,6 +170,11 @@ impl Explorer {
         self.panels.scatter = Scatter::new(axes);
     }
 
+    /// Returns the axes of the scatter.
+    pub fn axes(&self) -> [ScatterAxis; 2] {
+        self.panels.scatter.axes
+    }
+
     /// Returns the recently opened files, the most recent first.
     pub fn recent(&self) -> &[PathBuf] {
         &self.recent

@@ -42,8 +42,9 @@ impl ComparePanel {
                             None => {}
                         }
                     }
+                    objectives(ui, &evaluations);
                     dimensions(ui, &pins);
-                    results(ui, session, &evaluations);
+                    constraints(ui, session, &evaluations);
                 });
         });
         if let Some(index) = choose {
@@ -98,21 +99,29 @@ fn dimensions(ui: &mut Ui, pins: &[Named]) {
     }
 }
 
-/// Draws the objectives, the margins, the clearance and the active constraints.
-fn results(ui: &mut Ui, session: &Session, evaluations: &[Option<Evaluation>]) {
-    let each = |value: &dyn Fn(&Evaluation) -> Option<f64>| -> Vec<Option<f64>> {
-        evaluations.iter().map(|e| value(e.as_ref()?)).collect()
-    };
-    row(ui, "mass [kg]", each(&|e| Some(e.mass)), Some(Best::Smallest));
-    row(ui, "R_w [m]", each(&|e| Some(e.workspace_radius)), Some(Best::Largest));
-    let per_mass = each(&|e| Some(1e3 * e.workspace_radius / e.mass.max(1e-9)));
+/// A value of each design; `None` while its evaluation is not known.
+fn values(evaluations: &[Option<Evaluation>], value: impl Fn(&Evaluation) -> Option<f64>) -> Vec<Option<f64>> {
+    evaluations.iter().map(|e| value(e.as_ref()?)).collect()
+}
+
+fn objectives(ui: &mut Ui, evaluations: &[Option<Evaluation>]) {
+    let masses = values(evaluations, |e| Some(e.mass));
+    row(ui, "mass [kg]", masses, Some(Best::Smallest));
+    let radii = values(evaluations, |e| Some(e.workspace_radius));
+    row(ui, "R_w [m]", radii, Some(Best::Largest));
+    let per_mass = values(evaluations, |e| Some(1e3 * e.workspace_radius / e.mass.max(1e-9)));
     row(ui, "R_w / mass [mm/kg]", per_mass, Some(Best::Largest));
+}
+
+/// Draws the margins of the required constraints, the clearance and the active constraints.
+fn constraints(ui: &mut Ui, session: &Session, evaluations: &[Option<Evaluation>]) {
     for constraint in Constraint::required(&session.model().thresholds) {
-        let margins = each(&|e| Some(e.constraint(constraint).margin));
+        let margins = values(evaluations, |e| Some(e.constraint(constraint).margin));
         row(ui, &Column::Margin(constraint).title(), margins, Some(Best::Largest));
     }
     let clearance = Column::Value(Constraint::Clearance).title();
-    row(ui, &clearance, each(&Evaluation::clearance), Some(Best::Largest));
+    let clearances = values(evaluations, Evaluation::clearance);
+    row(ui, &clearance, clearances, Some(Best::Largest));
     ui.label("active constraints");
     for evaluation in evaluations {
         let active: Vec<&str> = evaluation.iter().flat_map(|e| e.active().map(Constraint::id)).collect();

@@ -134,6 +134,11 @@ impl Session {
         }
     }
 
+    /// Returns whether the run is paused and its last generation is done.
+    pub fn is_waiting(&self) -> bool {
+        self.run.as_ref().is_some_and(|run| run.control.is_waiting())
+    }
+
     /// Ends the run; the designs found so far are verified and kept.
     pub fn stop(&mut self) {
         if let Some(run) = self

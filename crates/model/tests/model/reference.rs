@@ -159,6 +159,7 @@ fn designs_agree_on_both_grids_and_both_definitions() {
 #[test]
 fn thin_bars_agree_with_sixty_digits() {
     let cases = fixture("thin_bars.json");
+    assert_eq!(cases["poses"].as_array().map(Vec::len), Some(36));
     for case in cases["poses"].as_array().expect("poses") {
         let (design, pose) = (design(case), pose(case));
         let report = Model::default().pose(&design, &pose).expect("reachable");

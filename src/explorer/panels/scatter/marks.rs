@@ -10,7 +10,7 @@ use kinefront_model::mechanism::Architecture;
 use kinefront_optimize::knee;
 
 /// A mark with the text beside it.
-type Mark<'a> = (Points<'a>, Option<Text>);
+type LabelledPoints<'a> = (Points<'a>, Option<Text>);
 
 /// Colours of the lines and texts of a theme, and of its background.
 #[derive(Clone, Copy)]
@@ -23,7 +23,7 @@ struct Colors {
 impl Scatter {
     /// Returns the lines and marks of the front (a staircase), its designs, the knee, the references and the selected
     /// design.
-    pub(super) fn front<'a>(&self, session: &Session, dark: bool) -> (Vec<Line<'a>>, Vec<Mark<'a>>) {
+    pub(super) fn front<'a>(&self, session: &Session, dark: bool) -> (Vec<Line<'a>>, Vec<LabelledPoints<'a>>) {
         let colors = Colors {
             ink: if dark {
                 Color32::from_gray(235)
@@ -72,7 +72,7 @@ impl Scatter {
     }
 
     /// The designs of the front by architecture; those that do not pass the filter are dimmed.
-    fn designs<'a>(&self, session: &Session, colors: Colors) -> Vec<Mark<'a>> {
+    fn designs<'a>(&self, session: &Session, colors: Colors) -> Vec<LabelledPoints<'a>> {
         let prepared = session.document().filter.prepare(session.store());
         let of = |architecture: Architecture, passes: bool| {
             let points: Vec<[f64; 2]> = session
@@ -97,7 +97,7 @@ impl Scatter {
             .collect()
     }
 
-    fn knee<'a>(&self, session: &Session, colors: Colors) -> Option<Mark<'a>> {
+    fn knee<'a>(&self, session: &Session, colors: Colors) -> Option<LabelledPoints<'a>> {
         let front = session.front();
         let objectives: Vec<[f64; 2]> = front.iter().map(|entry| entry.objectives()).collect();
         let at = self.place(&front[knee(&objectives)?].row);
@@ -112,7 +112,7 @@ impl Scatter {
         session: &Session,
         colors: Colors,
         lines: &mut Vec<Line<'a>>,
-        marks: &mut Vec<Mark<'a>>,
+        marks: &mut Vec<LabelledPoints<'a>>,
     ) {
         for reference in session.references() {
             let at = self.place(&Row::new(0, &reference.evaluation));

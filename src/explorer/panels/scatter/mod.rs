@@ -20,7 +20,7 @@ const BUDGET: Duration = Duration::from_millis(4);
 
 /// The scatter with its axes and view.
 pub struct Scatter {
-    axes: [ScatterAxis; 2],
+    pub(in crate::explorer) axes: [ScatterAxis; 2],
     cloud: Cloud,
     extent: Extent,
     /// Whether the view is fitted to the designs in every frame.
