@@ -48,3 +48,6 @@ pub mod report;
 pub mod scene;
 pub mod study;
 pub mod text;
+
+/// An error of a library that writes a format, whose message is shown with the name of what could not be written.
+pub(crate) type AnyError = Box<dyn std::error::Error + Send + Sync>;

@@ -4,8 +4,8 @@ use std::io::{BufRead, Write};
 
 use kinefront::export::EvaluationJson;
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
-use kinefront_model::mechanism::{Design, WorkingMode};
-use miette::miette;
+use kinefront_model::mechanism::{Design, TextError, WorkingMode};
+use miette::Report;
 
 use super::{Ending, Failure, GridArgument, load_study, tables, to_json};
 
@@ -40,7 +40,7 @@ pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
         Some(text) => {
             let evaluation = server
                 .evaluate(text)
-                .map_err(|message| Failure::Input(miette!("{message}")))?;
+                .map_err(|error| Failure::Input(Report::from_err(error)))?;
             let mut out = std::io::stdout().lock();
             if arguments.json {
                 writeln!(
@@ -63,8 +63,8 @@ struct Server {
 }
 
 impl Server {
-    fn evaluate(&self, text: &str) -> Result<Evaluation, String> {
-        let design = Design::parse(text, self.mode).map_err(|error| error.to_string())?;
+    fn evaluate(&self, text: &str) -> Result<Evaluation, TextError> {
+        let design = Design::parse(text, self.mode)?;
         Ok(self.model.evaluate(&design, self.grid))
     }
 
@@ -80,7 +80,7 @@ impl Server {
             }
             let answer = std::str::from_utf8(&line)
                 .map_err(|_| "the line is not UTF-8".to_owned())
-                .and_then(|text| self.evaluate(text))
+                .and_then(|text| self.evaluate(text).map_err(|error| error.to_string()))
                 .and_then(|evaluation| to_json(&EvaluationJson::new(&evaluation)).map_err(|error| error.to_string()))
                 .unwrap_or_else(|message| serde_json::json!({ "error": message }).to_string());
             writeln!(out, "{answer}")?;

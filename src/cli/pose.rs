@@ -4,8 +4,8 @@ use std::io::Write;
 
 use kinefront::export::PoseReportJson;
 use kinefront_model::mechanism::Design;
-use kinefront_model::spatial::Pose;
-use miette::{Report, miette};
+use kinefront_model::spatial::{Pose, PoseTextError};
+use miette::Report;
 
 use super::{Ending, Failure, load_study, tables, to_json};
 
@@ -32,7 +32,7 @@ pub fn run(arguments: &PoseArguments) -> Result<Ending, Failure> {
     let pose: Pose = arguments
         .pose
         .parse()
-        .map_err(|message: String| Failure::Input(miette!("{message}")))?;
+        .map_err(|error: PoseTextError| Failure::Input(Report::from_err(error)))?;
     let outcome = study.model().map_err(Failure::runtime)?.pose(&design, &pose);
     let mut out = std::io::stdout().lock();
     if arguments.json {

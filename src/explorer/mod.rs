@@ -26,11 +26,11 @@ mod viewer;
 
 pub use crate::study::Row;
 pub use app::{Explorer, InitialContent, run};
-pub use data::{Document, Filter, FrontEntry, History, Named, Origin, Selected, Store};
+pub use data::{Document, Filter, FilterError, FrontEntry, History, Named, Origin, Selected, Store};
 pub use files::{OpenError, Opened, Purpose, open};
 pub use panels::scatter::{ScatterAxis, axes};
 pub use panels::{Panel, Panels};
-pub use script::Script;
+pub use script::{Script, ScriptError};
 pub use session::{MOST_PINS, Notice, Phase, ReferenceMark, Session, Staging, Wake};
 pub use study_editor::StudyEditor;
 pub use theme::dress;

@@ -78,12 +78,41 @@ enum Step {
     Quit,
 }
 
+/// Why a script cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ScriptError {
+    /// The file cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// Path of the file.
+        path: PathBuf,
+        /// Cause of the failure.
+        source: std::io::Error,
+    },
+    /// A script file has a line that is not a step.
+    #[error("{}, {error}", path.display())]
+    File {
+        /// Path of the file.
+        path: PathBuf,
+        /// What is wrong in it.
+        error: Box<ScriptError>,
+    },
+    /// A line is not a step.
+    #[error("line {line}: `{text}` is not a script step")]
+    Step {
+        /// Number of the line, from 1.
+        line: usize,
+        /// The line.
+        text: String,
+    },
+}
+
 impl Script {
     /// Reads a script.
     ///
     /// # Errors
-    /// Returns a message that names the line that is not a step.
-    pub fn parse(text: &str) -> Result<Self, String> {
+    /// [`ScriptError::Step`] for the first line that is not a step.
+    pub fn parse(text: &str) -> Result<Self, ScriptError> {
         let mut steps = Vec::new();
         for (index, line) in text.lines().enumerate() {
             // A `#` before a digit begins an id; a `#` before a space begins a comment.
@@ -93,7 +122,10 @@ impl Script {
             };
             let line = line.trim();
             if !line.is_empty() {
-                let step = step(line).ok_or_else(|| format!("line {}: `{line}` is not a script step", index + 1))?;
+                let step = step(line).ok_or_else(|| ScriptError::Step {
+                    line: index + 1,
+                    text: line.to_owned(),
+                })?;
                 let file = matches!(step, Step::File(..));
                 steps.push((index + 1, step));
                 if file {
@@ -112,10 +144,16 @@ impl Script {
     /// Reads a script file.
     ///
     /// # Errors
-    /// Returns the message of [`Script::parse`] with the name of the file, or says why the file cannot be read.
-    pub fn read(path: &Path) -> Result<Self, String> {
-        let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-        Self::parse(&text).map_err(|words| format!("{}, {words}", path.display()))
+    /// [`ScriptError`] for a file that cannot be read or a line that is not a step.
+    pub fn read(path: &Path) -> Result<Self, ScriptError> {
+        let text = std::fs::read_to_string(path).map_err(|source| ScriptError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::parse(&text).map_err(|error| ScriptError::File {
+            path: path.to_owned(),
+            error: Box::new(error),
+        })
     }
 
     /// Performs the step that is due; called once per frame.

@@ -1,5 +1,6 @@
 //! A study being edited: its text is authoritative and is checked as it is typed.
 
+use crate::AnyError;
 use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
@@ -70,7 +71,7 @@ impl StudyEditor {
     ///
     /// # Errors
     /// Returns a message that says why the file cannot be written.
-    pub fn save(&mut self, path: &Path) -> Result<(), String> {
+    pub fn save(&mut self, path: &Path) -> Result<(), AnyError> {
         super::files::write_whole(path, self.text.as_bytes())?;
         self.path = Some(path.to_owned());
         self.changed = false;

@@ -1,6 +1,7 @@
 //! The plan view for CAD, in millimetres, with one layer for each kind of object. The file is DXF release 12, which
 //! every CAD program reads: for later releases the library omits table handles that some programs require.
 
+use crate::AnyError;
 use ::dxf::entities::{Circle, Entity, EntityType, Line, Polyline, Text, Vertex};
 use ::dxf::enums::AcadVersion;
 use ::dxf::tables::Layer;
@@ -26,7 +27,7 @@ const LAYERS: [(&str, u8); 8] = [
     ("TEXT", 2),
 ];
 
-pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
+pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let design = &subject.evaluation.design;
     let scene = &subject.scene;
     let mut sheet = Sheet::new();
@@ -44,10 +45,8 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
         sheet.text(corner - DVec2::new(0.0, 1.6 * height * line as f64), height, words);
     }
     let mut bytes = Vec::new();
-    sheet.drawing.save(&mut bytes).map_err(|error| error.to_string())?;
-    String::from_utf8(bytes)
-        .map(|text| release_12(&text).into_bytes())
-        .map_err(|error| error.to_string())
+    sheet.drawing.save(&mut bytes)?;
+    Ok(release_12(&String::from_utf8(bytes)?).into_bytes())
 }
 
 /// Removes what release 12 does not know: the library writes subclass markers and handles in tables and entities for

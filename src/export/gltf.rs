@@ -1,5 +1,6 @@
 //! glTF 2.0, binary: a node for every body, coloured by part, and the tour of the workspace as an animation.
 
+use crate::AnyError;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -21,7 +22,7 @@ const TOUR_SECONDS: f64 = 12.0;
 /// Number of segments of the circle that shows the regular workspace.
 const CIRCLE: usize = 96;
 
-pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
+pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let mut file = File::default();
     let mut nodes = Vec::new();
     let mut bodies = Vec::new();
@@ -344,7 +345,7 @@ impl File {
         });
     }
 
-    fn finish(mut self) -> Result<Vec<u8>, String> {
+    fn finish(mut self) -> Result<Vec<u8>, AnyError> {
         self.root.push(json::Buffer {
             byte_length: USize64::from(self.numbers.len()),
             uri: None,
@@ -363,6 +364,6 @@ impl File {
             json: Cow::Owned(text),
             bin: Some(Cow::Owned(self.numbers)),
         };
-        glb.to_vec().map_err(|error| error.to_string())
+        Ok(glb.to_vec()?)
     }
 }

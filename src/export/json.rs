@@ -1,5 +1,6 @@
 //! The JSON output that other programs rely on. Keys are a contract: new ones may be added, none may be renamed.
 
+use crate::AnyError;
 use serde::Serialize;
 
 use super::Prepared;
@@ -313,7 +314,7 @@ fn kind(actuator: Actuator) -> &'static str {
     }
 }
 
-pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
+pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let Prepared {
         study,
         evaluation,

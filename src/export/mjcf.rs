@@ -3,10 +3,11 @@
 
 use super::xml::Element;
 use super::{Format, Prepared, inertial, joint_axis, joint_name, rgba};
+use crate::AnyError;
 use crate::scene::{Body, Joint, Solid, SolidShape};
 use kinefront_model::mechanism::Actuator;
 
-pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
+pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let root = Element::new("mujoco")
         .with("model", subject.identifier())
         .children(settings())

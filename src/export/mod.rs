@@ -20,6 +20,7 @@ mod table;
 mod urdf;
 mod xml;
 
+use crate::AnyError;
 use glam::DVec3;
 
 use crate::palette;
@@ -33,7 +34,7 @@ use kinefront_model::spatial::{LEGS, Pose};
 use kinefront_model::workspace::GridError;
 
 pub use json::{DesignJson, EvaluationJson, PoseReportJson};
-pub use table::front_to_parquet;
+pub use table::{ConversionError, front_to_parquet};
 
 /// A file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -153,12 +154,12 @@ pub enum ExportError {
     #[error("a bar of radius 0 has no mass and no shape; {0} needs r_j and r_p above 0")]
     NoBar(&'static str),
     /// Writing the format failed.
-    #[error("cannot write {format}: {message}")]
+    #[error("cannot write {format}: {source}")]
     Format {
         /// Name of the format.
         format: &'static str,
-        /// Reason.
-        message: String,
+        /// Cause of the failure.
+        source: AnyError,
     },
 }
 
@@ -324,9 +325,9 @@ pub fn export(subject: &ExportSubject, format: Format) -> Result<Vec<u8>, Export
         cylinder,
         tour,
     };
-    let failed = |message: String| ExportError::Format {
+    let failed = |source: AnyError| ExportError::Format {
         format: format.key(),
-        message,
+        source,
     };
     match format {
         Format::Gltf => gltf::write(&prepared).map_err(failed),

@@ -2,13 +2,14 @@
 
 use super::xml::{Element, numbers};
 use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, text};
+use crate::AnyError;
 use crate::scene::{Body, Frame, Joint, Solid, SolidShape};
 use kinefront_model::mechanism::Actuator;
 
 /// Value that means "no limit" where the format requires a number.
 const UNLIMITED: f64 = 1e16;
 
-pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
+pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let linkage = &subject.linkage;
     let mut model = Element::new("model").with("name", subject.identifier()).child(
         Element::new("link")

@@ -11,6 +11,30 @@ use parquet::schema::parser::parse_message_type;
 
 use crate::study::{Column, ColumnType};
 
+/// Why a table cannot be converted to Parquet.
+#[derive(Debug, thiserror::Error)]
+pub enum ConversionError {
+    /// The table is not CSV.
+    #[error(transparent)]
+    Csv(#[from] csv::Error),
+    /// The table has no header.
+    #[error("the table has no columns")]
+    NoColumns,
+    /// A value is not of the type of its column.
+    #[error("line {line}: `{text}` is not a valid value for the column `{column}`")]
+    Value {
+        /// Line in the table, from 1.
+        line: usize,
+        /// The text found.
+        text: String,
+        /// Name of the column.
+        column: String,
+    },
+    /// The file cannot be encoded.
+    #[error(transparent)]
+    Encode(#[from] ParquetError),
+}
+
 /// A column with its values.
 enum ParquetColumn {
     Int(Vec<Option<i64>>),
@@ -22,15 +46,14 @@ enum ParquetColumn {
 impl ParquetColumn {
     /// Parses the values of a column. A column of Kinefront's tables has a known type; any other column contains
     /// numbers or, failing that, texts. An empty text is a missing value.
-    fn new(name: &str, texts: &[&str]) -> Result<Self, String> {
-        fn read<T: std::str::FromStr>(name: &str, texts: &[&str]) -> Result<Vec<Option<T>>, String> {
+    fn new(name: &str, texts: &[&str]) -> Result<Self, ConversionError> {
+        fn read<T: std::str::FromStr>(name: &str, texts: &[&str]) -> Result<Vec<Option<T>>, ConversionError> {
             let parse = |(row, text): (usize, &&str)| match *text {
                 "" => Ok(None),
-                text => text.parse().map(Some).map_err(|_| {
-                    format!(
-                        "line {}: `{text}` is not a valid value for the column `{name}`",
-                        row + 2
-                    )
+                text => text.parse().map(Some).map_err(|_| ConversionError::Value {
+                    line: row + 2,
+                    text: text.to_owned(),
+                    column: name.to_owned(),
                 }),
             };
             texts.iter().enumerate().map(parse).collect()
@@ -59,17 +82,14 @@ impl ParquetColumn {
 /// Converts a table of designs, the contents of `front.csv` or `designs.csv`, to Parquet with the same columns.
 ///
 /// # Errors
-/// A message that says what is wrong with the table.
-pub fn front_to_parquet(table: &[u8]) -> Result<Vec<u8>, String> {
+/// [`ConversionError`], which says what is wrong with the table.
+pub fn front_to_parquet(table: &[u8]) -> Result<Vec<u8>, ConversionError> {
     let mut reader = csv::Reader::from_reader(table);
-    let header = reader.headers().map_err(|error| error.to_string())?.clone();
+    let header = reader.headers()?.clone();
     if header.is_empty() {
-        return Err("the table has no columns".to_owned());
+        return Err(ConversionError::NoColumns);
     }
-    let records: Vec<csv::StringRecord> = reader
-        .records()
-        .collect::<Result<_, _>>()
-        .map_err(|error| error.to_string())?;
+    let records: Vec<csv::StringRecord> = reader.records().collect::<Result<_, _>>()?;
     let columns: Vec<ParquetColumn> = header
         .iter()
         .enumerate()
@@ -78,7 +98,7 @@ pub fn front_to_parquet(table: &[u8]) -> Result<Vec<u8>, String> {
             ParquetColumn::new(name, &texts)
         })
         .collect::<Result<_, _>>()?;
-    write(&header, &columns).map_err(|error| error.to_string())
+    Ok(write(&header, &columns)?)
 }
 
 fn write(header: &csv::StringRecord, columns: &[ParquetColumn]) -> Result<Vec<u8>, ParquetError> {

@@ -1,5 +1,6 @@
 //! URDF: the tree that remains when the loops are cut at `C_2` and `C_3`.
 
+use crate::AnyError;
 use glam::DVec2;
 
 use super::xml::{Element, numbers};
@@ -11,7 +12,7 @@ use kinefront_model::mechanism::Actuator;
 const EFFORT: f64 = 1e4;
 const SPEED: f64 = 10.0;
 
-pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, String> {
+pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let linkage = &subject.linkage;
     let mut robot = Element::new("robot").with("name", subject.identifier()).child(
         Element::new("link")

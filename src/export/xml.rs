@@ -1,5 +1,6 @@
 //! A tree of XML elements, written with indentation.
 
+use crate::AnyError;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
 
@@ -62,7 +63,7 @@ impl Element {
     }
 
     /// Writes the document with this element as its root and a comment before it.
-    pub(super) fn document(&self, preamble: &str) -> Result<Vec<u8>, String> {
+    pub(super) fn document(&self, preamble: &str) -> Result<Vec<u8>, AnyError> {
         let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
         let write = |writer: &mut Writer<Vec<u8>>| -> std::io::Result<()> {
             writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("utf-8"), None)))?;

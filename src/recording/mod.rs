@@ -42,7 +42,7 @@ mod writer;
 pub use design::record_design;
 pub use live::{LiveScene, Picked, Pinned, Shown, VisibleLayers};
 #[cfg(feature = "explorer")]
-pub use read::{ReadError, RecordedDesign, RecordedRun, read_run, save_copy};
+pub use read::{CopyError, ReadError, RecordedDesign, RecordedRun, read_run, save_copy};
 pub use recorder::Recorder;
 pub use scatter::FrontPoint;
 pub use writer::RecordingError;

@@ -146,15 +146,37 @@ fn designs(chunk: &Chunk, designs: &mut Vec<RecordedDesign>) {
     }
 }
 
+/// Why a recording cannot be copied.
+#[derive(Debug, thiserror::Error)]
+pub enum CopyError {
+    /// The recording cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The copy cannot be written.
+    #[error("cannot write the recording {}: {source}", path.display())]
+    Write {
+        /// Path of the copy.
+        path: PathBuf,
+        /// Cause of the failure.
+        source: io::Error,
+    },
+    /// The design that the copy shows cannot be recorded.
+    #[error(transparent)]
+    Record(#[from] RecordingError),
+}
+
 /// Copies the recording at `from`, as far as it has been written, to `to`, which must not exist; `shown` is a design
 /// that the views of the copy show at its last moment.
 ///
 /// # Errors
-/// A message that names the file that cannot be read or written, and the reason.
-pub fn save_copy(from: &Path, to: &Path, shown: Option<(&Model, &Evaluation, &str)>) -> Result<(), String> {
-    let read = messages(from).map_err(|error| error.to_string())?;
-    let file = RrdFile::create(to).map_err(|error| format!("cannot write the recording {}: {error}", to.display()))?;
-    let failed = |error: io::Error| format!("cannot write the recording {}: {error}", to.display());
+/// [`CopyError`], which names the file that cannot be read or written.
+pub fn save_copy(from: &Path, to: &Path, shown: Option<(&Model, &Evaluation, &str)>) -> Result<(), CopyError> {
+    let read = messages(from)?;
+    let failed = |source: io::Error| CopyError::Write {
+        path: to.to_owned(),
+        source,
+    };
+    let file = RrdFile::create(to).map_err(failed)?;
     let mut recording: Option<StoreId> = None;
     let mut last = [(timelines::EVALUATION, 0), (timelines::GENERATION, 0)];
     for message in read {
@@ -181,9 +203,9 @@ pub fn save_copy(from: &Path, to: &Path, shown: Option<(&Model, &Evaluation, &st
     }
     if let Some(((model, evaluation, heading), store)) = shown.zip(recording) {
         let builder = RecordingWriter::builder().recording_id(store.recording_id().clone());
-        let writer = RecordingWriter::over(&file, to, builder).map_err(|error| error.to_string())?;
+        let writer = RecordingWriter::over(&file, to, builder)?;
         let drawn: Result<(), RecordingError> = design::record_step(&writer, &last, model, evaluation, heading);
-        drawn.and_then(|()| writer.close()).map_err(|error| error.to_string())
+        Ok(drawn.and_then(|()| writer.close())?)
     } else {
         file.finish().map_err(failed)
     }

@@ -1,5 +1,6 @@
 //! Drawing charts as SVG and converting SVG to PNG.
 
+use crate::AnyError;
 use std::sync::{Arc, OnceLock};
 
 use plotters::coord::ranged1d::{Ranged, ValueFormatter};
@@ -97,7 +98,7 @@ const GRID: RGBColor = RGBColor(226, 229, 234);
 
 impl Chart {
     /// Draws the chart as SVG.
-    pub fn svg(&self) -> Result<String, String> {
+    pub fn svg(&self) -> Result<String, AnyError> {
         register_font()?;
         let mut text = String::new();
         {
@@ -246,19 +247,19 @@ impl Chart {
 /// The font with which figures are laid out; embedding it makes them identical on every machine.
 const FONT: &[u8] = epaint_default_fonts::UBUNTU_LIGHT;
 
-fn register_font() -> Result<(), String> {
+fn register_font() -> Result<(), AnyError> {
     static REGISTERED: OnceLock<bool> = OnceLock::new();
     let registered =
         REGISTERED.get_or_init(|| plotters::style::register_font("sans-serif", FontStyle::Normal, FONT).is_ok());
     if *registered {
         Ok(())
     } else {
-        Err("cannot read the embedded font".to_owned())
+        Err("cannot read the embedded font".into())
     }
 }
 
 /// Renders an SVG as PNG with `scale` pixels per unit.
-pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, String> {
+pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, AnyError> {
     static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
     let fonts = FONTS.get_or_init(|| {
         let mut fonts = usvg::fontdb::Database::new();
@@ -274,7 +275,7 @@ pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, String> {
         fontdb: Arc::clone(fonts),
         ..usvg::Options::default()
     };
-    let tree = usvg::Tree::from_str(svg, &options).map_err(|error| error.to_string())?;
+    let tree = usvg::Tree::from_str(svg, &options)?;
     let size = tree.size();
     let (width, height) = ((size.width() * scale) as u32, (size.height() * scale) as u32);
     let mut picture = tiny_skia::Pixmap::new(width, height).ok_or("the width or the height of the picture is 0")?;
@@ -283,14 +284,14 @@ pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, String> {
         tiny_skia::Transform::from_scale(scale, scale),
         &mut picture.as_mut(),
     );
-    picture.encode_png().map_err(|error| error.to_string())
+    Ok(picture.encode_png()?)
 }
 
 /// Encodes pixels (red, green, blue, row by row) as PNG.
-pub(super) fn pixels_to_png(width: u32, height: u32, pixels: &[[u8; 3]]) -> Result<Vec<u8>, String> {
+pub(super) fn pixels_to_png(width: u32, height: u32, pixels: &[[u8; 3]]) -> Result<Vec<u8>, AnyError> {
     let mut picture = tiny_skia::Pixmap::new(width, height).ok_or("the width or the height of the picture is 0")?;
     for (target, &[r, g, b]) in picture.pixels_mut().iter_mut().zip(pixels) {
         *target = tiny_skia::ColorU8::from_rgba(r, g, b, 255).premultiply();
     }
-    picture.encode_png().map_err(|error| error.to_string())
+    Ok(picture.encode_png()?)
 }

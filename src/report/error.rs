@@ -1,5 +1,6 @@
 //! Errors of reports.
 
+use crate::AnyError;
 use std::path::PathBuf;
 
 use crate::study::{FolderError, RunFolderError, TableError};
@@ -39,12 +40,12 @@ pub enum ReportError {
     #[error(transparent)]
     Grid(#[from] GridError),
     /// A figure, a picture or `fronts.csv` cannot be created.
-    #[error("cannot create {name}: {message}")]
+    #[error("cannot create {name}: {source}")]
     Figure {
         /// Name of the figure, picture or file.
         name: String,
         /// Reason of the failure.
-        message: String,
+        source: AnyError,
     },
     /// The folder already holds a report, and replacing it was not requested.
     #[error("{} already holds a report; choose another folder, or replace it with --replace", .0.display())]

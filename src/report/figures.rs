@@ -106,9 +106,9 @@ struct Figures(Vec<Figure>);
 impl Figures {
     /// Draws a chart and adds it; `beyond` designs lie beyond the end of its mass axis.
     fn add(&mut self, name: String, words: String, (chart, beyond): (Chart, usize)) -> Result<(), ReportError> {
-        let svg = chart.svg().map_err(|message| ReportError::Figure {
+        let svg = chart.svg().map_err(|source| ReportError::Figure {
             name: name.clone(),
-            message,
+            source,
         })?;
         let caption = match beyond {
             0 => format!("{words}."),

@@ -253,9 +253,9 @@ impl Report {
                 let range = self.study.workspace.rotation_range_deg;
                 let png = picture::picture(model, evaluation, range, [width, height])
                     .and_then(|pixels| chart::pixels_to_png(width, height, &pixels))
-                    .map_err(|message| ReportError::Figure {
+                    .map_err(|source| ReportError::Figure {
                         name: name.clone(),
-                        message,
+                        source,
                     })?;
                 Ok(DesignPicture {
                     name,

@@ -1,5 +1,6 @@
 //! Pictures of designs, rendered by casting rays at the solids of the scene; this needs no graphics driver.
 
+use crate::AnyError;
 use glam::{DVec2, DVec3};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::{Pose, Rotation, Vector};
@@ -35,7 +36,7 @@ pub(super) fn picture(
     evaluation: &Evaluation,
     rotation_range_deg: f64,
     [width, height]: [u32; 2],
-) -> Result<Vec<[u8; 3]>, String> {
+) -> Result<Vec<[u8; 3]>, AnyError> {
     let stage = RenderScene::new(model, evaluation, rotation_range_deg)?;
     let camera = Camera::new(&stage.corners, [width, height]);
     let row = |y: u32| -> Vec<DVec3> {
@@ -200,7 +201,7 @@ struct RenderScene {
 }
 
 impl RenderScene {
-    fn new(model: &Model, evaluation: &Evaluation, rotation_range_deg: f64) -> Result<Self, String> {
+    fn new(model: &Model, evaluation: &Evaluation, rotation_range_deg: f64) -> Result<Self, AnyError> {
         let design = &evaluation.design;
         let home = model.home(evaluation);
         let scene = manipulator(model, design, &home).map_err(|error| error.to_string())?;

@@ -26,9 +26,9 @@ impl Report {
         make(&pictures)?;
         for figure in &self.figures {
             write_whole(&figures.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
-            let png = chart::png(&figure.svg, self.options.scale).map_err(|message| ReportError::Figure {
+            let png = chart::png(&figure.svg, self.options.scale).map_err(|source| ReportError::Figure {
                 name: figure.name.clone(),
-                message,
+                source,
             })?;
             write_whole(&figures.join(format!("{}.png", figure.name)), &png)?;
         }
@@ -52,7 +52,7 @@ impl Report {
         });
         let table = table_bytes(columns(), rows).map_err(|error| ReportError::Figure {
             name: "fronts.csv".to_owned(),
-            message: error.to_string(),
+            source: error.into(),
         })?;
         write_whole(&folder.join("fronts.csv"), &table)?;
         // The page is written last: if it exists, the report is complete.

@@ -29,6 +29,8 @@ use super::{
     RunTimes, Started, Study, Subscriber,
 };
 use kinefront_model::evaluation::{Evaluation, GridChoice};
+use kinefront_model::mechanism::DesignError;
+use kinefront_model::workspace::GridError;
 use kinefront_optimize::{Algorithm, Archive, Evaluated, FrontDe, Moga2, Nsga2, Problem, hypervolume, spread};
 
 /// Starts the run of a study on its own thread.
@@ -45,7 +47,7 @@ pub fn spawn(study: Study, control: Arc<RunControl>, subscribers: Vec<Subscriber
         let ended = catch_unwind(AssertUnwindSafe(|| run(study, &control, &mut publisher)));
         let message = match ended {
             Ok(Ok(())) => return,
-            Ok(Err(message)) => message,
+            Ok(Err(error)) => error.to_string(),
             Err(panic) => panic
                 .downcast_ref::<String>()
                 .cloned()
@@ -54,6 +56,17 @@ pub fn spawn(study: Study, control: Arc<RunControl>, subscribers: Vec<Subscriber
         };
         publisher.send(Event::Failed(message));
     })
+}
+
+/// Why a run fails; a study that was read without faults gives no cause but the threads.
+#[derive(Debug, thiserror::Error)]
+enum RunError {
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    #[error("cannot start the worker threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    #[error(transparent)]
+    Design(#[from] DesignError),
 }
 
 struct Publisher {
@@ -71,9 +84,9 @@ impl Publisher {
     }
 }
 
-fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<(), String> {
+fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<(), RunError> {
     let start = Instant::now();
-    let mut search = Search::new(&study)?;
+    let mut search = StudySearch::new(&study)?;
     publisher.send(Event::Started(Started {
         study: Arc::new(study),
         threads: search.pool.current_num_threads(),
@@ -96,7 +109,7 @@ fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<
 }
 
 /// A search in progress.
-struct Search {
+struct StudySearch {
     problem: DesignProblem,
     algorithm: Box<dyn Algorithm>,
     pool: rayon::ThreadPool,
@@ -122,16 +135,14 @@ struct Generation {
     evaluations: Vec<Evaluation>,
 }
 
-impl Search {
-    fn new(study: &Study) -> Result<Self, String> {
-        let problem = DesignProblem::new(study).map_err(|error| error.to_string())?;
+impl StudySearch {
+    fn new(study: &Study) -> Result<Self, RunError> {
+        let problem = DesignProblem::new(study)?;
         let mut pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("kinefront-evaluate-{index}"));
         if let Some(threads) = study.optimizer.threads {
             pool = pool.num_threads(threads);
         }
-        let pool = pool
-            .build()
-            .map_err(|error| format!("cannot start the worker threads: {error}"))?;
+        let pool = pool.build()?;
         Ok(Self {
             algorithm: algorithm(study, &problem),
             problem,
@@ -150,7 +161,7 @@ impl Search {
     }
 
     /// Searches until the budget is used, or until the search is ended; returns the reason.
-    fn run(&mut self, start: Instant, control: &RunControl, publisher: &mut Publisher) -> Result<EndReason, String> {
+    fn run(&mut self, start: Instant, control: &RunControl, publisher: &mut Publisher) -> Result<EndReason, RunError> {
         while self.evaluated < self.budget {
             if !control.go_on() {
                 return Ok(EndReason::Stopped);
@@ -166,7 +177,7 @@ impl Search {
     }
 
     /// Asks the algorithm for a generation and evaluates it; the budget may cut the last one short.
-    fn evaluate_generation(&mut self) -> Result<Generation, String> {
+    fn evaluate_generation(&mut self) -> Result<Generation, RunError> {
         let asking = Instant::now();
         let mut candidates = self.algorithm.ask();
         candidates.truncate(self.budget - self.evaluated);
@@ -180,8 +191,7 @@ impl Search {
         };
         let (values, evaluations) = self
             .pool
-            .install(|| candidates.into_par_iter().map(evaluate).collect::<Result<_, _>>())
-            .map_err(|error| error.to_string())?;
+            .install(|| candidates.into_par_iter().map(evaluate).collect::<Result<_, _>>())?;
         self.times.evaluation_s += evaluating.elapsed().as_secs_f64();
         Ok(Generation { values, evaluations })
     }

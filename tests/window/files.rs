@@ -120,9 +120,9 @@ fn a_run_folder_is_saved_and_opened_to_the_same() {
     let opened = open(&path).expect("opens");
     let session = window.state().session();
     // A table holds no evaluations.
-    let shown = session.front().iter().cloned().map(|entry| FrontEntry {
+    let shown = session.front().iter().map(|entry| FrontEntry {
         evaluation: None,
-        ..entry
+        ..entry.clone()
     });
     assert!(shown.eq(opened.front), "the front is opened to the same");
     assert_eq!(opened.history.len(), session.generations().len());

@@ -110,34 +110,67 @@ pub fn smaller_eigenvalue<V: Real>(xx: V, xy: V, yy: V) -> V {
     ((xx * yy - xy * xy) / larger).select(larger.exceeds(xx.splat(0.0)), half_trace - root)
 }
 
+/// Why a text is not a pose.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PoseTextError {
+    /// A word without `=`.
+    #[error("`{0}` is not of the form key=value")]
+    NoEquals(String),
+    /// A key that a pose does not have.
+    #[error("unknown key `{0}`; expected x, y or phi_deg")]
+    UnknownKey(String),
+    /// A value that is not a number.
+    #[error("`{text}` is not a number (key {key})")]
+    NotANumber {
+        /// Key of the value.
+        key: &'static str,
+        /// The text found.
+        text: String,
+    },
+    /// A value that is infinite or NaN.
+    #[error("{key} is {number}; it must be finite")]
+    NotFinite {
+        /// Key of the value.
+        key: &'static str,
+        /// The value.
+        number: f64,
+    },
+    /// A key that is given twice.
+    #[error("`{0}` is given twice")]
+    Repeated(&'static str),
+    /// A key that is not given.
+    #[error("`{0}` is missing; a pose needs x, y (m) and phi_deg")]
+    Missing(&'static str),
+}
+
 impl std::str::FromStr for Pose {
-    type Err = String;
+    type Err = PoseTextError;
 
     /// Parses a pose from text such as `x=0.1 y=0.2 phi_deg=30`.
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, PoseTextError> {
         const KEYS: [&str; 3] = ["x", "y", "phi_deg"];
         let mut values = [None; KEYS.len()];
         for word in text.split_whitespace() {
             let (key, value) = word
                 .split_once('=')
-                .ok_or_else(|| format!("`{word}` is not of the form key=value"))?;
+                .ok_or_else(|| PoseTextError::NoEquals(word.to_owned()))?;
             let index = KEYS
                 .iter()
                 .position(|&known| known == key)
-                .ok_or_else(|| format!("unknown key `{key}`; expected x, y or phi_deg"))?;
+                .ok_or_else(|| PoseTextError::UnknownKey(key.to_owned()))?;
+            let key = KEYS[index];
+            let text = || value.to_owned();
             let number: f64 = value
                 .parse()
-                .map_err(|_| format!("`{value}` is not a number (key {key})"))?;
+                .map_err(|_| PoseTextError::NotANumber { key, text: text() })?;
             if !number.is_finite() {
-                return Err(format!("{key} is {number}; it must be finite"));
+                return Err(PoseTextError::NotFinite { key, number });
             }
             if values[index].replace(number).is_some() {
-                return Err(format!("`{key}` is given twice"));
+                return Err(PoseTextError::Repeated(key));
             }
         }
-        let value = |index: usize| {
-            values[index].ok_or_else(|| format!("`{}` is missing; a pose needs x, y (m) and phi_deg", KEYS[index]))
-        };
+        let value = |index: usize| values[index].ok_or(PoseTextError::Missing(KEYS[index]));
         Ok(Pose::new(value(0)?, value(1)?, value(2)?.to_radians()))
     }
 }

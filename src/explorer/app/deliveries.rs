@@ -1,5 +1,6 @@
 //! Handles input from outside the panels: dropped files, pictures taken of the window, and results of file jobs.
 
+use crate::AnyError;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -47,7 +48,7 @@ impl Explorer {
     }
 }
 
-fn save_picture(path: &Path, picture: &egui::ColorImage) -> Result<String, String> {
+fn save_picture(path: &Path, picture: &egui::ColorImage) -> Result<String, AnyError> {
     let failed = |error: &dyn std::fmt::Display| format!("cannot write {}: {error}", path.display());
     let mut bytes = std::io::Cursor::new(Vec::new());
     let [width, height] = picture.size.map(|side| side as u32);

@@ -5,6 +5,7 @@ mod layout;
 mod menu;
 mod shortcuts;
 
+use crate::AnyError;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -50,7 +51,7 @@ struct Remembered {
 }
 
 /// Result of a file job: the message to show on success or on failure.
-type Ended = Result<String, String>;
+type Ended = Result<String, AnyError>;
 
 /// Shortest and longest interval between two frames that worker threads request \[ms\].
 const QUICKEST: u64 = 8;
@@ -305,7 +306,7 @@ impl eframe::App for Explorer {
 ///
 /// # Errors
 /// Returns a message that says why the window cannot be opened and what would help.
-pub fn run(subject: InitialContent, script: Option<Script>) -> Result<(), String> {
+pub fn run(subject: InitialContent, script: Option<Script>) -> Result<(), AnyError> {
     let headless =
         "`kinefront optimize --out run` runs a study without a window and writes a recording to view elsewhere";
     let display = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"];
@@ -316,7 +317,8 @@ pub fn run(subject: InitialContent, script: Option<Script>) -> Result<(), String
     {
         return Err(format!(
             "there is no display to open a window on (DISPLAY and WAYLAND_DISPLAY are not set); {headless}"
-        ));
+        )
+        .into());
     }
     let mut options = re_viewer::native::eframe_options(None);
     options.viewport = egui::ViewportBuilder::default()
@@ -337,7 +339,8 @@ pub fn run(subject: InitialContent, script: Option<Script>) -> Result<(), String
         });
         Ok(Box::new(explorer) as Box<dyn eframe::App>)
     });
-    eframe::run_native("kinefront", options, create).map_err(|error| match error {
+    eframe::run_native("kinefront", options, create).map_err(|error| {
+        let message = match error {
         // The library's own message names a line of its source code, which does not help.
         eframe::Error::WinitEventLoop(_) => format!("cannot connect to the display; {headless}"),
         eframe::Error::Wgpu(error) => format!(
@@ -345,5 +348,7 @@ pub fn run(subject: InitialContent, script: Option<Script>) -> Result<(), String
              software renderer such as Debian's mesa-vulkan-drivers; {headless}"
         ),
         error => format!("cannot open the window: {error}; {headless}"),
+        };
+        message.into()
     })
 }

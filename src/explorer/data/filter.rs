@@ -72,24 +72,45 @@ impl Filter {
     ///
     /// # Errors
     /// Returns a message that says what is wrong with the text and what would be right.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let filter: Filter = toml::from_str(text).map_err(|error| format!("not a filter: {}", error.message()))?;
+    pub fn parse(text: &str) -> Result<Self, FilterError> {
+        let filter: Filter = toml::from_str(text)?;
         for (key, [low, high]) in &filter.ranges {
             if Column::find_quantity(key).is_none() {
-                let known: Vec<_> = Column::quantities().map(Column::name).collect();
-                return Err(format!(
-                    "the filter has a range of the unknown quantity `{key}`; expected one of {}",
-                    known.join(", ")
-                ));
+                return Err(FilterError::UnknownQuantity(key.clone()));
             }
             if low.is_nan() || high.is_nan() || low > high {
-                return Err(format!(
-                    "the range of `{key}` is [{low}, {high}]; expected two numbers, the lower one first"
-                ));
+                return Err(FilterError::Range {
+                    key: key.clone(),
+                    range: [*low, *high],
+                });
             }
         }
         Ok(filter)
     }
+}
+
+/// Why a text is not a filter.
+#[derive(Debug, thiserror::Error)]
+pub enum FilterError {
+    /// The text is not TOML, or a key is unknown or of the wrong type.
+    #[error("not a filter: {}", .0.message())]
+    Toml(#[from] toml::de::Error),
+    /// A range of a quantity that designs do not have.
+    #[error("the filter has a range of the unknown quantity `{0}`; expected one of {known}", known = quantity_names())]
+    UnknownQuantity(String),
+    /// A range that is not two numbers, the lower one first.
+    #[error("the range of `{key}` is {range:?}; expected two numbers, the lower one first")]
+    Range {
+        /// Name of the quantity.
+        key: String,
+        /// The range.
+        range: [f64; 2],
+    },
+}
+
+fn quantity_names() -> String {
+    let names: Vec<_> = Column::quantities().map(Column::name).collect();
+    names.join(", ")
 }
 
 impl PreparedFilter<'_> {
@@ -120,12 +141,14 @@ mod tests {
         filter.set_range(Column::Mass, Some([10.0, 2.5]));
         filter.set_range(Column::Dimension(DesignVariable::LinkLength), Some([0.5, 1.0 / 3.0]));
         assert_eq!(filter.range(Column::Mass), Some([2.5, 10.0]));
-        assert_eq!(Filter::parse(&filter.to_text()), Ok(filter));
+        assert_eq!(Filter::parse(&filter.to_text()).expect("a filter"), filter);
     }
 
     #[test]
     fn a_wrong_filter_is_told() {
-        let unknown = Filter::parse("[ranges]\nweight = [0.0, 1.0]").expect_err("unknown");
+        let unknown = Filter::parse("[ranges]\nweight = [0.0, 1.0]")
+            .expect_err("unknown")
+            .to_string();
         assert!(unknown.contains("`weight`") && unknown.contains("mass_kg"), "{unknown}");
         assert!(Filter::parse("[ranges]\nmass_kg = [2.0, 1.0]").is_err());
         assert!(Filter::parse("3-PRR R=1").is_err());

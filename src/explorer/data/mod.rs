@@ -6,6 +6,6 @@ mod front;
 mod store;
 
 pub use document::{Document, History, Named, Origin, Selected};
-pub use filter::{Filter, PreparedFilter};
+pub use filter::{Filter, FilterError, PreparedFilter};
 pub use front::{FrontEntry, front_of};
 pub use store::Store;

@@ -1,5 +1,6 @@
 //! File dialogs that do not block the window, and atomic writing of files.
 
+use crate::AnyError;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 
@@ -19,8 +20,8 @@ use kinefront_model::evaluation::GridChoice;
 ///
 /// # Errors
 /// Returns a message that says why the file cannot be written.
-pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), String> {
-    crate::study::write_whole(path, contents).map_err(|error| error.to_string())
+pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), AnyError> {
+    Ok(crate::study::write_whole(path, contents)?)
 }
 
 /// Purpose of a file selected in a dialog.
@@ -135,7 +136,7 @@ impl Dialog {
 }
 
 /// Work on files that does not block the window; it returns a message for the user.
-pub type Job = Box<dyn FnOnce() -> Result<String, String> + Send>;
+pub type Job = Box<dyn FnOnce() -> Result<String, AnyError> + Send>;
 
 /// Handles the selected file; returns the work that remains to be done in the background, or `None` if there is none.
 pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job> {
@@ -152,19 +153,17 @@ pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job
                 write_whole(&path, text.as_bytes()).map(|()| format!("saved {}", path.display())),
             );
         }
-        Purpose::OpenFilter => {
-            let read =
-                std::fs::read_to_string(&path).map_err(|error| format!("cannot read {}: {error}", path.display()));
-            match read.and_then(|text| super::Filter::parse(&text)) {
-                Ok(filter) => session.history.edit(|document| document.filter = filter),
-                Err(words) => session.notify_error(words),
-            }
-        }
+        Purpose::OpenFilter => match read_filter(&path) {
+            Ok(filter) => session.history.edit(|document| document.filter = filter),
+            Err(words) => session.notify_error(words),
+        },
         Purpose::ExportFront => {
             let parquet = path.extension().is_some_and(|extension| extension == "parquet");
-            let written = front_table(session)
-                .and_then(|table| if parquet { front_to_parquet(&table) } else { Ok(table) })
-                .and_then(|table| write_whole(&path, &table));
+            let table = || -> Result<Vec<u8>, AnyError> {
+                let table = front_table(session)?;
+                Ok(if parquet { front_to_parquet(&table)? } else { table })
+            };
+            let written = table().and_then(|table| write_whole(&path, &table));
             notify(session, written.map(|()| format!("exported {}", path.display())));
         }
         Purpose::SaveRecording => return save_recording(session, path),
@@ -178,7 +177,7 @@ pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job
     None
 }
 
-fn notify(session: &mut Session, outcome: Result<String, String>) {
+fn notify(session: &mut Session, outcome: Result<String, AnyError>) {
     match outcome {
         Ok(words) => session.notify(words),
         Err(words) => session.notify_error(words),
@@ -201,7 +200,7 @@ fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
         let shown = shown
             .as_ref()
             .map(|(evaluation, name)| (&model, &**evaluation, name.as_str()));
-        replacing(&path, |part| save_copy(&folder.join("recording.rrd"), part, shown))?;
+        replacing(&path, |part| Ok(save_copy(&folder.join("recording.rrd"), part, shown)?))?;
         Ok(format!("saved {}", path.display()))
     }))
 }
@@ -246,7 +245,7 @@ fn record(session: &mut Session, path: PathBuf) -> Option<Job> {
         .unwrap_or(crate::scene::Field::InverseCondition);
     Some(Box::new(move || {
         replacing(&path, |part| {
-            record_design(part, &study, &known.evaluation, &name, field).map_err(|error| error.to_string())
+            Ok(record_design(part, &study, &known.evaluation, &name, field)?)
         })?;
         Ok(format!("exported {}", path.display()))
     }))
@@ -267,7 +266,7 @@ fn save_run(session: &mut Session, path: PathBuf) -> Option<Job> {
         let names: Vec<std::ffi::OsString> = entries.flatten().map(|entry| entry.file_name()).collect();
         if let Some(taken) = names.iter().find(|name| path.join(name).exists()) {
             let taken = path.join(taken);
-            return Err(format!("{} already exists; choose another folder", taken.display()));
+            return Err(format!("{} already exists; choose another folder", taken.display()).into());
         }
         for name in names {
             let target = path.join(&name);
@@ -311,7 +310,7 @@ fn report(session: &mut Session, path: PathBuf) -> Option<Job> {
 }
 
 /// Writes a recording to a temporary folder beside `path` and then moves it to `path`.
-fn replacing(path: &Path, write: impl FnOnce(&Path) -> Result<(), String>) -> Result<(), String> {
+fn replacing(path: &Path, write: impl FnOnce(&Path) -> Result<(), AnyError>) -> Result<(), AnyError> {
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty())
@@ -322,11 +321,17 @@ fn replacing(path: &Path, write: impl FnOnce(&Path) -> Result<(), String>) -> Re
         .map_err(|error| format!("cannot write {}: {error}", path.display()))?;
     let part = place.path().join("part.rrd");
     write(&part)?;
-    std::fs::rename(&part, path).map_err(|error| format!("cannot write {}: {error}", path.display()))
+    std::fs::rename(&part, path).map_err(|error| format!("cannot write {}: {error}", path.display()))?;
+    Ok(())
+}
+
+fn read_filter(path: &Path) -> Result<super::Filter, AnyError> {
+    let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+    Ok(super::Filter::parse(&text)?)
 }
 
 /// Returns the front as a CSV table, which begins with the columns common to all tables of designs.
-fn front_table(session: &Session) -> Result<Vec<u8>, String> {
+fn front_table(session: &Session) -> Result<Vec<u8>, AnyError> {
     use Column::{Note, ReferenceRadius, Starred, Verified};
     let columns = || Column::common().chain([ReferenceRadius, Verified, Starred, Note]);
     let document = session.document();
@@ -344,5 +349,5 @@ fn front_table(session: &Session) -> Result<Vec<u8>, String> {
         };
         columns().map(cell).collect()
     });
-    table_bytes(columns(), rows).map_err(|error| error.to_string())
+    Ok(table_bytes(columns(), rows)?)
 }

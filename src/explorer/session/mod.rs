@@ -306,8 +306,8 @@ impl Session {
     }
 
     /// Shows an error message to the user.
-    pub fn notify_error(&mut self, text: String) {
-        self.put_notice(text, true);
+    pub fn notify_error(&mut self, error: impl std::fmt::Display) {
+        self.put_notice(error.to_string(), true);
     }
 
     fn put_notice(&mut self, text: String, is_error: bool) {

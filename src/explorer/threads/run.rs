@@ -1,5 +1,6 @@
 //! A run in progress in the window, with the files that it writes.
 
+use crate::AnyError;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -80,7 +81,7 @@ struct Listeners {
 }
 
 impl Listeners {
-    fn start(&mut self, name: &str, work: impl FnOnce(&Receiver<Arc<Event>>) + Send + 'static) -> Result<(), String> {
+    fn start(&mut self, name: &str, work: impl FnOnce(&Receiver<Arc<Event>>) + Send + 'static) -> Result<(), AnyError> {
         let (sender, receiver) = sync_channel(CHANNEL);
         let thread = Builder::new()
             .name(format!("kinefront-{name}"))
@@ -101,7 +102,7 @@ impl Running {
         study: Study,
         source: impl FnOnce(Study, Arc<RunControl>, Vec<Subscriber>) -> std::io::Result<JoinHandle<()>>,
         wake: impl Fn() + Send + Sync + 'static,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, AnyError> {
         let place = |error: std::io::Error| {
             format!(
                 "cannot start the run: cannot create a folder for its files in {}: {error}",

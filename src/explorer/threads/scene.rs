@@ -9,6 +9,7 @@
 //!
 //! Only the latest request is processed: while a slider is dragged, intermediate requests are skipped.
 
+use crate::AnyError;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::Duration;
@@ -274,14 +275,14 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
             answer.pins = pins;
             answer.drawn = number;
             if let Some(trouble) = trouble {
-                answer.trouble = Some((number, trouble));
+                answer.trouble = Some((number, trouble.to_string()));
             }
         });
         standing.request = Some(request);
     }
 }
 
-fn step(standing: &mut SceneState, shared: &Shared, request: &Request) -> Result<(), String> {
+fn step(standing: &mut SceneState, shared: &Shared, request: &Request) -> Result<(), AnyError> {
     let before = standing.request.take();
     let new_study = before.as_ref().is_none_or(|before| before.study != request.study);
     if new_study {
@@ -322,7 +323,7 @@ fn step(standing: &mut SceneState, shared: &Shared, request: &Request) -> Result
     };
     let drawn = draw(&mut scene, standing, before.as_ref(), request, &model, new_pins);
     standing.scene = Some(scene);
-    drawn.map_err(|error| format!("the scene cannot be drawn: {error}"))
+    drawn.map_err(|error| format!("the scene cannot be drawn: {error}").into())
 }
 
 /// Draws what differs from the request before.
