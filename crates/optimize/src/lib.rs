@@ -1,6 +1,6 @@
 //! # Kinefront: the optimizers
 //!
-//! Constrained optimization of two objectives over real and categorical variables. This crate knows nothing of robots.
+//! Constrained optimization of two objectives over real and categorical variables, independent of the manipulators.
 //!
 //! A [`Problem`] consists of its variables and an evaluation. An [`Algorithm`] has an ask-and-tell interface: it is asked for
 //! candidates and told their outcomes. Its caller thus decides where candidates are evaluated, and can pause, stop or step

@@ -38,7 +38,7 @@ impl Default for FrontPanel {
     }
 }
 
-/// How a row is drawn.
+/// State that determines how a row is drawn.
 #[derive(Clone, Copy)]
 struct RowState {
     /// Whether its design passes the filter.

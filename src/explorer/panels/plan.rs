@@ -10,7 +10,7 @@ use kinefront_model::evaluation::{Contribution, MemberReport};
 use kinefront_model::mechanism::{Design, MemberKind};
 use kinefront_model::spatial::nearest_on_segment;
 
-/// Largest distance of the pointer from the axis of a thin member at which the pointer still finds it \[points\].
+/// Largest distance of the pointer from the axis of a thin member at which the member is still under the pointer \[points\].
 const CATCH: f32 = 4.0;
 
 /// Conversion between metres and screen coordinates.

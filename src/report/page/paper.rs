@@ -1,5 +1,5 @@
-//! What the page says of the 2010 paper, in reports on its study: where its figures and tables are found, where and why the
-//! numbers differ, what becomes of its claims, and where it is silent.
+//! Comparison with the 2010 paper, in reports on its study: places of its figures and tables, differences of the numbers
+//! and their causes, a check of its claims, and the points that it leaves open.
 
 use maud::{Markup, html};
 
@@ -380,7 +380,7 @@ const SILENCES: [(&str, &str); 11] = [
         "the current length of the leg",
     ),
     (
-        "Constraint g2 is given for the 3-PRR only.",
+        "g2 has the travel of the 3-PRR for every architecture, but the text gives the 3-RPR its own range.",
         "for every architecture, the limits of its own legs",
     ),
     (
@@ -396,5 +396,5 @@ fn silences() -> Markup {
             tr { td.number { (index + 1) } td { (paper) } td { (here) } }
         } }
     } }
-    p { "Each choice is a setting of the study file." } }
+    p { "Every choice except the joint limits of the 3-PRR and 3-RRR is a setting of the study file." } }
 }

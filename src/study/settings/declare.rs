@@ -1,4 +1,5 @@
-//! How a setting of a study is declared: once, with its key, default, check and description.
+//! How a setting of a study is declared: once, with its key, check and description. `section!` also declares defaults;
+//! settings listed with `settings!` have the defaults of the crate that defines their structure.
 
 use toml::Value;
 
