@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, OnceLock};
 use std::thread::{Builder, JoinHandle};
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use kinefront::recording::Recorder;
 use kinefront::study::{AlgorithmName, EndReason, Event, RunControl, RunReport, RunSummary, RunWriter, Study, spawn};
 use kinefront_model::mechanism::Architecture;
@@ -222,6 +222,6 @@ fn tell(study: &Study, summary: &RunSummary, path: &Path, arguments: &OptimizeAr
 
 /// Parser of the names of the algorithms, which error messages list.
 fn algorithms() -> impl TypedValueParser<Value = AlgorithmName> {
-    PossibleValuesParser::new(AlgorithmName::ALL.map(AlgorithmName::name))
+    PossibleValuesParser::new(AlgorithmName::ALL.map(|name| PossibleValue::new(name.name()).help(name.description())))
         .try_map(|name| AlgorithmName::find(&name).ok_or("unknown algorithm"))
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use kinefront::study::{Study, read_table};
+use kinefront::study::{Study, read_designs};
 use kinefront_model::mechanism::Design;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
@@ -57,14 +57,14 @@ fn study_name(table: &Path) -> String {
 
 /// Returns the design in the row with the given id.
 fn find_design(table: &Path, study: &Study, id: &str) -> Result<Design> {
-    let rows = read_table(table, study).into_diagnostic()?;
-    if let Some(entry) = rows.iter().find(|entry| entry.id.to_string() == id) {
-        return Ok(entry.row.design);
+    let rows = read_designs(table, study).into_diagnostic()?;
+    if let Some((_, design)) = rows.iter().find(|(found, _)| found.to_string() == id) {
+        return Ok(*design);
     }
     if rows.is_empty() {
         return Err(miette!("{} has no designs", table.display()));
     }
-    let some: Vec<String> = rows.iter().take(8).map(|entry| entry.id.to_string()).collect();
+    let some: Vec<String> = rows.iter().take(8).map(|(id, _)| id.to_string()).collect();
     let more = if rows.len() > some.len() { ", …" } else { "" };
     Err(miette!(
         "{} has no design #{id}; it has #{}{more}",

@@ -54,14 +54,14 @@ enum Step {
     WaitDrawn,
     WaitFrames(usize),
     WaitBusy,
-    ChooseKnee,
+    SelectKnee,
     Choose(usize),
     ChooseDesign(String),
     Walk(isize),
     Pin,
     Keep,
     Star,
-    Modified(usize, f64),
+    Modify(usize, f64),
     Heatmap(Option<Field>),
     Ellipsoids(Option<EllipsoidKind>),
     Pose(Pose),
@@ -194,14 +194,14 @@ impl Script {
             Step::WaitFrames(count) => return self.frames >= *count,
             // A picture arrives some frames after its request.
             Step::WaitBusy => return !busy && self.frames > 6,
-            Step::ChooseKnee => session.select_knee(),
-            Step::Choose(id) => session.choose(*id),
+            Step::SelectKnee => session.select_knee(),
+            Step::Choose(id) => session.select(*id),
             Step::ChooseDesign(text) => session.paste(text),
             Step::Walk(steps) => session.walk(*steps),
             Step::Pin => session.toggle_pin(),
             Step::Keep => session.keep(),
             Step::Star => session.toggle_star(),
-            Step::Modified(variable, value) => session.modify(*variable, *value),
+            Step::Modify(variable, value) => session.modify(*variable, *value),
             Step::Heatmap(field) => session.staging.layers.heatmap = *field,
             Step::Ellipsoids(kind) => session.staging.layers.ellipsoids = *kind,
             Step::Pose(pose) => drop(session.move_platform(*pose)),
@@ -254,7 +254,7 @@ fn step(line: &str) -> Option<Step> {
         },
         "choose" => match rest.strip_prefix('#') {
             Some(id) => Step::Choose(id.parse().ok()?),
-            None if rest == "knee" => Step::ChooseKnee,
+            None if rest == "knee" => Step::SelectKnee,
             None if rest.is_empty() => return None,
             None => Step::ChooseDesign(rest.to_owned()),
         },
@@ -265,7 +265,7 @@ fn step(line: &str) -> Option<Step> {
         "what-if" => {
             let (key, value) = rest.split_once('=')?;
             let variable = DESIGN_VARIABLES.iter().position(|variable| variable.key() == key)?;
-            Step::Modified(variable, value.parse().ok()?)
+            Step::Modify(variable, value.parse().ok()?)
         }
         "heatmap" if rest == "none" => Step::Heatmap(None),
         "heatmap" => Step::Heatmap(Some(Field::find(rest)?)),

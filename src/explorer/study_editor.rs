@@ -17,6 +17,8 @@ pub struct StudyEditor {
     study: Study,
     /// Faults in the text.
     faults: Vec<Fault>,
+    /// Faults of the last change by hand, which was not made; empty if it was.
+    rejected: Vec<Fault>,
     /// File that it was read from or saved to.
     path: Option<PathBuf>,
     changed: bool,
@@ -30,6 +32,7 @@ impl StudyEditor {
             text,
             study,
             faults: Vec::new(),
+            rejected: Vec::new(),
             path,
             changed: false,
         }
@@ -88,9 +91,14 @@ impl StudyEditor {
         &self.study
     }
 
-    /// Returns the faults in the text; there are none for a valid study.
-    pub fn faults(&self) -> &[Fault] {
-        &self.faults
+    /// Iterates over the faults in the text, then over those of the last change by hand if it was not made.
+    pub fn faults(&self) -> impl Iterator<Item = &Fault> {
+        self.faults.iter().chain(&self.rejected)
+    }
+
+    /// Returns the first fault in the text; a valid study has none.
+    pub fn text_fault(&self) -> Option<&Fault> {
+        self.faults.first()
     }
 
     /// Returns the file that the study was read from or saved to, if there is one.
@@ -108,6 +116,7 @@ impl StudyEditor {
         self.changed |= text != self.text;
         self.text = text;
         self.faults.clear();
+        self.rejected.clear();
         match Study::parse(&self.text, "study") {
             Ok(study) => self.study = study,
             Err(StudyError::Values { faults, .. }) => self.faults = faults,
@@ -126,24 +135,24 @@ impl StudyEditor {
         }
     }
 
-    /// Changes the study by hand; an invalid change is reported as faults and not applied.
+    /// Changes the study by hand; an invalid change is reported as faults and not made.
     pub fn change(&mut self, change: impl FnOnce(&mut Study)) {
         let mut study = self.study.clone();
         change(&mut study);
-        if study == self.study && self.faults.is_empty() {
+        if study == self.study {
             return;
         }
-        let faults = study.faults();
-        if faults.is_empty() {
+        self.rejected = study.faults();
+        if self.rejected.is_empty() {
             self.text = self.text_of(&study);
             self.study = study;
+            self.faults.clear();
             self.changed = true;
         }
-        self.faults = faults;
     }
 
     /// Returns the text of a study: the present text with the values that differ replaced, so that its comments and its
-    /// order stay. A text with faults cannot be followed and is generated anew.
+    /// order stay. A text that does not give the study then, because it has faults of its own, is generated anew.
     fn text_of(&self, study: &Study) -> String {
         let edited = || {
             let (before, after) = (Table::try_from(&self.study).ok()?, Table::try_from(study).ok()?);
@@ -152,13 +161,11 @@ impl StudyEditor {
                 .is_ok_and(|found| found == *study)
                 .then_some(text)
         };
-        let followed = if self.faults.is_empty() { edited() } else { None };
-        followed.unwrap_or_else(|| toml::to_string(study).unwrap_or_default())
+        edited().unwrap_or_else(|| toml::to_string(study).unwrap_or_default())
     }
 }
 
-/// Replaces the values of `text` that differ between two studies. `None` if the text is not TOML, or if something differs
-/// that is not a setting.
+/// Replaces the settings of `text` that differ between two studies. `None` if the text is not TOML.
 fn replace_values(text: &str, before: &Table, after: &Table) -> Option<String> {
     let mut document: DocumentMut = text.parse().ok()?;
     for setting in settings() {
@@ -214,23 +221,29 @@ mod tests {
         let mut editor = StudyEditor::paper();
         let valid = editor.text().to_owned();
         editor.set_text(valid.replace("evaluations = 6000", "evaluations = 0"));
-        assert_eq!(editor.faults()[0].key, "optimizer.evaluations");
+        assert_eq!(editor.faults().next().expect("a fault").key, "optimizer.evaluations");
         assert_eq!(editor.study().optimizer.evaluations, 6000);
         editor.set_text(valid.replace("[optimizer]", "[optimiser]"));
         assert!(
-            editor.faults()[0].message.contains("optimiser"),
+            editor
+                .faults()
+                .next()
+                .is_some_and(|fault| fault.message.contains("optimiser")),
             "{:?}",
-            editor.faults()
+            editor.faults().next()
         );
         editor.set_text(valid);
-        assert!(editor.faults().is_empty());
+        assert!(editor.faults().next().is_none());
         editor.change(|study| study.optimizer.seed = 7);
         assert!(editor.text().contains("seed = 7") && editor.is_changed());
         let kept = editor.text().replace("seed = 7", "seed = 1");
         assert_eq!(kept, BUILTIN[0].text, "everything but the value stays, comments too");
         editor.change(|study| study.bounds.R_m = [2.0, 1.0]);
-        assert_eq!(editor.faults()[0].key, "bounds.R_m");
+        assert_eq!(editor.faults().next().expect("a fault").key, "bounds.R_m");
         assert_eq!(editor.study().bounds.R_m, [0.5, 4.0]);
+        assert!(editor.text_fault().is_none(), "the text is still valid");
+        editor.change(|study| study.bounds.R_m = [1.0, 2.0]);
+        assert!(editor.faults().next().is_none() && editor.text().contains("# circumradius of the base joints"));
     }
 
     #[test]
@@ -242,7 +255,7 @@ mod tests {
             study.requirements.clearance_min_m = Some(0.005);
             study.optimizer.front_de.scale = 0.4;
         });
-        assert!(editor.faults().is_empty(), "{:?}", editor.faults());
+        assert!(editor.faults().next().is_none(), "{:?}", editor.faults().next());
         for part in [
             "# mine",
             "[bounds] # wide",

@@ -85,7 +85,7 @@ pub struct EvaluationJson {
 }
 
 impl EvaluationJson {
-    /// Creates the output for a design that `model` evaluated.
+    /// Creates the output for an evaluation.
     pub fn new(evaluation: &Evaluation) -> Self {
         let design = &evaluation.design;
         Self {

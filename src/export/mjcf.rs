@@ -23,7 +23,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     root.document(&subject.preamble(Format::Mjcf))
 }
 
-/// Units, integrator and stiffness of the contacts and closures.
+/// Units, integrator, no contacts, and the stiffness of the closures.
 fn settings() -> [Element; 3] {
     [
         Element::new("compiler")

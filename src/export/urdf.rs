@@ -27,8 +27,8 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         };
         robot.push(link(body, shift));
     }
-    let driven = linkage.bodies.iter().filter_map(|body| Some((body, body.joint?)));
-    robot = robot.children(driven.map(|(body, joint)| leg_joint(linkage, body, &joint)));
+    let jointed = linkage.bodies.iter().filter_map(|body| Some((body, body.joint?)));
+    robot = robot.children(jointed.map(|(body, joint)| leg_joint(linkage, body, &joint)));
     robot.push(platform_joint(linkage));
     for (name, parent, at) in frames(linkage) {
         robot.push(Element::new("link").with("name", name.clone()));

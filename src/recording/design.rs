@@ -33,7 +33,7 @@ pub fn record_design(
     heading: &str,
     field: Field,
 ) -> Result<(), RecordingError> {
-    let model = &study.model().map_err(RecordingError::encode)?;
+    let model = &study.model()?;
     let writer = RecordingWriter::create(path, heading)?;
     let subject = DrawnDesign { model, evaluation };
     let cylinder = regular_workspace(evaluation, model.workspace.rotation_range_deg);

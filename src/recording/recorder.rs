@@ -61,6 +61,7 @@ impl Recorder {
     /// # Errors
     /// [`RecordingError::Write`] when the file exists or cannot be created.
     pub fn create(path: &Path, study: &Study) -> Result<Self, RecordingError> {
+        let model = study.model()?;
         let writer = RecordingWriter::create(path, &format!("{} (seed {})", study.name, study.optimizer.seed))?;
         let frame = PlotRange::new(study);
         let clouds: Vec<String> = study
@@ -73,7 +74,7 @@ impl Recorder {
         writer.text(paths::STUDY, ALWAYS, &study_text(study)?)?;
         Ok(Self {
             writer,
-            model: study.model().map_err(RecordingError::encode)?,
+            model,
             architectures: study.architectures.clone(),
             frame,
             pending: Vec::new(),

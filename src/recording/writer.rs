@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use rerun::log::{ChunkBatcherConfig, ChunkError};
 use rerun::sink::LogSink;
+
+use kinefront_model::workspace::GridError;
 use rerun::{
     AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamError, SerializedComponentBatch,
     SerializedComponentColumn, TextDocument, TimeColumn,
@@ -24,6 +26,9 @@ pub enum RecordingError {
         /// Cause of the failure.
         source: io::Error,
     },
+    /// A grid of the study does not fit its rotation range.
+    #[error(transparent)]
+    Grid(#[from] GridError),
     /// Data cannot be encoded in Rerun's format.
     #[error("cannot encode the recording: {0}")]
     Encode(String),

@@ -16,9 +16,9 @@ const RADIUS: &str = "workspace radius R_w [m]";
 const STATED: [u8; 3] = [200, 40, 40];
 const MODELLED: [u8; 3] = [20, 20, 20];
 /// Colour of MOGA-II (reimplementation), the algorithm of the paper.
-const RIVAL: [u8; 3] = [150, 150, 150];
+const GREY: [u8; 3] = [150, 150, 150];
 /// Colours of the alternative assumptions, distinguishable on white.
-const ALTERNATIVES: [[u8; 3]; 14] = [
+const ALTERNATIVE_COLORS: [[u8; 3]; 14] = [
     [0, 0, 0],
     [213, 94, 0],
     [0, 114, 178],
@@ -208,18 +208,18 @@ fn alone(report: &Report, architecture: Architecture, front: &Front) -> (Chart, 
         mark: Mark::DottedLine,
         points: front.points(),
     }];
-    if let Some(rival) = report.moga2.as_ref().and_then(|moga2| moga2.of(architecture)) {
-        series.push(rival_series("MOGA-II (reimplementation), one architecture", rival));
+    if let Some(moga2) = report.moga2.as_ref().and_then(|moga2| moga2.of(architecture)) {
+        series.push(moga2_series("MOGA-II (reimplementation), one architecture", moga2));
     }
     let (references, notes) = references(report, Some(architecture));
     series.extend(references);
     plain(report, 1, series, notes)
 }
 
-fn rival_series(name: &str, front: &Front) -> Series {
+fn moga2_series(name: &str, front: &Front) -> Series {
     Series {
         name: name.to_owned(),
-        color: RIVAL,
+        color: GREY,
         mark: Mark::DottedLine,
         points: front.points(),
     }
@@ -268,8 +268,8 @@ fn joint(report: &Report) -> (Chart, usize) {
         .filter(|series| !series.points.is_empty())
         .collect();
     let own = series.len();
-    if let Some(rival) = report.moga2.as_ref().and_then(|moga2| moga2.joint.as_ref()) {
-        series.push(rival_series("MOGA-II (reimplementation), all architectures", rival));
+    if let Some(moga2) = report.moga2.as_ref().and_then(|moga2| moga2.joint.as_ref()) {
+        series.push(moga2_series("MOGA-II (reimplementation), all architectures", moga2));
     }
     let (references, notes) = references(report, None);
     series.extend(references);
@@ -359,7 +359,7 @@ fn active(architecture: Architecture, front: &Front, thresholds: &Thresholds) ->
 /// Creates a chart of the fronts of an architecture with and without a required clearance.
 fn clearance(cost: &ClearanceCost<'_>, architecture: Architecture) -> (Chart, usize) {
     let names = [
-        (cost.without, "members may collide".to_owned(), RIVAL, Mark::ThinLine),
+        (cost.without, "members may collide".to_owned(), GREY, Mark::ThinLine),
         (
             cost.with,
             format!("{} mm clearance", short(1e3 * cost.clearance)),
@@ -384,7 +384,7 @@ fn sensitivity(report: &Report, architecture: Architecture) -> (Chart, usize) {
     let series = report
         .variations
         .iter()
-        .zip(ALTERNATIVES.iter().cycle())
+        .zip(ALTERNATIVE_COLORS.iter().cycle())
         .filter_map(|(variation, &color)| {
             // All variations of the random seed share one legend entry.
             let name = match (variation.is_chance(), chance) {
@@ -395,7 +395,7 @@ fn sensitivity(report: &Report, architecture: Architecture) -> (Chart, usize) {
             chance |= variation.is_chance();
             Some(Series {
                 name,
-                color: if variation.is_chance() { RIVAL } else { color },
+                color: if variation.is_chance() { GREY } else { color },
                 mark: if variation.alternative.is_none() {
                     Mark::Line
                 } else {

@@ -242,7 +242,7 @@ impl RenderScene {
             }
         }
         if let Some((distance, normal, body)) = nearest {
-            return self.passes_filter(body, origin + direction * distance, normal, direction);
+            return self.shade(body, origin + direction * distance, normal, direction);
         }
         let meets = |height: f64| origin + direction * ((height - origin.z) / direction.z);
         let ground = meets(self.heights[1]);
@@ -264,7 +264,7 @@ impl RenderScene {
         self.bodies.iter().any(|body| body.meet(&ray, f64::MAX).is_some())
     }
 
-    fn passes_filter(&self, body: &RenderSolid, at: DVec3, normal: DVec3, direction: DVec3) -> DVec3 {
+    fn shade(&self, body: &RenderSolid, at: DVec3, normal: DVec3, direction: DVec3) -> DVec3 {
         let mut facing = normal.dot(self.light).max(0.0);
         if facing > 0.0 && self.is_shaded(at + normal * self.step) {
             facing *= 0.25;

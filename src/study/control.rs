@@ -66,7 +66,8 @@ impl RunControl {
 
     /// Whether the run is paused and waits: the generation that was in progress is done.
     pub fn is_waiting(&self) -> bool {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner).waiting
+        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        state.waiting && state.paused && state.steps == 0 && !state.stop
     }
 
     pub(super) fn is_abandoned(&self) -> bool {

@@ -19,13 +19,13 @@ pub use events::{Batch, EndReason, Event, FrontMember, GenerationSummary, RunSum
 pub use file::Study;
 pub use problem::DesignProblem;
 pub use run::spawn;
-pub use run_folder::{FolderError, RunFolder, RunFolderError, RunReport, RunWriter, write_whole};
+pub use run_folder::{FolderError, HypervolumeReference, RunFolder, RunFolderError, RunReport, RunWriter, write_whole};
 pub use settings::{
     ActuatorSection, AlgorithmName, Bounds, Check, Fault, GridSection, Grids, HypervolumeSection, Initial,
     LengthChoice, MaterialSection, ModelSection, OptimizerSection, ReferenceDesign, RequirementSection, Setting,
     Stagnation, StiffnessChoice, TelescopicBar, WorkspaceSection, settings,
 };
 pub use table::{
-    Better, Cell, Column, ColumnType, Row, RowError, TableError, TableFault, TableRow, TableWriter, read_table,
-    table_bytes,
+    Better, Cell, Column, ColumnType, Row, RowError, TableError, TableFault, TableRow, TableWriter, read_designs,
+    read_table, table_bytes,
 };

@@ -20,6 +20,9 @@ pub struct DesignProblem {
 
 impl DesignProblem {
     /// Creates the optimization problem of a study.
+    ///
+    /// # Errors
+    /// [`GridError`] if a grid of the study is invalid, which [`Study::faults`] tells beforehand.
     pub fn new(study: &Study) -> Result<Self, GridError> {
         Ok(Self {
             model: study.model()?,

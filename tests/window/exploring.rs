@@ -279,7 +279,7 @@ fn any_two_quantities_stand_against_each_other() {
         let scatter = kinefront::explorer::axes(quantity, Column::Dimension(DesignVariable::BaseRadius), k % 2 == 0);
         window.state_mut().set_axes(scatter);
         window.run_steps(3);
-        assert_eq!(window.state().axes(), scatter);
+        assert_eq!(window.state().scatter_axes(), scatter);
         let shown = window.query_by_role_and_label(Role::Image, "Scatter of designs");
         assert!(shown.is_some(), "the scatter of {quantity:?} is missing");
     }

@@ -15,7 +15,7 @@ fn session() -> Session {
     session.open(&run_folder());
     let front: Vec<usize> = session.front().iter().map(|entry| entry.id).collect();
     for place in [0, front.len() / 2, front.len() - 1] {
-        session.choose(front[place]);
+        session.select(front[place]);
         session.toggle_pin();
     }
     session.select_knee();

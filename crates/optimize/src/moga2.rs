@@ -121,7 +121,7 @@ impl Moga2 {
     fn directional(&mut self, index: usize) -> Vec<f64> {
         let references = [self.walk(index), self.walk(index)];
         let signs = references.map(|reference| self.sign(index, reference));
-        let shares = [self.random.uniform(), self.random.uniform()];
+        let draws = [self.random.uniform(), self.random.uniform()];
         let lineage = [index, references[0], references[1]];
         (0..self.variables.len())
             .map(|k| {
@@ -131,8 +131,8 @@ impl Moga2 {
                     Variable::Real { lower, upper } => {
                         let own = value(index);
                         let moved = own
-                            + shares[0] * signs[0] * (own - value(references[0]))
-                            + shares[1] * signs[1] * (own - value(references[1]));
+                            + draws[0] * signs[0] * (own - value(references[0]))
+                            + draws[1] * signs[1] * (own - value(references[1]));
                         moved.clamp(lower, upper)
                     }
                 }

@@ -17,7 +17,7 @@ pub fn cross(random: &mut Random, variables: &[Variable], index: f64, [first, se
             Variable::Categorical { .. } => std::mem::swap(&mut first[k], &mut second[k]),
             Variable::Real { lower, upper } => {
                 let (low, high) = (first[k].min(second[k]), first[k].max(second[k]));
-                let fraction = random.uniform();
+                let draw = random.uniform();
                 let swap = random.chance(0.5);
                 if high - low <= 1e-14 * (upper - lower) {
                     continue;
@@ -26,10 +26,10 @@ pub fn cross(random: &mut Random, variables: &[Variable], index: f64, [first, se
                     let beta = 1.0 + 2.0 * room / (high - low);
                     let power = index + 1.0;
                     let alpha = 2.0 - libm::pow(beta, -power);
-                    let base = if fraction <= 1.0 / alpha {
-                        fraction * alpha
+                    let base = if draw <= 1.0 / alpha {
+                        draw * alpha
                     } else {
-                        1.0 / (2.0 - fraction * alpha)
+                        1.0 / (2.0 - draw * alpha)
                     };
                     libm::pow(base, 1.0 / power)
                 };
@@ -58,17 +58,14 @@ pub fn mutate(random: &mut Random, variables: &[Variable], probability: f64, ind
                     continue;
                 }
                 let power = index + 1.0;
-                let fraction = random.uniform();
-                let step = if fraction < 0.5 {
+                let draw = random.uniform();
+                let step = if draw < 0.5 {
                     let room = 1.0 - (*value - lower) / range;
-                    libm::pow(
-                        2.0 * fraction + (1.0 - 2.0 * fraction) * libm::pow(room, power),
-                        1.0 / power,
-                    ) - 1.0
+                    libm::pow(2.0 * draw + (1.0 - 2.0 * draw) * libm::pow(room, power), 1.0 / power) - 1.0
                 } else {
                     let room = 1.0 - (upper - *value) / range;
                     1.0 - libm::pow(
-                        2.0 * (1.0 - fraction) + (2.0 * fraction - 1.0) * libm::pow(room, power),
+                        2.0 * (1.0 - draw) + (2.0 * draw - 1.0) * libm::pow(room, power),
                         1.0 / power,
                     )
                 };

@@ -171,11 +171,6 @@ impl Explorer {
         self.panels.scatter = Scatter::new(axes);
     }
 
-    /// Returns the axes of the scatter.
-    pub fn axes(&self) -> [ScatterAxis; 2] {
-        self.panels.scatter.axes
-    }
-
     /// Returns the recently opened files, the most recent first.
     pub fn recent(&self) -> &[PathBuf] {
         &self.recent
@@ -227,7 +222,7 @@ impl eframe::App for Explorer {
         if let Some(viewer) = &mut self.viewer {
             viewer.logic(ctx, frame);
             if let Some(picked) = viewer.picked() {
-                self.session.choose_picked(picked);
+                self.session.select_picked(picked);
             }
         }
         self.session.update();

@@ -90,10 +90,7 @@ impl Explorer {
             session.step();
         }
         if key(Key::F) {
-            let toggle = |feasible_only: &mut bool| *feasible_only = !*feasible_only;
-            session
-                .history
-                .edit(|document| toggle(&mut document.filter.feasible_only));
+            session.history.edit(|document| document.filter.feasible_only ^= true);
         }
         if key(Key::Space) {
             match session.phase() {

@@ -55,10 +55,10 @@ impl ChoosePanel {
                 }
                 if let Some((lightest, largest)) = ends {
                     if ui.button("Lightest").clicked() {
-                        session.choose(lightest);
+                        session.select(lightest);
                     }
                     if ui.button("Largest R_w").clicked() {
-                        session.choose(largest);
+                        session.select(largest);
                     }
                 }
             });
@@ -119,7 +119,7 @@ fn designs(ui: &mut Ui, session: &mut Session, ids: &[usize]) {
             theme::number(row.radius)
         );
         if ui.link(egui::RichText::new(text).color(color)).clicked() {
-            session.choose(id);
+            session.select(id);
         }
     }
 }

@@ -23,7 +23,7 @@ pub struct FrontPanel {
     descending: bool,
     search: String,
     starred_only: bool,
-    last_chosen: Option<usize>,
+    last_selected: Option<usize>,
 }
 
 impl Default for FrontPanel {
@@ -33,7 +33,7 @@ impl Default for FrontPanel {
             descending: false,
             search: String::new(),
             starred_only: false,
-            last_chosen: None,
+            last_selected: None,
         }
     }
 }
@@ -85,7 +85,7 @@ impl FrontPanel {
             .auto_shrink([false, false])
             .show(ui, |ui| self.table(ui, session, &order, selected, &mut clicked));
         if let Some(id) = clicked.design {
-            session.choose(id);
+            session.select(id);
         }
         if let Some(id) = clicked.star {
             session.toggle_star_of(id);
@@ -134,14 +134,14 @@ impl FrontPanel {
             .column(egui_extras::Column::remainder().clip(true))
             .min_scrolled_height(0.0);
         // A new selection is scrolled into view once.
-        if selected != self.last_chosen
+        if selected != self.last_selected
             && let Some(row) = order
                 .iter()
                 .position(|&place| Some(session.front()[place].id) == selected)
         {
             table = table.scroll_to_row(row, Some(Align::Center));
         }
-        self.last_chosen = selected;
+        self.last_selected = selected;
         let prepared = session.document().filter.prepare(session.store());
         table
             .header(20.0, |mut header| self.header(&mut header, &columns))

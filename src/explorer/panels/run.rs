@@ -120,7 +120,7 @@ fn random_seed() -> u64 {
 
 fn buttons(ui: &mut Ui, session: &mut Session) {
     ui.horizontal_wrapped(|ui| {
-        let valid = session.editor.faults().is_empty();
+        let valid = session.editor.text_fault().is_none();
         match session.phase() {
             Phase::Searching => {
                 if ui.button("⏸ Pause").clicked() {

@@ -4,7 +4,7 @@ use egui::{CollapsingHeader, DragValue, ScrollArea, TextEdit, Ui};
 use toml::{Table, Value};
 
 use crate::explorer::{Session, theme};
-use crate::study::{Check, Fault, Initial, Study, settings};
+use crate::study::{Check, Fault, Initial, Setting, Study, settings};
 
 /// The study panel.
 #[derive(Default)]
@@ -27,7 +27,7 @@ impl StudyPanel {
                 ui.weak(path.display().to_string());
             }
         });
-        let faults = session.editor.faults().to_vec();
+        let faults: Vec<Fault> = session.editor.faults().cloned().collect();
         for fault in &faults {
             ui.colored_label(theme::VIOLATED, format!("`{}` {}", fault.key, fault.message));
         }
@@ -102,7 +102,10 @@ fn initial_value(initial: Initial) -> Value {
 
 /// Shows a tick for each optional setting of a section.
 fn optional_settings(ui: &mut Ui, path: &str, table: &mut Table) {
-    for setting in settings().filter(|setting| setting.section == path) {
+    // A fixed characteristic length has its value by the choice of its definition alone.
+    let follows = |setting: &&Setting| setting.key == "characteristic_length_m";
+    let settings = settings().filter(|setting| setting.section == path);
+    for setting in settings.filter(|setting| !follows(setting)) {
         let Some(initial) = setting.initial else { continue };
         let mut stated = table.contains_key(setting.key);
         let tick = ui.checkbox(&mut stated, format!("set {}", setting.key));

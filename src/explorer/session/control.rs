@@ -15,12 +15,13 @@ use crate::recording::FrontPoint;
 use crate::study::{RunControl, Study, Subscriber, spawn};
 use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::Design;
+use kinefront_model::workspace::GridError;
 use kinefront_optimize::knee;
 
 impl Session {
     /// Starts a run of the study in the editor; a run in progress is abandoned.
     pub fn start(&mut self) {
-        if let Some(fault) = self.editor.faults().first() {
+        if let Some(fault) = self.editor.text_fault() {
             let words = format!("the study cannot be run: `{}` {}", fault.key, fault.message);
             self.notify_error(words);
             return;
@@ -36,7 +37,9 @@ impl Session {
         let wake = Arc::clone(&self.wake);
         match Running::start(self.editor.study().clone(), source, move || wake()) {
             Ok(running) => {
-                self.begin(Arc::clone(&running.study));
+                if let Err(error) = self.begin(Arc::clone(&running.study)) {
+                    return self.notify_error(error);
+                }
                 self.run = Some(running);
                 self.phase = Phase::Searching;
             }
@@ -65,8 +68,10 @@ impl Session {
                     front,
                     history,
                 } = opened;
-                self.editor = StudyEditor::new(study.clone(), None);
-                self.begin(Arc::new(study));
+                if let Err(error) = self.begin(Arc::new(study.clone())) {
+                    return self.notify_error(error);
+                }
+                self.editor = StudyEditor::new(study, None);
                 self.run = None;
                 self.store = store;
                 self.set_front(front);
@@ -78,11 +83,8 @@ impl Session {
         }
     }
 
-    fn begin(&mut self, study: Arc<Study>) {
-        match study.model() {
-            Ok(model) => self.model = model,
-            Err(error) => return self.notify_error(error.to_string()),
-        }
+    fn begin(&mut self, study: Arc<Study>) -> Result<(), GridError> {
+        self.model = study.model()?;
         self.references = references(&study, &self.model);
         self.as_run = study;
         self.store = Store::default();
@@ -103,6 +105,7 @@ impl Session {
         self.history.restart(document);
         self.staging.pose = None;
         self.staging.heatmap_phi = None;
+        Ok(())
     }
 
     /// Pauses the run after the current generation.
@@ -237,13 +240,13 @@ impl Session {
         if self.front_drawn.as_ref() == Some(&drawn) {
             return;
         }
-        let prepare = drawn.1.prepare(&self.store);
+        let prepared = drawn.1.prepare(&self.store);
         let points = self.front.iter().map(|entry| FrontPoint {
             id: entry.id,
             architecture: entry.row.design.architecture,
             mass: entry.row.mass,
             radius: entry.row.radius,
-            passes_filter: prepare.passes(entry.id),
+            passes_filter: prepared.passes(entry.id),
         });
         self.front_points = Arc::new(points.collect());
         self.front_drawn = Some(drawn);

@@ -7,9 +7,9 @@ use kinefront_model::mechanism::{DESIGN_VARIABLES, Design};
 
 impl Session {
     /// Selects a design of the run.
-    pub fn choose(&mut self, id: usize) {
+    pub fn select(&mut self, id: usize) {
         if let Some(row) = self.row(id) {
-            self.choose_design(Selected {
+            self.select_design(Selected {
                 design: row.design,
                 origin: Origin::Evaluated(id),
             });
@@ -17,7 +17,7 @@ impl Session {
     }
 
     /// Selects a design.
-    pub fn choose_design(&mut self, selected: Selected) {
+    pub fn select_design(&mut self, selected: Selected) {
         self.following = false;
         self.staging.pose = None;
         self.staging.heatmap_phi = None;
@@ -27,18 +27,18 @@ impl Session {
     /// Selects the knee of the front.
     pub fn select_knee(&mut self) {
         if let Some(place) = self.knee() {
-            self.choose(self.front[place].id);
+            self.select(self.front[place].id);
         }
     }
 
     /// Moves the selection by `steps` along the designs of the front that pass the filter.
     pub fn walk(&mut self, steps: isize) {
-        let prepare = self.document().filter.prepare(&self.store);
+        let prepared = self.document().filter.prepare(&self.store);
         let passes_filter: Vec<usize> = self
             .front
             .iter()
             .map(|entry| entry.id)
-            .filter(|&id| prepare.passes(id))
+            .filter(|&id| prepared.passes(id))
             .collect();
         let here = match self.document().selected {
             Some(Selected {
@@ -55,16 +55,16 @@ impl Session {
             None => 0,
         };
         if let Some(&id) = passes_filter.get(next) {
-            self.choose(id);
+            self.select(id);
         }
     }
 
     /// Selects the design that was clicked in the scene.
-    pub fn choose_picked(&mut self, picked: Picked) {
+    pub fn select_picked(&mut self, picked: Picked) {
         match picked {
             Picked::Front(place) => {
                 if let Some(id) = self.front_points.get(place).map(|point| point.id) {
-                    self.choose(id);
+                    self.select(id);
                 }
             }
             Picked::Pin(place) => {
@@ -86,7 +86,7 @@ impl Session {
                 None => Origin::Modified { from: None },
             },
         };
-        self.choose_design(Selected {
+        self.select_design(Selected {
             design: named.design,
             origin,
         });
@@ -123,7 +123,7 @@ impl Session {
     /// Reads a design from text and selects it.
     pub fn paste(&mut self, text: &str) {
         match Design::parse(text.trim(), self.as_run.working_mode) {
-            Ok(design) => self.choose_design(Selected {
+            Ok(design) => self.select_design(Selected {
                 design,
                 origin: Origin::Modified { from: None },
             }),

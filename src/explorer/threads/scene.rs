@@ -251,21 +251,21 @@ struct SceneState {
 }
 
 fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
-    let mut standing = SceneState {
+    let mut state = SceneState {
         scene,
         ..SceneState::default()
     };
     while let Some((number, request)) = shared.requests.take() {
-        let trouble = step(&mut standing, shared, &request).err();
+        let trouble = step(&mut state, shared, &request).err();
         // Verification starts after drawing, because both compete for the processor.
-        if let Some(known) = standing.known.as_ref().filter(|known| !known.verified) {
+        if let Some(known) = state.known.as_ref().filter(|known| !known.verified) {
             let design = known.evaluation.design;
             // A design is sent only once: a change of the pose, as in a tour, needs no new verification.
-            if standing.verifying.replace(design) != Some(design) {
+            if state.verifying.replace(design) != Some(design) {
                 shared.to_verify.put((Arc::clone(&request.study), design));
             }
         }
-        let (known, pins) = (standing.known.clone(), standing.pins.clone());
+        let (known, pins) = (state.known.clone(), state.pins.clone());
         shared.answer(|answer| {
             // The verify thread may have finished earlier, while the answer still held another design.
             let finer = known
@@ -278,20 +278,20 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
                 answer.trouble = Some((number, trouble.to_string()));
             }
         });
-        standing.request = Some(request);
+        state.request = Some(request);
     }
 }
 
-fn step(standing: &mut SceneState, shared: &Shared, request: &Request) -> Result<(), AnyError> {
-    let before = standing.request.take();
+fn step(state: &mut SceneState, shared: &Shared, request: &Request) -> Result<(), AnyError> {
+    let before = state.request.take();
     let new_study = before.as_ref().is_none_or(|before| before.study != request.study);
     if new_study {
-        if let Some(scene) = &mut standing.scene {
+        if let Some(scene) = &mut state.scene {
             scene.turn_to(&request.study).map_err(|error| error.to_string())?;
         }
-        standing.known = None;
-        standing.verifying = None;
-        standing.pins.clear();
+        state.known = None;
+        state.verifying = None;
+        state.pins.clear();
         *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }
     let before = before.filter(|_| !new_study);
@@ -304,7 +304,7 @@ fn step(standing: &mut SceneState, shared: &Shared, request: &Request) -> Result
             .filter(|known| known.evaluation.design == design)
             .or_else(|| shared.verified(&request.study, &design))
     });
-    standing.known = match (&request.design, verified, standing.known.take()) {
+    state.known = match (&request.design, verified, state.known.take()) {
         (None, ..) => None,
         (Some(_), Some(known), _) => Some(known),
         (Some(design), None, Some(known)) if known.evaluation.design == *design => Some(known),
@@ -315,14 +315,14 @@ fn step(standing: &mut SceneState, shared: &Shared, request: &Request) -> Result
     };
     let new_pins = before.as_ref().is_none_or(|before| before.pins != request.pins);
     if new_pins {
-        standing.pins = request.pins.iter().map(|(_, design)| evaluate(design)).collect();
+        state.pins = request.pins.iter().map(|(_, design)| evaluate(design)).collect();
     }
 
-    let Some(mut scene) = standing.scene.take() else {
+    let Some(mut scene) = state.scene.take() else {
         return Ok(());
     };
-    let drawn = draw(&mut scene, standing, before.as_ref(), request, &model, new_pins);
-    standing.scene = Some(scene);
+    let drawn = draw(&mut scene, state, before.as_ref(), request, &model, new_pins);
+    state.scene = Some(scene);
     drawn.map_err(|error| format!("the scene cannot be drawn: {error}").into())
 }
 

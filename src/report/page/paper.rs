@@ -197,7 +197,7 @@ pub(super) fn differences(report: &Report) -> Markup {
                     "(grey in the figures). With the settings of the paper, all architectures together and the same "
                     "number of evaluations per search, it finds: "
                     @for reference in &report.references {
-                        @if let Some(found) = rival.lightest(reference.fine.workspace_radius) {
+                        @if let Some(found) = rival.lightest(reference.fine.workspace_radius).filter(|found| reference.fine.is_feasible() && found.mass < reference.fine.mass) {
                             (number(found.mass)) " kg for " (reference.name) ", "
                         }
                     }

@@ -92,7 +92,8 @@ pub(super) fn fronts(report: &Report) -> Markup {
             "All designs drawn are non-dominated and verified on the fine grid ("
             (report.study.grid.fine.phi_step_deg) "° in φ, " (report.study.grid.fine.directions)
             " directions)"
-            @if report.sources.len() > 1 { ", and pooled from all searches except those made for comparison with MOGA-II" }
+            @if report.moga2.is_some() { ", and pooled from all searches but those with MOGA-II (reimplementation)" }
+            @else if report.sources.len() > 1 { ", and pooled from all runs" }
             ". At most " (report.study.optimizer.front_designs)
             " evenly spread designs of each front are drawn; they are listed in " code { "fronts.csv" } "."
         }

@@ -9,7 +9,7 @@ mod report;
 mod write;
 
 pub use read::{RunFolder, RunFolderError};
-pub use report::RunReport;
+pub use report::{HypervolumeReference, RunReport};
 pub use write::{FolderError, RunWriter, write_whole};
 
 /// File of the study as run.

@@ -30,9 +30,6 @@ pub enum RunFolderError {
     /// The study of the run is invalid.
     #[error(transparent)]
     Study(#[from] Box<StudyError>),
-    /// A table of the run is invalid.
-    #[error(transparent)]
-    Table(#[from] TableError),
 }
 
 impl RunFolder {
@@ -78,8 +75,8 @@ impl RunFolder {
         path.exists().then(|| read_table(&path, &self.study)).transpose()
     }
 
-    /// Reads `run.json`. `None` if it is missing or invalid: nothing depends on it, because a run that was killed leaves
-    /// none.
+    /// Reads `run.json`. `None` if it is missing, or not of this version: nothing depends on it, because a run that was
+    /// killed leaves none.
     pub fn report(&self) -> Option<RunReport> {
         serde_json::from_slice(&std::fs::read(self.path.join(REPORT)).ok()?).ok()
     }

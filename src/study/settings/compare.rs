@@ -16,7 +16,10 @@ impl Study {
     /// Returns the first setting that makes another study another problem; `None` if designs of both can be compared:
     /// they are evaluated by the same model, within the same bounds, beside the same reference designs.
     pub fn differing_key(&self, other: &Study) -> Option<String> {
-        let (ours, theirs) = (Table::try_from(self).ok()?, Table::try_from(other).ok()?);
+        let (Ok(ours), Ok(theirs)) = (Table::try_from(self), Table::try_from(other)) else {
+            // A number beyond the range of TOML is not valid in a study.
+            return (self != other).then(|| "optimizer".to_owned());
+        };
         settings()
             .filter(|setting| setting.value(&ours) != setting.value(&theirs))
             .map(|setting| setting.path())

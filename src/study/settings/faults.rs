@@ -39,8 +39,8 @@ impl Study {
     pub fn faults(&self) -> Vec<Fault> {
         let table = match toml::Table::try_from(self) {
             Ok(table) => table,
-            // The only value that TOML cannot represent is an integer beyond its range.
-            Err(error) => return vec![Fault::new("optimizer.seed", error.to_string())],
+            // The only values that TOML cannot represent are whole numbers beyond its range.
+            Err(error) => return vec![Fault::new("optimizer", error.to_string())],
         };
         let mut faults: Vec<Fault> = settings()
             .filter_map(|setting| Some(Fault::new(setting.path(), setting.check.fault(setting.value(&table)?)?)))
@@ -115,13 +115,11 @@ fn check_grids(study: &Study, faults: &mut Vec<Fault>) {
     for (name, section) in [("reference", &study.grid.reference), ("fine", &study.grid.fine)] {
         let key = format!("grid.{name}.phi_step_deg");
         // A step that is invalid by itself has its fault already.
-        if faults
-            .iter()
-            .any(|fault| fault.key.starts_with(&format!("grid.{name}.")))
-        {
+        if faults.iter().any(|fault| fault.key == key) {
             continue;
         }
-        if let Err(error) = Grid::try_from(section).and_then(|grid| grid.half_window(range)) {
+        // The range depends on the step alone, so the fault is told even if another number of the grid is invalid.
+        if let Err(error) = Grid::new(section.phi_step_deg, 1, 1, 0).and_then(|grid| grid.half_window(range)) {
             faults.push(Fault::new(key, format!("is invalid: {error}")));
         }
     }

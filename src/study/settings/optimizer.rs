@@ -23,6 +23,17 @@ impl AlgorithmName {
     /// All algorithms.
     pub const ALL: [AlgorithmName; 3] = [AlgorithmName::FrontDe, AlgorithmName::Moga2, AlgorithmName::Nsga2];
 
+    /// Describes the algorithm in one sentence.
+    pub fn description(self) -> &'static str {
+        match self {
+            AlgorithmName::FrontDe => {
+                "Differential evolution along the front, with the lightest bars for each geometry"
+            }
+            AlgorithmName::Moga2 => "MOGA-II (reimplementation), the paper's optimizer",
+            AlgorithmName::Nsga2 => "NSGA-II with constraint domination",
+        }
+    }
+
     /// Returns the algorithm of a name.
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|algorithm| algorithm.name() == name)

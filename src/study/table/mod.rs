@@ -6,6 +6,6 @@ mod row;
 mod write;
 
 pub use column::{Better, Cell, Column, ColumnType};
-pub use read::{TableError, TableFault, read_table};
+pub use read::{TableError, TableFault, read_designs, read_table};
 pub use row::{Row, RowError, TableRow};
 pub use write::{TableWriter, table_bytes};

@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use super::row::read_design;
 use super::{Column, Row, RowError, TableRow};
 use crate::study::Study;
+use kinefront_model::mechanism::Design;
 
 /// A table of a run that cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -45,13 +47,62 @@ pub enum TableFault {
 /// # Errors
 /// [`TableError`], which names the line and what is wrong in it.
 pub fn read_table(path: &Path, study: &Study) -> Result<Vec<TableRow>, TableError> {
-    read(path, study).map_err(|fault| TableError {
+    read(path, |fields| {
+        Ok(TableRow {
+            id: fields.whole(Column::Id)?,
+            row: Row::read(
+                study,
+                fields.whole(Column::Generation)?,
+                |column| fields.text(column),
+                |column| fields.number(column),
+            )?,
+            reference_radius: fields.number(Column::ReferenceRadius),
+        })
+    })
+}
+
+/// Reads the ids and designs of any table that has the columns `id`, `architecture`, `working_mode` and the dimensions;
+/// whatever else it has is ignored.
+///
+/// # Errors
+/// As [`read_table`].
+pub fn read_designs(path: &Path, study: &Study) -> Result<Vec<(usize, Design)>, TableError> {
+    read(path, |fields| {
+        let design = read_design(study, |column| fields.text(column), |column| fields.number(column))?;
+        Ok((fields.whole(Column::Id)?, design))
+    })
+}
+
+/// The fields of a line, by column.
+struct Fields<'a> {
+    columns: &'a [Option<Column>],
+    record: &'a csv::StringRecord,
+}
+
+impl<'a> Fields<'a> {
+    fn text(&self, column: Column) -> Option<&'a str> {
+        self.record
+            .get(self.columns.iter().position(|&found| found == Some(column))?)
+    }
+
+    fn number(&self, column: Column) -> Option<f64> {
+        self.text(column)?.parse().ok()
+    }
+
+    fn whole(&self, column: Column) -> Result<usize, RowError> {
+        let value = self.text(column).and_then(|text| text.parse().ok());
+        value.ok_or(RowError::Value(column))
+    }
+}
+
+fn read<T>(path: &Path, row: impl Fn(&Fields<'_>) -> Result<T, RowError>) -> Result<Vec<T>, TableError> {
+    read_rows(path, row).map_err(|fault| TableError {
         path: path.to_owned(),
         fault,
     })
 }
 
-fn read(path: &Path, study: &Study) -> Result<Vec<TableRow>, TableFault> {
+fn read_rows<T>(path: &Path, row: impl Fn(&Fields<'_>) -> Result<T, RowError>) -> Result<Vec<T>, TableFault> {
     let mut reader = csv::Reader::from_path(path)?;
     let columns: Vec<Option<Column>> = reader.headers()?.iter().map(Column::find).collect();
     let mut rows = Vec::new();
@@ -60,29 +111,22 @@ fn read(path: &Path, study: &Study) -> Result<Vec<TableRow>, TableFault> {
         let record = match record {
             Ok(record) => record,
             Err(error) => {
-                let is_short = matches!(error.kind(), csv::ErrorKind::UnequalLengths { .. });
-                if is_short && !rows.is_empty() && records.peek().is_none() {
+                let is_cut = matches!(
+                    error.kind(),
+                    csv::ErrorKind::UnequalLengths { expected_len, len, .. } if len < expected_len
+                );
+                if is_cut && !rows.is_empty() && records.peek().is_none() {
                     break;
                 }
                 return Err(error.into());
             }
         };
         let line = record.position().map_or(0, csv::Position::line);
-        rows.push(table_row(&columns, &record, study).map_err(|error| TableFault::Row { line, error })?);
+        let fields = Fields {
+            columns: &columns,
+            record: &record,
+        };
+        rows.push(row(&fields).map_err(|error| TableFault::Row { line, error })?);
     }
     Ok(rows)
-}
-
-fn table_row(columns: &[Option<Column>], record: &csv::StringRecord, study: &Study) -> Result<TableRow, RowError> {
-    let text = |column: Column| record.get(columns.iter().position(|&found| found == Some(column))?);
-    let number = |column: Column| text(column)?.parse::<f64>().ok();
-    let whole = |column: Column| {
-        let value = text(column).and_then(|text| text.parse::<usize>().ok());
-        value.ok_or(RowError::Value(column))
-    };
-    Ok(TableRow {
-        id: whole(Column::Id)?,
-        row: Row::read(study, whole(Column::Generation)?, text, number)?,
-        reference_radius: number(Column::ReferenceRadius),
-    })
 }

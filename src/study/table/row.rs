@@ -83,18 +83,8 @@ impl Row {
         text: impl Fn(Column) -> Option<&'a str>,
         number: impl Fn(Column) -> Option<f64>,
     ) -> Result<Self, RowError> {
+        let design = read_design(study, &text, &number)?;
         let expected = |column: Column| number(column).ok_or(RowError::Value(column));
-        let architecture = text(Column::Architecture)
-            .ok_or(RowError::Value(Column::Architecture))?
-            .parse()?;
-        let mode = match text(Column::WorkingMode) {
-            Some(mode) => mode.parse()?,
-            None => study.working_mode,
-        };
-        let mut dimensions = [0.0; DESIGN_VARIABLES.len()];
-        for (dimension, variable) in dimensions.iter_mut().zip(DESIGN_VARIABLES) {
-            *dimension = expected(Column::Dimension(variable))?;
-        }
         let thresholds = study.thresholds();
         let mut margins = [None; Constraint::ALL.len()];
         for (margin, constraint) in margins.iter_mut().zip(Constraint::ALL) {
@@ -106,7 +96,7 @@ impl Row {
         let named = |constraint: &Constraint| active.split('+').any(|id| id == constraint.id());
         Ok(Self {
             generation: generation.try_into().unwrap_or(u32::MAX),
-            design: Design::new(architecture, mode, dimensions)?,
+            design,
             mass: expected(Column::Mass)?,
             radius: expected(Column::WorkspaceRadius)?,
             phi: number(Column::HomePhi),
@@ -154,6 +144,30 @@ impl Row {
             .into_iter()
             .filter(move |&constraint| active & bits([constraint]) != 0)
     }
+}
+
+/// Reads the design of a row.
+///
+/// # Errors
+/// [`RowError`] for the first missing or invalid value.
+pub(super) fn read_design<'a>(
+    study: &Study,
+    text: impl Fn(Column) -> Option<&'a str>,
+    number: impl Fn(Column) -> Option<f64>,
+) -> Result<Design, RowError> {
+    let architecture = text(Column::Architecture)
+        .ok_or(RowError::Value(Column::Architecture))?
+        .parse()?;
+    let mode = match text(Column::WorkingMode) {
+        Some(mode) => mode.parse()?,
+        None => study.working_mode,
+    };
+    let mut dimensions = [0.0; DESIGN_VARIABLES.len()];
+    for (dimension, variable) in dimensions.iter_mut().zip(DESIGN_VARIABLES) {
+        let column = Column::Dimension(variable);
+        *dimension = number(column).ok_or(RowError::Value(column))?;
+    }
+    Ok(Design::new(architecture, mode, dimensions)?)
 }
 
 /// Returns a bit set of constraints.

@@ -59,9 +59,9 @@ const THINNEST: f64 = 1e-5;
 /// Bars whose smallest ratio exceeds 1 by no more than this are left unchanged.
 const SPARE: f64 = 5e-4;
 
-/// Linearised constraint `fraction + slopes · change ≥ 0`, with all quantities in logarithms.
+/// Linearised constraint `ratio + slopes · change ≥ 0`, with all quantities in logarithms.
 struct LinearConstraint {
-    fraction: f64,
+    ratio: f64,
     slopes: [f64; 2],
 }
 
@@ -88,9 +88,9 @@ pub(super) fn lightest(problem: &SizingProblem, ratios: &mut impl StiffnessRatio
         for column in &all {
             let mut order: Vec<usize> = (0..column.len()).collect();
             let count = CHOSEN.min(order.len());
-            let by_share = |a: &usize, b: &usize| column[*a].total_cmp(&column[*b]).then(a.cmp(b));
-            order.select_nth_unstable_by(count - 1, by_share);
-            order[..count].sort_unstable_by(by_share);
+            let by_ratio = |a: &usize, b: &usize| column[*a].total_cmp(&column[*b]).then(a.cmp(b));
+            order.select_nth_unstable_by(count - 1, by_ratio);
+            order[..count].sort_unstable_by(by_ratio);
             chosen.extend(&order[..count]);
             weak.extend(&order[..REFINED.min(count)]);
         }
@@ -144,18 +144,18 @@ fn weakest(columns: &[Vec<f64>; 3]) -> f64 {
     columns
         .iter()
         .flatten()
-        .fold(f64::INFINITY, |least, &fraction| least.min(fraction))
+        .fold(f64::INFINITY, |least, &ratio| least.min(ratio))
 }
 
 /// Returns the constraints, linearised by difference quotients.
 fn lines(base: &[Vec<f64>; 3], stepped: &[[Vec<f64>; 3]; 2]) -> Vec<LinearConstraint> {
     let mut lines = Vec::with_capacity(3 * base[0].len());
     for kind in 0..3 {
-        for (index, &fraction) in base[kind].iter().enumerate() {
-            if fraction > 0.0 && fraction < FAR {
+        for (index, &ratio) in base[kind].iter().enumerate() {
+            if ratio > 0.0 && ratio < FAR {
                 lines.push(LinearConstraint {
-                    fraction: libm::log(fraction),
-                    slopes: [0, 1].map(|k| (stepped[k][kind][index] / fraction - 1.0) / STEP),
+                    ratio: libm::log(ratio),
+                    slopes: [0, 1].map(|k| (stepped[k][kind][index] / ratio - 1.0) / STEP),
                 });
             }
         }
@@ -183,13 +183,13 @@ fn change(at: [f64; 2], lines: &[LinearConstraint], problem: &SizingProblem, tru
     let mut low = -trust;
     for line in lines {
         let [first, second] = line.slopes;
-        if line.fraction >= (first.max(0.0) + second.max(0.0)) * trust {
+        if line.ratio >= (first.max(0.0) + second.max(0.0)) * trust {
             continue;
         }
         if second > 1e-6 {
-            required.push([-line.fraction / second, -first / second]);
+            required.push([-line.ratio / second, -first / second]);
         } else if first > 1e-6 {
-            low = low.max(-line.fraction / first);
+            low = low.max(-line.ratio / first);
         }
     }
     let mut low = low.min(trust);

@@ -53,7 +53,7 @@ fn words(shortfall: &Shortfall) -> String {
 }
 
 impl Model {
-    /// Evaluates `design` at `pose`. The inner result states why the pose is unreachable, if it is.
+    /// Evaluates `design` at `pose`.
     ///
     /// # Errors
     /// The leg that does not reach the pose, and why.

@@ -1,4 +1,4 @@
-//! The poses that a disc and a turn are sampled at (docs/model.md, section 7.2).
+//! The poses at which a disc and its orientations are sampled (docs/model.md, section 7.2).
 
 /// Sampling of orientations, directions and radii; every grid divides the full turn into whole steps.
 #[derive(Debug, Clone, Copy, PartialEq)]

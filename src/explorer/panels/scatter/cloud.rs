@@ -78,7 +78,7 @@ impl CloudImage {
     }
 
     /// Draws designs until `deadline`; returns whether any was drawn.
-    fn draw(&mut self, store: &Store, prepare: &PreparedFilter<'_>, deadline: Instant) -> bool {
+    fn draw(&mut self, store: &Store, prepared: &PreparedFilter<'_>, deadline: Instant) -> bool {
         let before = self.drawn;
         let [(x, x_log), (y, y_log)] = self.view.style.axes;
         let (xs, ys) = (store.column(x), store.column(y));
@@ -102,7 +102,7 @@ impl CloudImage {
                     continue;
                 }
                 let feasible = store.is_feasible(id);
-                let passes_filter = prepare.passes(id);
+                let passes_filter = prepared.passes(id);
                 let index = theme::index(store.architecture(id)) % MARKS.len();
                 let (rank, color) = match (passes_filter, feasible) {
                     (true, true) => (4, theme::mix(colors[index], ground, 0.85)),
@@ -155,14 +155,14 @@ impl Cloud {
         &mut self,
         ctx: &Context,
         store: &Store,
-        prepare: &PreparedFilter<'_>,
+        prepared: &PreparedFilter<'_>,
         view: &View,
         budget: Duration,
     ) -> bool {
         let deadline = Instant::now() + budget;
         if let Some(shown) = self.shown.as_mut().filter(|shown| shown.view == *view) {
             self.coming = None;
-            let changed = shown.draw(store, prepare, deadline);
+            let changed = shown.draw(store, prepared, deadline);
             let done = shown.drawn == store.len();
             if changed {
                 self.upload(ctx);
@@ -173,7 +173,7 @@ impl Cloud {
             Some(coming) if coming.view == *view => coming,
             other => other.insert(CloudImage::new(view.clone())),
         };
-        coming.draw(store, prepare, deadline);
+        coming.draw(store, prepared, deadline);
         let done = coming.drawn == store.len();
         // After a change of store, filter, axes or theme, an incomplete new picture is better than a complete old one.
         let stale = self.shown.as_ref().is_none_or(|shown| shown.view.style != view.style);

@@ -20,7 +20,7 @@ const BUDGET: Duration = Duration::from_millis(4);
 
 /// The scatter with its axes and view.
 pub struct Scatter {
-    pub(in crate::explorer) axes: [ScatterAxis; 2],
+    axes: [ScatterAxis; 2],
     cloud: Cloud,
     extent: Extent,
     /// Whether the view is fitted to the designs in every frame.
@@ -259,7 +259,7 @@ impl Scatter {
             );
             response.clone().on_hover_text_at_pointer(text);
             if response.clicked() {
-                session.choose_design(crate::explorer::Selected {
+                session.select_design(crate::explorer::Selected {
                     design,
                     origin: crate::explorer::Origin::Reference(index),
                 });
@@ -276,7 +276,7 @@ impl Scatter {
                 .on_hover_ui_at_pointer(|ui| hover(ui, id, &row, session));
         }
         if response.clicked() {
-            session.choose(id);
+            session.select(id);
         }
     }
 
@@ -298,8 +298,8 @@ impl Scatter {
                 dark,
             },
         };
-        let prepare = session.document().filter.prepare(session.store());
-        if !self.cloud.advance(ui.ctx(), session.store(), &prepare, &view, BUDGET) {
+        let prepared = session.document().filter.prepare(session.store());
+        if !self.cloud.advance(ui.ctx(), session.store(), &prepared, &view, BUDGET) {
             ui.ctx().request_repaint();
         }
     }
