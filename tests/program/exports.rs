@@ -282,3 +282,46 @@ fn exports_say_what_is_wrong() {
         .success()
         .stdout(contains("\"leg1_slider\""));
 }
+
+/// A table made by another program, and a table under another study than its own.
+#[test]
+fn a_design_of_any_table_is_read() {
+    let folder = folder();
+    let table = folder.path().join("mine.csv");
+    let text = "id,architecture,working_mode,R,r,Lb,rj,rp\n7,3-PRR,+++,3.066,1.283,1.896,0.036,0.056\n";
+    std::fs::write(&table, text).expect("a table");
+    let export = |table: &Path, id: &str, study: &[&str], name: &str| {
+        let path = folder.path().join(name);
+        kinefront()
+            .arg("export")
+            .arg(format!("{}#{id}", table.display()))
+            .args(study)
+            .arg("--out")
+            .arg(&path)
+            .assert()
+            .success();
+        let text = std::fs::read(path).expect("a file");
+        serde_json::from_slice::<Value>(&text).expect("JSON")
+    };
+    let found = export(&table, "7", &[], "seven.json");
+    assert_eq!(
+        found["evaluation"]["design"],
+        json(["evaluate", "--json", "--design", DESIGN])["design"]
+    );
+
+    // The table of the run has no column for the clearance, which the other study requires.
+    let out = folder.path().join("run");
+    optimize(&small_study(folder.path()), &out, &[]);
+    let front = out.join("front.csv");
+    let mut reader = csv::Reader::from_path(&front).expect("a table");
+    let row = reader.records().next().expect("a row").expect("a row");
+    let other = ["--study", "paper-without-collisions"];
+    let [own, other] = [(&[][..], "own.json"), (&other, "other.json")]
+        .map(|(study, name)| export(&front, &row[0], study, name)["evaluation"].clone());
+    assert_eq!(own["design"], other["design"]);
+    let has_clearance = |evaluation: &Value| {
+        let constraints = evaluation["constraints"].as_array().expect("an array");
+        constraints.iter().any(|constraint| constraint["id"] == "g7")
+    };
+    assert!(!has_clearance(&own) && has_clearance(&other));
+}

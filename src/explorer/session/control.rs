@@ -13,9 +13,8 @@ use crate::explorer::threads::Request;
 use crate::explorer::threads::Running;
 use crate::recording::FrontPoint;
 use crate::study::{RunControl, Study, Subscriber, spawn};
-use kinefront_model::evaluation::Evaluation;
+use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Design;
-use kinefront_model::workspace::GridError;
 use kinefront_optimize::knee;
 
 impl Session {
@@ -34,12 +33,14 @@ impl Session {
         &mut self,
         source: impl FnOnce(Study, Arc<RunControl>, Vec<Subscriber>) -> std::io::Result<JoinHandle<()>>,
     ) {
+        let model = match self.editor.study().model() {
+            Ok(model) => model,
+            Err(error) => return self.notify_error(error),
+        };
         let wake = Arc::clone(&self.wake);
         match Running::start(self.editor.study().clone(), source, move || wake()) {
             Ok(running) => {
-                if let Err(error) = self.begin(Arc::clone(&running.study)) {
-                    return self.notify_error(error);
-                }
+                self.begin(Arc::clone(&running.study), model);
                 self.run = Some(running);
                 self.phase = Phase::Searching;
             }
@@ -68,8 +69,9 @@ impl Session {
                     front,
                     history,
                 } = opened;
-                if let Err(error) = self.begin(Arc::new(study.clone())) {
-                    return self.notify_error(error);
+                match study.model() {
+                    Ok(model) => self.begin(Arc::new(study.clone()), model),
+                    Err(error) => return self.notify_error(error),
                 }
                 self.editor = StudyEditor::new(study, None);
                 self.run = None;
@@ -83,8 +85,8 @@ impl Session {
         }
     }
 
-    fn begin(&mut self, study: Arc<Study>) -> Result<(), GridError> {
-        self.model = study.model()?;
+    fn begin(&mut self, study: Arc<Study>, model: Model) {
+        self.model = model;
         self.references = references(&study, &self.model);
         self.as_run = study;
         self.store = Store::default();
@@ -105,7 +107,6 @@ impl Session {
         self.history.restart(document);
         self.staging.pose = None;
         self.staging.heatmap_phi = None;
-        Ok(())
     }
 
     /// Pauses the run after the current generation.
