@@ -225,9 +225,9 @@ pub(super) fn search_alternatives(
     // All searches must have the same number of evaluations: neither a time limit nor stagnation may end one earlier.
     base.optimizer.time_limit_s = None;
     base.optimizer.stagnation = None;
-    let readings = std::iter::once(None).chain(ALTERNATIVES.into_iter().map(Some));
+    let alternatives = std::iter::once(None).chain(ALTERNATIVES.into_iter().map(Some));
     let mut variations = Vec::new();
-    for alternative in readings {
+    for alternative in alternatives {
         let mut study = base.clone();
         if let Some(alternative) = alternative {
             (alternative.change)(&mut study);

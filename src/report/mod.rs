@@ -192,7 +192,7 @@ impl Report {
             [_] => Some(fronts.together.clone()),
             _ => fronts::joint(sources, &study)?,
         };
-        let rivals_found = match moga2 {
+        let moga2_fronts = match moga2 {
             [] => None,
             _ => Some(SearchFronts::new(moga2, &study)?),
         };
@@ -215,7 +215,7 @@ impl Report {
             sources: sources.iter().chain(moga2).map(SearchSummary::new).collect(),
             fronts,
             joint,
-            moga2: rivals_found,
+            moga2: moga2_fronts,
             references,
             trends,
             variations,

@@ -178,14 +178,14 @@ impl FrontDe {
         self.pending.push((niche, Some(way)));
         let size = self.niches[niche].population.len();
         let place = self.random.below(size);
-        let targets_best = self.random.chance(self.settings.best);
+        let seeks_best = self.random.chance(self.settings.best);
         let (x, level) = if way == 0 {
             self.difference(niche, place)
         } else {
             self.crossed(niche)
         };
         let target = match level {
-            Some(level) if !targets_best => Target::Level(level),
+            Some(level) if !seeks_best => Target::Level(level),
             _ => Target::Best,
         };
         Candidate {

@@ -152,20 +152,20 @@ pub(super) fn card(ui: &mut Ui, report: &MemberReport) {
     } else {
         ui.weak("no mass in this model");
     }
-    let of_all = |what: &str, fraction: Contribution| {
+    let of_all = |what: &str, contribution: Contribution| {
         let percent = |fraction: f64| format!("{:.1} %", 100.0 * fraction);
         format!(
             "{what} to the compliance at this pose: {} in the plane, {} along z, {} about z",
-            percent(fraction.in_plane),
-            percent(fraction.vertical),
-            percent(fraction.rotation)
+            percent(contribution.in_plane),
+            percent(contribution.vertical),
+            percent(contribution.rotation)
         )
     };
-    if let Some(fraction) = report.contribution.filter(|_| report.member.kind != MemberKind::Slider) {
-        ui.label(of_all("contribution", fraction));
+    if let Some(contribution) = report.contribution.filter(|_| report.member.kind != MemberKind::Slider) {
+        ui.label(of_all("contribution", contribution));
     }
-    if let Some(fraction) = report.actuator {
-        ui.label(of_all("contribution of its actuator", fraction));
+    if let Some(contribution) = report.actuator {
+        ui.label(of_all("contribution of its actuator", contribution));
     }
 }
 

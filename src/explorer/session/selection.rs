@@ -34,7 +34,7 @@ impl Session {
     /// Moves the selection by `steps` along the designs of the front that pass the filter.
     pub fn walk(&mut self, steps: isize) {
         let prepared = self.document().filter.prepare(&self.store);
-        let passes_filter: Vec<usize> = self
+        let passing: Vec<usize> = self
             .front
             .iter()
             .map(|entry| entry.id)
@@ -44,17 +44,15 @@ impl Session {
             Some(Selected {
                 origin: Origin::Evaluated(id),
                 ..
-            }) => passes_filter.iter().position(|&other| other == id),
+            }) => passing.iter().position(|&other| other == id),
             _ => None,
         };
         let next = match here {
-            Some(here) => here
-                .saturating_add_signed(steps)
-                .min(passes_filter.len().saturating_sub(1)),
-            None if steps < 0 => passes_filter.len().saturating_sub(1),
+            Some(here) => here.saturating_add_signed(steps).min(passing.len().saturating_sub(1)),
+            None if steps < 0 => passing.len().saturating_sub(1),
             None => 0,
         };
-        if let Some(&id) = passes_filter.get(next) {
+        if let Some(&id) = passing.get(next) {
             self.select(id);
         }
     }

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::references::active;
 use super::results::{levels, unknown};
 use super::{change, percent};
-use crate::report::{Front, Report, Trend, Variation};
+use crate::report::{Alternative, Front, Report, Trend, Variation};
 use crate::text::number;
 use kinefront_model::mechanism::{Architecture, DesignVariable};
 use kinefront_optimize::hypervolume;
@@ -109,6 +109,16 @@ fn verdict(r_squared: f64) -> (&'static str, &'static str) {
     }
 }
 
+/// Returns what the paper says about an alternative assumption, if it says anything.
+pub(super) fn reason(alternative: &Alternative) -> Option<&'static str> {
+    Some(match alternative.name {
+        "r ≥ 0.5 m" => "which the paper prints, and which excludes its own design I",
+        "τ_z = 100 N·m" => "which stands in the text of the paper; its inequality has 10 N·m",
+        "one platform bar" => "as the equation of the paper has it",
+        _ => return None,
+    })
+}
+
 /// Returns the trend that the paper claims for a variable and the verdict on it.
 pub(super) fn claim(trend: &Trend) -> Markup {
     let (what, word, class) = if trend.variable == DesignVariable::PlatformBarRadius {
@@ -192,16 +202,16 @@ pub(super) fn differences(report: &Report) -> Markup {
                         (number(reference.fine.mass)) " kg. "
                     }
                 }
-                @if let Some(rival) = report.moga2.as_ref().and_then(|moga2| moga2.joint.as_ref()) {
+                @if let Some(moga2_front) = report.moga2.as_ref().and_then(|moga2| moga2.joint.as_ref()) {
                     "A reimplementation of MOGA-II, based on what is publicly known of it, also finds lighter designs "
                     "(grey in the figures). With the settings of the paper, all architectures together and the same "
                     "number of evaluations per search, it finds: "
                     @for reference in &report.references {
-                        @if let Some(found) = rival.lightest(reference.fine.workspace_radius).filter(|found| reference.fine.is_feasible() && found.mass < reference.fine.mass) {
+                        @if let Some(found) = moga2_front.lightest(reference.fine.workspace_radius).filter(|found| reference.fine.is_feasible() && found.mass < reference.fine.mass) {
                             (number(found.mass)) " kg for " (reference.name) ", "
                         }
                     }
-                    "and " (percent(volume(report, rival) / volume(report, &report.fronts.together))) " of the hypervolume of the front of all architectures found here. "
+                    "and " (percent(volume(report, moga2_front) / volume(report, &report.fronts.together))) " of the hypervolume of the front of all architectures found here. "
                     "Under this model, therefore, the search of the paper had not converged, or the model of the paper had requirements "
                     "that the paper does not state."
                 }
@@ -320,11 +330,11 @@ fn comparisons(report: &Report) -> Markup {
                 td { "not compared: not all architectures were searched" }
             } @else {
                 @let fraction = fronts.together.fraction(best);
-                @let rival = report.moga2.as_ref().and_then(|moga2| moga2.joint.as_ref());
+                @let moga2_front = report.moga2.as_ref().and_then(|moga2| moga2.joint.as_ref());
                 (judged(class(fraction), format!(
                     "{} of the designs of the front of all architectures{}{}", percent(fraction),
                     report.joint.as_ref().map(|joint| format!(", {} of those of the single search over all architectures", percent(joint.fraction(best)))).unwrap_or_default(),
-                    rival.map(|rival| format!(", {} of those of MOGA-II (reimplementation)", percent(rival.fraction(best)))).unwrap_or_default(),
+                    moga2_front.map(|moga2_front| format!(", {} of those of MOGA-II (reimplementation)", percent(moga2_front.fraction(best)))).unwrap_or_default(),
                 )))
             }
         }

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::results::levels;
-use super::{cell, change, figures, optional};
+use super::{cell, change, figures, optional, paper};
 use crate::report::{ALTERNATIVES, Alternative, Front, Report, Variation};
 use crate::text::{number, short};
 use kinefront_model::mechanism::Architecture;
@@ -30,7 +30,7 @@ pub(super) fn sensitivity(report: &Report) -> Markup {
             }
         }
         (figures(report, "sensitivity"))
-        @for (architecture, front) in &base.alone { (varied(others, *architecture, front)) }
+        @for (architecture, front) in &base.alone { (varied(report, others, *architecture, front)) }
         @if !report.references.is_empty() {
             h3 { "Reference designs" }
             div.scroll { table {
@@ -50,7 +50,7 @@ pub(super) fn sensitivity(report: &Report) -> Markup {
 }
 
 /// Tabulates how the front of an architecture changes with the assumptions.
-fn varied(variations: &[Variation], architecture: Architecture, base: &Front) -> Markup {
+fn varied(report: &Report, variations: &[Variation], architecture: Architecture, base: &Front) -> Markup {
     let levels: Vec<f64> = levels(base.largest()).into_iter().skip(1).step_by(2).collect();
     // Ratios to the unchanged study: of the mass at each level, then of the largest radius.
     let ratios = |variation: &Variation| -> Option<Vec<Option<f64>>> {
@@ -111,10 +111,18 @@ fn varied(variations: &[Variation], architecture: Architecture, base: &Front) ->
                             },
                             None => td colspan=(levels.len() + 1) { "no feasible design" }
                         }
-                        td { (variation.alternative.map(|alternative| alternative.meaning).unwrap_or_default()) }
+                        td { @if let Some(alternative) = &variation.alternative { (meaning(report, alternative)) } }
                     }
                 }
             }
         } }
+    }
+}
+
+/// Returns what an alternative assumption is and, in a report on the paper, what the paper says about it.
+fn meaning(report: &Report, alternative: &Alternative) -> String {
+    match paper::reason(alternative).filter(|_| report.of_paper) {
+        Some(reason) => format!("{}, {reason}", alternative.meaning),
+        None => alternative.meaning.to_owned(),
     }
 }

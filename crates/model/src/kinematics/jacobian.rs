@@ -84,7 +84,7 @@ impl<V: Real> Jacobian<V> {
         let like = ux[0];
         let (zero, one) = (like.splat(0.0), like.splat(1.0));
         let (length, to_lever) = (like.splat(length), like.splat(1.0 / (length * length)));
-        let transmission = [d[0] * d[0], d[1] * d[1], d[2] * d[2]];
+        let squared = [d[0] * d[0], d[1] * d[1], d[2] * d[2]];
         let mut forward = zero;
         let mut inverse = zero;
         let mut determinant = zero;
@@ -94,8 +94,8 @@ impl<V: Real> Jacobian<V> {
             let vy = m[j] * ux[k] - ux[j] * m[k];
             let w = length * planar[i];
             determinant = determinant + m[i] * planar[i];
-            forward = forward + transmission[i] * (vx * vx + vy * vy + w * w);
-            inverse = inverse + transmission[j] * transmission[k] * (one + m[i] * m[i] * to_lever);
+            forward = forward + squared[i] * (vx * vx + vy * vy + w * w);
+            inverse = inverse + squared[j] * squared[k] * (one + m[i] * m[i] * to_lever);
         }
         let serial = d[0] * d[1] * d[2];
         let scale = forward * inverse;

@@ -1,6 +1,6 @@
 """Stiffness of thin-barred designs by the general 6x6 form in 60 digits: writes crates/model/tests/fixtures/thin_bars.json.
 
-An implementation of its own, from SPEC-style formulas (virtual joint model, cantilever compliances at the tips, two
+An implementation of its own, from the formulas of docs/model.md (virtual joint model, cantilever compliances at the tips, two
 passive revolutes per leg), with mpmath. For bars thinner than 5 mm the same form in double precision loses digits, so
 the closed form is checked against this.
 
