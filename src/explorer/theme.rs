@@ -13,11 +13,11 @@ pub const SELECTED: Color32 = Color32::from_rgb(255, 70, 60);
 /// Colour of a modified design.
 pub const MODIFIED: Color32 = Color32::from_rgb(230, 110, 230);
 /// Colour of a violated constraint and of an error.
-pub const VIOLATED: Color32 = Color32::from_rgb(230, 70, 60);
+pub const BAD: Color32 = Color32::from_rgb(230, 70, 60);
 /// Colour of an active constraint.
 pub const ACTIVE: Color32 = Color32::from_rgb(240, 160, 40);
 /// Colour of a satisfied constraint and of a message that is not an error.
-pub const SATISFIED: Color32 = Color32::from_rgb(90, 180, 110);
+pub const GOOD: Color32 = Color32::from_rgb(90, 180, 110);
 
 /// Applies the fonts and colours of the embedded viewer, so that the whole window has one style.
 pub fn dress(ctx: &Context) {

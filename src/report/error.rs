@@ -3,7 +3,7 @@
 use crate::AnyError;
 use std::path::PathBuf;
 
-use crate::study::{FolderError, RunFolderError, TableError};
+use crate::study::{RunFolderError, TableError, WriteError};
 use kinefront_model::workspace::GridError;
 
 /// Reason why a report cannot be made.
@@ -52,5 +52,5 @@ pub enum ReportError {
     Occupied(PathBuf),
     /// A file cannot be written.
     #[error(transparent)]
-    Write(#[from] FolderError),
+    Write(#[from] WriteError),
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{Report, ReportError, chart, page};
-use crate::study::{Cell, Column, FolderError, Row, TableRow, table_bytes, write_whole};
+use crate::study::{Cell, Column, Row, TableRow, WriteError, table_bytes, write_whole};
 use kinefront_model::evaluation::Evaluation;
 
 impl Report {
@@ -15,7 +15,7 @@ impl Report {
     pub fn write(&self, folder: &Path, replace: bool) -> Result<(), ReportError> {
         free(folder, replace)?;
         let make = |path: &Path| {
-            std::fs::create_dir_all(path).map_err(|source| FolderError::Write {
+            std::fs::create_dir_all(path).map_err(|source| WriteError::Write {
                 path: path.to_owned(),
                 source,
             })
@@ -73,8 +73,8 @@ pub fn free(folder: &Path, replace: bool) -> Result<(), ReportError> {
 }
 
 /// Removes an existing report: the page first, so that no page is left without its figures.
-fn clear(folder: &Path, kinds: &[&Path]) -> Result<(), FolderError> {
-    let failed = |path: &Path, source: std::io::Error| FolderError::Write {
+fn clear(folder: &Path, kinds: &[&Path]) -> Result<(), WriteError> {
+    let failed = |path: &Path, source: std::io::Error| WriteError::Write {
         path: path.to_owned(),
         source,
     };

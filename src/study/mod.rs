@@ -19,7 +19,7 @@ pub use events::{Batch, EndReason, Event, FrontMember, GenerationSummary, RunSum
 pub use file::Study;
 pub use problem::DesignProblem;
 pub use run::spawn;
-pub use run_folder::{FolderError, HypervolumeReference, RunFolder, RunFolderError, RunReport, RunWriter, write_whole};
+pub use run_folder::{HypervolumeReference, RunFolder, RunFolderError, RunReport, RunWriter, WriteError, write_whole};
 pub use settings::{
     ActuatorSection, AlgorithmName, Bounds, Check, Fault, GridSection, Grids, HypervolumeSection, Initial,
     LengthChoice, MaterialSection, ModelSection, OptimizerSection, ReferenceDesign, RequirementSection, Setting,

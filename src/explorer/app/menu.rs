@@ -114,11 +114,7 @@ impl Explorer {
                 if ui.small_button("×").clicked() {
                     away = Some(index);
                 }
-                let color = if notice.is_error {
-                    theme::VIOLATED
-                } else {
-                    theme::SATISFIED
-                };
+                let color = if notice.is_error { theme::BAD } else { theme::GOOD };
                 ui.colored_label(color, &notice.text);
             });
         }

@@ -241,7 +241,7 @@ fn draw_row(
                 Key::Number(Column::Value(Constraint::Clearance))
                     if entry.row.clearance().is_some_and(|clearance| clearance < 0.0) =>
                 {
-                    text.color(theme::VIOLATED)
+                    text.color(theme::BAD)
                 }
                 _ if !state.passes => text.weak(),
                 Key::Architecture if !state.selected => text.color(theme::architecture(

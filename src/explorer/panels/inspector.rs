@@ -152,7 +152,7 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
             if evaluation.is_feasible() {
                 ui.strong(format!("{} m", theme::number(evaluation.workspace_radius)));
             } else {
-                ui.colored_label(theme::VIOLATED, "infeasible: no regular workspace");
+                ui.colored_label(theme::BAD, "infeasible: no regular workspace");
             }
             ui.weak(if known.verified {
                 "fine grid"
@@ -216,7 +216,7 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
     if let Some(nearest) = known.evaluation.nearest {
         let words = format!("nearest pair of members: {}", text::clearance(&nearest));
         if nearest.distance < 0.0 {
-            ui.colored_label(theme::VIOLATED, words);
+            ui.colored_label(theme::BAD, words);
         } else {
             ui.weak(words);
         }
@@ -238,11 +238,11 @@ fn margin_bar(ui: &mut Ui, report: &ConstraintResult) {
     let color = if !report.required {
         Color32::from_gray(128)
     } else if report.margin < 0.0 {
-        theme::VIOLATED
+        theme::BAD
     } else if report.active {
         theme::ACTIVE
     } else {
-        theme::SATISFIED
+        theme::GOOD
     };
     let bar = if report.margin < 0.0 {
         rect.with_max_x(middle)

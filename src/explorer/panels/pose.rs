@@ -50,7 +50,7 @@ impl PosePanel {
         self.tour(ui, session, &known);
         self.sliders(ui, session, pose, home, evaluation.design.base_radius);
         match &self.stopped {
-            Some(reason) => ui.colored_label(theme::VIOLATED, format!("stopped: {reason}")),
+            Some(reason) => ui.colored_label(theme::BAD, format!("stopped: {reason}")),
             None => ui.weak("drag the platform to move it, its rim to turn it; point at a member to see its data"),
         };
         let pose = session.pose().unwrap_or(pose);
@@ -147,7 +147,7 @@ impl PosePanel {
                 Align2::CENTER_CENTER,
                 "the manipulator cannot reach this pose",
                 FontId::proportional(14.0),
-                theme::VIOLATED,
+                theme::BAD,
             );
             return;
         };
@@ -163,8 +163,8 @@ impl PosePanel {
             painter.circle(
                 centre,
                 radius,
-                theme::SATISFIED.gamma_multiply(0.12),
-                Stroke::new(1.2, theme::SATISFIED),
+                theme::GOOD.gamma_multiply(0.12),
+                Stroke::new(1.2, theme::GOOD),
             );
         }
         paint(ui, &painter, &plan, &scene);
@@ -239,11 +239,7 @@ fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
         .show(ui, |ui| {
             for (index, (name, value, least, unit)) in values.into_iter().enumerate() {
                 ui.label(name);
-                let color = if value < least {
-                    theme::VIOLATED
-                } else {
-                    theme::SATISFIED
-                };
+                let color = if value < least { theme::BAD } else { theme::GOOD };
                 ui.colored_label(color, format!("{} {unit}", theme::number(value)));
                 if index % 2 == 1 {
                     ui.end_row();
@@ -252,9 +248,9 @@ fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
         });
     let least = thresholds.clearance.unwrap_or(0.0);
     let color = if report.clearance.distance < least {
-        theme::VIOLATED
+        theme::BAD
     } else {
-        theme::SATISFIED
+        theme::GOOD
     };
     ui.colored_label(color, format!("clearance: {}", text::clearance(&report.clearance)));
     let unit = design.architecture.actuator().unit();

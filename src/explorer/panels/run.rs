@@ -106,7 +106,7 @@ fn settings(ui: &mut Ui, session: &mut Session) {
     });
     session.editor.change(|edited| *edited = study);
     for fault in session.editor.faults() {
-        ui.colored_label(theme::VIOLATED, format!("`{}` {}", fault.key, fault.message));
+        ui.colored_label(theme::BAD, format!("`{}` {}", fault.key, fault.message));
     }
 }
 
@@ -225,7 +225,7 @@ fn curve(ui: &mut Ui, session: &Session) {
         .chain(generations.last())
         .map(|generation| [generation.evaluations as f64, generation.hypervolume])
         .collect();
-    let color = theme::SATISFIED;
+    let color = theme::GOOD;
     let shown = Plot::new("hypervolume")
         .height(ui.available_height().clamp(70.0, 160.0))
         .allow_drag(false)

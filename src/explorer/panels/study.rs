@@ -29,10 +29,10 @@ impl StudyPanel {
         });
         let faults: Vec<Fault> = session.editor.faults().cloned().collect();
         for fault in &faults {
-            ui.colored_label(theme::VIOLATED, format!("`{}` {}", fault.key, fault.message));
+            ui.colored_label(theme::BAD, format!("`{}` {}", fault.key, fault.message));
         }
         if faults.is_empty() {
-            ui.colored_label(theme::SATISFIED, "valid");
+            ui.colored_label(theme::GOOD, "valid");
             self.typed = None;
         }
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
@@ -204,7 +204,7 @@ fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
             Value::Datetime(_) => {}
         }
         for fault in faults.iter().filter(|fault| fault.key == path) {
-            ui.colored_label(theme::VIOLATED, &fault.message);
+            ui.colored_label(theme::BAD, &fault.message);
         }
     }
 }

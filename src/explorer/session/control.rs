@@ -166,26 +166,26 @@ impl Session {
     /// Processes new messages and results; must be called before each frame.
     pub fn update(&mut self) {
         if let Some(run) = &mut self.run {
-            let mut news = run.intake.take();
-            self.store.append(&mut news.rows);
-            self.generations.append(&mut news.history);
-            self.threads = news.threads.or(self.threads);
-            if let Some((done, total)) = news.verifying {
+            let mut messages = run.intake.take();
+            self.store.append(&mut messages.rows);
+            self.generations.append(&mut messages.history);
+            self.threads = messages.threads.or(self.threads);
+            if let Some((done, total)) = messages.verifying {
                 self.phase = Phase::Verifying { done, total };
             }
-            if let Some(summary) = news.finished {
+            if let Some(summary) = messages.finished {
                 run.count_time(false);
                 self.phase = Phase::Finished(summary.outcome);
             }
-            if let Some(message) = news.failed {
+            if let Some(message) = messages.failed {
                 run.count_time(false);
                 self.phase = Phase::Failed;
                 self.notify_error(format!("the run failed; the designs found so far are kept: {message}"));
             }
-            for words in news.troubles {
+            for words in messages.troubles {
                 self.notify_error(words);
             }
-            if let Some(front) = news.front {
+            if let Some(front) = messages.front {
                 self.set_front(front);
             }
         }

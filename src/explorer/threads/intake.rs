@@ -29,7 +29,7 @@ pub struct RunMessages {
 
 /// Collects the messages of a run until the window takes them.
 pub struct Intake {
-    news: Mutex<RunMessages>,
+    messages: Mutex<RunMessages>,
     wake: Box<dyn Fn() + Send + Sync>,
 }
 
@@ -37,56 +37,56 @@ impl Intake {
     /// Makes an intake that calls `wake` at every new message.
     pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
         Self {
-            news: Mutex::default(),
+            messages: Mutex::default(),
             wake: Box::new(wake),
         }
     }
 
     /// Takes all messages since the last call.
     pub fn take(&self) -> RunMessages {
-        std::mem::take(&mut *self.news.lock().unwrap_or_else(PoisonError::into_inner))
+        std::mem::take(&mut *self.messages.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     fn put(&self, put: impl FnOnce(&mut RunMessages)) {
-        put(&mut self.news.lock().unwrap_or_else(PoisonError::into_inner));
+        put(&mut self.messages.lock().unwrap_or_else(PoisonError::into_inner));
         (self.wake)();
     }
 
     /// Reports an error that does not stop the run.
     pub fn trouble(&self, words: String) {
-        self.put(|news| news.troubles.push(words));
+        self.put(|messages| messages.troubles.push(words));
     }
 
     /// Collects the events of a run until it ends.
     pub fn follow(&self, events: &Receiver<Arc<Event>>) {
         for event in events {
             match &*event {
-                Event::Started(started) => self.put(|news| news.threads = Some(started.threads)),
+                Event::Started(started) => self.put(|messages| messages.threads = Some(started.threads)),
                 Event::Evaluated(batch) => {
                     let mut rows = Store::default();
                     for evaluation in &batch.evaluations {
                         rows.push(&Row::new(batch.generation, evaluation));
                     }
-                    self.put(|news| news.rows.append(&mut rows));
+                    self.put(|messages| messages.rows.append(&mut rows));
                 }
                 Event::Front(members) => {
                     let front = members.iter().map(|member| FrontEntry::new(member, false)).collect();
-                    self.put(|news| news.front = Some(front));
+                    self.put(|messages| messages.front = Some(front));
                 }
-                Event::Generation(summary) => self.put(|news| news.history.push(*summary)),
-                Event::Verifying { done, total } => self.put(|news| news.verifying = Some((*done, *total))),
+                Event::Generation(summary) => self.put(|messages| messages.history.push(*summary)),
+                Event::Verifying { done, total } => self.put(|messages| messages.verifying = Some((*done, *total))),
                 Event::Finished(summary) => {
                     let front = summary
                         .front
                         .iter()
                         .map(|member| FrontEntry::new(member, true))
                         .collect();
-                    self.put(|news| {
-                        news.front = Some(front);
-                        news.finished = Some(Box::new(summary.clone()));
+                    self.put(|messages| {
+                        messages.front = Some(front);
+                        messages.finished = Some(Box::new(summary.clone()));
                     });
                 }
-                Event::Failed(message) => self.put(|news| news.failed = Some(message.clone())),
+                Event::Failed(message) => self.put(|messages| messages.failed = Some(message.clone())),
             }
         }
     }

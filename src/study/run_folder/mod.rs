@@ -10,7 +10,7 @@ mod write;
 
 pub use read::{RunFolder, RunFolderError};
 pub use report::{HypervolumeReference, RunReport};
-pub use write::{FolderError, RunWriter, write_whole};
+pub use write::{RunWriter, WriteError, write_whole};
 
 /// File of the study as run.
 const STUDY: &str = "study.toml";

@@ -12,7 +12,7 @@ use crate::study::{Batch, Event, RunSummary, Study};
 
 /// Error of writing a run folder.
 #[derive(Debug, thiserror::Error)]
-pub enum FolderError {
+pub enum WriteError {
     /// The folder already holds a run.
     #[error("{} already holds a run ({found}); choose another folder, or move that one away", path.display())]
     Occupied {
@@ -45,17 +45,17 @@ impl RunWriter {
     /// Prepares `path` for a run of `study`: creates the folder, writes `study.toml` and the header of `designs.csv`.
     ///
     /// # Errors
-    /// [`FolderError::Occupied`] if the folder already holds a run, [`FolderError::Write`] if it cannot be written.
-    pub fn create(path: &Path, study: &Study) -> Result<Self, FolderError> {
+    /// [`WriteError::Occupied`] if the folder already holds a run, [`WriteError::Write`] if it cannot be written.
+    pub fn create(path: &Path, study: &Study) -> Result<Self, WriteError> {
         if let Some(found) = FILES.into_iter().find(|file| path.join(file).exists()) {
-            return Err(FolderError::Occupied {
+            return Err(WriteError::Occupied {
                 path: path.to_owned(),
                 found,
             });
         }
         let at = |path: &Path| {
             let path = path.to_owned();
-            move |source| FolderError::Write { path, source }
+            move |source| WriteError::Write { path, source }
         };
         fs::create_dir_all(path).map_err(at(path))?;
         let study_path = path.join(STUDY);
@@ -78,8 +78,8 @@ impl RunWriter {
     /// Receives the events of a run and writes its files until the run ends.
     ///
     /// # Errors
-    /// [`FolderError::Write`] for the first file that cannot be written; files written before are kept.
-    pub fn follow(mut self, events: &Receiver<Arc<Event>>, study: &Study) -> Result<(), FolderError> {
+    /// [`WriteError::Write`] for the first file that cannot be written; files written before are kept.
+    pub fn follow(mut self, events: &Receiver<Arc<Event>>, study: &Study) -> Result<(), WriteError> {
         for event in events {
             match &*event {
                 Event::Evaluated(batch) => self.append(batch)?,
@@ -90,7 +90,7 @@ impl RunWriter {
         Ok(())
     }
 
-    fn append(&mut self, batch: &Batch) -> Result<(), FolderError> {
+    fn append(&mut self, batch: &Batch) -> Result<(), WriteError> {
         let mut write = || -> io::Result<()> {
             for (offset, evaluation) in batch.evaluations.iter().enumerate() {
                 let entry = TableRow {
@@ -103,13 +103,13 @@ impl RunWriter {
             }
             self.designs.flush()
         };
-        write().map_err(|source| FolderError::Write {
+        write().map_err(|source| WriteError::Write {
             path: self.path.join(DESIGNS),
             source,
         })
     }
 
-    fn finish(&mut self, study: &Study, summary: &RunSummary) -> Result<(), FolderError> {
+    fn finish(&mut self, study: &Study, summary: &RunSummary) -> Result<(), WriteError> {
         let front_path = self.path.join(FRONT);
         let rows = summary.front.iter().zip(summary.marks()).map(|(member, mark)| {
             let entry = TableRow {
@@ -123,7 +123,7 @@ impl RunWriter {
             };
             Column::of_front().map(cell).collect()
         });
-        let table = table_bytes(Column::of_front(), rows).map_err(|source| FolderError::Write {
+        let table = table_bytes(Column::of_front(), rows).map_err(|source| WriteError::Write {
             path: front_path.clone(),
             source,
         })?;
@@ -131,7 +131,7 @@ impl RunWriter {
 
         let report_path = self.path.join(REPORT);
         let mut report =
-            serde_json::to_vec_pretty(&RunReport::new(study, summary)).map_err(|error| FolderError::Write {
+            serde_json::to_vec_pretty(&RunReport::new(study, summary)).map_err(|error| WriteError::Write {
                 path: report_path.clone(),
                 source: error.into(),
             })?;
@@ -144,8 +144,8 @@ impl RunWriter {
 /// complete or unchanged.
 ///
 /// # Errors
-/// [`FolderError::Write`].
-pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), FolderError> {
+/// [`WriteError::Write`].
+pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), WriteError> {
     let mut name = std::ffi::OsString::from(".");
     name.push(path.file_name().unwrap_or_default());
     name.push(".partial");
@@ -159,7 +159,7 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), FolderError> {
     write().map_err(|source| {
         // The partial file is useless; failing to remove it does not justify a second error.
         let _ = fs::remove_file(&partial);
-        FolderError::Write {
+        WriteError::Write {
             path: path.to_owned(),
             source,
         }

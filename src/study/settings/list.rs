@@ -4,7 +4,8 @@ use kinefront_model::mechanism::Architecture;
 
 use super::declare::{Check, Initial, Setting, settings};
 use super::{
-    ActuatorSection, Bounds, HypervolumeSection, MaterialSection, ModelSection, RequirementSection, WorkspaceSection,
+    ActuatorSection, AlgorithmName, Bounds, HypervolumeSection, MaterialSection, ModelSection, RequirementSection,
+    WorkspaceSection,
 };
 
 const MOST: i64 = 100_000_000;
@@ -56,7 +57,7 @@ const SECTIONS: [&[Setting]; 17] = [
             section: "optimizer",
             key: "algorithm",
             description: "Algorithm of the search.",
-            check: Check::Choice(&["front-de", "moga2", "nsga2"]),
+            check: Check::Choice(&AlgorithmName::NAMES),
             initial: None,
         },
         Setting {

@@ -23,6 +23,9 @@ impl AlgorithmName {
     /// All algorithms.
     pub const ALL: [AlgorithmName; 3] = [AlgorithmName::FrontDe, AlgorithmName::Moga2, AlgorithmName::Nsga2];
 
+    /// Names of all algorithms.
+    pub const NAMES: [&'static str; 3] = [Self::ALL[0].name(), Self::ALL[1].name(), Self::ALL[2].name()];
+
     /// Describes the algorithm in one sentence.
     pub fn description(self) -> &'static str {
         match self {
@@ -40,7 +43,7 @@ impl AlgorithmName {
     }
 
     /// Returns the name of the algorithm, as in study files and command-line arguments.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             AlgorithmName::FrontDe => "front-de",
             AlgorithmName::Moga2 => "moga2",

@@ -69,7 +69,7 @@ struct Sizer<'a, L> {
     checker: PoseChecker<L>,
     /// Arms in every orientation, as on the reference grid.
     arms: Vec<[DVec2; LEGS]>,
-    turn: OrientationGrid,
+    orientation_grid: OrientationGrid,
     sectors: usize,
     laid: PoseColumns,
     places: Vec<DiscPose>,
@@ -81,10 +81,14 @@ struct Sizer<'a, L> {
 
 impl<'a, L: Leg> Sizer<'a, L> {
     fn new(model: &'a Model, design: &Design, ranges: &'a BarRanges) -> Self {
-        let turn = *model.sampling(GridChoice::Reference).orientation_grid();
+        let orientation_grid = *model.sampling(GridChoice::Reference).orientation_grid();
         let checker = model.checker::<L>(design);
-        let arms = (0..turn.count)
-            .map(|k| checker.manipulator.arms(&Rotation::new(turn.phi_deg(k).to_radians())))
+        let arms = (0..orientation_grid.count)
+            .map(|k| {
+                checker
+                    .manipulator
+                    .arms(&Rotation::new(orientation_grid.phi_deg(k).to_radians()))
+            })
             .collect();
         Self {
             model,
@@ -92,7 +96,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
             ranges,
             checker,
             arms,
-            turn,
+            orientation_grid,
             sectors: if model.is_symmetric(design) { 1 } else { LEGS },
             laid: PoseColumns::default(),
             places: Vec::new(),
@@ -117,7 +121,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
             WorkspaceTarget::Largest => self.largest(&candidates)?,
         };
         let home = self.home(radius, &candidates)?;
-        let window: Vec<usize> = self.turn.window(home).collect();
+        let window: Vec<usize> = self.orientation_grid.window(home).collect();
         self.lay_disc(radius, &window);
         let bar_mass = self.with_bars([1.0, 1.0]);
         let problem = SizingProblem {
@@ -179,11 +183,11 @@ impl<'a, L: Leg> Sizer<'a, L> {
                 refined: false,
             });
             for (ring, fraction) in RINGS.iter().enumerate() {
-                let turn = if ring % 2 == 0 { 0.0 } else { 0.5 };
+                let offset = if ring % 2 == 0 { 0.0 } else { 0.5 };
                 self.places.extend((0..DIRECTIONS * self.sectors).map(|k| DiscPose {
                     orientation,
                     radius: fraction * radius,
-                    angle: (k as f64 + turn) * step,
+                    angle: (k as f64 + offset) * step,
                     spacing,
                     refined: false,
                 }));
@@ -250,14 +254,14 @@ impl<'a, L: Leg> Sizer<'a, L> {
 
     /// Returns the home orientations whose window has one sign throughout.
     fn homes(&self, signs: &[Option<f64>]) -> Vec<usize> {
-        self.turn.homes_of_one_sign(|place| signs[place]).collect()
+        self.orientation_grid.homes_of_one_sign(|place| signs[place]).collect()
     }
 
     /// Returns the orientations in the windows of all home orientations.
     fn windows(&self, signs: &[Option<f64>]) -> Vec<usize> {
         let mut inside = vec![false; self.arms.len()];
         for home in self.homes(signs) {
-            for k in self.turn.window(home) {
+            for k in self.orientation_grid.window(home) {
                 inside[k] = true;
             }
         }
@@ -307,7 +311,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
             }
         }
         let of_window = |home: usize| {
-            self.turn
+            self.orientation_grid
                 .window(home)
                 .fold(f64::INFINITY, |least, k| least.min(weakest[k]))
         };

@@ -151,7 +151,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
         }
         disc.pad();
         let indices: Vec<f64> = (0..disc.xs.len()).map(|index| index as f64).collect();
-        for index in found.turn.window(home) {
+        for index in found.orientation_grid.window(home) {
             let orientation = &found.orientations[index];
             let oriented = OrientationLanes {
                 arms: &orientation.arms,
@@ -201,10 +201,10 @@ impl<L: Leg> ConstraintSearch<'_, L> {
             .map(|index| self.shortfall(&found.centres.get(index)))
             .collect();
         let best = smallest(shortfalls.iter().map(|(shortfall, _)| *shortfall)).unwrap_or(0);
-        let homes = found.turn.homes();
+        let homes = found.orientation_grid.homes();
         let mean = |home: usize| {
             let (mut sum, mut count, mut signs) = (0.0, 0.0, [false; 2]);
-            for index in found.turn.window(home) {
+            for index in found.orientation_grid.window(home) {
                 let (shortfall, sign) = shortfalls[index];
                 sum += shortfall;
                 count += 1.0;
@@ -230,7 +230,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
             let clearance = self.checker.nearest(centre, &posture).distance;
             self.lower(&mut reports[Constraint::Clearance as usize], clearance, pose);
         }
-        for index in found.turn.window(best_home) {
+        for index in found.orientation_grid.window(best_home) {
             self.mark_failing(&mut reports, &found.centres.get(index), sign_of(best_home));
         }
         if !reports.iter().any(|report| report.active) {

@@ -48,7 +48,7 @@ pub struct RegularWorkspace {
     /// Orientations of the grid.
     pub orientations: Vec<Orientation>,
     /// Spacing of the orientations, and the windows over them.
-    pub turn: OrientationGrid,
+    pub orientation_grid: OrientationGrid,
     /// Orientations of the home window whose `R(φ)` equals `radius`, each with a radius just beyond it at which a pose
     /// is infeasible in some direction \[m\]. Without a home orientation, one such orientation of a window that turned
     /// out to be empty, if there was one.
@@ -63,11 +63,11 @@ pub struct RegularWorkspace {
 fn orientations<L: Leg>(
     checker: &PoseChecker<L>,
     spec: &WorkspaceSpec,
-    turn: &OrientationGrid,
+    orientation_grid: &OrientationGrid,
 ) -> (Vec<Orientation>, ValueColumns) {
-    let mut orientations: Vec<Orientation> = (0..turn.count)
+    let mut orientations: Vec<Orientation> = (0..orientation_grid.count)
         .map(|k| {
-            let phi_deg = turn.phi_deg(k);
+            let phi_deg = orientation_grid.phi_deg(k);
             Orientation {
                 phi_deg: libm::fmod(libm::fmod(phi_deg, 360.0) + 360.0, 360.0),
                 arms: checker.manipulator.arms(&Rotation::new(phi_deg.to_radians())),
@@ -97,8 +97,8 @@ pub fn search<L: Leg>(
     step_base: f64,
     symmetric: bool,
 ) -> RegularWorkspace {
-    let (spec, grid, turn) = (sampling.spec(), sampling.grid(), *sampling.orientation_grid());
-    let (orientations, centres) = orientations(checker, spec, &turn);
+    let (spec, grid, orientation_grid) = (sampling.spec(), sampling.grid(), *sampling.orientation_grid());
+    let (orientations, centres) = orientations(checker, spec, &orientation_grid);
     let sector = if symmetric && grid.directions().is_multiple_of(LEGS) {
         grid.directions() / LEGS
     } else {
@@ -111,7 +111,7 @@ pub fn search<L: Leg>(
         radius: 0.0,
         home: None,
         orientations,
-        turn,
+        orientation_grid,
         limits: Vec::new(),
         centres,
         directions: Vec::new(),
@@ -123,7 +123,7 @@ pub fn search<L: Leg>(
         rings: Rings::new(spec.centre, directions, step),
         reaches: vec![Reach::UNKNOWN; result.orientations.len()],
         hint: grid.ray_steps() / 4,
-        order: spread(2 * turn.half_window + 1),
+        order: spread(2 * orientation_grid.half_window + 1),
         found: &mut result,
     };
     search.run();
@@ -146,14 +146,14 @@ struct Search<'a, L> {
 
 impl<L: Leg> Search<'_, L> {
     fn run(&mut self) {
-        let turn = self.found.turn;
+        let orientation_grid = self.found.orientation_grid;
         // Upper bound of each window: infinite until a ring of one of its orientations is known to fail.
-        let mut bounds: Vec<f64> = vec![0.0; turn.count];
-        for home in turn.homes_of_one_sign(|place| self.found.orientations[place].centre_sign) {
+        let mut bounds: Vec<f64> = vec![0.0; orientation_grid.count];
+        for home in orientation_grid.homes_of_one_sign(|place| self.found.orientations[place].centre_sign) {
             bounds[home] = f64::INFINITY;
         }
         while let Some((home, rival)) = leader(&bounds) {
-            let window: Vec<usize> = turn.window(home).collect();
+            let window: Vec<usize> = orientation_grid.window(home).collect();
             while bounds[home] > 0.0 {
                 let Some(changed) = self.lower(&window) else {
                     self.found.radius = bounds[home];
@@ -169,7 +169,7 @@ impl<L: Leg> Search<'_, L> {
                 // An orientation belongs to the windows of exactly those home orientations that lie in the window about
                 // it.
                 let bound = self.rings.bound(&self.reaches[changed]);
-                for affected in turn.window(changed) {
+                for affected in orientation_grid.window(changed) {
                     bounds[affected] = bounds[affected].min(bound);
                 }
                 if bounds[home] == 0.0 && self.found.limits.is_empty() {
