@@ -94,3 +94,47 @@ impl Model {
         Ok(members.collect())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluation::GridChoice;
+
+    #[test]
+    fn members_have_the_dimensions_and_masses_of_the_design() {
+        let model = Model::default();
+        for text in [
+            "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
+            "3-RPR R=2.0 r=0.5 Lb=3.0 rj=0.03 rp=0.02",
+            "3-RRR R=2.0 r=0.6 Lb=1.6 rj=0.05 rp=0.04",
+        ] {
+            let design: Design = text.parse().expect("a design");
+            let home = model.evaluate(&design, GridChoice::Reference).home.expect("a home");
+            let members = model.members(&design, &home).expect("reachable");
+            let total: f64 = members.iter().map(|report| report.mass).sum();
+            assert!((total - model.mass(&design)).abs() < 1e-9 * total, "{text}: {total} kg");
+            for report in members.iter().filter(|report| report.member.kind != MemberKind::Slider) {
+                let (radius, length) = match report.member.kind {
+                    MemberKind::PlatformBar => (design.platform_bar_radius, Some(design.platform_radius)),
+                    // The length of a telescopic leg depends on the pose; its mass is that of a bar of the design.
+                    MemberKind::TelescopicLeg => (design.leg_bar_radius, None),
+                    _ => (design.leg_bar_radius, Some(design.link_length)),
+                };
+                assert_eq!(report.radius, radius, "{text}: {report:?}");
+                let of_bar = length.unwrap_or(design.link_length);
+                assert!(
+                    (report.mass - model.bar_mass(radius, of_bar)).abs() < 1e-9 * total,
+                    "{text}: {report:?}"
+                );
+                assert!(
+                    length.is_none_or(|length| (report.length - length).abs() < 1e-12),
+                    "{text}: {report:?}"
+                );
+                // Each member lies in its layer, parallel to the plane of motion.
+                let kind = report.member.kind;
+                let same = members.iter().filter(|other| other.member.kind == kind);
+                assert!(same.clone().count() == LEGS && same.clone().all(|other| other.from.z == report.to.z));
+            }
+        }
+    }
+}
