@@ -5,7 +5,6 @@ use std::io::{BufRead, Write};
 use kinefront::export::EvaluationJson;
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{Design, TextError, WorkingMode};
-use miette::Report;
 
 use super::{Ending, Failure, GridArgument, load_study, tables, to_json};
 
@@ -38,9 +37,7 @@ pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
     match &arguments.design {
         None => server.serve()?,
         Some(text) => {
-            let evaluation = server
-                .evaluate(text)
-                .map_err(|error| Failure::Input(Report::from_err(error)))?;
+            let evaluation = server.evaluate(text).map_err(Failure::input)?;
             let mut out = std::io::stdout().lock();
             if arguments.json {
                 writeln!(

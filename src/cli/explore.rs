@@ -16,7 +16,7 @@ pub struct ExploreArguments {
     #[arg(long)]
     no_run: bool,
     /// Random seed; overrides that of the study.
-    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
     seed: Option<u64>,
     /// Number of evaluations; overrides that of the study.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
@@ -28,7 +28,7 @@ pub struct ExploreArguments {
 
 pub fn run(arguments: &ExploreArguments) -> Result<Ending, Failure> {
     let script = match &arguments.script {
-        Some(path) => Some(Script::read(path).map_err(|words| Failure::Input(miette!("{words}")))?),
+        Some(path) => Some(Script::read(path).map_err(Failure::input)?),
         None => None,
     };
     open_window(subject(arguments)?, script).map_err(|words| Failure::Runtime(miette!("{words}")))?;
@@ -41,7 +41,7 @@ fn subject(arguments: &ExploreArguments) -> Result<InitialContent, Failure> {
         let is_study = path.is_file() && path.extension().is_some_and(|extension| extension == "toml");
         if !is_study {
             // Errors are reported before the window opens.
-            kinefront::explorer::open(path).map_err(|error| Failure::Input(miette!("{error}")))?;
+            kinefront::explorer::open(path).map_err(Failure::input)?;
             return Ok(InitialContent::Run(path.clone()));
         }
     }

@@ -7,10 +7,10 @@ use kinefront::export::{ExportError, ExportSubject, Format, export, front_to_par
 use kinefront::study::write_whole;
 use kinefront_model::evaluation::GridChoice;
 use kinefront_model::spatial::Pose;
-use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use super::subject::SubjectArguments;
-use super::{Ending, Failure};
+use super::{Ending, Failure, exists_already};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -106,10 +106,7 @@ pub fn run(arguments: &ExportArguments) -> Result<Ending, Failure> {
     arguments.check(target).map_err(Failure::Input)?;
     let to_stdout = arguments.out == Path::new("-");
     if !to_stdout && arguments.out.exists() {
-        return Err(Failure::Input(miette!(
-            "{} exists already; choose another file, or move that one away",
-            arguments.out.display()
-        )));
+        return Err(exists_already(&arguments.out));
     }
     let bytes = match target {
         ExportTarget::Design(format) => design(arguments, format)?,
@@ -138,12 +135,13 @@ fn design(arguments: &ExportArguments, format: Format) -> Result<Vec<u8>, Failur
     let evaluation = model.evaluate(&design, GridChoice::Fine);
     let subject = ExportSubject {
         study: &study,
+        model: &model,
         evaluation: &evaluation,
         pose: arguments.pose,
     };
     export(&subject, format).map_err(|error| match error {
-        ExportError::Unreachable(_) | ExportError::NoBar(_) => Failure::Input(Report::from_err(error)),
-        ExportError::Grid(_) | ExportError::Format { .. } => Failure::runtime(error),
+        ExportError::Unreachable { .. } | ExportError::NoBar(_) => Failure::input(error),
+        ExportError::Format { .. } => Failure::runtime(error),
     })
 }
 

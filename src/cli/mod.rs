@@ -68,8 +68,8 @@ enum Failure {
 }
 
 impl Failure {
-    fn input(error: impl Into<Report>) -> Self {
-        Self::Input(error.into())
+    fn input(error: impl std::error::Error + Send + Sync + 'static) -> Self {
+        Self::Input(Report::from_err(error))
     }
 
     fn runtime(error: impl std::error::Error + Send + Sync + 'static) -> Self {
@@ -116,6 +116,14 @@ pub fn run() -> ExitCode {
             ExitCode::from(1)
         }
     }
+}
+
+/// The refusal to overwrite a file.
+fn exists_already(path: &Path) -> Failure {
+    Failure::Input(miette!(
+        "{} exists already; choose another file, or move that one away",
+        path.display()
+    ))
 }
 
 /// Loads the study that an argument specifies: a study file or the name of a built-in study; without an argument, the

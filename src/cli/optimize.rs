@@ -30,7 +30,7 @@ pub struct OptimizeArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     evaluations: Option<u64>,
     /// Random seed; overrides that of the study.
-    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
     seed: Option<u64>,
     /// Number of worker threads; the result does not depend on it [default: all cores].
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u64).range(1..=1024))]
@@ -52,9 +52,8 @@ pub struct OptimizeArguments {
 pub fn run(arguments: &OptimizeArguments) -> Result<Ending, Failure> {
     let study = study(arguments)?;
     let path = arguments.out.clone().unwrap_or_else(|| free_folder(&study));
-    let folder = RunWriter::create(&path, &study).map_err(|error| Failure::Input(Report::from_err(error)))?;
-    let recorder = Recorder::create(&path.join("recording.rrd"), &study)
-        .map_err(|error| Failure::Input(Report::from_err(error)))?;
+    let folder = RunWriter::create(&path, &study).map_err(Failure::input)?;
+    let recorder = Recorder::create(&path.join("recording.rrd"), &study).map_err(Failure::input)?;
 
     let control = Arc::new(RunControl::default());
     stop_on_interrupt(&control, arguments.quiet)?;

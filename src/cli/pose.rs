@@ -4,8 +4,7 @@ use std::io::Write;
 
 use kinefront::export::PoseReportJson;
 use kinefront_model::mechanism::Design;
-use kinefront_model::spatial::{Pose, PoseTextError};
-use miette::Report;
+use kinefront_model::spatial::Pose;
 
 use super::{Ending, Failure, load_study, tables, to_json};
 
@@ -27,12 +26,8 @@ pub struct PoseArguments {
 
 pub fn run(arguments: &PoseArguments) -> Result<Ending, Failure> {
     let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
-    let design = Design::parse(&arguments.design, study.working_mode)
-        .map_err(|error| Failure::Input(Report::from_err(error)))?;
-    let pose: Pose = arguments
-        .pose
-        .parse()
-        .map_err(|error: PoseTextError| Failure::Input(Report::from_err(error)))?;
+    let design = Design::parse(&arguments.design, study.working_mode).map_err(Failure::input)?;
+    let pose = arguments.pose.parse::<Pose>().map_err(Failure::input)?;
     let outcome = study.model().map_err(Failure::runtime)?.pose(&design, &pose);
     let mut out = std::io::stdout().lock();
     if arguments.json {

@@ -18,7 +18,7 @@ pub enum Progress {
         /// Total number of evaluations.
         budget: usize,
         /// Number of twentieths of the budget reported so far.
-        told: usize,
+        reported: usize,
     },
 }
 
@@ -29,7 +29,7 @@ impl Progress {
             return Self::Quiet;
         }
         if !std::io::stderr().is_terminal() {
-            return Self::Lines { budget, told: 0 };
+            return Self::Lines { budget, reported: 0 };
         }
         let style =
             ProgressStyle::with_template("{bar:30.cyan/blue} {pos}/{len} evaluations  {per_sec:.0}  {eta} left  {msg}")
@@ -51,10 +51,10 @@ impl Progress {
                     summary.front_size, summary.hypervolume
                 ));
             }
-            Self::Lines { budget, told } => {
+            Self::Lines { budget, reported } => {
                 let reached = 20 * summary.evaluations / *budget;
-                if reached > *told {
-                    *told = reached;
+                if reached > *reported {
+                    *reported = reached;
                     eprintln!(
                         "generation {}: {}/{budget} evaluations, {} feasible, front {}, hypervolume {:.1} kg m",
                         summary.generation,

@@ -6,10 +6,9 @@ use std::path::PathBuf;
 use kinefront::recording::record_design;
 use kinefront::scene::Field;
 use kinefront_model::evaluation::GridChoice;
-use miette::Report;
 
 use super::subject::SubjectArguments;
-use super::{Ending, Failure};
+use super::{Ending, Failure, exists_already};
 
 #[derive(Debug, clap::Args)]
 pub struct ShowArguments {
@@ -31,18 +30,13 @@ fn field(text: &str) -> Result<Field, String> {
 }
 
 pub fn run(arguments: &ShowArguments) -> Result<Ending, Failure> {
+    if arguments.record.exists() {
+        return Err(exists_already(&arguments.record));
+    }
     let (study, design, heading) = arguments.subject.read().map_err(Failure::Input)?;
     let model = study.model().map_err(Failure::runtime)?;
     let evaluation = model.evaluate(&design, GridChoice::Fine);
-    let occupied = arguments.record.exists();
-    record_design(&arguments.record, &study, &evaluation, &heading, arguments.field).map_err(|error| {
-        let report = Report::from_err(error);
-        if occupied {
-            Failure::Input(report)
-        } else {
-            Failure::Runtime(report)
-        }
-    })?;
+    record_design(&arguments.record, &study, &evaluation, &heading, arguments.field).map_err(Failure::runtime)?;
     writeln!(std::io::stdout(), "wrote {}", arguments.record.display())?;
     Ok(Ending::Done)
 }

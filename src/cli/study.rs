@@ -1,13 +1,12 @@
 //! The command `kinefront study`.
 
-use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use kinefront::study::{BUILTIN, Builtin, Study};
+use kinefront::study::{BUILTIN, Builtin, Study, write_whole};
 use miette::miette;
 
-use super::{Ending, Failure, builtin_names, load_study};
+use super::{Ending, Failure, builtin_names, exists_already, load_study};
 
 #[derive(Debug, clap::Args)]
 pub struct StudyArguments {
@@ -50,7 +49,7 @@ pub fn run(arguments: &StudyArguments) -> Result<Ending, Failure> {
     match &arguments.command {
         StudyCommand::List => {
             for builtin in BUILTIN {
-                let study = builtin.study().map_err(Failure::input)?;
+                let study = builtin.study().map_err(|error| Failure::Input(error.into()))?;
                 writeln!(out, "{:<28}{}", builtin.name, study.description)?;
             }
         }
@@ -61,12 +60,10 @@ pub fn run(arguments: &StudyArguments) -> Result<Ending, Failure> {
                 write!(out, "{text}")?;
                 return Ok(Ending::Done);
             }
-            let mut target = OpenOptions::new()
-                .write(true)
-                .create_new(true)
-                .open(file)
-                .map_err(|error| Failure::Input(miette!("cannot write {}: {error}", file.display())))?;
-            target.write_all(text.as_bytes())?;
+            if file.exists() {
+                return Err(exists_already(file));
+            }
+            write_whole(file, text.as_bytes()).map_err(Failure::runtime)?;
             writeln!(out, "wrote {}", file.display())?;
         }
         StudyCommand::Check { file } => {

@@ -59,7 +59,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
     }
     if let Some(nearest) = evaluation.nearest {
         let where_least = if evaluation.is_feasible() {
-            "smallest over the workspace"
+            "the smallest over the workspace"
         } else {
             "at the centre in the best orientation"
         };

@@ -82,12 +82,12 @@ enum Step {
 #[derive(Debug, thiserror::Error)]
 pub enum ScriptError {
     /// The file cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {cause}", path.display())]
     Read {
         /// Path of the file.
         path: PathBuf,
         /// Cause of the failure.
-        source: std::io::Error,
+        cause: std::io::Error,
     },
     /// A script file has a line that is not a step.
     #[error("{}, {error}", path.display())]
@@ -146,9 +146,9 @@ impl Script {
     /// # Errors
     /// [`ScriptError`] for a file that cannot be read or a line that is not a step.
     pub fn read(path: &Path) -> Result<Self, ScriptError> {
-        let text = std::fs::read_to_string(path).map_err(|source| ScriptError::Read {
+        let text = std::fs::read_to_string(path).map_err(|cause| ScriptError::Read {
             path: path.to_owned(),
-            source,
+            cause,
         })?;
         Self::parse(&text).map_err(|error| ScriptError::File {
             path: path.to_owned(),

@@ -60,14 +60,30 @@ impl StudyEditor {
     /// Returns a [`StudyError`] if the file cannot be read or the study is invalid.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         let study = Study::read(path)?;
-        let text = std::fs::read_to_string(path).map_err(|source| StudyError::Read {
+        let text = std::fs::read_to_string(path).map_err(|cause| StudyError::Read {
             path: path.to_owned(),
-            source,
+            cause,
         })?;
         Ok(Self {
             text,
             ..Self::new(study, Some(path.to_owned()))
         })
+    }
+
+    /// Makes an editor for a study that was read from `path` or is built in, and then changed by options: the text keeps
+    /// its comments.
+    pub fn opened(study: &Study, path: Option<&Path>) -> Self {
+        let source = match path {
+            Some(path) => Self::read(path).ok(),
+            None => Builtin::find(&study.name).and_then(|builtin| Self::builtin(&builtin).ok()),
+        };
+        let changed = source.map(|mut editor| {
+            editor.change(|as_read| as_read.clone_from(study));
+            editor
+        });
+        changed
+            .filter(|editor| editor.study == *study)
+            .unwrap_or_else(|| Self::new(study.clone(), path.map(Path::to_owned)))
     }
 
     /// Saves the text atomically: an existing file is either replaced completely or left unchanged.

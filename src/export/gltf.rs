@@ -57,11 +57,10 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
             .poses
             .iter()
             .map(|pose| {
-                let at = linkage(&subject.model, design, pose)?;
+                let at = linkage(subject.model, design, pose)?;
                 Ok(at.bodies.iter().map(|body| body.frame).collect())
             })
-            .collect::<Result<_, kinefront_model::evaluation::Unreachable>>()
-            .map_err(|error| error.to_string())?;
+            .collect::<Result<_, kinefront_model::evaluation::Unreachable>>()?;
         file.animate(&bodies, &frames);
     }
     // In glTF the y axis points up; in the base frame z does.
@@ -353,7 +352,7 @@ impl File {
             extensions: None,
             extras: Default::default(),
         });
-        let text = json::serialize::to_vec(&self.root).map_err(|error| error.to_string())?;
+        let text = json::serialize::to_vec(&self.root)?;
         let glb = Glb {
             header: Header {
                 magic: *b"glTF",

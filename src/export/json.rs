@@ -359,7 +359,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
             })
             .collect(),
     };
-    let mut bytes = serde_json::to_vec_pretty(&document).map_err(|error| error.to_string())?;
+    let mut bytes = serde_json::to_vec_pretty(&document)?;
     bytes.push(b'\n');
     Ok(bytes)
 }

@@ -31,7 +31,6 @@ use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, Model, Unreachable};
 use kinefront_model::mechanism::Actuator;
 use kinefront_model::spatial::{LEGS, Pose};
-use kinefront_model::workspace::GridError;
 
 pub use json::{DesignJson, EvaluationJson, PoseReportJson};
 pub use table::{ConversionError, front_to_parquet};
@@ -145,22 +144,28 @@ impl Format {
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// The design does not reach the pose.
-    #[error("the design does not reach the pose")]
-    Unreachable(#[from] Unreachable),
-    /// A grid of the study does not fit.
-    #[error(transparent)]
-    Grid(#[from] GridError),
+    #[error("the design does not reach the pose: {cause}")]
+    Unreachable {
+        /// The leg that does not reach the pose, and why.
+        cause: Unreachable,
+    },
     /// A bar has radius 0, but the format requires masses and shapes; contains the format's short name.
     #[error("a bar of radius 0 has no mass and no shape; {0} needs r_j and r_p above 0")]
     NoBar(&'static str),
     /// Writing the format failed.
-    #[error("cannot write {format}: {source}")]
+    #[error("cannot write {format}: {cause}")]
     Format {
         /// Name of the format.
         format: &'static str,
         /// Cause of the failure.
-        source: AnyError,
+        cause: AnyError,
     },
+}
+
+impl From<Unreachable> for ExportError {
+    fn from(cause: Unreachable) -> Self {
+        Self::Unreachable { cause }
+    }
 }
 
 /// The subject of an export: a design at a pose.
@@ -168,6 +173,8 @@ pub enum ExportError {
 pub struct ExportSubject<'a> {
     /// The study for which the design was evaluated.
     pub study: &'a Study,
+    /// The model of the study.
+    pub model: &'a Model,
     /// The evaluation of the design.
     pub evaluation: &'a Evaluation,
     /// Pose of the platform; the home pose if `None`.
@@ -180,8 +187,8 @@ const TOUR_STEPS: usize = 72;
 /// A subject prepared for every format.
 struct Prepared<'a> {
     study: &'a Study,
+    model: &'a Model,
     evaluation: &'a Evaluation,
-    model: Model,
     pose: Pose,
     linkage: Linkage,
     scene: Scene,
@@ -300,24 +307,24 @@ fn place(shape: &SolidShape) -> [f64; 6] {
 pub fn export(subject: &ExportSubject, format: Format) -> Result<Vec<u8>, ExportError> {
     let ExportSubject {
         study,
+        model,
         evaluation,
         pose,
     } = *subject;
-    let model = study.model()?;
     let design = &evaluation.design;
     let pose = pose.unwrap_or_else(|| model.home(evaluation));
-    let linkage = linkage(&model, design, &pose)?;
-    let scene = manipulator(&model, design, &pose)?;
+    let linkage = linkage(model, design, &pose)?;
+    let scene = manipulator(model, design, &pose)?;
     let solid = design.leg_bar_radius > 0.0 && design.platform_bar_radius > 0.0;
     if !solid && matches!(format, Format::Mjcf | Format::Sdf | Format::Urdf) {
         return Err(ExportError::NoBar(format.key()));
     }
     let cylinder = regular_workspace(evaluation, study.workspace.rotation_range_deg);
-    let tour = cylinder.and_then(|cylinder| tour(&model, design, &cylinder, TOUR_STEPS));
+    let tour = cylinder.and_then(|cylinder| tour(model, design, &cylinder, TOUR_STEPS));
     let prepared = Prepared {
         study,
-        evaluation,
         model,
+        evaluation,
         pose,
         linkage,
         base: scene.base_bars(design.base_radius),
@@ -325,16 +332,16 @@ pub fn export(subject: &ExportSubject, format: Format) -> Result<Vec<u8>, Export
         cylinder,
         tour,
     };
-    let failed = |source: AnyError| ExportError::Format {
-        format: format.key(),
-        source,
+    let written = match format {
+        Format::Gltf => gltf::write(&prepared),
+        Format::Mjcf => mjcf::write(&prepared),
+        Format::Sdf => sdf::write(&prepared),
+        Format::Urdf => urdf::write(&prepared),
+        Format::Dxf => dxf::write(&prepared),
+        Format::Json => json::write(&prepared),
     };
-    match format {
-        Format::Gltf => gltf::write(&prepared).map_err(failed),
-        Format::Mjcf => mjcf::write(&prepared).map_err(failed),
-        Format::Sdf => sdf::write(&prepared).map_err(failed),
-        Format::Urdf => urdf::write(&prepared).map_err(failed),
-        Format::Dxf => dxf::write(&prepared).map_err(failed),
-        Format::Json => json::write(&prepared).map_err(failed),
-    }
+    written.map_err(|cause| ExportError::Format {
+        format: format.key(),
+        cause,
+    })
 }

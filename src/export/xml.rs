@@ -70,7 +70,7 @@ impl Element {
             writer.write_event(comment(preamble))?;
             self.write(writer)
         };
-        write(&mut writer).map_err(|error| error.to_string())?;
+        write(&mut writer)?;
         let mut bytes = writer.into_inner();
         bytes.push(b'\n');
         Ok(bytes)

@@ -21,12 +21,12 @@ use kinefront_model::evaluation::{Evaluation, Model};
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {cause}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
         /// Cause of the failure.
-        source: io::Error,
+        cause: io::Error,
     },
     /// The file is not a recording, or not one written by Kinefront.
     #[error("{} is not a recording of a run: {message}", path.display())]
@@ -61,9 +61,9 @@ pub struct RecordedRun {
 type Messages = Box<dyn Iterator<Item = Result<LogMsg, DecodeError>>>;
 
 fn messages(path: &Path) -> Result<Messages, ReadError> {
-    let file = File::open(path).map_err(|source| ReadError::Read {
+    let file = File::open(path).map_err(|cause| ReadError::Read {
         path: path.to_owned(),
-        source,
+        cause,
     })?;
     let decoder = Decoder::<LogMsg>::decode_eager(BufReader::new(file)).map_err(|error| foreign(path, error))?;
     Ok(Box::new(decoder))
@@ -152,17 +152,9 @@ pub enum CopyError {
     /// The recording cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The copy cannot be written.
-    #[error("cannot write the recording {}: {source}", path.display())]
-    Write {
-        /// Path of the copy.
-        path: PathBuf,
-        /// Cause of the failure.
-        source: io::Error,
-    },
-    /// The design that the copy shows cannot be recorded.
+    /// The copy, or the design that it shows, cannot be written.
     #[error(transparent)]
-    Record(#[from] RecordingError),
+    Write(#[from] RecordingError),
 }
 
 /// Copies the recording at `from`, as far as it has been written, to `to`, which must not exist; `shown` is a design
@@ -172,9 +164,9 @@ pub enum CopyError {
 /// [`CopyError`], which names the file that cannot be read or written.
 pub fn save_copy(from: &Path, to: &Path, shown: Option<(&Model, &Evaluation, &str)>) -> Result<(), CopyError> {
     let read = messages(from)?;
-    let failed = |source: io::Error| CopyError::Write {
+    let failed = |cause: io::Error| RecordingError::Write {
         path: to.to_owned(),
-        source,
+        cause,
     };
     let file = RrdFile::create(to).map_err(failed)?;
     let mut recording: Option<StoreId> = None;
@@ -204,9 +196,10 @@ pub fn save_copy(from: &Path, to: &Path, shown: Option<(&Model, &Evaluation, &st
     if let Some(((model, evaluation, heading), store)) = shown.zip(recording) {
         let builder = RecordingWriter::builder().recording_id(store.recording_id().clone());
         let writer = RecordingWriter::over(&file, to, builder)?;
-        let drawn: Result<(), RecordingError> = design::record_step(&writer, &last, model, evaluation, heading);
-        Ok(drawn.and_then(|()| writer.close())?)
+        design::record_step(&writer, &last, model, evaluation, heading)?;
+        writer.close()?;
     } else {
-        file.finish().map_err(failed)
+        file.finish().map_err(failed)?;
     }
+    Ok(())
 }

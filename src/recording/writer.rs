@@ -19,12 +19,12 @@ use super::sink::RrdFile;
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The file cannot be written.
-    #[error("cannot write the recording {}: {source}", path.display())]
+    #[error("cannot write the recording {}: {cause}", path.display())]
     Write {
         /// The file.
         path: PathBuf,
         /// Cause of the failure.
-        source: io::Error,
+        cause: io::Error,
     },
     /// A grid of the study does not fit its rotation range.
     #[error(transparent)]
@@ -67,9 +67,9 @@ pub(super) struct RecordingWriter {
 impl RecordingWriter {
     /// Creates the file; an existing file is an error.
     pub(super) fn create(path: &Path, name: &str) -> Result<Self, RecordingError> {
-        let file = RrdFile::create(path).map_err(|source| RecordingError::Write {
+        let file = RrdFile::create(path).map_err(|cause| RecordingError::Write {
             path: path.to_owned(),
-            source,
+            cause,
         })?;
         Self::over(&file, path, Self::builder().recording_name(name))
     }
@@ -143,9 +143,9 @@ impl RecordingWriter {
         let Some((path, file)) = &self.file else {
             return Ok(());
         };
-        file.check().map_err(|source| RecordingError::Write {
+        file.check().map_err(|cause| RecordingError::Write {
             path: path.clone(),
-            source,
+            cause,
         })
     }
 
@@ -160,6 +160,6 @@ impl RecordingWriter {
         };
         flushed
             .and_then(|()| file.finish())
-            .map_err(|source| RecordingError::Write { path, source })
+            .map_err(|cause| RecordingError::Write { path, cause })
     }
 }

@@ -26,6 +26,11 @@ const SEED: &str = "only the random seed of the search";
 const CLEAR: &str = "5 mm clearance";
 const COLLIDING: &str = "members may collide";
 
+/// Names of the alternatives on which the paper says something.
+pub(super) const LARGER_PLATFORM: &str = "r ≥ 0.5 m";
+pub(super) const LARGER_TORQUE: &str = "τ_z = 100 N·m";
+pub(super) const ONE_PLATFORM_BAR: &str = "one platform bar";
+
 /// Clearance that is tried if the study requires none \[m\].
 const CLEARANCE: f64 = 5e-3;
 
@@ -62,7 +67,7 @@ pub const ALTERNATIVES: [Alternative; 15] = [
         change: |study| study.model.characteristic_length = LengthChoice::Isotropic,
     },
     Alternative {
-        name: "r ≥ 0.5 m",
+        name: LARGER_PLATFORM,
         meaning: "a lower bound of r of 0.5 m instead of the one of the study",
         affects_evaluation: false,
         change: |study| study.bounds.r_m[0] = study.bounds.r_m[0].max(0.5),
@@ -80,7 +85,7 @@ pub const ALTERNATIVES: [Alternative; 15] = [
         change: |study| study.workspace.home_phi_deg = Some(0.0),
     },
     Alternative {
-        name: "τ_z = 100 N·m",
+        name: LARGER_TORQUE,
         meaning: "a required torque about z of 100 N·m instead of the one of the study",
         affects_evaluation: true,
         change: |study| {
@@ -91,7 +96,7 @@ pub const ALTERNATIVES: [Alternative; 15] = [
         },
     },
     Alternative {
-        name: "one platform bar",
+        name: ONE_PLATFORM_BAR,
         meaning: "only one platform bar counted in the mass",
         affects_evaluation: true,
         change: |study| study.model.platform_bars = 1,
@@ -137,7 +142,7 @@ pub const ALTERNATIVES: [Alternative; 15] = [
 ];
 
 /// Name of the variation in which the study is unchanged.
-const AS_STATED: &str = "study as given";
+pub(super) const AS_STATED: &str = "study as given";
 
 fn scale_actuators(study: &mut Study, factor: f64) {
     study.actuators.prismatic_stiffness_n_per_m *= factor;
@@ -237,20 +242,18 @@ pub(super) fn search_alternatives(
             }
         }
         let name = alternative.map_or(AS_STATED, |alternative| alternative.name);
+        let model = study.model()?;
         let mut alone = Vec::new();
         for &architecture in &base.architectures {
             tell(&format!("sensitivity: {name}, {architecture}"));
             let mut single = study.clone();
             single.architectures = vec![architecture];
-            let model = single.model()?;
             let source = Source::run(name, single)?;
             match Fronts::new(&[source], &model, study.optimizer.front_designs) {
-                Ok(fronts) => alone.extend(fronts.alone),
-                Err(ReportError::NothingFeasible) => alone.push((architecture, Front::default())),
-                Err(error) => return Err(error),
+                Some(fronts) => alone.extend(fronts.alone),
+                None => alone.push((architecture, Front::default())),
             }
         }
-        let model = study.model()?;
         let references = study
             .references
             .iter()

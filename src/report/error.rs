@@ -40,12 +40,12 @@ pub enum ReportError {
     #[error(transparent)]
     Grid(#[from] GridError),
     /// A figure, a picture or `fronts.csv` cannot be created.
-    #[error("cannot create {name}: {source}")]
+    #[error("cannot create {name}: {cause}")]
     Figure {
         /// Name of the figure, picture or file.
         name: String,
         /// Reason of the failure.
-        source: AnyError,
+        cause: AnyError,
     },
     /// The folder already holds a report, and replacing it was not requested.
     #[error("{} already holds a report; choose another folder, or replace it with --replace", .0.display())]

@@ -106,9 +106,9 @@ struct Figures(Vec<Figure>);
 impl Figures {
     /// Draws a chart and adds it; `beyond` designs lie beyond the end of its mass axis.
     fn add(&mut self, name: String, words: String, (chart, beyond): (Chart, usize)) -> Result<(), ReportError> {
-        let svg = chart.svg().map_err(|source| ReportError::Figure {
+        let svg = chart.svg().map_err(|cause| ReportError::Figure {
             name: name.clone(),
-            source,
+            cause,
         })?;
         let caption = match beyond {
             0 => format!("{words}."),
@@ -333,7 +333,7 @@ fn active(architecture: Architecture, front: &Front, thresholds: &Thresholds) ->
                 .map(|constraint| [member.workspace_radius, constraint as u8 as f64])
         })
         .collect();
-    // The y value is the index among all constraints: only the last one, g7, may not be required.
+    // The y value is the index among all constraints: only the last one, g7, is optional.
     let names: Vec<String> = Constraint::required(thresholds)
         .map(|constraint| format!("{} {}", constraint.id(), constraint.name().replace('_', " ")))
         .collect();

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{ReportError, Source};
+use super::Source;
 use crate::study::{DesignProblem, Study};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{Architecture, Design};
@@ -87,11 +87,8 @@ pub struct Fronts {
 
 impl Fronts {
     /// Computes the fronts of all designs of the sources: the designs that are non-dominated on the reference grid are
-    /// evaluated again on the fine grid of `model`.
-    ///
-    /// # Errors
-    /// [`ReportError::NothingFeasible`] if there is no feasible design.
-    pub fn new(sources: &[Source], model: &Model, most: usize) -> Result<Self, ReportError> {
+    /// evaluated again on the fine grid of `model`. `None` if there is no feasible design.
+    pub fn new(sources: &[Source], model: &Model, most: usize) -> Option<Self> {
         let mut alone = Vec::new();
         for &architecture in Architecture::ALL {
             let candidates = candidates(sources, architecture);
@@ -106,10 +103,7 @@ impl Fronts {
         }
         let all = alone.iter().flat_map(|(_, front)| front.members.iter().cloned());
         let together = Front::new(all.collect(), most);
-        if together.members.is_empty() {
-            return Err(ReportError::NothingFeasible);
-        }
-        Ok(Self { alone, together })
+        (!together.members.is_empty()).then_some(Self { alone, together })
     }
 
     /// Returns the front of an architecture.
@@ -150,47 +144,37 @@ pub struct SearchFronts {
 
 /// Returns the fronts of the first search over exactly these architectures; `None` if there is none or none is
 /// feasible.
-fn of_search(sources: &[Source], architectures: &[Architecture], study: &Study) -> Result<Option<Fronts>, ReportError> {
-    let Some(source) = sources
+fn of_search(sources: &[Source], architectures: &[Architecture], model: &Model, most: usize) -> Option<Fronts> {
+    let source = sources
         .iter()
-        .find(|source| source.study.architectures == architectures)
-    else {
-        return Ok(None);
-    };
-    let most = study.optimizer.front_designs;
-    match Fronts::new(std::slice::from_ref(source), &study.model()?, most) {
-        Ok(fronts) => Ok(Some(fronts)),
-        Err(ReportError::NothingFeasible) => Ok(None),
-        Err(error) => Err(error),
-    }
+        .find(|source| source.study.architectures == architectures)?;
+    Fronts::new(std::slice::from_ref(source), model, most)
 }
 
 /// Returns the front of the search over all architectures of the study together, if there is one.
-///
-/// # Errors
-/// [`ReportError::Grid`] if the step of a grid does not divide the full turn or half the rotation range.
-pub(super) fn joint(sources: &[Source], study: &Study) -> Result<Option<Front>, ReportError> {
+pub(super) fn joint(sources: &[Source], study: &Study, model: &Model) -> Option<Front> {
     match study.architectures[..] {
-        [_] => Ok(None),
-        _ => Ok(of_search(sources, &study.architectures, study)?.map(|fronts| fronts.together)),
+        [_] => None,
+        _ => {
+            of_search(sources, &study.architectures, model, study.optimizer.front_designs).map(|fronts| fronts.together)
+        }
     }
 }
 
 impl SearchFronts {
     /// Determines the fronts of the first search over each architecture and of the first search over all of them.
-    ///
-    /// # Errors
-    /// [`ReportError::Grid`] if the step of a grid does not divide the full turn or half the rotation range.
-    pub fn new(sources: &[Source], study: &Study) -> Result<Self, ReportError> {
-        let mut alone = Vec::new();
-        for &architecture in &study.architectures {
-            let fronts = of_search(sources, &[architecture], study)?;
-            alone.extend(fronts.into_iter().flat_map(|fronts| fronts.alone));
+    pub fn new(sources: &[Source], study: &Study, model: &Model) -> Self {
+        let most = study.optimizer.front_designs;
+        let fronts = |&architecture| of_search(sources, &[architecture], model, most);
+        Self {
+            alone: study
+                .architectures
+                .iter()
+                .filter_map(fronts)
+                .flat_map(|fronts| fronts.alone)
+                .collect(),
+            joint: joint(sources, study, model),
         }
-        Ok(Self {
-            alone,
-            joint: joint(sources, study)?,
-        })
     }
 
     /// Returns the front of the search over one architecture.
@@ -215,17 +199,17 @@ impl Front {
 pub fn lightest_intervals(fronts: &Fronts) -> Vec<(Architecture, [f64; 2])> {
     const LEVELS: u32 = 400;
     let largest = fronts.together.largest();
-    let mut stretches: Vec<(Architecture, [f64; 2])> = Vec::new();
+    let mut intervals: Vec<(Architecture, [f64; 2])> = Vec::new();
     for k in 1..=LEVELS {
         let (from, to) = (f64::from(k - 1), f64::from(k));
         let [from, to] = [from, to].map(|level| level / f64::from(LEVELS) * largest);
         let Some(best) = fronts.together.lightest(to) else {
             continue;
         };
-        match stretches.last_mut() {
-            Some((architecture, stretch)) if *architecture == best.design.architecture => stretch[1] = to,
-            _ => stretches.push((best.design.architecture, [from, to])),
+        match intervals.last_mut() {
+            Some((architecture, interval)) if *architecture == best.design.architecture => interval[1] = to,
+            _ => intervals.push((best.design.architecture, [from, to])),
         }
     }
-    stretches
+    intervals
 }

@@ -186,15 +186,15 @@ impl Report {
         let model = study.model()?;
         let most = study.optimizer.front_designs;
         tell("verifying the fronts");
-        let fronts = Fronts::new(sources, &model, most)?;
+        let fronts = Fronts::new(sources, &model, most).ok_or(ReportError::NothingFeasible)?;
         let joint = match sources {
             // The front of a single search is the one that has just been verified.
             [_] => Some(fronts.together.clone()),
-            _ => fronts::joint(sources, &study)?,
+            _ => fronts::joint(sources, &study, &model),
         };
         let moga2_fronts = match moga2 {
             [] => None,
-            _ => Some(SearchFronts::new(moga2, &study)?),
+            _ => Some(SearchFronts::new(moga2, &study, &model)),
         };
         let references = reference::all(&study, &model, &fronts);
         let trends: Vec<_> = fronts
@@ -253,9 +253,9 @@ impl Report {
                 let range = self.study.workspace.rotation_range_deg;
                 let png = picture::picture(model, evaluation, range, [width, height])
                     .and_then(|pixels| chart::pixels_to_png(width, height, &pixels))
-                    .map_err(|source| ReportError::Figure {
+                    .map_err(|cause| ReportError::Figure {
                         name: name.clone(),
-                        source,
+                        cause,
                     })?;
                 Ok(DesignPicture {
                     name,

@@ -30,7 +30,7 @@ const FINE: u32 = 3;
 /// Renders a design at its home pose with its regular workspace; returns red, green and blue, row by row.
 ///
 /// # Errors
-/// A message that says what is wrong with the design.
+/// An error that says which leg does not reach the home pose.
 pub(super) fn picture(
     model: &Model,
     evaluation: &Evaluation,
@@ -204,7 +204,7 @@ impl RenderScene {
     fn new(model: &Model, evaluation: &Evaluation, rotation_range_deg: f64) -> Result<Self, AnyError> {
         let design = &evaluation.design;
         let home = model.home(evaluation);
-        let scene = manipulator(model, design, &home).map_err(|error| error.to_string())?;
+        let scene = manipulator(model, design, &home)?;
         let base = scene.base_bars(design.base_radius);
         let (mut bodies, mut corners) = (Vec::new(), Vec::new());
         let solids = scene.solids.iter().chain(&base);
@@ -283,7 +283,7 @@ mod tests {
 
     const SIZE: [u32; 2] = [240, 180];
 
-    fn shares(design: &str) -> [f64; 4] {
+    fn fractions(design: &str) -> [f64; 4] {
         let model = Model::default();
         let design = design.parse().expect("a design");
         let evaluation = model.evaluate(&design, GridChoice::Reference);
@@ -305,14 +305,14 @@ mod tests {
     /// A picture shows the ground, sliders, platform and workspace, and the size of the workspace follows `R_w`.
     #[test]
     fn a_picture_shows_the_design_and_its_workspace() {
-        let [ground, workspace, driven, platform] = shares("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");
+        let [ground, workspace, driven, platform] = fractions("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");
         assert!((0.4..0.95).contains(&ground), "{ground}");
         assert!((0.05..0.3).contains(&workspace), "{workspace}");
         assert!(driven > 0.002 && platform > 0.004, "{driven} {platform}");
         // Design I has a fifth of the radius, on a base half as large.
-        let [_, smaller, ..] = shares("3-PRR R=1.412 r=0.319 Lb=0.620 rj=0.026 rp=0.023");
+        let [_, smaller, ..] = fractions("3-PRR R=1.412 r=0.319 Lb=0.620 rj=0.026 rp=0.023");
         assert!(smaller < 0.5 * workspace, "{smaller} {workspace}");
-        let [_, none, ..] = shares("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.001 rp=0.001");
+        let [_, none, ..] = fractions("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.001 rp=0.001");
         assert_eq!(none, 0.0);
     }
 }

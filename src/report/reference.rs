@@ -1,7 +1,7 @@
 //! The reference designs of a study: the values that their source states, the values that this model computes, and the
 //! lightest design that replaces each of them.
 
-use super::Fronts;
+use super::{Front, Fronts};
 use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design};
@@ -35,20 +35,25 @@ pub(super) fn all(study: &Study, model: &Model, fronts: &Fronts) -> Vec<Evaluate
         .filter_map(|reference| Some((reference, reference.parse(study.working_mode).ok()?)))
         .map(|(reference, design)| {
             let fine = model.evaluate(&design, GridChoice::Fine);
-            let lighter = fronts.together.lightest(fine.workspace_radius);
             EvaluatedReference {
                 name: reference.name.clone(),
                 stated_mass: reference.mass_kg,
                 stated_radius: reference.workspace_radius_m,
                 coarse: model.evaluate(&design, GridChoice::Reference),
                 mass_range: [-1.0, 1.0].map(|side| mass_with_thicker_bars(model, &design, side * 0.0005)),
-                lighter: lighter
-                    .filter(|found| fine.is_feasible() && found.mass < fine.mass)
-                    .cloned(),
+                lighter: lighter(&fronts.together, &fine).cloned(),
                 fine,
             }
         })
         .collect()
+}
+
+/// Returns the lightest design of a front with at least the `R_w` of a reference design, if the reference design is
+/// feasible and heavier.
+pub(super) fn lighter<'a>(front: &'a Front, reference: &Evaluation) -> Option<&'a Evaluation> {
+    front
+        .lightest(reference.workspace_radius)
+        .filter(|found| reference.is_feasible() && found.mass < reference.mass)
 }
 
 /// Computes the mass with both bar radii increased by `more` \[m\].

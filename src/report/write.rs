@@ -15,9 +15,9 @@ impl Report {
     pub fn write(&self, folder: &Path, replace: bool) -> Result<(), ReportError> {
         free(folder, replace)?;
         let make = |path: &Path| {
-            std::fs::create_dir_all(path).map_err(|source| WriteError::Write {
+            std::fs::create_dir_all(path).map_err(|cause| WriteError::Write {
                 path: path.to_owned(),
-                source,
+                cause,
             })
         };
         let (figures, pictures) = (folder.join("figures"), folder.join("pictures"));
@@ -26,9 +26,9 @@ impl Report {
         make(&pictures)?;
         for figure in &self.figures {
             write_whole(&figures.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
-            let png = chart::png(&figure.svg, self.options.scale).map_err(|source| ReportError::Figure {
+            let png = chart::png(&figure.svg, self.options.scale).map_err(|cause| ReportError::Figure {
                 name: figure.name.clone(),
-                source,
+                cause,
             })?;
             write_whole(&figures.join(format!("{}.png", figure.name)), &png)?;
         }
@@ -52,7 +52,7 @@ impl Report {
         });
         let table = table_bytes(columns(), rows).map_err(|error| ReportError::Figure {
             name: "fronts.csv".to_owned(),
-            source: error.into(),
+            cause: error.into(),
         })?;
         write_whole(&folder.join("fronts.csv"), &table)?;
         // The page is written last: if it exists, the report is complete.
@@ -74,9 +74,9 @@ pub fn free(folder: &Path, replace: bool) -> Result<(), ReportError> {
 
 /// Removes an existing report: the page first, so that no page is left without its figures.
 fn clear(folder: &Path, kinds: &[&Path]) -> Result<(), WriteError> {
-    let failed = |path: &Path, source: std::io::Error| WriteError::Write {
+    let failed = |path: &Path, cause: std::io::Error| WriteError::Write {
         path: path.to_owned(),
-        source,
+        cause,
     };
     let page = folder.join("index.html");
     if page.exists() {

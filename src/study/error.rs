@@ -12,12 +12,12 @@ use super::{Fault, Study};
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum StudyError {
     /// The file cannot be read.
-    #[error("cannot read the study {}: {source}", path.display())]
+    #[error("cannot read the study {}: {cause}", path.display())]
     Read {
         /// Path of the file.
         path: PathBuf,
         /// Cause of the error.
-        source: std::io::Error,
+        cause: std::io::Error,
     },
     /// The text is not TOML, or a key is unknown or has a value of the wrong type.
     #[error("cannot parse the study{}: {message}", key.as_ref().map(|key| format!(" at `{key}`")).unwrap_or_default())]
@@ -61,9 +61,9 @@ impl Study {
     /// # Errors
     /// [`StudyError`], a diagnostic that shows the location in the file.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
-        let text = std::fs::read_to_string(path).map_err(|source| StudyError::Read {
+        let text = std::fs::read_to_string(path).map_err(|cause| StudyError::Read {
             path: path.to_owned(),
-            source,
+            cause,
         })?;
         Self::parse(&text, &path.display().to_string())
     }

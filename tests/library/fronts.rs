@@ -10,6 +10,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
+use super::oracle::{Fault, oracle};
+
 /// A number between two others, evenly distributed.
 fn between(random: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
     low + (high - low) * (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64
@@ -108,8 +110,8 @@ fn a_front_with_clearance_has_no_overlap_on_a_million_poses() {
             });
             drawn
                 .filter(|pose| {
-                    let nearest = model.nearest_at(&member.design, pose).expect("in the workspace");
-                    nearest.distance < 0.0
+                    let report = model.pose(&member.design, pose).expect("in the workspace");
+                    oracle(&model, &member.design, pose, &report, Fault::None).least < 0.0
                 })
                 .count()
         })

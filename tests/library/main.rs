@@ -2,6 +2,10 @@
 
 mod fronts;
 mod invariants;
+// The tests of the model introduce faults into the oracle on purpose; here it is used without.
+#[allow(dead_code)]
+#[path = "../../crates/model/tests/model/oracle.rs"]
+mod oracle;
 mod reports;
 mod scenes;
 mod studies;

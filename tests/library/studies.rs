@@ -4,6 +4,10 @@ use kinefront::study::{
     BUILTIN, Builtin, Check, DesignProblem, Initial, Setting, Stagnation, Study, StudyError, settings,
 };
 use kinefront_model::evaluation::Model;
+use kinefront_model::kinematics::CharacteristicLength;
+use kinefront_model::mechanism::BarLength;
+use kinefront_model::stiffness::StiffnessDefinition;
+use kinefront_optimize::Variable;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
 fn error(text: &str) -> StudyError {
@@ -165,7 +169,53 @@ fn other(setting: &Setting, value: &toml::Value) -> toml::Value {
     }
 }
 
-/// Every setting reaches the model, the problem, or the search. A setting that nothing reads would pass unnoticed.
+/// The values of choices arrive in the model as they are written.
+#[test]
+fn every_choice_reaches_the_model() {
+    let text = r#"
+        working_mode = "+-+"
+        architectures = ["3-RPR", "3-PRR"]
+        [actuators]
+        prismatic_stiffness_n_per_m = 2e7
+        [requirements]
+        k_phi_z_min_nm_per_rad = 5729.6
+        [workspace]
+        centre_m = [0.1, 0]
+        home_phi_deg = 45
+        [model]
+        stiffness_definition = "compliance"
+        characteristic_length = "fixed"
+        characteristic_length_m = 0.7
+        platform_bars = 1
+        telescopic_bar = "longest"
+        telescopic_shortest = 0.0
+        [grid.reference]
+        phi_step_deg = 5
+        directions = 24
+        ray_steps = 25
+        halvings = 8
+    "#;
+    let study = Study::parse(text, "choices").expect("a valid study");
+    let model = study.model().expect("a model");
+    assert_eq!(model.actuators.prismatic, 2e7);
+    assert_eq!(model.thresholds.k_phi_z, 5729.6);
+    assert_eq!(model.workspace.centre.to_array(), [0.1, 0.0]);
+    assert_eq!(model.workspace.home_phi_deg, Some(45.0));
+    assert_eq!(model.stiffness_definition, StiffnessDefinition::Compliance);
+    assert_eq!(model.characteristic_length, CharacteristicLength::Fixed(0.7));
+    assert_eq!(model.platform_bars, 1);
+    assert_eq!(model.legs.telescopic_bar, BarLength::Longest);
+    assert_eq!(model.legs.telescopic_shortest, 0.0);
+    assert_eq!(model.reference_grid.directions(), 24);
+
+    let problem = DesignProblem::new(&study).expect("a problem");
+    assert_eq!(problem.variables()[0], Variable::Categorical { choices: 2 });
+    let design = problem.design(&[1.0, 2.0, 1.0, 2.0, 0.03, 0.04]).expect("a design");
+    assert_eq!(design.architecture.name(), "3-PRR");
+    assert_eq!(design.working_mode.signs(), [1, -1, 1]);
+}
+
+/// Each setting changes what it is declared for: the model, the ranges of the variables, or the settings of the search.
 #[test]
 fn every_setting_has_an_effect() {
     let paper = Study::default();

@@ -223,7 +223,7 @@ fn exports_say_what_is_wrong() {
     };
     fails(
         &["--design", DESIGN, "--pose", "x=9 y=0 phi_deg=0"],
-        "above its upper limit",
+        "leg 1: actuator",
     );
     fails(&["--design", &DESIGN.replace("rj=0.036", "rj=0")], "radius 0");
     fails(

@@ -35,6 +35,16 @@ fn a_page_holds_everything_and_loads_nothing() {
     let (run, out) = (folder.path().join("run"), folder.path().join("page"));
     optimize(&small_study(folder.path()), &run, &[]);
     report(&[&run], &out, &["--sensitivity", "120"]).success().stdout("");
+    let again = folder.path().join("again");
+    kinefront()
+        .arg("report")
+        .arg(&run)
+        .arg("--out")
+        .arg(&again)
+        .args(["--picture-width", "160", "--scale", "0.5", "--sensitivity", "0"])
+        .assert()
+        .success()
+        .stdout(contains(again.join("index.html").display().to_string()));
     let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
 
     // Nothing is fetched: pictures are embedded, links stay within the page, and there is no script.

@@ -62,10 +62,13 @@ pub fn until(window: &mut Window, what: &str, done: impl Fn(&Explorer) -> bool) 
     window.run_steps(3);
 }
 
-/// Draws frames until the number of generations stays the same: the messages on their way have arrived.
+/// Draws frames until the number of generations stays the same: the messages on their way have arrived. Fails after
+/// two minutes.
 pub fn until_settled(window: &mut Window) {
+    let since = Instant::now();
     let (mut before, mut same) = (0, 0);
     while same < 20 {
+        assert!(since.elapsed() < Duration::from_secs(120), "timed out: the run goes on");
         std::thread::sleep(Duration::from_millis(5));
         window.step();
         let now = window.state().session().generations().len();

@@ -92,7 +92,7 @@ impl Explorer {
         embedded: bool,
     ) -> Result<Self, Box<dyn std::error::Error + Send + Sync>> {
         let editor = match &subject {
-            InitialContent::Study { study, path, .. } => StudyEditor::new((**study).clone(), path.clone()),
+            InitialContent::Study { study, path, .. } => StudyEditor::opened(study, path.as_deref()),
             InitialContent::Run(_) => StudyEditor::paper(),
         };
         let (viewer, scene) = if embedded {

@@ -10,7 +10,7 @@ pub use open::{OpenError, Opened, open};
 
 use super::threads::Writing;
 use super::{Phase, Session};
-use crate::export::{ExportError, ExportSubject, Format, export, front_to_parquet};
+use crate::export::{ExportSubject, Format, export, front_to_parquet};
 use crate::recording::{record_design, save_copy};
 use crate::report::{Options, Report, Source};
 use crate::study::{Cell, Column, TableRow, table_bytes};
@@ -211,21 +211,22 @@ fn export_design(session: &mut Session, format: Format, path: PathBuf) -> Option
         session.notify_error("no design is selected".to_owned());
         return None;
     };
-    let study = session.study().clone();
+    let (study, model) = (session.study().clone(), *session.model());
     let pose = session.staging.pose;
     Some(Box::new(move || {
-        // The export contains the values from the fine grid, as verified.
-        let model = study.model().map_err(|error| error.to_string())?;
-        let fine = model.evaluate(&known.evaluation.design, GridChoice::Fine);
+        // The export contains the values from the fine grid.
+        let fine = if known.verified {
+            (*known.evaluation).clone()
+        } else {
+            model.evaluate(&known.evaluation.design, GridChoice::Fine)
+        };
         let subject = ExportSubject {
             study: &study,
+            model: &model,
             evaluation: &fine,
             pose,
         };
-        let bytes = export(&subject, format).map_err(|error| match error {
-            ExportError::Unreachable(leg) => format!("the design does not reach the pose: {leg}"),
-            other => other.to_string(),
-        })?;
+        let bytes = export(&subject, format)?;
         write_whole(&path, &bytes)?;
         let lost = format.lost().map(|lost| format!("; not in the file: {lost}"));
         Ok(format!("exported {}{}", path.display(), lost.unwrap_or_default()))

@@ -193,6 +193,11 @@ impl Session {
         self.notices
             .retain(|notice| notice.is_error || notice.since.elapsed() < GLANCE);
         self.answer = self.scene.answer();
+        // A design of the previous run may be selected again: its values are those of another study.
+        if self.answer.study.as_ref().is_some_and(|study| *study != self.as_run) {
+            self.answer.known = None;
+            self.answer.pins.clear();
+        }
         // A failure is shown once, so that a message that the user dismissed does not come back.
         if let Some((number, trouble)) = self.answer.trouble.clone()
             && self.failure_shown.replace(number) != Some(number)

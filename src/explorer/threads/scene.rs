@@ -71,6 +71,8 @@ impl Known {
 /// Results of the latest requests.
 #[derive(Debug, Clone, Default)]
 pub struct Answer {
+    /// The study of the request that was answered last.
+    pub study: Option<Arc<Study>>,
     /// Evaluation of the selected design, once it is known.
     pub known: Option<Known>,
     /// Evaluations of the pinned designs.
@@ -227,10 +229,12 @@ fn verify_requests(shared: &Shared) {
         let (study, design) = wanted;
         if let Ok(model) = study.model() {
             let evaluation = Arc::new(model.evaluate(&design, GridChoice::Fine));
-            *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) = Some((study, Arc::clone(&evaluation)));
+            *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) =
+                Some((Arc::clone(&study), Arc::clone(&evaluation)));
             shared.answer(|answer| {
                 if let Some(known) = &mut answer.known
                     && known.evaluation.design == design
+                    && answer.study.as_ref() == Some(&study)
                 {
                     *known = Known::verified(evaluation);
                 }
@@ -273,6 +277,7 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
                 .and_then(|known| shared.verified(&request.study, &known.evaluation.design));
             answer.known = finer.or(known);
             answer.pins = pins;
+            answer.study = Some(Arc::clone(&request.study));
             answer.drawn = number;
             if let Some(trouble) = trouble {
                 answer.trouble = Some((number, trouble.to_string()));

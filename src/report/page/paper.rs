@@ -6,6 +6,8 @@ use maud::{Markup, html};
 use super::references::active;
 use super::results::{levels, unknown};
 use super::{change, percent};
+use crate::report::assumptions::{LARGER_PLATFORM, LARGER_TORQUE, ONE_PLATFORM_BAR};
+use crate::report::reference::lighter;
 use crate::report::{Alternative, Front, Report, Trend, Variation};
 use crate::text::number;
 use kinefront_model::mechanism::{Architecture, DesignVariable};
@@ -109,12 +111,21 @@ fn verdict(r_squared: f64) -> (&'static str, &'static str) {
     }
 }
 
+/// Returns the verdict on the claim that a variable is quadratic in `R_w`, and its style.
+fn quadratic_verdict(holds: bool) -> (&'static str, &'static str) {
+    if holds {
+        ("holds", "holds")
+    } else {
+        ("an upward parabola is not clearly better", "fails")
+    }
+}
+
 /// Returns what the paper says about an alternative assumption, if it says anything.
 pub(super) fn reason(alternative: &Alternative) -> Option<&'static str> {
     Some(match alternative.name {
-        "r ≥ 0.5 m" => "which the paper prints, and which excludes its own design I",
-        "τ_z = 100 N·m" => "which stands in the text of the paper; its inequality has 10 N·m",
-        "one platform bar" => "as the equation of the paper has it",
+        LARGER_PLATFORM => "the paper prints this bound, which excludes its own design I",
+        LARGER_TORQUE => "the text of the paper has this torque, and its inequality has 10 N·m",
+        ONE_PLATFORM_BAR => "the equation of the paper counts one bar",
         _ => return None,
     })
 }
@@ -122,11 +133,10 @@ pub(super) fn reason(alternative: &Alternative) -> Option<&'static str> {
 /// Returns the trend that the paper claims for a variable and the verdict on it.
 pub(super) fn claim(trend: &Trend) -> Markup {
     let (what, word, class) = if trend.variable == DesignVariable::PlatformBarRadius {
-        match trend.is_quadratic() {
-            Some(true) => ("quadratic", "holds", "holds"),
-            Some(false) => ("quadratic", "an upward parabola is not clearly better", "fails"),
-            None => ("quadratic", unknown(trend), "partly"),
-        }
+        let (word, class) = trend
+            .is_quadratic()
+            .map_or_else(|| (unknown(trend), "partly"), quadratic_verdict);
+        ("quadratic", word, class)
     } else {
         match &trend.linear {
             Some(fit) => {
@@ -160,7 +170,7 @@ fn nearest(report: &Report, place: usize, stated: f64) -> Option<(&Variation, f6
 /// Relative difference of `R_w` from the printed value up to which the page gives no explanation.
 const NEAR: f64 = 0.05;
 
-/// Where and why the numbers differ from those of the paper, and what becomes of its claims.
+/// Explains where and why the numbers differ from those of the paper, and checks its claims.
 pub(super) fn differences(report: &Report) -> Markup {
     let masses_agree = report.references.iter().all(|reference| {
         let [low, high] = reference.mass_range;
@@ -180,7 +190,7 @@ pub(super) fn differences(report: &Report) -> Markup {
                         strong { "Workspace of " (reference.name) ". " }
                         @let ratio = reference.fine.workspace_radius / stated;
                         "Printed " (number(stated)) " m, here " (number(reference.fine.workspace_radius)) " m (" (change(ratio)) "); "
-                        "the workspace is limited by " (active(reference)) ". "
+                        "the workspace is limited by " (active(&reference.fine)) ". "
                         @if (ratio - 1.0).abs() > NEAR {
                             @if let Some((variation, radius)) = nearest(report, place, stated) {
                                 @if variation.alternative.is_none() { "None of the alternative assumptions tried below comes closer. " }
@@ -203,15 +213,15 @@ pub(super) fn differences(report: &Report) -> Markup {
                     }
                 }
                 @if let Some(moga2_front) = report.moga2.as_ref().and_then(|moga2| moga2.joint.as_ref()) {
-                    "A reimplementation of MOGA-II, based on what is publicly known of it, also finds lighter designs "
-                    "(grey in the figures). With the settings of the paper, all architectures together and the same "
-                    "number of evaluations per search, it finds: "
+                    "A reimplementation of MOGA-II, based on what is publicly known of it (grey in the figures), with the "
+                    "settings of the paper, all architectures together and the same number of evaluations per search, "
+                    "reaches " (percent(volume(report, moga2_front) / volume(report, &report.fronts.together)))
+                    " of the hypervolume of the front of all architectures found here. "
                     @for reference in &report.references {
-                        @if let Some(found) = moga2_front.lightest(reference.fine.workspace_radius).filter(|found| reference.fine.is_feasible() && found.mass < reference.fine.mass) {
-                            (number(found.mass)) " kg for " (reference.name) ", "
+                        @if let Some(found) = lighter(moga2_front, &reference.fine) {
+                            "With at least the workspace of " (reference.name) ", it finds " (number(found.mass)) " kg. "
                         }
                     }
-                    "and " (percent(volume(report, moga2_front) / volume(report, &report.fronts.together))) " of the hypervolume of the front of all architectures found here. "
                     "Under this model, therefore, the search of the paper had not converged, or the model of the paper had requirements "
                     "that the paper does not state."
                 }
@@ -281,7 +291,7 @@ fn claims(report: &Report) -> Markup {
                         (architecture) " "
                         @match (&trend.quadratic, &trend.linear, trend.is_quadratic()) {
                             (Some(parabola), Some(line), Some(holds)) => {
-                                @let (class, word) = if holds { ("holds", "holds") } else { ("fails", "an upward parabola is not clearly better") };
+                                @let (word, class) = quadratic_verdict(holds);
                                 span class=(class) { (format!("{:.3} and {:.3}, {word}", parabola.r_squared, line.r_squared)) }
                             }
                             _ => (unknown(trend))

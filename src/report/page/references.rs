@@ -5,6 +5,7 @@ use maud::{Markup, html};
 use super::{cell, optional, percent};
 use crate::report::{EvaluatedReference, Report};
 use crate::text::number;
+use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::DESIGN_VARIABLES;
 
 pub(super) fn references(report: &Report) -> Markup {
@@ -16,7 +17,7 @@ pub(super) fn references(report: &Report) -> Markup {
             (optional(reference.stated_mass)) (cell(reference.fine.mass))
             @if report.of_paper { td.number { (number(reference.mass_range[0])) " … " (number(reference.mass_range[1])) } }
             (optional(reference.stated_radius)) (cell(reference.coarse.workspace_radius)) (cell(reference.fine.workspace_radius))
-            td { (active(reference)) }
+            td { (active(&reference.fine)) }
         } }
     };
     html! {
@@ -57,8 +58,8 @@ pub(super) fn references(report: &Report) -> Markup {
     }
 }
 
-/// Ids of the constraints that limit the workspace of a reference design.
-pub(super) fn active(reference: &EvaluatedReference) -> String {
-    let active: Vec<&str> = reference.fine.active().map(|constraint| constraint.id()).collect();
+/// Lists the ids of the constraints that limit the workspace of a design.
+pub(super) fn active(evaluation: &Evaluation) -> String {
+    let active: Vec<&str> = evaluation.active().map(|constraint| constraint.id()).collect();
     active.join(", ")
 }

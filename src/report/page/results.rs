@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use super::references::active;
 use super::{cell, figures, image, paper, percent};
 use crate::report::{AT_BOUND, Fit, Front, Report, Trend, lightest_intervals};
 use crate::text::{number, short};
@@ -22,24 +23,24 @@ pub(super) fn levels(largest: f64) -> Vec<f64> {
 
 pub(super) fn comparison(report: &Report) -> Markup {
     let fronts = &report.fronts;
-    let stretches = lightest_intervals(fronts);
+    let intervals = lightest_intervals(fronts);
     let total = fronts.together.largest();
-    let shares = fronts.alone.iter().map(|(architecture, _)| {
-        let of = stretches.iter().filter(|(winner, _)| winner == architecture);
+    let fractions = fronts.alone.iter().map(|(architecture, _)| {
+        let of = intervals.iter().filter(|(winner, _)| winner == architecture);
         let width: f64 = of.map(|(_, [from, to])| to - from).sum();
         (*architecture, width / total)
     });
     let levels = levels(total);
     html! {
         ul.facts {
-            @for (architecture, fraction) in shares {
+            @for (architecture, fraction) in fractions {
                 li { b { (percent(fraction)) } span { "of the range of workspace radii up to " (number(total)) " m: the " (architecture) " is the lightest" } }
             }
         }
-        @if stretches.len() <= 12 {
+        @if intervals.len() <= 12 {
             p {
                 "The lightest architecture, from the smallest workspace radius to the largest: "
-                @for (index, (architecture, [from, to])) in stretches.iter().enumerate() {
+                @for (index, (architecture, [from, to])) in intervals.iter().enumerate() {
                     @if index > 0 { "; " }
                     (architecture) " from " (number(*from)) " to " (number(*to)) " m"
                 }
@@ -225,7 +226,6 @@ pub(super) fn pictures(report: &Report) -> Markup {
 /// Lists the variables, objectives, home orientation and active constraints of a design.
 fn numbers(evaluation: &Evaluation) -> Markup {
     let values = evaluation.design.values();
-    let active: Vec<&str> = evaluation.active().map(|constraint| constraint.id()).collect();
     html! { div.numbers {
         @for (variable, value) in DESIGN_VARIABLES.into_iter().zip(values) {
             span { (variable.symbol()) " " b { (number(value)) } " m" }
@@ -233,6 +233,6 @@ fn numbers(evaluation: &Evaluation) -> Markup {
         span { "mass " b { (number(evaluation.mass)) } " kg" }
         span { "R_w " b { (number(evaluation.workspace_radius)) } " m" }
         @if let Some(phi) = evaluation.home_phi_deg { span { "φ_c " b { (number(phi)) } "°" } }
-        span { "active constraints " b { (active.join(", ")) } }
+        span { "active constraints " b { (active(evaluation)) } }
     } }
 }

@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use super::results::levels;
 use super::{cell, change, figures, optional, paper};
+use crate::report::assumptions::AS_STATED;
 use crate::report::{ALTERNATIVES, Alternative, Front, Report, Variation};
 use crate::text::{number, short};
 use kinefront_model::mechanism::Architecture;
@@ -84,14 +85,14 @@ fn varied(report: &Report, variations: &[Variation], architecture: Architecture,
             } }
             tbody {
                 tr {
-                    td { "study as given" }
+                    td { (AS_STATED) }
                     @for level in &levels { td.number { (base.lightest(*level).map(|found| number(found.mass)).unwrap_or_default()) " kg" } }
                     td.number { (number(base.largest())) " m" }
                     td { }
                 }
                 @if !seeds.is_empty() {
                     tr.chance {
-                        td { (seeds.len()) " other seeds" }
+                        td { (seeds.len()) " other random seeds" }
                         @for [low, high] in &chance { td.number { (change(*low)) " … " (change(*high)) } }
                         td { "chance alone: the reference for all other changes" }
                     }
@@ -122,7 +123,7 @@ fn varied(report: &Report, variations: &[Variation], architecture: Architecture,
 /// Returns what an alternative assumption is and, in a report on the paper, what the paper says about it.
 fn meaning(report: &Report, alternative: &Alternative) -> String {
     match paper::reason(alternative).filter(|_| report.of_paper) {
-        Some(reason) => format!("{}, {reason}", alternative.meaning),
+        Some(reason) => format!("{}; {reason}", alternative.meaning),
         None => alternative.meaning.to_owned(),
     }
 }

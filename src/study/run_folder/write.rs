@@ -22,12 +22,12 @@ pub enum WriteError {
         found: &'static str,
     },
     /// A file cannot be written.
-    #[error("cannot write {}: {source}", path.display())]
+    #[error("cannot write {}: {cause}", path.display())]
     Write {
         /// Path of the file.
         path: PathBuf,
         /// Cause of the error.
-        source: io::Error,
+        cause: io::Error,
     },
 }
 
@@ -55,7 +55,7 @@ impl RunWriter {
         }
         let at = |path: &Path| {
             let path = path.to_owned();
-            move |source| WriteError::Write { path, source }
+            move |cause| WriteError::Write { path, cause }
         };
         fs::create_dir_all(path).map_err(at(path))?;
         let study_path = path.join(STUDY);
@@ -103,9 +103,9 @@ impl RunWriter {
             }
             self.designs.flush()
         };
-        write().map_err(|source| WriteError::Write {
+        write().map_err(|cause| WriteError::Write {
             path: self.path.join(DESIGNS),
-            source,
+            cause,
         })
     }
 
@@ -123,9 +123,9 @@ impl RunWriter {
             };
             Column::of_front().map(cell).collect()
         });
-        let table = table_bytes(Column::of_front(), rows).map_err(|source| WriteError::Write {
+        let table = table_bytes(Column::of_front(), rows).map_err(|cause| WriteError::Write {
             path: front_path.clone(),
-            source,
+            cause,
         })?;
         write_whole(&front_path, &table)?;
 
@@ -133,7 +133,7 @@ impl RunWriter {
         let mut report =
             serde_json::to_vec_pretty(&RunReport::new(study, summary)).map_err(|error| WriteError::Write {
                 path: report_path.clone(),
-                source: error.into(),
+                cause: error.into(),
             })?;
         report.push(b'\n');
         write_whole(&report_path, &report)
@@ -156,12 +156,12 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), WriteError> {
         file.sync_all()?;
         fs::rename(&partial, path)
     };
-    write().map_err(|source| {
+    write().map_err(|cause| {
         // The partial file is useless; failing to remove it does not justify a second error.
         let _ = fs::remove_file(&partial);
         WriteError::Write {
             path: path.to_owned(),
-            source,
+            cause,
         }
     })
 }

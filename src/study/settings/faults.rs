@@ -3,7 +3,7 @@
 use super::{Bounds, LengthChoice, settings};
 use crate::study::Study;
 use kinefront_model::mechanism::Design;
-use kinefront_model::workspace::Grid;
+use kinefront_model::workspace::{Grid, GridError};
 
 /// A key with an invalid value.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -114,14 +114,32 @@ fn check_grids(study: &Study, faults: &mut Vec<Fault>) {
     let range = study.workspace.rotation_range_deg;
     for (name, section) in [("reference", &study.grid.reference), ("fine", &study.grid.fine)] {
         let key = format!("grid.{name}.phi_step_deg");
-        // A step that is invalid by itself has its fault already.
-        if faults.iter().any(|fault| fault.key == key) {
+        // A number that is invalid by itself has its fault already.
+        let has_fault = |key: &str| faults.iter().any(|fault| fault.key == key);
+        if has_fault(&key) || has_fault("workspace.rotation_range_deg") {
             continue;
         }
         // The range depends on the step alone, so the fault is told even if another number of the grid is invalid.
-        if let Err(error) = Grid::new(section.phi_step_deg, 1, 1, 0).and_then(|grid| grid.half_window(range)) {
-            faults.push(Fault::new(key, format!("is invalid: {error}")));
-        }
+        let fits = Grid::new(section.phi_step_deg, 1, 1, 0).and_then(|grid| grid.half_window(range));
+        let fault = match fits.and_then(|_| Grid::try_from(section).map(|_| ())) {
+            Ok(()) | Err(GridError::Empty(_)) => continue,
+            Err(GridError::WindowNotWhole {
+                half_range_deg,
+                step_deg,
+            }) => Fault::new(
+                "workspace.rotation_range_deg",
+                format!("is {range}; half of it, {half_range_deg}°, must be a whole multiple of {key}, {step_deg}°"),
+            ),
+            Err(error @ GridError::WindowTooWide(_)) => {
+                Fault::new("workspace.rotation_range_deg", format!("is invalid: {error} of {key}"))
+            }
+            Err(error @ GridError::TooFine { .. }) => Fault::new(
+                format!("grid.{name}"),
+                format!("has too many poses: {error}; enlarge phi_step_deg, or take fewer directions or ray_steps"),
+            ),
+            Err(error @ GridError::TurnNotWhole(_)) => Fault::new(key, format!("is invalid: {error}")),
+        };
+        faults.push(fault);
     }
 }
 

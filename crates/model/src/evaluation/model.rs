@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::{Evaluation, Unreachable, worst};
-use crate::clearance::{Bodies, BodySettings, Clearance};
+use super::{Evaluation, worst};
+use crate::clearance::{Bodies, BodySettings};
 use crate::kinematics::{CharacteristicLength, Jacobian};
 use crate::lanes::InstructionSet;
 use crate::mechanism::{Design, Leg, LegSettings, Manipulator};
@@ -230,32 +230,6 @@ impl Model {
         evaluation.home.or_else(reported).unwrap_or(Pose {
             position: self.workspace.centre,
             phi: 0.0,
-        })
-    }
-
-    /// Returns the nearest pair of members at a pose that a search has found reachable.
-    pub(super) fn nearest_near(&self, design: &Design, pose: Pose) -> Option<Clearance> {
-        // At the very end of a leg's reach, rounding decides whether the leg reaches the pose; slightly nearer to the
-        // centre it does.
-        let inwards = (self.workspace.centre - pose.position).clamp_length_max(1e-9 * design.base_radius);
-        let position = pose.position + inwards;
-        let found = self.nearest_at(design, &pose);
-        found
-            .or_else(|_| self.nearest_at(design, &Pose { position, ..pose }))
-            .ok()
-    }
-
-    /// Returns the nearest pair of members of a design at a pose.
-    ///
-    /// # Errors
-    /// Returns the leg that does not reach the pose, and why.
-    pub fn nearest_at(&self, design: &Design, pose: &Pose) -> Result<Clearance, Unreachable> {
-        with_leg!(design.architecture, L => {
-            let manipulator = Manipulator::<L>::new(design, &self.legs);
-            let posture = manipulator
-                .posture(pose)
-                .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
-            Ok(Bodies::new::<L>(design, &self.bodies).nearest(&manipulator, pose.position, &posture))
         })
     }
 

@@ -2,6 +2,7 @@
 //! constraints, violation.
 
 use super::{Constraint, ConstraintResult, Evaluation, Model};
+use crate::clearance::Clearance;
 use crate::mechanism::{Design, Leg};
 use crate::spatial::Pose;
 use crate::workspace::{
@@ -47,7 +48,7 @@ pub(super) fn evaluate<L: Leg>(
         home_phi_deg,
         nearest: constraints[Constraint::Clearance as usize]
             .pose
-            .and_then(|pose| model.nearest_near(design, pose)),
+            .and_then(|pose| reporter.nearest(pose)),
         constraints,
         violation,
     }
@@ -63,6 +64,19 @@ struct ConstraintSearch<'a, L> {
 type ConstraintResults = [ConstraintResult; Constraint::ALL.len()];
 
 impl<L: Leg> ConstraintSearch<'_, L> {
+    /// Returns the nearest pair of members at a pose that the search has found reachable.
+    fn nearest(&self, pose: Pose) -> Option<Clearance> {
+        // At the very end of a leg's reach, rounding decides whether the leg reaches the pose; slightly nearer to the
+        // centre it does.
+        let inwards = (self.model.workspace.centre - pose.position).clamp_length_max(1e-9 * self.design.base_radius);
+        let position = pose.position + inwards;
+        let manipulator = &self.checker.manipulator;
+        [pose, Pose { position, ..pose }].iter().find_map(|pose| {
+            let posture = manipulator.posture(pose).ok()?;
+            Some(self.checker.bodies.nearest(manipulator, pose.position, &posture))
+        })
+    }
+
     /// Returns reports without values, except for g1, which needs no pose.
     fn blank(&self) -> ConstraintResults {
         Constraint::ALL.map(|constraint| {

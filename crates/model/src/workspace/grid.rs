@@ -24,6 +24,22 @@ pub enum GridError {
         /// Spacing of the orientations \[deg\].
         step_deg: f64,
     },
+    /// The home window does not fit into the full turn.
+    #[error("the rotation range of {0}° and one step more do not fit into the full turn")]
+    WindowTooWide(f64),
+    /// The grid has more poses than a workspace can be searched on in a sensible time.
+    #[error(
+        "{orientations} orientations × {directions} directions × {ray_steps} ray steps exceed {} poses",
+        Grid::MAX_POSES
+    )]
+    TooFine {
+        /// Number of orientations over the full turn.
+        orientations: usize,
+        /// Number of directions.
+        directions: usize,
+        /// Number of steps of a ray.
+        ray_steps: usize,
+    },
     /// A grid without a direction or a step has no pose besides the centre.
     #[error("the number of {0} is 0; it must be at least 1")]
     Empty(&'static str),
@@ -48,6 +64,9 @@ impl Grid {
         halvings: 12,
     };
 
+    /// Largest number of poses of a grid up to the distance `R`, about 40 times that of the fine grid.
+    pub const MAX_POSES: usize = 1_000_000_000;
+
     /// A grid with orientations `phi_step_deg` \[deg\] apart, `directions` over the full turn from 0°, `ray_steps` steps
     /// of a ray per base radius `R`, and `halvings` of the step in which a ray fails.
     ///
@@ -60,7 +79,7 @@ impl Grid {
     /// ```
     ///
     /// # Errors
-    /// [`GridError::TurnNotWhole`] or [`GridError::Empty`].
+    /// [`GridError::TurnNotWhole`], [`GridError::Empty`] or [`GridError::TooFine`].
     pub fn new(phi_step_deg: f64, directions: usize, ray_steps: usize, halvings: u32) -> Result<Self, GridError> {
         for (name, count) in [("directions", directions), ("ray steps", ray_steps)] {
             if count == 0 {
@@ -70,6 +89,16 @@ impl Grid {
         let orientations = whole(360.0 / phi_step_deg)
             .filter(|&orientations| orientations > 0)
             .ok_or(GridError::TurnNotWhole(phi_step_deg))?;
+        let poses = orientations
+            .checked_mul(directions)
+            .and_then(|rays| rays.checked_mul(ray_steps));
+        if poses.is_none_or(|poses| poses > Self::MAX_POSES) {
+            return Err(GridError::TooFine {
+                orientations,
+                directions,
+                ray_steps,
+            });
+        }
         Ok(Self {
             phi_step_deg,
             orientations,
@@ -107,13 +136,19 @@ impl Grid {
     /// Returns the number of steps from a home orientation to the end of its window, `Δφ/2` away.
     ///
     /// # Errors
-    /// [`GridError::WindowNotWhole`] when `Δφ/2` is not a multiple of the step.
+    /// [`GridError::WindowNotWhole`] when `Δφ/2` is not a multiple of the step, [`GridError::WindowTooWide`] when the
+    /// window would contain an orientation twice.
     pub fn half_window(&self, rotation_range_deg: f64) -> Result<usize, GridError> {
         let half_range_deg = 0.5 * rotation_range_deg;
-        whole(half_range_deg / self.phi_step_deg).ok_or(GridError::WindowNotWhole {
+        let half = whole(half_range_deg / self.phi_step_deg).ok_or(GridError::WindowNotWhole {
             half_range_deg,
             step_deg: self.phi_step_deg,
-        })
+        })?;
+        if 2 * half < self.orientations {
+            Ok(half)
+        } else {
+            Err(GridError::WindowTooWide(rotation_range_deg))
+        }
     }
 }
 
@@ -146,6 +181,18 @@ mod tests {
         }
         assert_eq!(Grid::new(2.5, 0, 50, 12), Err(GridError::Empty("directions")));
         assert_eq!(Grid::new(2.5, 36, 0, 12), Err(GridError::Empty("ray steps")));
+        assert!(matches!(
+            Grid::new(0.01, 3600, 10_000, 12),
+            Err(GridError::TooFine { .. })
+        ));
+        assert!(matches!(
+            Grid::new(2.5, usize::MAX, 50, 12),
+            Err(GridError::TooFine { .. })
+        ));
         assert!(Grid::REFERENCE.half_window(7.0).is_err());
+        assert_eq!(Grid::REFERENCE.half_window(355.0), Ok(71));
+        for range in [360.0, 1000.0] {
+            assert_eq!(Grid::REFERENCE.half_window(range), Err(GridError::WindowTooWide(range)));
+        }
     }
 }

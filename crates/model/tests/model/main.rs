@@ -4,6 +4,7 @@ mod clearance;
 mod forms;
 mod joints;
 mod lanes;
+mod oracle;
 mod reference;
 mod search;
 mod sizing;

@@ -112,20 +112,19 @@ fn what_cannot_be_had_is_none() {
 }
 
 proptest! {
-    #![proptest_config(applicable_cases(100))]
+    #![proptest_config(applicable_cases(300))]
 
     /// Over the whole design space, sized bars are within their ranges and reach most of the required workspace.
     #[test]
     fn sized_designs_hold_what_they_were_sized_for(design in design(0.0)) {
         let model = Model::default();
         let strongest = Design { leg_bar_radius: 0.1, platform_bar_radius: 0.1, ..design };
-        let most = radius(&model, &strongest);
         let found = sized(&model, &design, WorkspaceTarget::Largest)
             .ok_or_else(|| TestCaseError::reject("the geometry cannot be sized"))?;
         for bar in [found.leg_bar_radius, found.platform_bar_radius] {
             prop_assert!(bar.is_finite() && bar > 0.0 && bar <= 0.1);
         }
-        let reached = radius(&model, &found);
+        let (reached, most) = (radius(&model, &found), radius(&model, &strongest));
         prop_assert!(model.mass(&found) <= model.mass(&strongest) * (1.0 + 1e-12));
         // Narrow regions between the sampled poses reduce the radius of a few designs.
         prop_assert!(reached > 0.0 || most < 0.05 * design.base_radius, "{} of {}", reached, most);
