@@ -12,8 +12,8 @@ use egui_kittest::Harness;
 use kinefront::explorer::{Explorer, InitialContent, Session, StudyEditor};
 use kinefront::recording::LiveScene;
 use kinefront::study::{
-    BUILTIN, Batch, DesignProblem, EndReason, Event, FrontMember, GenerationSummary, RunSummary, RunTimes, Started,
-    Study, Subscriber,
+    BUILTIN, Batch, DesignProblem, EndReason, Event, FrontMember, GenerationSummary, Row, RunSummary, RunTimes,
+    Started, Study, Subscriber, TableRow,
 };
 use kinefront_model::evaluation::{Evaluation, GridChoice};
 use kinefront_optimize::{Archive, Evaluated, sobol};
@@ -96,12 +96,22 @@ impl Stream {
             waited += tell(Event::Evaluated(Batch {
                 generation,
                 first_id,
-                evaluations,
+                rows: evaluations
+                    .iter()
+                    .map(|evaluation| Row::new(generation, evaluation))
+                    .collect(),
             }));
             if changed {
                 members.retain(|member| archive.iter().any(|kept| kept.id == member.id));
                 members.sort_by(|a, b| a.evaluation.mass.total_cmp(&b.evaluation.mass));
-                waited += tell(Event::Front(members.clone()));
+                let front = members.iter().map(|member| {
+                    Arc::new(TableRow {
+                        id: member.id,
+                        row: Row::new(member.generation, &member.evaluation),
+                        reference_radius: None,
+                    })
+                });
+                waited += tell(Event::Front(front.collect()));
             }
             let summary = GenerationSummary {
                 generation,

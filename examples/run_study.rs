@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::sync_channel;
 
-use kinefront::study::{Event, RunControl, RunFolder, RunWriter, Study, spawn};
+use kinefront::study::{Event, RunControl, RunFolder, RunWriter, Study, WriteError, spawn};
 
 const STUDY: &str = r#"
 name = "example"
@@ -23,13 +23,20 @@ evaluations = 300
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("name a folder for the run")?);
     let study = Study::parse(STUDY, "example")?;
-    let writer = RunWriter::create(&folder, &study)?;
+    let mut writer = RunWriter::create(&folder, &study, None)?;
 
     // Each listener has a channel and a thread of its own.
-    let (to_writer, for_writer) = sync_channel(64);
+    let (to_writer, for_writer) = sync_channel::<Arc<Event>>(64);
     let (to_terminal, for_terminal) = sync_channel(64);
-    let written = study.clone();
-    let writing = std::thread::spawn(move || writer.follow(&for_writer, &written));
+    let writing = std::thread::spawn(move || -> Result<(), WriteError> {
+        for event in for_writer {
+            writer.write(Some(&event))?;
+            if let Event::Finished(summary) = &*event {
+                writer.finish(summary, true)?;
+            }
+        }
+        Ok(())
+    });
     let worker = spawn(study, Arc::new(RunControl::default()), vec![to_writer, to_terminal])?;
     for event in for_terminal {
         match &*event {
@@ -45,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let run = RunFolder::open(&folder)?;
     let front = run.front()?.ok_or("the run has no front")?;
-    let lightest = front.first().ok_or("the front is empty")?;
+    let lightest = front.rows.first().ok_or("the front is empty")?;
     println!(
         "{}: {:.1} kg, R_w {:.3} m",
         lightest.row.design, lightest.row.mass, lightest.row.radius

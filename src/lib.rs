@@ -18,7 +18,7 @@
 //! let mut evaluated = 0;
 //! for event in events {
 //!     match &*event {
-//!         Event::Evaluated(batch) => evaluated += batch.evaluations.len(),
+//!         Event::Evaluated(batch) => evaluated += batch.rows.len(),
 //!         Event::Finished(summary) => assert!(summary.front.len() > 1),
 //!         _ => {}
 //!     }

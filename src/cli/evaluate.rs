@@ -1,6 +1,7 @@
 //! The command `kinefront evaluate`.
 
-use std::io::{BufRead, Write};
+use std::ffi::OsString;
+use std::io::{BufRead, Read, Write};
 
 use kinefront::export::EvaluationJson;
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
@@ -15,7 +16,7 @@ pub struct EvaluateArguments {
     design: Option<String>,
     /// Study file, or name of a built-in study [default: paper].
     #[arg(long, value_name = "FILE")]
-    study: Option<String>,
+    study: Option<OsString>,
     /// Sampling grid of poses.
     #[arg(long, value_enum, default_value = "reference")]
     grid: GridArgument,
@@ -53,6 +54,9 @@ pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
     Ok(Ending::Done)
 }
 
+/// Longest line of a stream \[bytes\]; a design takes about a hundred.
+const LONGEST_LINE: u64 = 1 << 16;
+
 struct Server {
     model: Model,
     mode: WorkingMode,
@@ -72,11 +76,19 @@ impl Server {
         let mut line = Vec::new();
         loop {
             line.clear();
-            if input.read_until(b'\n', &mut line)? == 0 {
+            if (&mut input).take(LONGEST_LINE).read_until(b'\n', &mut line)? == 0 {
                 return Ok(());
             }
-            let answer = std::str::from_utf8(&line)
-                .map_err(|_| "the line is not UTF-8".to_owned())
+            let is_whole = line.len() < LONGEST_LINE as usize || line.ends_with(b"\n");
+            if !is_whole {
+                input.skip_until(b'\n')?;
+            }
+            let text = match std::str::from_utf8(&line) {
+                _ if !is_whole => Err(format!("the line is longer than {LONGEST_LINE} bytes")),
+                Ok(text) => Ok(text),
+                Err(_) => Err("the line is not UTF-8".to_owned()),
+            };
+            let answer = text
                 .and_then(|text| self.evaluate(text).map_err(|error| error.to_string()))
                 .and_then(|evaluation| to_json(&EvaluationJson::new(&evaluation)).map_err(|error| error.to_string()))
                 .unwrap_or_else(|message| serde_json::json!({ "error": message }).to_string());

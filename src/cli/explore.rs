@@ -1,5 +1,6 @@
 //! The command `kinefront explore`, also run by `kinefront` without a command: opens the window.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use kinefront::explorer::{InitialContent, Script, run as open_window};
@@ -11,7 +12,7 @@ use super::{Ending, Failure, load_study};
 #[derive(Debug, Default, clap::Args)]
 pub struct ExploreArguments {
     /// Study file, name of a built-in study, run folder, or Kinefront recording (.rrd) [default: paper].
-    subject: Option<String>,
+    subject: Option<OsString>,
     /// Do not start the run of the study.
     #[arg(long)]
     no_run: bool,
@@ -54,7 +55,7 @@ fn subject(arguments: &ExploreArguments) -> Result<InitialContent, Failure> {
     }
     let builtin = BUILTIN
         .iter()
-        .any(|builtin| Some(builtin.name) == arguments.subject.as_deref());
+        .any(|builtin| arguments.subject.as_deref() == Some(builtin.name.as_ref()));
     Ok(InitialContent::Study {
         study: Box::new(study),
         path: path.filter(|path| path.exists() && !builtin),

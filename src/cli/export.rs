@@ -10,7 +10,7 @@ use kinefront_model::spatial::Pose;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use super::subject::SubjectArguments;
-use super::{Ending, Failure, exists_already};
+use super::{Ending, Failure, exists_already, say};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -120,7 +120,7 @@ pub fn run(arguments: &ExportArguments) -> Result<Ending, Failure> {
     if let ExportTarget::Design(format) = target
         && let Some(lost) = format.lost()
     {
-        eprintln!("not in {}: {lost}", format.name());
+        say(format_args!("not in {}: {lost}", format.name()));
     }
     if to_stdout {
         return Ok(Ending::Done);
@@ -147,7 +147,12 @@ fn design(arguments: &ExportArguments, format: Format) -> Result<Vec<u8>, Failur
 
 /// Reads the front of the run that the row argument specifies by the run folder or by one of its tables.
 fn front(arguments: &ExportArguments, target: ExportTarget) -> Result<Vec<u8>> {
-    let Some(run) = arguments.subject.row.as_ref().filter(|run| !run.contains('#')) else {
+    let Some(run) = arguments
+        .subject
+        .row
+        .as_ref()
+        .filter(|run| !run.as_encoded_bytes().contains(&b'#'))
+    else {
         return Err(miette!(
             help = "kinefront export run --out front.parquet",
             "csv and parquet hold the front of a run: specify the run folder, not a design"

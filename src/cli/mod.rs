@@ -1,5 +1,6 @@
 //! The command line: dispatches the arguments to a command and converts errors into exit codes.
 
+mod check;
 mod evaluate;
 #[cfg(feature = "explorer")]
 mod explore;
@@ -9,14 +10,18 @@ mod pose;
 mod progress;
 mod report;
 mod show;
+mod signals;
 mod study;
 mod subject;
 mod tables;
 
+use std::ffi::OsStr;
+use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use kinefront::recording::{UNPACK_COMMAND, unpack_with};
 use kinefront::study::{BUILTIN, Builtin, Study};
 use kinefront_model::evaluation::GridChoice;
 use miette::{IntoDiagnostic, Report, Result, miette};
@@ -45,17 +50,30 @@ enum Command {
     Export(export::ExportArguments),
     /// Search for light designs with a large regular workspace, without a window.
     Optimize(optimize::OptimizeArguments),
+    /// Check a run folder: its tables, what follows from them, and its recording.
+    Check(check::CheckArguments),
     /// Write a report on one or more runs: fronts, trends, comparison, pictures, sensitivity.
     Report(report::ReportArguments),
     /// List, show, create and check study files.
     Study(study::StudyArguments),
+    /// Unpack a recording, for the process that asked for it.
+    #[command(name = UNPACK_COMMAND, hide = true)]
+    UnpackRecording(check::UnpackArguments),
 }
 
 /// How a command that did not fail has ended.
 enum Ending {
     Done,
+    /// A signal ended the run.
     Interrupted,
+    /// The input is invalid, as was said.
+    Refused,
+    /// A file of a run could not be written, as was said when it happened; the run can be resumed.
+    FilesIncomplete,
 }
+
+/// Exit code of a run whose files are incomplete.
+const FILES_INCOMPLETE: u8 = 3;
 
 /// Reason why a command failed.
 enum Failure {
@@ -88,7 +106,14 @@ impl From<std::io::Error> for Failure {
 
 /// Parses the arguments and runs the command.
 pub fn run() -> ExitCode {
-    let outcome = match ProgramArguments::parse().command {
+    let arguments = match ProgramArguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(message) => return print_message(&message),
+    };
+    if let Ok(program) = std::env::current_exe() {
+        unpack_with(program);
+    }
+    let outcome = match arguments.command {
         #[cfg(feature = "explorer")]
         None => explore::run(&explore::ExploreArguments::default()),
         #[cfg(feature = "explorer")]
@@ -101,21 +126,47 @@ pub fn run() -> ExitCode {
         Some(Command::Show(arguments)) => show::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),
         Some(Command::Optimize(arguments)) => optimize::run(&arguments),
+        Some(Command::Check(arguments)) => check::run(&arguments),
+        Some(Command::UnpackRecording(arguments)) => check::unpack(&arguments),
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::Study(arguments)) => study::run(&arguments),
     };
+    // What the standard output still holds may not be writable either.
+    let outcome = outcome.and_then(|ending| match std::io::stdout().flush() {
+        Ok(()) => Ok(ending),
+        Err(error) => Err(error.into()),
+    });
     match outcome {
         Ok(Ending::Done) | Err(Failure::BrokenPipe) => ExitCode::SUCCESS,
-        Ok(Ending::Interrupted) => ExitCode::from(130),
+        Ok(Ending::Interrupted) => ExitCode::from(signals::INTERRUPTED),
+        Ok(Ending::Refused) => ExitCode::from(2),
+        Ok(Ending::FilesIncomplete) => ExitCode::from(FILES_INCOMPLETE),
         Err(Failure::Input(report)) => {
-            eprintln!("{report:?}");
+            say(format_args!("{report:?}"));
             ExitCode::from(2)
         }
         Err(Failure::Runtime(report)) => {
-            eprintln!("{report:?}");
+            say(format_args!("{report:?}"));
             ExitCode::from(1)
         }
     }
+}
+
+/// Prints the help, the version, or what is wrong with the arguments.
+fn print_message(message: &clap::Error) -> ExitCode {
+    let printed = message.print().and_then(|()| std::io::stdout().flush());
+    match printed {
+        Err(error) if !message.use_stderr() && error.kind() != std::io::ErrorKind::BrokenPipe => {
+            say(format_args!("cannot write to the standard output: {error}"));
+            ExitCode::from(1)
+        }
+        _ => ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(2)),
+    }
+}
+
+/// Prints a line to the standard error. What is said never stops the work, even if nobody can read it.
+fn say(line: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// The refusal to overwrite a file.
@@ -128,17 +179,20 @@ fn exists_already(path: &Path) -> Failure {
 
 /// Loads the study that an argument specifies: a study file or the name of a built-in study; without an argument, the
 /// paper's study.
-fn load_study(argument: Option<&str>) -> Result<Study> {
+fn load_study(argument: Option<&OsStr>) -> Result<Study> {
     let Some(argument) = argument else {
         return Ok(BUILTIN[0].study()?);
     };
     let path = Path::new(argument);
-    match Builtin::find(argument) {
+    // A study may come from a pipe, but a folder is none.
+    let is_file = path.exists() && !path.is_dir();
+    match argument.to_str().and_then(Builtin::find) {
         // A folder of that name does not take precedence over the built-in study.
-        Some(builtin) if !path.is_file() => Ok(builtin.study()?),
-        None if !path.is_file() => Err(miette!(
+        Some(builtin) if !is_file => Ok(builtin.study()?),
+        None if !is_file => Err(miette!(
             help = format!("the built-in studies are: {}", builtin_names()),
-            "there is neither a study file nor a built-in study named `{argument}`"
+            "there is neither a study file nor a built-in study named `{}`",
+            path.display()
         )),
         _ => Ok(Study::read(path)?),
     }

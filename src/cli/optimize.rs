@@ -1,28 +1,34 @@
 //! The command `kinefront optimize`: runs a study without a window.
 
+use std::ffi::OsString;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
-use std::sync::{Arc, OnceLock};
-use std::thread::{Builder, JoinHandle};
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use kinefront::recording::Recorder;
-use kinefront::study::{AlgorithmName, EndReason, Event, RunControl, RunReport, RunSummary, RunWriter, Study, spawn};
+use kinefront::recording::{Recorder, RunFileError, RunFiles};
+use kinefront::study::{
+    AlgorithmName, EndReason, Event, ResumeError, Resumption, RunControl, RunFolder, RunFolderError, RunReport,
+    RunSummary, RunWriter, Study, StudySearch, WriteError, spawn_search,
+};
 use kinefront_model::mechanism::Architecture;
-use miette::{Report, miette};
+use miette::miette;
 
 use super::progress::Progress;
-use super::{Ending, Failure, load_study, tables};
+use super::signals::interrupt_on_signals;
+use super::{Ending, Failure, load_study, say, tables};
 
-/// Capacity of the event channel of a listener; the worker thread waits while a channel is full.
+/// Capacity of the channel to the progress display; the run waits while it is full.
 const CHANNEL: usize = 64;
 
 #[derive(Debug, clap::Args)]
 pub struct OptimizeArguments {
     /// Study file, or name of a built-in study [default: paper].
-    study: Option<String>,
+    study: Option<OsString>,
+    /// Run folder to continue. With a larger --evaluations, a run that has ended is extended.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["study", "algorithm", "seed", "architectures", "out"])]
+    resume: Option<PathBuf>,
     /// Algorithm; overrides that of the study.
     #[arg(long, value_parser = algorithms())]
     algorithm: Option<AlgorithmName>,
@@ -41,6 +47,12 @@ pub struct OptimizeArguments {
     /// Run folder to write; it must not already hold a run [default: runs/STUDY-seedS].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Record every N-th generation [default: as many as leave at most 100 000 designs].
+    #[arg(long, value_name = "N", conflicts_with = "no_recording", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    record_every: Option<u64>,
+    /// Write no recording.
+    #[arg(long)]
+    no_recording: bool,
     /// Print run.json to standard output at the end.
     #[arg(long)]
     json: bool,
@@ -50,49 +62,129 @@ pub struct OptimizeArguments {
 }
 
 pub fn run(arguments: &OptimizeArguments) -> Result<Ending, Failure> {
-    let study = study(arguments)?;
-    let path = arguments.out.clone().unwrap_or_else(|| free_folder(&study));
-    let folder = RunWriter::create(&path, &study).map_err(Failure::input)?;
-    let recorder = Recorder::create(&path.join("recording.rrd"), &study).map_err(Failure::input)?;
-
+    // A signal before the first design must find its handler.
     let control = Arc::new(RunControl::default());
-    stop_on_interrupt(&control, arguments.quiet)?;
-    let (to_tables, tables) = sync_channel(CHANNEL);
-    let (to_recorder, recording) = sync_channel(CHANNEL);
-    let (to_terminal, terminal) = sync_channel(CHANNEL);
-    let table_study = study.clone();
-    let tables = listener("kinefront-tables", move || {
-        folder.follow(&tables, &table_study).map_err(Report::from_err)
-    })?;
-    let recording = listener("kinefront-recorder", move || {
-        recorder.follow(&recording).map_err(Report::from_err)
-    })?;
-    let worker = spawn(study.clone(), control, vec![to_tables, to_recorder, to_terminal])?;
-    let mut progress = Progress::new(study.optimizer.evaluations, arguments.quiet);
-    let ended = watch(&terminal, &mut progress);
-    progress.finish();
-    let mut failures: Vec<Report> = Vec::new();
-    for thread in [tables, recording] {
-        failures.extend(join(thread).err());
-    }
-    if worker.join().is_err() {
-        failures.push(miette!("the worker thread panicked"));
-    }
+    interrupt_on_signals(&control, arguments.quiet)?;
+    let (folder, search) = match &arguments.resume {
+        Some(path) => match resume(path, arguments)? {
+            Some(resumed) => resumed,
+            None => return Ok(Ending::Done),
+        },
+        None => begin(arguments)?,
+    };
+    let path = folder.path().to_owned();
+    let study = Arc::clone(search.study());
+    let mut progress = Progress::new(study.optimizer.evaluations, search.replayed(), arguments.quiet);
+    let (ended, failures) = perform(folder, search, &control, &mut progress)?;
     let summary = match ended {
         Ok(summary) => summary,
         Err(message) => return Err(Failure::Runtime(miette!("the run failed: {message}"))),
     };
-    if let Some(report) = failures.pop() {
-        for other in failures {
-            eprintln!("{other:?}");
-        }
-        return Err(Failure::Runtime(report));
-    }
-    tell(&study, &summary, &path, arguments)?;
+    // The front is printed even if it could not be written.
+    tell(&study, &summary, &path, arguments, failures.is_empty())?;
     Ok(match summary.outcome {
-        EndReason::Completed | EndReason::TimeUp | EndReason::Stagnated => Ending::Done,
-        EndReason::Stopped => Ending::Interrupted,
+        _ if !failures.is_empty() => Ending::FilesIncomplete,
+        EndReason::Completed | EndReason::TimeUp | EndReason::Stagnated | EndReason::Stopped => Ending::Done,
+        EndReason::Interrupted => Ending::Interrupted,
     })
+}
+
+/// Runs a search and writes its files; returns its summary, and the errors of its files.
+fn perform(
+    folder: RunWriter,
+    search: StudySearch,
+    control: &Arc<RunControl>,
+    progress: &mut Progress,
+) -> Result<(Result<RunSummary, String>, Vec<RunFileError>), Failure> {
+    let recorder = match folder.record_every() {
+        Some(every) => {
+            let recorder = Recorder::create(&folder.recording_path(), search.study(), every);
+            Some(recorder.map_err(Failure::runtime)?)
+        }
+        None => None,
+    };
+    let (next, events) = sync_channel(CHANNEL);
+    let tell = |error: &RunFileError| say(format_args!("error: {error}"));
+    let (listeners, files) = RunFiles::start(folder, recorder, next, Arc::clone(control), tell)?;
+    let worker = spawn_search(search, Arc::clone(control), listeners)?;
+    let ended = watch(&events, progress);
+    progress.finish();
+    let failures = files.join();
+    let ended = match worker.join() {
+        Ok(()) => ended,
+        Err(_) => Err("the worker thread panicked".to_owned()),
+    };
+    Ok((ended, failures))
+}
+
+/// Prepares a new run in its folder.
+fn begin(arguments: &OptimizeArguments) -> Result<(RunWriter, StudySearch), Failure> {
+    let study = study(arguments)?;
+    let search = StudySearch::new(study, None).map_err(Failure::runtime)?;
+    let study = search.study();
+    let every = record_every(arguments, Some(study.record_every()));
+    let create = |path: &Path| RunWriter::create(path, study, every);
+    let folder = match &arguments.out {
+        Some(path) => create(path),
+        None => {
+            // Another run may take a folder that was free a moment ago.
+            let taken = |folder: &Result<RunWriter, WriteError>| {
+                matches!(folder, Err(WriteError::Occupied { .. } | WriteError::InUse(_)))
+            };
+            let mut attempts = folder_names(study).map(|path| create(&path)).skip_while(taken);
+            attempts.next().unwrap_or_else(|| create(Path::new("runs")))
+        }
+    };
+    Ok((folder.map_err(write_failure)?, search))
+}
+
+/// Prepares a run to be continued; `None` if nothing is left to do.
+fn resume(path: &Path, arguments: &OptimizeArguments) -> Result<Option<(RunWriter, StudySearch)>, Failure> {
+    let number = |number: Option<u64>| number.map(|number| number as usize);
+    let resumption = Resumption::open(path, number(arguments.evaluations), number(arguments.threads)).map_err(
+        |error| match error {
+            ResumeError::Lock(error) => write_failure(error),
+            ResumeError::Folder(error @ RunFolderError::Read { .. }) => Failure::runtime(error),
+            error => Failure::input(error),
+        },
+    )?;
+    if !arguments.quiet {
+        for note in resumption.notes() {
+            say(format_args!("{}: {note}", path.display()));
+        }
+    }
+    if resumption.is_complete() {
+        if arguments.json {
+            let report = serde_json::to_string_pretty(&resumption.folder().report()).map_err(Failure::runtime)?;
+            writeln!(std::io::stdout(), "{report}")?;
+        } else if !arguments.quiet {
+            writeln!(
+                std::io::stdout(),
+                "{} is complete: {} evaluations; a larger --evaluations extends it",
+                path.display(),
+                resumption.search().study().optimizer.evaluations
+            )?;
+        }
+        return Ok(None);
+    }
+    let every = record_every(arguments, resumption.record_every());
+    resumption.start(every).map(Some).map_err(write_failure)
+}
+
+/// The arguments' choice of the generations to record, or else `other`.
+fn record_every(arguments: &OptimizeArguments, other: Option<usize>) -> Option<usize> {
+    match arguments.record_every {
+        _ if arguments.no_recording => None,
+        Some(every) => Some(every as usize),
+        None => other,
+    }
+}
+
+fn write_failure(error: WriteError) -> Failure {
+    match error {
+        WriteError::Occupied { .. } | WriteError::InUse(_) => Failure::input(error),
+        WriteError::Write { .. } | WriteError::Changed { .. } => Failure::runtime(error),
+    }
 }
 
 /// Loads the study that the arguments specify and checks it again with the values that they override.
@@ -119,8 +211,8 @@ fn study(arguments: &OptimizeArguments) -> Result<Study, Failure> {
     }
 }
 
-/// Returns the folder `runs/STUDY-seedS`, with a number appended if that folder exists.
-fn free_folder(study: &Study) -> PathBuf {
+/// Returns the folders `runs/STUDY-seedS`, `runs/STUDY-seedS-2`, and so on.
+fn folder_names(study: &Study) -> impl Iterator<Item = PathBuf> {
     let name: String = study
         .name
         .chars()
@@ -133,45 +225,13 @@ fn free_folder(study: &Study) -> PathBuf {
         })
         .collect();
     let base = format!("{}-seed{}", name.trim_matches('.'), study.optimizer.seed);
-    let runs = Path::new("runs");
-    std::iter::once(base.clone())
-        .chain((2..).map(|number| format!("{base}-{number}")))
-        .map(|name| runs.join(name))
-        .find(|path| !path.exists())
-        .unwrap_or_else(|| runs.join(base))
-}
-
-/// Installs a handler for Ctrl-C: the first Ctrl-C stops the run, which still verifies and writes its front; the second
-/// exits the program immediately.
-fn stop_on_interrupt(control: &Arc<RunControl>, quiet: bool) -> Result<(), Failure> {
-    // A handler can be set only once in a process, and a process runs this command only once.
-    static INTERRUPTED: OnceLock<AtomicBool> = OnceLock::new();
-    let interrupted = INTERRUPTED.get_or_init(|| AtomicBool::new(false));
-    let control = Arc::clone(control);
-    ctrlc::set_handler(move || {
-        if interrupted.swap(true, Ordering::SeqCst) {
-            std::process::exit(130);
-        }
-        if !quiet {
-            eprintln!(
-                "\nstopping: finishing the generation and verifying the front (Ctrl-C again to quit immediately)"
-            );
-        }
-        control.stop();
-    })
-    .map_err(Failure::runtime)
-}
-
-type Listener = JoinHandle<Result<(), Report>>;
-
-fn listener(name: &str, work: impl FnOnce() -> Result<(), Report> + Send + 'static) -> Result<Listener, Failure> {
-    Ok(Builder::new().name(name.to_owned()).spawn(work)?)
-}
-
-fn join(thread: Listener) -> Result<(), Report> {
-    thread
-        .join()
-        .unwrap_or_else(|_| Err(miette!("a thread that writes the files of the run panicked")))
+    let numbered = (2..).map({
+        let base = base.clone();
+        move |number: u64| format!("{base}-{number}")
+    });
+    std::iter::once(base)
+        .chain(numbered)
+        .map(|name| Path::new("runs").join(name))
 }
 
 fn watch(events: &Receiver<Arc<Event>>, progress: &mut Progress) -> Result<RunSummary, String> {
@@ -188,13 +248,32 @@ fn watch(events: &Receiver<Arc<Event>>, progress: &mut Progress) -> Result<RunSu
     ended
 }
 
-fn tell(study: &Study, summary: &RunSummary, path: &Path, arguments: &OptimizeArguments) -> Result<(), Failure> {
+fn tell(
+    study: &Study,
+    summary: &RunSummary,
+    path: &Path,
+    arguments: &OptimizeArguments,
+    is_written: bool,
+) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        let report = serde_json::to_string_pretty(&RunReport::new(study, summary)).map_err(Failure::runtime)?;
-        writeln!(out, "{report}")?;
+        let written = is_written.then(|| RunFolder::open(path).ok()).flatten();
+        let report = match written.as_ref().and_then(RunFolder::report) {
+            Some(report) => serde_json::to_string_pretty(report),
+            None => serde_json::to_string_pretty(&RunReport::new(study, summary)),
+        };
+        writeln!(out, "{}", report.map_err(Failure::runtime)?)?;
     } else if !arguments.quiet {
         let last = summary.history.last();
+        if summary.outcome == EndReason::Interrupted {
+            writeln!(
+                out,
+                "interrupted after {} evaluations; kinefront optimize --resume {} continues",
+                last.map_or(0, |last| last.evaluations),
+                path.display()
+            )?;
+            return Ok(());
+        }
         writeln!(out, "{}", tables::front(summary))?;
         writeln!(
             out,
@@ -204,7 +283,7 @@ fn tell(study: &Study, summary: &RunSummary, path: &Path, arguments: &OptimizeAr
             last.map_or(0, |last| last.feasible),
             summary.times.search_s,
             match summary.outcome {
-                EndReason::Completed | EndReason::Stopped => "",
+                EndReason::Completed | EndReason::Stopped | EndReason::Interrupted => "",
                 EndReason::TimeUp => " (time limit reached)",
                 EndReason::Stagnated => " (stagnated)",
             },
@@ -214,7 +293,16 @@ fn tell(study: &Study, summary: &RunSummary, path: &Path, arguments: &OptimizeAr
             summary.dropped,
             summary.verified_hypervolume,
         )?;
-        writeln!(out, "wrote {}", path.display())?;
+        if is_written {
+            writeln!(out, "wrote {}", path.display())?;
+        } else {
+            writeln!(
+                out,
+                "{} is incomplete; kinefront optimize --resume {} continues",
+                path.display(),
+                path.display()
+            )?;
+        }
     }
     Ok(())
 }

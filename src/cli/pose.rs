@@ -1,5 +1,6 @@
 //! The command `kinefront pose`.
 
+use std::ffi::OsString;
 use std::io::Write;
 
 use kinefront::export::PoseReportJson;
@@ -18,7 +19,7 @@ pub struct PoseArguments {
     pose: String,
     /// Study file, or name of a built-in study [default: paper].
     #[arg(long, value_name = "FILE")]
-    study: Option<String>,
+    study: Option<OsString>,
     /// Print the result as one JSON object.
     #[arg(long)]
     json: bool,

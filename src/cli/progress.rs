@@ -7,6 +7,8 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use kinefront::study::GenerationSummary;
 
+use super::say;
+
 /// Progress of a run.
 pub enum Progress {
     /// Nothing is shown (`--quiet`).
@@ -23,13 +25,17 @@ pub enum Progress {
 }
 
 impl Progress {
-    /// Creates the progress display of a run of `budget` evaluations.
-    pub fn new(budget: usize, quiet: bool) -> Self {
+    /// Creates the progress display of a run of `budget` evaluations, of which `done` are done already.
+    pub fn new(budget: usize, done: usize, quiet: bool) -> Self {
         if quiet {
             return Self::Quiet;
         }
         if !std::io::stderr().is_terminal() {
-            return Self::Lines { budget, reported: 0 };
+            if done > 0 {
+                say(format_args!("resumed at {done}/{budget} evaluations"));
+            }
+            let reported = 20 * done / budget;
+            return Self::Lines { budget, reported };
         }
         let style =
             ProgressStyle::with_template("{bar:30.cyan/blue} {pos}/{len} evaluations  {per_sec:.0}  {eta} left  {msg}")
@@ -55,14 +61,14 @@ impl Progress {
                 let reached = 20 * summary.evaluations / *budget;
                 if reached > *reported {
                     *reported = reached;
-                    eprintln!(
+                    say(format_args!(
                         "generation {}: {}/{budget} evaluations, {} feasible, front {}, hypervolume {:.1} kg m",
                         summary.generation,
                         summary.evaluations,
                         summary.feasible,
                         summary.front_size,
                         summary.hypervolume
-                    );
+                    ));
                 }
             }
         }
@@ -74,7 +80,7 @@ impl Progress {
             Self::Quiet => {}
             Self::Bar(bar) => bar.set_message(format!("verifying the front on the fine grid: {done}/{total}")),
             Self::Lines { .. } if done == 0 => {
-                eprintln!("verifying {total} designs of the front on the fine grid")
+                say(format_args!("verifying {total} designs of the front on the fine grid"));
             }
             Self::Lines { .. } => {}
         }

@@ -67,7 +67,7 @@ pub fn run(arguments: &StudyArguments) -> Result<Ending, Failure> {
             writeln!(out, "wrote {}", file.display())?;
         }
         StudyCommand::Check { file } => {
-            let study: Study = load_study(file.to_str()).map_err(Failure::Input)?;
+            let study: Study = load_study(Some(file.as_os_str())).map_err(Failure::Input)?;
             writeln!(out, "{}: valid ({})", file.display(), study.name)?;
         }
     }

@@ -1,8 +1,9 @@
 //! The design in the arguments of a command, given as text or as a row of a table.
 
+use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
-use kinefront::study::{Study, read_designs};
+use kinefront::study::{RunFolder, Study, read_designs};
 use kinefront_model::mechanism::Design;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
@@ -16,13 +17,13 @@ pub struct SubjectArguments {
         required_unless_present = "design",
         conflicts_with = "design"
     )]
-    pub row: Option<String>,
+    pub row: Option<OsString>,
     /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
     #[arg(long)]
     pub design: Option<String>,
     /// Study file, or name of a built-in study [default: study.toml in the folder of the table, else paper].
     #[arg(long, value_name = "FILE")]
-    pub study: Option<String>,
+    pub study: Option<OsString>,
 }
 
 impl SubjectArguments {
@@ -34,18 +35,46 @@ impl SubjectArguments {
             return Ok((study, design, design.architecture.to_string()));
         }
         let row = self.row.as_deref().unwrap_or_default();
-        let (table, id) = row
-            .rsplit_once('#')
-            .ok_or_else(|| miette!("`{row}` does not specify a row; expected TABLE#ID, as in run/front.csv#12"))?;
-        let table = Path::new(table);
+        let (table, id) = split_row(row).ok_or_else(|| {
+            let row = row.display();
+            miette!("`{row}` does not specify a row; expected TABLE#ID, as in run/front.csv#12")
+        })?;
+        let row = row.display();
         let beside = table.with_file_name("study.toml");
-        let study = match &self.study {
-            None if beside.exists() => Study::read(&beside)?,
-            study => load_study(study.as_deref())?,
+        let folder = table.parent().filter(|folder| RunFolder::is_at(folder));
+        let study = match (&self.study, folder) {
+            (Some(study), _) => load_study(Some(study))?,
+            // A run knows what it wrote: a study or a table that was damaged since would give another design.
+            (None, Some(folder)) => {
+                let run = RunFolder::open(folder).into_diagnostic()?;
+                run.check_file(table).into_diagnostic()?;
+                run.study().clone()
+            }
+            (None, None) if beside.exists() => Study::read(&beside)?,
+            (None, None) => load_study(None)?,
         };
-        let design = find_design(table, &study, id).wrap_err_with(|| format!("cannot read {row}"))?;
+        let design = find_design(table, &study, &id).wrap_err_with(|| format!("cannot read {row}"))?;
         Ok((study, design, format!("{}, design #{id}", study_name(table))))
     }
+}
+
+/// Splits TABLE#ID at its last `#`.
+fn split_row(row: &OsStr) -> Option<(&Path, String)> {
+    let bytes = row.as_encoded_bytes();
+    let place = bytes.iter().rposition(|&byte| byte == b'#')?;
+    let id = String::from_utf8_lossy(&bytes[place + 1..]).into_owned();
+    Some((path_of(&bytes[..place])?, id))
+}
+
+#[cfg(unix)]
+fn path_of(bytes: &[u8]) -> Option<&Path> {
+    use std::os::unix::ffi::OsStrExt;
+    Some(Path::new(OsStr::from_bytes(bytes)))
+}
+
+#[cfg(not(unix))]
+fn path_of(bytes: &[u8]) -> Option<&Path> {
+    std::str::from_utf8(bytes).ok().map(Path::new)
 }
 
 fn study_name(table: &Path) -> String {

@@ -8,7 +8,7 @@ use super::subject::DrawnDesign;
 use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
 use super::{blueprint, paths, timelines};
 use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour};
-use crate::study::Study;
+use crate::study::{Study, partial_path};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::spatial::Pose;
 
@@ -27,6 +27,34 @@ const TOUR_STEPS: usize = 72;
 /// # Errors
 /// [`RecordingError::Write`] when the file exists or cannot be written; [`RecordingError::Encode`] otherwise.
 pub fn record_design(
+    path: &Path,
+    study: &Study,
+    evaluation: &Evaluation,
+    heading: &str,
+    field: Field,
+) -> Result<(), RecordingError> {
+    let failed = |cause: std::io::Error| RecordingError::Write {
+        path: path.to_owned(),
+        cause,
+    };
+    if path.exists() {
+        return Err(failed(std::io::ErrorKind::AlreadyExists.into()));
+    }
+    // The file appears when it is complete; what a process that was killed left of it is replaced.
+    let partial = partial_path(path);
+    let _ = std::fs::remove_file(&partial);
+    let drawn = draw_design(&partial, study, evaluation, heading, field);
+    let written = drawn.and_then(|()| std::fs::rename(&partial, path).map_err(failed));
+    written.map_err(|error| {
+        let _ = std::fs::remove_file(&partial);
+        match error {
+            RecordingError::Write { cause, .. } => failed(cause),
+            error => error,
+        }
+    })
+}
+
+fn draw_design(
     path: &Path,
     study: &Study,
     evaluation: &Evaluation,

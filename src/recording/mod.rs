@@ -23,6 +23,7 @@
 //! `evaluation` and `generation`. `tour` counts the poses of a tour. The recording of a single design has only the rows
 //! from `/design/manipulator` to `/card`.
 
+mod apart;
 mod blueprint;
 mod card;
 mod colors;
@@ -30,20 +31,22 @@ mod columns;
 mod design;
 mod draw;
 mod live;
-#[cfg(feature = "explorer")]
 mod read;
 mod recorder;
+mod rows;
+mod run_files;
 mod scatter;
 mod sink;
 mod stage;
 mod subject;
 mod writer;
 
+pub use apart::{RecordedRunError, UNPACK_COMMAND, read_apart, unpack, unpack_with};
 pub use design::record_design;
 pub use live::{LiveScene, Picked, Pinned, Shown, VisibleLayers};
-#[cfg(feature = "explorer")]
 pub use read::{CopyError, ReadError, RecordedDesign, RecordedRun, read_run, save_copy};
 pub use recorder::Recorder;
+pub use run_files::{RunFileError, RunFiles};
 pub use scatter::FrontPoint;
 pub use writer::RecordingError;
 

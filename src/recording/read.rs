@@ -69,7 +69,7 @@ fn messages(path: &Path) -> Result<Messages, ReadError> {
     Ok(Box::new(decoder))
 }
 
-fn foreign(path: &Path, message: impl std::fmt::Display) -> ReadError {
+pub(super) fn foreign(path: &Path, message: impl std::fmt::Display) -> ReadError {
     ReadError::Foreign {
         path: path.to_owned(),
         message: message.to_string(),

@@ -2,10 +2,13 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::mpsc::Receiver;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::{Duration, Instant};
 
 use rerun::{Scalars, SeriesLines, TimeColumn};
 
+use super::rows::RowBuffer;
 use super::scatter::{FrontPoint, INFEASIBLE_COLOR, PlotRange, front_points, points, selected, staircase};
 use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
 use super::{blueprint, colors, columns, design, paths, timelines};
@@ -13,8 +16,11 @@ use crate::study::{Batch, Event, GenerationSummary, Row, RunSummary, Study, Tabl
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Architecture;
 
-/// Number of rows of `/designs` written at a time, large enough to keep the file's index small.
-const ROWS: usize = 300;
+/// Number of designs after which the rows that were collected are written, large enough to keep the file's index small.
+const DESIGNS_AT_ONCE: usize = 3000;
+
+/// Time after which the rows that were collected are written if there are fewer designs.
+const WRITE_INTERVAL: Duration = Duration::from_secs(5);
 
 /// Function that returns a number of a design.
 type Value = fn(&Evaluation) -> f64;
@@ -40,8 +46,13 @@ pub struct Recorder {
     model: Model,
     architectures: Vec<Architecture>,
     frame: PlotRange,
-    /// Rows not yet written.
+    /// Every how many generations one is recorded.
+    every: usize,
+    /// Designs not yet written.
     pending: Vec<TableRow>,
+    /// Rows of other entities not yet written.
+    rows: RowBuffer,
+    written: Instant,
     front: Vec<FrontPoint>,
     front_changed: bool,
     frame_changed: bool,
@@ -56,11 +67,12 @@ fn moment(evaluations: usize, generation: usize) -> [(&'static str, usize); 2] {
 }
 
 impl Recorder {
-    /// Creates the file and writes the layout and the study, which are known before the run.
+    /// Creates the file and writes the layout and the study, which are known before the run. One of `every` generations is
+    /// recorded, and the front at the end in any case.
     ///
     /// # Errors
     /// [`RecordingError::Write`] when the file exists or cannot be created.
-    pub fn create(path: &Path, study: &Study) -> Result<Self, RecordingError> {
+    pub fn create(path: &Path, study: &Study, every: usize) -> Result<Self, RecordingError> {
         let model = study.model()?;
         let writer = RecordingWriter::create(path, &format!("{} (seed {})", study.name, study.optimizer.seed))?;
         let frame = PlotRange::new(study);
@@ -77,122 +89,135 @@ impl Recorder {
             model,
             architectures: study.architectures.clone(),
             frame,
+            every: every.max(1),
             pending: Vec::new(),
+            rows: RowBuffer::default(),
+            written: Instant::now(),
             front: Vec::new(),
             front_changed: false,
             frame_changed: true,
         })
     }
 
-    /// Writes the events of a run until it ends, then closes the file.
+    /// Writes the events of a run until it ends, then closes the file. What was collected is written every few seconds,
+    /// for which the events are awaited for `tick` at most.
     ///
     /// # Errors
-    /// [`RecordingError`] at the first row that cannot be written; the file remains readable up to that row.
-    pub fn follow(mut self, events: &Receiver<Arc<Event>>) -> Result<(), RecordingError> {
-        for event in events {
-            match &*event {
-                Event::Evaluated(batch) => self.batch(batch)?,
-                Event::Front(front) => {
-                    self.front = front.iter().map(FrontPoint::from).collect();
+    /// [`RecordingError`] at the first row that cannot be written, and when the recording is to be given up; the file
+    /// remains readable up to that row.
+    pub fn follow(
+        mut self,
+        events: &Receiver<Arc<Event>>,
+        give_up: &AtomicBool,
+        tick: Duration,
+    ) -> Result<(), RecordingError> {
+        loop {
+            let event = match events.recv_timeout(tick) {
+                Ok(event) => Some(event),
+                Err(RecvTimeoutError::Timeout) => None,
+                Err(RecvTimeoutError::Disconnected) => return self.close(),
+            };
+            if give_up.load(Ordering::Relaxed) {
+                return Err(RecordingError::GivenUp);
+            }
+            match event.as_deref() {
+                Some(Event::Evaluated(batch)) => self.batch(batch),
+                Some(Event::Front(front)) => {
+                    self.front = front.iter().map(|entry| FrontPoint::from(&**entry)).collect();
                     self.front_changed = true;
                 }
-                Event::Generation(summary) => self.generation(summary)?,
-                Event::Finished(summary) => self.finished(summary)?,
-                Event::Started(_) | Event::Verifying { .. } | Event::Failed(_) => {}
+                Some(Event::Generation(summary)) if self.is_recorded(summary.generation) => self.generation(summary),
+                Some(Event::Finished(summary)) => self.finished(summary)?,
+                Some(Event::Generation(_) | Event::Started(_) | Event::Verifying { .. } | Event::Failed(_)) | None => {}
+            }
+            if self.pending.len() >= DESIGNS_AT_ONCE || self.written.elapsed() >= WRITE_INTERVAL {
+                self.write_collected()?;
             }
         }
-        self.close()
     }
 
-    fn batch(&mut self, batch: &Batch) -> Result<(), RecordingError> {
-        let moment = moment(batch.first_id + batch.evaluations.len(), batch.generation);
-        for evaluation in &batch.evaluations {
-            self.frame_changed |= self.frame.include(evaluation.mass, evaluation.workspace_radius);
+    fn is_recorded(&self, generation: usize) -> bool {
+        (generation - 1).is_multiple_of(self.every)
+    }
+
+    fn batch(&mut self, batch: &Batch) {
+        for row in &batch.rows {
+            self.frame_changed |= self.frame.include(row.mass, row.radius);
         }
+        if !self.is_recorded(batch.generation) {
+            return;
+        }
+        let moment = moment(batch.first_id + batch.rows.len(), batch.generation);
         for &architecture in Architecture::ALL {
-            let kind: Vec<&Evaluation> = batch
-                .evaluations
-                .iter()
-                .filter(|e| e.is_feasible() && e.design.architecture == architecture)
-                .collect();
+            let of_kind = |row: &&Row| row.is_feasible() && row.design.architecture == architecture;
+            let color = colors::architecture(architecture);
             self.cloud(
                 &cloud(architecture),
                 &moment,
-                &kind,
-                colors::architecture(architecture),
+                batch.rows.iter().filter(of_kind),
+                color,
                 2.0,
-            )?;
+            );
         }
-        let infeasible: Vec<&Evaluation> = batch
-            .evaluations
-            .iter()
-            .filter(|e| !e.is_feasible() && self.frame.holds(e))
-            .collect();
+        let frame = self.frame;
+        let infeasible = batch.rows.iter().filter(|row| !row.is_feasible() && frame.holds(row));
         let [r, g, b] = INFEASIBLE_COLOR;
         self.cloud(
             paths::INFEASIBLE,
             &moment,
-            &infeasible,
+            infeasible,
             rerun::Color::from_rgb(r, g, b),
             1.5,
-        )?;
-        let rows = batch.evaluations.iter().enumerate();
-        self.pending.extend(rows.map(|(offset, evaluation)| TableRow {
-            id: batch.first_id + offset,
-            row: Row::new(batch.generation, evaluation),
-            reference_radius: None,
-        }));
-        if self.pending.len() >= ROWS {
-            self.write_pending()?;
-        }
-        Ok(())
+        );
+        self.pending.extend(batch.entries());
     }
 
-    fn cloud(
-        &self,
+    fn cloud<'a>(
+        &mut self,
         entity: &str,
         moment: Moment<'_>,
-        designs: &[&Evaluation],
+        designs: impl Iterator<Item = &'a Row>,
         color: rerun::Color,
         size: f32,
-    ) -> Result<(), RecordingError> {
-        if designs.is_empty() {
-            return Ok(());
+    ) {
+        let designs: Vec<&Row> = designs.collect();
+        if !designs.is_empty() {
+            self.rows.add(entity, moment, &points(&designs, color, size));
         }
-        self.writer.row(entity, moment, &points(designs, color, size))
     }
 
-    fn generation(&mut self, summary: &GenerationSummary) -> Result<(), RecordingError> {
+    fn generation(&mut self, summary: &GenerationSummary) {
         let moment = moment(summary.evaluations, summary.generation);
         if self.frame_changed {
-            self.axes(&moment)?;
+            self.axes(&moment);
             self.frame_changed = false;
         }
         if self.front_changed {
-            self.writer
-                .row(paths::FRONT_DESIGNS, &moment, &front_points(&self.front))?;
-            self.writer
-                .row(paths::FRONT_LINE, &moment, &staircase(&self.front, &self.frame))?;
+            self.rows.add(paths::FRONT_DESIGNS, &moment, &front_points(&self.front));
+            self.rows
+                .add(paths::FRONT_LINE, &moment, &staircase(&self.front, &self.frame));
             self.front_changed = false;
         }
-        self.curves(&moment, summary)?;
-        self.writer.check()
+        self.curves(&moment, summary);
     }
 
-    fn curves(&self, moment: Moment<'_>, summary: &GenerationSummary) -> Result<(), RecordingError> {
+    fn curves(&mut self, moment: Moment<'_>, summary: &GenerationSummary) {
         let fraction = summary.feasible as f64 / summary.evaluations.max(1) as f64;
         for (entity, value) in [
             (paths::HYPERVOLUME, summary.hypervolume),
             (paths::FEASIBLE_SHARE, fraction),
             (paths::FRONT_SIZE, summary.front_size as f64),
         ] {
-            self.writer.row(entity, moment, &Scalars::single(value))?;
+            self.rows.add(entity, moment, &Scalars::single(value));
         }
-        Ok(())
     }
 
     fn finished(&mut self, summary: &RunSummary) -> Result<(), RecordingError> {
-        self.write_pending()?;
+        // A generation that was left out may have been the last.
+        if let Some(last) = summary.history.last().filter(|last| !self.is_recorded(last.generation)) {
+            self.generation(last);
+        }
+        self.write_collected()?;
         self.writer.text(paths::SUMMARY, ALWAYS, &summary_text(summary))?;
         for (name, _) in ALONG_FRONT {
             let lines = SeriesLines::new().with_names([name]);
@@ -206,13 +231,13 @@ impl Recorder {
         let last = summary.history.last();
         if let Some((knee, last)) = summary.knee().zip(last) {
             self.step(&moment(last.evaluations, last.generation), knee, summary)?;
-            self.scatter_on_front()?;
+            self.scatter_on_front();
             // On the timeline `front`, each curve of the run is a horizontal line at its last value.
             for step in [0, summary.front.len() - 1] {
-                self.curves(&[(timelines::FRONT, step)], last)?;
+                self.curves(&[(timelines::FRONT, step)], last);
             }
         }
-        Ok(())
+        self.write_collected()
     }
 
     /// Writes one design of the verified front at a moment, and marks it in the scatter plot.
@@ -232,29 +257,31 @@ impl Recorder {
         self.writer.row(paths::SELECTED, moment, &selected(&member.evaluation))
     }
 
-    /// Writes the axes, ticks and legend of the scatter plot.
-    fn axes(&self, moment: Moment<'_>) -> Result<(), RecordingError> {
-        self.writer.row(paths::PLOT, moment, &self.frame.transform())?;
-        self.writer.row(paths::AXES, moment, &self.frame.lines())?;
-        self.writer.row(paths::TICKS, moment, &self.frame.labels())?;
-        self.writer
-            .row(paths::LEGEND, moment, &self.frame.legend(&self.architectures))
+    /// Adds the axes, ticks and legend of the scatter plot.
+    fn axes(&mut self, moment: Moment<'_>) {
+        self.rows.add(paths::PLOT, moment, &self.frame.transform());
+        self.rows.add(paths::AXES, moment, &self.frame.lines());
+        self.rows.add(paths::TICKS, moment, &self.frame.labels());
+        self.rows
+            .add(paths::LEGEND, moment, &self.frame.legend(&self.architectures));
     }
 
-    /// Writes the axes, legend and front at the first step of the timeline `front`, on which the scatter plot would
+    /// Adds the axes, legend and front at the first step of the timeline `front`, on which the scatter plot would
     /// otherwise be empty.
-    fn scatter_on_front(&self) -> Result<(), RecordingError> {
+    fn scatter_on_front(&mut self) {
         let moment: Moment<'_> = &[(timelines::FRONT, 0)];
-        self.axes(moment)?;
-        self.writer
-            .row(paths::FRONT_DESIGNS, moment, &front_points(&self.front))?;
-        self.writer
-            .row(paths::FRONT_LINE, moment, &staircase(&self.front, &self.frame))
+        self.axes(moment);
+        self.rows.add(paths::FRONT_DESIGNS, moment, &front_points(&self.front));
+        self.rows
+            .add(paths::FRONT_LINE, moment, &staircase(&self.front, &self.frame));
     }
 
-    fn write_pending(&mut self) -> Result<(), RecordingError> {
+    /// Writes the designs and rows that were collected.
+    fn write_collected(&mut self) -> Result<(), RecordingError> {
+        self.written = Instant::now();
+        self.rows.write(&self.writer)?;
         if self.pending.is_empty() {
-            return Ok(());
+            return self.writer.check();
         }
         let pending = &self.pending;
         let times = [
@@ -272,7 +299,7 @@ impl Recorder {
     }
 
     fn close(mut self) -> Result<(), RecordingError> {
-        self.write_pending()?;
+        self.write_collected()?;
         self.writer.close()
     }
 }

@@ -8,7 +8,7 @@ use rerun::datatypes::{Range1D, Range2D};
 use rerun::{Color, LineStrips2D, Points2D, Radius, Transform3D};
 
 use super::colors;
-use crate::study::{FrontMember, Study};
+use crate::study::{Row, Study, TableRow};
 use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::Architecture;
 
@@ -26,10 +26,10 @@ pub(super) fn position(mass: f64, radius: f64) -> [f32; 2] {
 }
 
 /// Returns the points of designs in one colour and size.
-pub(super) fn points(evaluations: &[&Evaluation], color: Color, size: f32) -> Points2D {
-    Points2D::new(evaluations.iter().map(|e| position(e.mass, e.workspace_radius)))
-        .with_colors(std::iter::repeat_n(color, evaluations.len()))
-        .with_radii(std::iter::repeat_n(Radius::new_ui_points(size), evaluations.len()))
+pub(super) fn points(designs: &[&Row], color: Color, size: f32) -> Points2D {
+    Points2D::new(designs.iter().map(|row| position(row.mass, row.radius)))
+        .with_colors(std::iter::repeat_n(color, designs.len()))
+        .with_radii(std::iter::repeat_n(Radius::new_ui_points(size), designs.len()))
 }
 
 /// A design of the front as drawn in the scatter plot.
@@ -47,13 +47,13 @@ pub struct FrontPoint {
     pub passes_filter: bool,
 }
 
-impl From<&FrontMember> for FrontPoint {
-    fn from(member: &FrontMember) -> Self {
+impl From<&TableRow> for FrontPoint {
+    fn from(entry: &TableRow) -> Self {
         Self {
-            id: member.id,
-            architecture: member.evaluation.design.architecture,
-            mass: member.evaluation.mass,
-            radius: member.evaluation.workspace_radius,
+            id: entry.id,
+            architecture: entry.row.design.architecture,
+            mass: entry.row.mass,
+            radius: entry.row.radius,
             passes_filter: true,
         }
     }
@@ -146,8 +146,8 @@ impl PlotRange {
     }
 
     /// Returns whether the mass of a design lies within the range; infeasible designs outside it are not drawn.
-    pub(super) fn holds(&self, evaluation: &Evaluation) -> bool {
-        let [x, _] = position(evaluation.mass, evaluation.workspace_radius);
+    pub(super) fn holds(&self, row: &Row) -> bool {
+        let [x, _] = position(row.mass, row.radius);
         (self.decades.0 as f32..=self.decades.1 as f32).contains(&x)
     }
 

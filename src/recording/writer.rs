@@ -29,6 +29,9 @@ pub enum RecordingError {
     /// A grid of the study does not fit its rotation range.
     #[error(transparent)]
     Grid(#[from] GridError),
+    /// The recording was given up while it was written.
+    #[error("the recording was given up")]
+    GivenUp,
     /// Data cannot be encoded in Rerun's format.
     #[error("cannot encode the recording: {0}")]
     Encode(String),

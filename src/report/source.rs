@@ -6,7 +6,6 @@ use std::sync::mpsc::sync_channel;
 
 use super::ReportError;
 use crate::study::{Event, Row, RunControl, RunFolder, RunTimes, Study, spawn};
-use kinefront_model::evaluation::Evaluation;
 
 /// A search with all the designs that it evaluated.
 #[derive(Debug, Clone)]
@@ -34,9 +33,11 @@ impl Source {
         Ok(Self {
             name: run.name(),
             study: run.study().clone(),
-            rows: run.designs()?.into_iter().map(|entry| entry.row).collect(),
-            times: report.as_ref().map(|report| report.times),
-            version: report.map(|report| report.kinefront_version).unwrap_or_default(),
+            rows: run.designs()?.rows.into_iter().map(|entry| entry.row).collect(),
+            times: report.map(|report| report.times),
+            version: report
+                .map(|report| report.kinefront_version.clone())
+                .unwrap_or_default(),
         })
     }
 
@@ -55,10 +56,7 @@ impl Source {
         let (mut rows, mut times, mut broken) = (Vec::new(), None, None);
         for event in events {
             match &*event {
-                Event::Evaluated(batch) => {
-                    let row = |evaluation: &Evaluation| Row::new(batch.generation, evaluation);
-                    rows.extend(batch.evaluations.iter().map(row));
-                }
+                Event::Evaluated(batch) => rows.extend(&batch.rows),
                 Event::Finished(summary) => times = Some(summary.times),
                 Event::Failed(message) => broken = Some(message.clone()),
                 Event::Started(_) | Event::Generation(_) | Event::Front(_) | Event::Verifying { .. } => {}

@@ -1,6 +1,6 @@
 //! Writing a report to a folder.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::{Report, ReportError, chart, page};
 use crate::study::{Cell, Column, Row, TableRow, WriteError, table_bytes, write_whole};
@@ -21,7 +21,6 @@ impl Report {
             })
         };
         let (figures, pictures) = (folder.join("figures"), folder.join("pictures"));
-        clear(folder, &[&figures, &pictures])?;
         make(&figures)?;
         make(&pictures)?;
         for figure in &self.figures {
@@ -55,8 +54,12 @@ impl Report {
             cause: error.into(),
         })?;
         write_whole(&folder.join("fronts.csv"), &table)?;
-        // The page is written last: if it exists, the report is complete.
+        // The page contains its figures and pictures. At any instant it is that of one report or of the other.
         write_whole(&folder.join("index.html"), page::html(self).as_bytes())?;
+        remove_stale(&figures, |name| self.figures.iter().any(|figure| figure.name == name))?;
+        remove_stale(&pictures, |name| {
+            self.pictures.iter().any(|picture| picture.name == name)
+        })?;
         Ok(())
     }
 }
@@ -72,24 +75,20 @@ pub fn free(folder: &Path, replace: bool) -> Result<(), ReportError> {
     Ok(())
 }
 
-/// Removes an existing report: the page first, so that no page is left without its figures.
-fn clear(folder: &Path, kinds: &[&Path]) -> Result<(), WriteError> {
+/// Removes the files that an earlier report left in the folders of figures and pictures.
+fn remove_stale(kind: &Path, is_current: impl Fn(&str) -> bool) -> Result<(), WriteError> {
     let failed = |path: &Path, cause: std::io::Error| WriteError::Write {
         path: path.to_owned(),
         cause,
     };
-    let page = folder.join("index.html");
-    if page.exists() {
-        std::fs::remove_file(&page).map_err(|error| failed(&page, error))?;
-    }
-    for kind in kinds.iter().filter(|kind| kind.is_dir()) {
-        let entries = std::fs::read_dir(kind).map_err(|error| failed(kind, error))?;
+    let entries = std::fs::read_dir(kind).map_err(|error| failed(kind, error))?;
+    for path in entries.flatten().map(|entry| entry.path()) {
         // Files of other kinds were not written by a report and are kept.
-        let ours = |path: &PathBuf| {
-            path.extension()
-                .is_some_and(|extension| extension == "svg" || extension == "png")
-        };
-        for path in entries.flatten().map(|entry| entry.path()).filter(ours) {
+        let is_ours = path
+            .extension()
+            .is_some_and(|extension| extension == "svg" || extension == "png");
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        if is_ours && !is_current(&name) {
             std::fs::remove_file(&path).map_err(|error| failed(&path, error))?;
         }
     }

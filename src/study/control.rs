@@ -1,6 +1,8 @@
 //! Control of a run in progress.
 
-use std::sync::{Condvar, Mutex, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+use super::EndReason;
 
 /// Pauses, resumes, steps and stops a run from any thread.
 #[derive(Debug, Default)]
@@ -16,13 +18,24 @@ struct ControlState {
     steps: usize,
     stop: bool,
     abandon: bool,
+    interrupt: bool,
     /// Whether the run waits in [`RunControl::go_on`].
     waiting: bool,
 }
 
+impl ControlState {
+    fn is_held(&self) -> bool {
+        self.paused && self.steps == 0 && !self.stop
+    }
+}
+
 impl RunControl {
+    fn state(&self) -> MutexGuard<'_, ControlState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn change(&self, change: impl FnOnce(&mut ControlState)) {
-        change(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner));
+        change(&mut self.state());
         self.changed.notify_all();
     }
 
@@ -64,20 +77,44 @@ impl RunControl {
         });
     }
 
+    /// Ends the run at once, as at a signal: designs in evaluation are dropped, and no front is verified; the run can be
+    /// resumed.
+    pub fn interrupt(&self) {
+        self.change(|state| {
+            state.stop = true;
+            state.abandon = true;
+            state.interrupt = true;
+        });
+    }
+
+    /// Whether the run was interrupted.
+    pub fn is_interrupted(&self) -> bool {
+        self.state().interrupt
+    }
+
     /// Whether the run is paused and waits: the generation that was in progress is done.
     pub fn is_waiting(&self) -> bool {
-        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.waiting && state.paused && state.steps == 0 && !state.stop
+        let state = self.state();
+        state.waiting && state.is_held()
     }
 
     pub(super) fn is_abandoned(&self) -> bool {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner).abandon
+        self.state().abandon
+    }
+
+    /// The reason why a run ends that is not to continue.
+    pub(super) fn end_reason(&self) -> EndReason {
+        if self.is_interrupted() {
+            EndReason::Interrupted
+        } else {
+            EndReason::Stopped
+        }
     }
 
     /// Waits while the run is paused; returns whether the run is to continue.
     pub(super) fn go_on(&self) -> bool {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        while state.paused && state.steps == 0 && !state.stop {
+        let mut state = self.state();
+        while state.is_held() {
             state.waiting = true;
             state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
         }

@@ -1,5 +1,7 @@
 //! Reading of study files, with errors that show file, line and key.
 
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -7,6 +9,9 @@ use miette::{Diagnostic, LabeledSpan, NamedSource, SourceSpan};
 use toml::de::{DeTable, DeValue};
 
 use super::{Fault, Study};
+
+/// Largest size of a study file \[bytes\].
+const LARGEST_STUDY: u64 = 1 << 18;
 
 /// Error of reading a study.
 #[derive(Debug, thiserror::Error, Diagnostic)]
@@ -61,7 +66,7 @@ impl Study {
     /// # Errors
     /// [`StudyError`], a diagnostic that shows the location in the file.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
-        let text = std::fs::read_to_string(path).map_err(|cause| StudyError::Read {
+        let text = read_limited(path).map_err(|cause| StudyError::Read {
             path: path.to_owned(),
             cause,
         })?;
@@ -97,6 +102,17 @@ impl Study {
             labels,
         })
     }
+}
+
+/// Reads a text of at most [`LARGEST_STUDY`].
+fn read_limited(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    File::open(path)?.take(LARGEST_STUDY + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > LARGEST_STUDY {
+        let message = format!("it has more than {LARGEST_STUDY} bytes; a study has about 5000");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
+    }
+    Ok(text)
 }
 
 /// Returns the dotted key of the innermost key or value that contains byte `position`.

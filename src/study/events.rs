@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
 
-use super::{DesignProblem, Study};
+use super::{DesignProblem, Row, Study, TableRow};
 use kinefront_model::evaluation::Evaluation;
 use kinefront_optimize::{knee, spread};
 
@@ -21,7 +21,7 @@ pub enum Event {
     Generation(GenerationSummary),
     /// The archive of non-dominated designs changed. Its members are sorted by mass; their workspace radii are those of
     /// the reference grid.
-    Front(Vec<FrontMember>),
+    Front(Vec<Arc<TableRow>>),
     /// The front is being verified on the fine grid.
     Verifying {
         /// Number of designs verified so far.
@@ -51,8 +51,19 @@ pub struct Batch {
     pub generation: usize,
     /// Id of the first design; the ids of the others follow consecutively.
     pub first_id: usize,
-    /// Evaluations of the designs.
-    pub evaluations: Vec<Evaluation>,
+    /// The designs with the values of their evaluations.
+    pub rows: Vec<Row>,
+}
+
+impl Batch {
+    /// Returns the rows with their ids.
+    pub fn entries(&self) -> impl Iterator<Item = TableRow> {
+        (self.first_id..).zip(&self.rows).map(|(id, row)| TableRow {
+            id,
+            row: *row,
+            reference_radius: None,
+        })
+    }
 }
 
 /// State of a run after a generation.
@@ -70,14 +81,14 @@ pub struct GenerationSummary {
     pub hypervolume: f64,
 }
 
-/// A non-dominated design.
+/// A design of the verified front.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrontMember {
     /// Id of its evaluation.
     pub id: usize,
     /// Generation of its evaluation.
     pub generation: usize,
-    /// Evaluation of the design; in a finished run the evaluation on the fine grid.
+    /// Evaluation of the design on the fine grid.
     pub evaluation: Evaluation,
     /// `R_w` on the reference grid \[m\].
     pub reference_radius: f64,
@@ -91,11 +102,10 @@ impl FrontMember {
 }
 
 /// Reason why a run ended.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndReason {
     /// The budget of evaluations was used up.
-    #[default]
     Completed,
     /// The time limit was reached.
     TimeUp,
@@ -103,16 +113,18 @@ pub enum EndReason {
     Stagnated,
     /// The run was stopped on request.
     Stopped,
+    /// The run was interrupted by a signal; it verified no front.
+    Interrupted,
 }
 
-/// Times of the parts of a run \[s\].
+/// Times of the parts of a run \[s\]; of a resumed run, those since it was resumed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RunTimes {
     /// Time of the search, without the verification.
     pub search_s: f64,
     /// Time for evaluating designs.
     pub evaluation_s: f64,
-    /// Time for the ask and tell calls of the algorithm and for updating the archive.
+    /// Time for the ask and tell calls of the algorithm.
     pub optimizer_s: f64,
     /// Time for sending events to listeners, including the wait for slow listeners.
     pub publish_s: f64,
@@ -143,6 +155,11 @@ pub struct RunSummary {
 }
 
 impl RunSummary {
+    /// Whether the run verified its front; a front that is empty may have been verified.
+    pub fn verified_front(&self) -> bool {
+        self.outcome != EndReason::Interrupted
+    }
+
     /// Returns at most `most` evenly spread designs of the front with their places, including both ends and the knee,
     /// for example for a short table.
     pub fn spread(&self, most: usize) -> impl Iterator<Item = (usize, &FrontMember)> {

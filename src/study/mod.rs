@@ -8,6 +8,7 @@ mod file;
 mod problem;
 mod run;
 mod run_folder;
+mod search;
 mod settings;
 mod stopping;
 mod table;
@@ -18,14 +19,18 @@ pub use error::StudyError;
 pub use events::{Batch, EndReason, Event, FrontMember, GenerationSummary, RunSummary, RunTimes, Started, Subscriber};
 pub use file::Study;
 pub use problem::DesignProblem;
-pub use run::spawn;
-pub use run_folder::{HypervolumeReference, RunFolder, RunFolderError, RunReport, RunWriter, WriteError, write_whole};
+pub use run::{spawn, spawn_search};
+pub use run_folder::{
+    Checkpoint, Difference, FileSum, FileSums, Finding, HypervolumeReference, Inspection, Repair, ResumeError,
+    Resumption, RunFolder, RunFolderError, RunReport, RunWriter, WriteError, partial_path, write_whole,
+};
+pub use search::{ReplayError, SearchError, StudySearch};
 pub use settings::{
     ActuatorSection, AlgorithmName, Bounds, Check, Fault, GridSection, Grids, HypervolumeSection, Initial,
     LengthChoice, MaterialSection, ModelSection, OptimizerSection, ReferenceDesign, RequirementSection, Setting,
     Stagnation, StiffnessChoice, TelescopicBar, WorkspaceSection, settings,
 };
 pub use table::{
-    Better, Cell, Column, ColumnType, Row, RowError, TableError, TableFault, TableRow, TableWriter, read_designs,
-    read_table, table_bytes,
+    Better, Cell, Column, ColumnType, Row, RowError, TableContents, TableError, TableFault, TableRow, read_designs,
+    read_run_table, read_table, table_bytes,
 };

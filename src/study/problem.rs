@@ -4,7 +4,7 @@ use super::Study;
 use kinefront_model::evaluation::{BarRanges, Evaluation, GridChoice, Model, WorkspaceTarget};
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, DesignError, DesignVariable, WorkingMode};
 use kinefront_model::workspace::GridError;
-use kinefront_optimize::{Outcome, Problem, Target, Variable};
+use kinefront_optimize::{Candidate, Outcome, Problem, Target, Variable};
 
 /// The optimization problem of a study, with designs encoded as vectors of values.
 ///
@@ -51,7 +51,35 @@ impl DesignProblem {
     /// # Errors
     /// [`DesignError`] when the values are no design.
     pub fn evaluation(&self, x: &[f64]) -> Result<Evaluation, DesignError> {
-        Ok(self.model.evaluate(&self.design(x)?, GridChoice::Reference))
+        Ok(self.evaluate_design(&self.design(x)?))
+    }
+
+    /// Evaluates a design on the reference grid.
+    pub fn evaluate_design(&self, design: &Design) -> Evaluation {
+        self.model.evaluate(design, GridChoice::Reference)
+    }
+
+    /// Whether a design is one at which a candidate is evaluated: its values are those of the candidate, but for the bars
+    /// if the candidate is completed.
+    pub fn follows(&self, candidate: &Candidate, design: &Design) -> bool {
+        let Ok(asked) = self.design(&candidate.x) else {
+            return false;
+        };
+        let bars = [DesignVariable::LegBarRadius, DesignVariable::PlatformBarRadius];
+        let free = |variable: DesignVariable| candidate.target.is_some() && bars.contains(&variable);
+        let same = |variable: &DesignVariable| {
+            let [asked, found] = [&asked, design].map(|design| design.values()[*variable as usize]);
+            free(*variable) || asked.to_bits() == found.to_bits()
+        };
+        asked.architecture == design.architecture
+            && asked.working_mode == design.working_mode
+            && DESIGN_VARIABLES.iter().all(same)
+    }
+
+    /// Returns the values at which a candidate was evaluated as `design`.
+    pub fn values(candidate: &Candidate, design: &Design) -> Vec<f64> {
+        let architecture = candidate.x.first().copied();
+        architecture.into_iter().chain(design.values()).collect()
     }
 
     /// Converts an evaluation into the outcome that the optimizer uses: mass and −`R_w`, both minimised, and the

@@ -3,7 +3,7 @@
 //! ```text
 //!             RunControl: pause, step, stop
 //!                  │
-//! study ─► worker thread: ask ─► evaluate (thread pool) ─► tell ─► archive
+//! study ─► worker thread: ask ─► evaluate (thread pool) ─► tell ─► what was found
 //!                  │ Arc<Event>, bounded channels
 //!                  ├─► tables    (designs.csv, front.csv, run.json)
 //!                  ├─► recorder  (recording.rrd)
@@ -23,28 +23,46 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use super::stopping::Stopping;
+use super::search::{Found, SearchError};
 use super::{
-    AlgorithmName, Batch, DesignProblem, EndReason, Event, FrontMember, GenerationSummary, RunControl, RunSummary,
-    RunTimes, Started, Study, Subscriber,
+    DesignProblem, EndReason, Event, FrontMember, RunControl, RunSummary, Started, Study, StudySearch, Subscriber,
+    TableRow,
 };
 use kinefront_model::evaluation::{Evaluation, GridChoice};
-use kinefront_model::mechanism::DesignError;
-use kinefront_model::workspace::GridError;
-use kinefront_optimize::{Algorithm, Archive, Evaluated, FrontDe, Moga2, Nsga2, Problem, hypervolume, spread};
+use kinefront_optimize::{Archive, Evaluated, hypervolume, spread};
 
 /// Starts the run of a study on its own thread.
 ///
 /// # Errors
 /// The I/O error if the thread cannot be started.
 pub fn spawn(study: Study, control: Arc<RunControl>, subscribers: Vec<Subscriber>) -> std::io::Result<JoinHandle<()>> {
+    start(move || StudySearch::new(study, None), control, subscribers)
+}
+
+/// Starts the run of a search that was prepared, for example resumed, on its own thread.
+///
+/// # Errors
+/// The I/O error if the thread cannot be started.
+pub fn spawn_search(
+    search: StudySearch,
+    control: Arc<RunControl>,
+    subscribers: Vec<Subscriber>,
+) -> std::io::Result<JoinHandle<()>> {
+    start(move || Ok(search), control, subscribers)
+}
+
+fn start(
+    prepare: impl FnOnce() -> Result<StudySearch, SearchError> + Send + 'static,
+    control: Arc<RunControl>,
+    subscribers: Vec<Subscriber>,
+) -> std::io::Result<JoinHandle<()>> {
     Builder::new().name("kinefront-run".to_owned()).spawn(move || {
         let mut publisher = Publisher {
             subscribers,
             spent: Duration::ZERO,
         };
         // A panic is a bug; the listeners must still learn that the run failed, so that they keep what was found.
-        let ended = catch_unwind(AssertUnwindSafe(|| run(study, &control, &mut publisher)));
+        let ended = catch_unwind(AssertUnwindSafe(|| run(prepare()?, &control, &mut publisher)));
         let message = match ended {
             Ok(Ok(())) => return,
             Ok(Err(error)) => error.to_string(),
@@ -56,17 +74,6 @@ pub fn spawn(study: Study, control: Arc<RunControl>, subscribers: Vec<Subscriber
         };
         publisher.send(Event::Failed(message));
     })
-}
-
-/// Why a run fails; a study that was read without faults gives no cause but the threads.
-#[derive(Debug, thiserror::Error)]
-enum RunError {
-    #[error(transparent)]
-    Grid(#[from] GridError),
-    #[error("cannot start the worker threads: {0}")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-    #[error(transparent)]
-    Design(#[from] DesignError),
 }
 
 struct Publisher {
@@ -84,241 +91,110 @@ impl Publisher {
     }
 }
 
-fn run(study: Study, control: &RunControl, publisher: &mut Publisher) -> Result<(), RunError> {
+fn run(mut search: StudySearch, control: &RunControl, publisher: &mut Publisher) -> Result<(), SearchError> {
     let start = Instant::now();
-    let mut search = StudySearch::new(&study)?;
     publisher.send(Event::Started(Started {
-        study: Arc::new(study),
-        threads: search.pool.current_num_threads(),
+        study: Arc::clone(search.study()),
+        threads: search.threads(),
     }));
-    let outcome = search.run(start, control, publisher)?;
+    search.send_replayed(|event| publisher.send(event));
+    let outcome = search.run(start, control, |event| publisher.send(event))?;
     search.times.search_s = start.elapsed().as_secs_f64();
 
     let verifying = Instant::now();
-    let found = std::mem::take(&mut search.members);
-    let dropped_from = found.len();
-    let front = found.into_values().collect();
-    let Some(verified) = verify(front, &search.problem, &search.pool, control, publisher) else {
-        return Ok(());
+    let front = search.found.front().to_vec();
+    let verified = match outcome {
+        EndReason::Interrupted => None,
+        _ => verify(&front, &search, control, publisher),
     };
     search.times.verification_s = verifying.elapsed().as_secs_f64();
     search.times.publish_s = publisher.spent.as_secs_f64();
-    let dropped = dropped_from - verified.len();
-    publisher.send(Event::Finished(search.summary(outcome, &verified, dropped)));
+    let summary = match verified {
+        Some(verified) => summary(search, outcome, front.len(), &verified),
+        None if control.is_interrupted() || outcome == EndReason::Interrupted => {
+            summary(search, EndReason::Interrupted, 0, &[])
+        }
+        None => return Ok(()),
+    };
+    publisher.send(Event::Finished(summary));
     Ok(())
 }
 
-/// A search in progress.
-struct StudySearch {
-    problem: DesignProblem,
-    algorithm: Box<dyn Algorithm>,
-    pool: rayon::ThreadPool,
-    stopping: Stopping,
-    /// Number of evaluations allowed.
-    budget: usize,
-    /// Number of designs of the verified front that are kept.
-    front_designs: usize,
-    /// Reference point of the hypervolume.
-    reference: [f64; 2],
-    archive: Archive,
-    /// The members of the archive, by id.
-    members: BTreeMap<usize, FrontMember>,
-    history: Vec<GenerationSummary>,
-    evaluated: usize,
-    feasible: usize,
-    times: RunTimes,
-}
-
-/// A generation that was evaluated: the candidates as completed, and their evaluations.
-struct Generation {
-    values: Vec<Vec<f64>>,
-    evaluations: Vec<Evaluation>,
-}
-
-impl StudySearch {
-    fn new(study: &Study) -> Result<Self, RunError> {
-        let problem = DesignProblem::new(study)?;
-        let mut pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("kinefront-evaluate-{index}"));
-        if let Some(threads) = study.optimizer.threads {
-            pool = pool.num_threads(threads);
-        }
-        let pool = pool.build()?;
-        Ok(Self {
-            algorithm: algorithm(study, &problem),
-            problem,
-            pool,
-            stopping: Stopping::new(&study.optimizer),
-            budget: study.optimizer.evaluations,
-            front_designs: study.optimizer.front_designs,
-            reference: [study.hypervolume.reference_mass_kg, 0.0],
-            archive: Archive::default(),
-            members: BTreeMap::new(),
-            history: Vec::new(),
-            evaluated: 0,
-            feasible: 0,
-            times: RunTimes::default(),
-        })
-    }
-
-    /// Searches until the budget is used, or until the search is ended; returns the reason.
-    fn run(&mut self, start: Instant, control: &RunControl, publisher: &mut Publisher) -> Result<EndReason, RunError> {
-        while self.evaluated < self.budget {
-            if !control.go_on() {
-                return Ok(EndReason::Stopped);
-            }
-            let generation = self.evaluate_generation()?;
-            self.tell(generation, publisher);
-            let spent = self.evaluated >= self.budget;
-            if let Some(reason) = self.stopping.reason(start.elapsed(), &self.history).filter(|_| !spent) {
-                return Ok(reason);
-            }
-        }
-        Ok(EndReason::Completed)
-    }
-
-    /// Asks the algorithm for a generation and evaluates it; the budget may cut the last one short.
-    fn evaluate_generation(&mut self) -> Result<Generation, RunError> {
-        let asking = Instant::now();
-        let mut candidates = self.algorithm.ask();
-        candidates.truncate(self.budget - self.evaluated);
-        self.times.optimizer_s += asking.elapsed().as_secs_f64();
-
-        let evaluating = Instant::now();
-        let problem = &self.problem;
-        let evaluate = |candidate| {
-            let x = problem.completed(candidate);
-            problem.evaluation(&x).map(|evaluation| (x, evaluation))
-        };
-        let (values, evaluations) = self
-            .pool
-            .install(|| candidates.into_par_iter().map(evaluate).collect::<Result<_, _>>())?;
-        self.times.evaluation_s += evaluating.elapsed().as_secs_f64();
-        Ok(Generation { values, evaluations })
-    }
-
-    /// Tells the algorithm the outcomes in the order of the candidates, keeps the archive, and sends the events.
-    fn tell(&mut self, Generation { values, evaluations }: Generation, publisher: &mut Publisher) {
-        let telling = Instant::now();
-        let (generation, first_id) = (self.history.len() + 1, self.evaluated);
-        let mut front_changed = false;
-        let mut evaluated = Vec::with_capacity(values.len());
-        for ((id, x), evaluation) in (first_id..).zip(values).zip(&evaluations) {
-            let candidate = Evaluated {
-                x,
-                outcome: DesignProblem::outcome(evaluation),
-            };
-            self.feasible += usize::from(evaluation.is_feasible());
-            if self.archive.insert(id, &candidate) {
-                front_changed = true;
-                let member = FrontMember {
-                    id,
-                    generation,
-                    evaluation: evaluation.clone(),
-                    reference_radius: evaluation.workspace_radius,
-                };
-                self.members.insert(id, member);
-            }
-            evaluated.push(candidate);
-        }
-        self.evaluated += evaluated.len();
-        self.algorithm.tell(evaluated);
-        self.times.optimizer_s += telling.elapsed().as_secs_f64();
-
-        publisher.send(Event::Evaluated(Batch {
-            generation,
-            first_id,
-            evaluations,
-        }));
-        if front_changed {
-            publisher.send(Event::Front(self.keep_members()));
-        }
-        let summary = self.generation_summary(generation);
-        self.history.push(summary);
-        publisher.send(Event::Generation(summary));
-    }
-
-    /// Drops the members that left the archive; returns the others in its order.
-    fn keep_members(&mut self) -> Vec<FrontMember> {
-        let members = &mut self.members;
-        let kept: Vec<FrontMember> = self
-            .archive
-            .iter()
-            .filter_map(|member| members.remove(&member.id))
-            .collect();
-        self.members = kept.iter().map(|member| (member.id, member.clone())).collect();
-        kept
-    }
-
-    fn generation_summary(&self, generation: usize) -> GenerationSummary {
-        GenerationSummary {
-            generation,
-            evaluations: self.evaluated,
-            feasible: self.feasible,
-            front_size: self.archive.len(),
-            hypervolume: hypervolume(self.archive.iter().map(|member| member.objectives), self.reference),
-        }
-    }
-
-    /// The summary of the run, with the verified front thinned to evenly spread designs.
-    fn summary(self, outcome: EndReason, verified: &[FrontMember], dropped: usize) -> RunSummary {
-        let objectives: Vec<[f64; 2]> = verified.iter().map(FrontMember::objectives).collect();
-        let shown = spread(&objectives, self.front_designs);
-        RunSummary {
-            outcome,
-            threads: self.pool.current_num_threads(),
-            history: self.history,
-            dropped,
-            verified_hypervolume: hypervolume(objectives, self.reference),
-            verified: verified.len(),
-            front: shown.into_iter().map(|place| verified[place].clone()).collect(),
-            times: self.times,
-        }
+/// Verifies the front of a search that was resumed, as at the end of its run; returns the summary of a run that ended for
+/// the reason `outcome`.
+pub(super) fn verify_replayed(mut search: StudySearch, outcome: EndReason) -> RunSummary {
+    search.send_replayed(|_| {});
+    let front = search.found.front().to_vec();
+    let mut publisher = Publisher {
+        subscribers: Vec::new(),
+        spent: Duration::ZERO,
+    };
+    let verified = match outcome {
+        EndReason::Interrupted => None,
+        _ => verify(&front, &search, &RunControl::default(), &mut publisher),
+    };
+    match verified {
+        Some(verified) => summary(search, outcome, front.len(), &verified),
+        None => summary(search, outcome, 0, &[]),
     }
 }
 
-fn algorithm(study: &Study, problem: &DesignProblem) -> Box<dyn Algorithm> {
-    let (variables, seed) = (problem.variables(), study.optimizer.seed);
-    match study.optimizer.algorithm {
-        AlgorithmName::FrontDe => Box::new(FrontDe::new(variables, study.optimizer.front_de, seed)),
-        AlgorithmName::Moga2 => Box::new(Moga2::new(variables, study.optimizer.moga2, seed)),
-        AlgorithmName::Nsga2 => Box::new(Nsga2::new(variables, study.optimizer.nsga2, seed)),
+/// The summary of a run, with the verified front thinned to evenly spread designs.
+fn summary(search: StudySearch, outcome: EndReason, found: usize, verified: &[FrontMember]) -> RunSummary {
+    let objectives: Vec<[f64; 2]> = verified.iter().map(FrontMember::objectives).collect();
+    let shown = spread(&objectives, search.study().optimizer.front_designs);
+    let threads = search.threads();
+    let StudySearch {
+        found: Found { history, reference, .. },
+        times,
+        ..
+    } = search;
+    RunSummary {
+        outcome,
+        threads,
+        history,
+        dropped: found - verified.len(),
+        verified_hypervolume: hypervolume(objectives, reference),
+        verified: verified.len(),
+        front: shown.into_iter().map(|place| verified[place].clone()).collect(),
+        times,
     }
 }
 
 /// Evaluates the front again on the fine grid and keeps the designs that are feasible and non-dominated there. Returns
-/// `None` if the run was abandoned.
+/// `None` if the run was interrupted or abandoned.
 fn verify(
-    front: Vec<FrontMember>,
-    problem: &DesignProblem,
-    pool: &rayon::ThreadPool,
+    front: &[Arc<TableRow>],
+    search: &StudySearch,
     control: &RunControl,
     publisher: &mut Publisher,
 ) -> Option<Vec<FrontMember>> {
-    let total = front.len();
+    let (total, model) = (front.len(), search.problem.model());
     let mut archive = Archive::default();
     let mut verified: BTreeMap<usize, FrontMember> = BTreeMap::new();
     let mut done = 0;
-    for part in front.chunks(4 * pool.current_num_threads()) {
-        if control.is_abandoned() {
-            return None;
-        }
+    for part in front.chunks(4 * search.threads()) {
         publisher.send(Event::Verifying { done, total });
-        let evaluations: Vec<Evaluation> = pool.install(|| {
-            part.par_iter()
-                .map(|member| problem.model().evaluate(&member.evaluation.design, GridChoice::Fine))
-                .collect()
-        });
-        for (member, evaluation) in part.iter().zip(evaluations) {
+        let evaluate = |entry: &Arc<TableRow>| {
+            if control.is_abandoned() {
+                return None;
+            }
+            Some(model.evaluate(&entry.row.design, GridChoice::Fine))
+        };
+        let evaluations: Option<Vec<Evaluation>> = search.pool.install(|| part.par_iter().map(evaluate).collect());
+        for (entry, evaluation) in part.iter().zip(evaluations?) {
             let candidate = Evaluated {
                 x: Vec::new(),
                 outcome: DesignProblem::outcome(&evaluation),
             };
-            archive.insert(member.id, &candidate);
+            archive.insert(entry.id, &candidate);
             verified.insert(
-                member.id,
+                entry.id,
                 FrontMember {
+                    id: entry.id,
+                    generation: entry.row.generation as usize,
                     evaluation,
-                    ..member.clone()
+                    reference_radius: entry.row.radius,
                 },
             );
         }

@@ -117,7 +117,7 @@ fn a_page_holds_everything_and_loads_nothing() {
         }
     }
     assert!(page.contains("kinefront report run --sensitivity 120"));
-    assert!(page.contains("3 other seeds") && page.contains("K_act × 10"));
+    assert!(page.contains("3 other random seeds") && page.contains("K_act × 10"));
     // The page does not reveal the path of the folder.
     assert!(!page.contains(&folder.path().display().to_string()));
 }

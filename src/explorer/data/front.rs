@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::study::Row;
-use crate::study::{Column, FrontMember};
+use crate::study::{Column, FrontMember, TableRow};
 use kinefront_model::evaluation::Evaluation;
 use kinefront_optimize::{Archive, Evaluated, Outcome};
 
@@ -23,14 +23,25 @@ pub struct FrontEntry {
 }
 
 impl FrontEntry {
-    /// Makes the entry of a member of a run's front.
-    pub fn new(member: &FrontMember, verified: bool) -> Self {
+    /// Makes the entry of a design of the verified front of a run.
+    pub fn of_member(member: &FrontMember) -> Self {
         Self {
             id: member.id,
             row: Row::new(member.generation, &member.evaluation),
             reference_radius: member.reference_radius,
+            verified: true,
+            evaluation: Some(Arc::new(member.evaluation.clone())),
+        }
+    }
+
+    /// Makes the entry of a row of a table; the row is `verified` if it states the values of the fine grid.
+    pub fn of_row(entry: &TableRow, verified: bool) -> Self {
+        Self {
+            id: entry.id,
+            row: entry.row,
+            reference_radius: entry.reference_radius.unwrap_or(entry.row.radius),
             verified,
-            evaluation: verified.then(|| Arc::new(member.evaluation.clone())),
+            evaluation: None,
         }
     }
 

@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, channel};
 
 mod open;
 
-pub use open::{OpenError, Opened, open};
+pub use open::{OpenError, Opened, open, run_folder_of};
 
 use super::threads::Writing;
 use super::{Phase, Session};

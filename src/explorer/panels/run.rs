@@ -139,6 +139,14 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
                 if ui.add_enabled(valid, egui::Button::new("▶ Start")).clicked() {
                     session.start();
                 }
+                if session.continuable().is_some()
+                    && ui
+                        .button("▶ Continue")
+                        .on_hover_text("continues the search in the folder of this run; a larger budget extends it")
+                        .clicked()
+                {
+                    session.continue_run();
+                }
             }
         }
         let can_step = matches!(session.phase(), Phase::Searching | Phase::Paused);
@@ -195,6 +203,7 @@ fn progress(ui: &mut Ui, session: &Session) {
         Phase::Finished(EndReason::TimeUp) => format!("time limit reached after {seconds:.1} s"),
         Phase::Finished(EndReason::Stagnated) => format!("stagnated after {seconds:.1} s"),
         Phase::Finished(EndReason::Stopped) => format!("stopped after {seconds:.1} s"),
+        Phase::Finished(EndReason::Interrupted) => format!("interrupted after {seconds:.1} s"),
         Phase::Failed => "failed".to_owned(),
         Phase::Opened(path) => format!(
             "opened {}",

@@ -7,12 +7,13 @@ use std::time::{Duration, Instant};
 
 use super::super::{FrontEntry, Store, StudyEditor};
 use super::{GLANCE, Phase, Session, references};
+use crate::AnyError;
 use crate::explorer::data::{Document, Origin, Selected};
-use crate::explorer::files::{Opened, open};
+use crate::explorer::files::{Opened, open, run_folder_of};
 use crate::explorer::threads::Request;
 use crate::explorer::threads::Running;
 use crate::recording::FrontPoint;
-use crate::study::{RunControl, Study, Subscriber, spawn};
+use crate::study::{Resumption, RunControl, Study, Subscriber, spawn};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Design;
 use kinefront_optimize::knee;
@@ -45,6 +46,46 @@ impl Session {
                 self.phase = Phase::Searching;
             }
             Err(words) => self.notify_error(words),
+        }
+    }
+
+    /// The folder of the run that was opened, in which it can be continued.
+    pub fn continuable(&self) -> Option<&Path> {
+        match &self.phase {
+            Phase::Opened(path) => run_folder_of(path),
+            _ => None,
+        }
+    }
+
+    /// Continues the run that was opened, in its folder. A larger budget in the editor extends it.
+    pub fn continue_run(&mut self) {
+        let Some(folder) = self.continuable() else { return };
+        let asked = self.editor.study().optimizer.evaluations;
+        let more = (asked > self.as_run.optimizer.evaluations).then_some(asked);
+        let resumption = match Resumption::open(folder, more, None) {
+            Ok(resumption) => resumption,
+            Err(error) => return self.notify_error(error),
+        };
+        if resumption.is_complete() {
+            self.notify("the run is complete; a larger number of evaluations extends it".to_owned());
+            return;
+        }
+        for note in resumption.notes() {
+            self.notify(note.clone());
+        }
+        let study = Arc::clone(resumption.search().study());
+        let wake = Arc::clone(&self.wake);
+        let running = study
+            .model()
+            .map_err(AnyError::from)
+            .and_then(|model| Ok((model, Running::resume(resumption, move || wake())?)));
+        match running {
+            Ok((model, running)) => {
+                self.begin(study, model);
+                self.run = Some(running);
+                self.phase = Phase::Searching;
+            }
+            Err(error) => self.notify_error(error),
         }
     }
 

@@ -3,7 +3,7 @@
 use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::explorer::{FrontEntry, Row, Store};
+use crate::explorer::{FrontEntry, Store};
 use crate::study::{Event, GenerationSummary, RunSummary};
 
 /// Messages of a run since the last call of [`Intake::take`].
@@ -64,23 +64,19 @@ impl Intake {
                 Event::Started(started) => self.put(|messages| messages.threads = Some(started.threads)),
                 Event::Evaluated(batch) => {
                     let mut rows = Store::default();
-                    for evaluation in &batch.evaluations {
-                        rows.push(&Row::new(batch.generation, evaluation));
+                    for row in &batch.rows {
+                        rows.push(row);
                     }
                     self.put(|messages| messages.rows.append(&mut rows));
                 }
-                Event::Front(members) => {
-                    let front = members.iter().map(|member| FrontEntry::new(member, false)).collect();
+                Event::Front(front) => {
+                    let front = front.iter().map(|entry| FrontEntry::of_row(entry, false)).collect();
                     self.put(|messages| messages.front = Some(front));
                 }
                 Event::Generation(summary) => self.put(|messages| messages.history.push(*summary)),
                 Event::Verifying { done, total } => self.put(|messages| messages.verifying = Some((*done, *total))),
                 Event::Finished(summary) => {
-                    let front = summary
-                        .front
-                        .iter()
-                        .map(|member| FrontEntry::new(member, true))
-                        .collect();
+                    let front = summary.front.iter().map(FrontEntry::of_member).collect();
                     self.put(|messages| {
                         messages.front = Some(front);
                         messages.finished = Some(Box::new(summary.clone()));

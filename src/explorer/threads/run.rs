@@ -2,7 +2,7 @@
 
 use crate::AnyError;
 use std::path::PathBuf;
-use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
@@ -10,16 +10,16 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 use super::Intake;
-use crate::recording::Recorder;
-use crate::study::{Event, RunControl, RunWriter, Study, Subscriber};
+use crate::recording::{Recorder, RunFileError, RunFiles};
+use crate::study::{Resumption, RunControl, RunWriter, Study, Subscriber, spawn_search};
 
 /// Number of events that a channel can hold; the run waits while one is full.
 const CHANNEL: usize = 64;
 
 /// A run in progress or ended.
 ///
-/// It writes the same files as a run without a window, to a temporary folder from which they can be saved. Dropping it
-/// ends the run and removes that folder.
+/// It writes the same files as a run without a window: to a temporary folder from which they can be saved, or to the folder
+/// of the run that it resumes. Dropping it ends the run; a temporary folder is removed.
 pub struct Running {
     /// The study of the run.
     pub study: Arc<Study>,
@@ -27,9 +27,9 @@ pub struct Running {
     pub control: Arc<RunControl>,
     /// Collects the messages of the run.
     pub intake: Arc<Intake>,
-    folder: Arc<TempDir>,
+    place: Place,
     writing: Writing,
-    threads: Vec<JoinHandle<()>>,
+    collector: JoinHandle<()>,
     clock: Clock,
 }
 
@@ -73,23 +73,21 @@ struct Clock {
     since: Option<Instant>,
 }
 
-/// The threads that receive the events of a run, and their channels.
-#[derive(Default)]
-struct Listeners {
-    subscribers: Vec<Subscriber>,
-    threads: Vec<JoinHandle<()>>,
+/// Where the files of a run are.
+#[derive(Debug, Clone)]
+enum Place {
+    /// A temporary folder, which is removed with the last of its users.
+    Temporary(Arc<TempDir>),
+    /// A run folder that was resumed.
+    Kept(PathBuf),
 }
 
-impl Listeners {
-    fn start(&mut self, name: &str, work: impl FnOnce(&Receiver<Arc<Event>>) + Send + 'static) -> Result<(), AnyError> {
-        let (sender, receiver) = sync_channel(CHANNEL);
-        let thread = Builder::new()
-            .name(format!("kinefront-{name}"))
-            .spawn(move || work(&receiver))
-            .map_err(|error| format!("cannot start the run: {error}"))?;
-        self.subscribers.push(sender);
-        self.threads.push(thread);
-        Ok(())
+impl Place {
+    fn path(&self) -> PathBuf {
+        match self {
+            Self::Temporary(folder) => folder.path().join("run"),
+            Self::Kept(path) => path.clone(),
+        }
     }
 }
 
@@ -103,55 +101,74 @@ impl Running {
         source: impl FnOnce(Study, Arc<RunControl>, Vec<Subscriber>) -> std::io::Result<JoinHandle<()>>,
         wake: impl Fn() + Send + Sync + 'static,
     ) -> Result<Self, AnyError> {
-        let place = |error: std::io::Error| {
+        let cannot = |error: std::io::Error| {
             format!(
                 "cannot start the run: cannot create a folder for its files in {}: {error}",
                 std::env::temp_dir().display()
             )
         };
-        let folder = Arc::new(tempfile::Builder::new().prefix("kinefront-").tempdir().map_err(place)?);
-        let path = folder.path().join("run");
+        let folder = Arc::new(
+            tempfile::Builder::new()
+                .prefix("kinefront-")
+                .tempdir()
+                .map_err(cannot)?,
+        );
+        let place = Place::Temporary(folder);
+        let every = study.record_every();
+        let tables = RunWriter::create(&place.path(), &study, Some(every))?;
+        Self::over(place, tables, Arc::new(study), source, wake)
+    }
+
+    /// Continues a run in its folder.
+    ///
+    /// # Errors
+    /// Returns a message if the folder cannot be written or a thread cannot be started.
+    pub fn resume(resumption: Resumption, wake: impl Fn() + Send + Sync + 'static) -> Result<Self, AnyError> {
+        let place = Place::Kept(resumption.folder().path().to_owned());
+        let every = resumption.record_every();
+        let (tables, search) = resumption.start(every)?;
+        let study = Arc::clone(search.study());
+        let source = move |_: Study, control, listeners| spawn_search(search, control, listeners);
+        Self::over(place, tables, study, source, wake)
+    }
+
+    fn over(
+        place: Place,
+        tables: RunWriter,
+        study: Arc<Study>,
+        source: impl FnOnce(Study, Arc<RunControl>, Vec<Subscriber>) -> std::io::Result<JoinHandle<()>>,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) -> Result<Self, AnyError> {
+        let cannot = |error: std::io::Error| format!("cannot start the run: {error}");
         let intake = Arc::new(Intake::new(wake));
         let control = Arc::new(RunControl::default());
-        let tables = RunWriter::create(&path, &study).map_err(|error| error.to_string())?;
-        let recorder = Recorder::create(&path.join("recording.rrd"), &study).map_err(|error| error.to_string())?;
+        let recorder = match tables.record_every() {
+            Some(every) => Some(Recorder::create(&tables.recording_path(), &study, every)?),
+            None => None,
+        };
         let writing = Writing::default();
-        let mut listeners = Listeners::default();
-        // Each listener that writes keeps the folder until its file is complete.
-        let (held, messages, as_run) = (
-            (Arc::clone(&folder), writing.begin()),
-            Arc::clone(&intake),
-            study.clone(),
-        );
-        listeners.start("tables", move |events| {
-            if let Err(error) = tables.follow(events, &as_run) {
-                messages.trouble(format!(
-                    "the run continues, but its tables are no longer written: {error}"
-                ));
-            }
-            drop(held);
-        })?;
-        let (held, messages) = ((Arc::clone(&folder), writing.begin()), Arc::clone(&intake));
-        listeners.start("recorder", move |events| {
-            if let Err(error) = recorder.follow(events) {
-                messages.trouble(format!(
-                    "the run continues, but its recording is no longer written: {error}"
-                ));
-            }
-            drop(held);
-        })?;
+        let (next, events) = sync_channel(CHANNEL);
         let messages = Arc::clone(&intake);
-        listeners.start("collector", move |events| messages.follow(events))?;
-        let as_run = Arc::new(study);
-        source((*as_run).clone(), Arc::clone(&control), listeners.subscribers)
-            .map_err(|error| format!("cannot start the run: {error}"))?;
+        let tell = move |error: &RunFileError| messages.trouble(error.to_string());
+        let (listeners, files) = RunFiles::start(tables, recorder, next, Arc::clone(&control), tell).map_err(cannot)?;
+        // The folder is kept until its files are complete.
+        let (held, messages) = ((place.clone(), writing.begin()), Arc::clone(&intake));
+        let collector = Builder::new()
+            .name("kinefront-collector".to_owned())
+            .spawn(move || {
+                messages.follow(&events);
+                files.join();
+                drop(held);
+            })
+            .map_err(cannot)?;
+        source((*study).clone(), Arc::clone(&control), listeners).map_err(cannot)?;
         Ok(Self {
-            study: as_run,
+            study,
             control,
             intake,
-            folder,
+            place,
             writing,
-            threads: listeners.threads,
+            collector,
             clock: Clock {
                 worked: Duration::ZERO,
                 since: Some(Instant::now()),
@@ -164,14 +181,14 @@ impl Running {
         const PATIENCE: Duration = Duration::from_secs(3);
         self.control.abandon();
         let since = Instant::now();
-        while since.elapsed() < PATIENCE && !self.threads.iter().all(JoinHandle::is_finished) {
+        while since.elapsed() < PATIENCE && !self.collector.is_finished() {
             std::thread::sleep(Duration::from_millis(10));
         }
     }
 
     /// Returns the run folder; its files are complete once the run has ended and [`Writing::wait`] has returned.
     pub fn folder(&self) -> PathBuf {
-        self.folder.path().join("run")
+        self.place.path()
     }
 
     /// Returns the counter of the files that are still being written.

@@ -2,8 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{DESIGNS, FRONT, REPORT, RunReport, STUDY};
-use crate::study::{Study, StudyError, TableError, TableRow, read_table};
+use serde::de::DeserializeOwned;
+
+use super::{Checkpoint, DESIGNS, Difference, FRONT, FileSum, FileSums, PROGRESS, RECORDING, REPORT, RunReport, STUDY};
+use crate::study::{
+    Column, Study, StudyError, TableContents, TableError, TableFault, read_run_table, read_table, table_bytes,
+};
 
 /// A run on disk.
 ///
@@ -11,7 +15,7 @@ use crate::study::{Study, StudyError, TableError, TableRow, read_table};
 /// use kinefront::study::RunFolder;
 ///
 /// let run = RunFolder::open("run".as_ref())?;
-/// let heaviest = run.designs()?.into_iter().map(|entry| entry.row.mass).fold(0.0, f64::max);
+/// let heaviest = run.designs()?.rows.into_iter().map(|entry| entry.row.mass).fold(0.0, f64::max);
 /// println!("{}: at most {heaviest} kg", run.study().name);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -19,6 +23,18 @@ use crate::study::{Study, StudyError, TableError, TableRow, read_table};
 pub struct RunFolder {
     path: PathBuf,
     study: Study,
+    state: RunState,
+}
+
+/// What a run folder states about its files.
+#[derive(Debug, Clone)]
+enum RunState {
+    /// The run has not ended: a process writes it, or was killed.
+    Unfinished(Checkpoint),
+    /// The run has ended.
+    Ended(Box<RunReport>),
+    /// Neither `progress.json` nor `run.json` is there and readable.
+    Unknown,
 }
 
 /// Why a run folder cannot be read.
@@ -30,6 +46,30 @@ pub enum RunFolderError {
     /// The study of the run is invalid.
     #[error(transparent)]
     Study(#[from] Box<StudyError>),
+    /// A file cannot be read.
+    #[error("cannot read {}: {cause}", path.display())]
+    Read {
+        /// Path of the file.
+        path: PathBuf,
+        /// Cause of the error.
+        cause: std::io::Error,
+    },
+    /// A file is not JSON.
+    #[error("{} is damaged: {cause}", path.display())]
+    Damaged {
+        /// Path of the file.
+        path: PathBuf,
+        /// Where it is no JSON.
+        cause: serde_json::Error,
+    },
+    /// A file is not the one that the run wrote.
+    #[error("{} is not the file of the run: {difference}", path.display())]
+    Differs {
+        /// Path of the file.
+        path: PathBuf,
+        /// How it differs.
+        difference: Difference,
+    },
 }
 
 impl RunFolder {
@@ -41,15 +81,21 @@ impl RunFolder {
     /// Opens the run folder at `path` and reads its study.
     ///
     /// # Errors
-    /// [`RunFolderError::NoRun`] or [`RunFolderError::Study`].
+    /// [`RunFolderError`]; a `study.toml` that was changed after the run is one.
     pub fn open(path: &Path) -> Result<Self, RunFolderError> {
         if !Self::is_at(path) {
             return Err(RunFolderError::NoRun(path.to_owned()));
         }
-        let study = Study::read(&path.join(STUDY)).map_err(Box::new)?;
+        let state = RunState::read(path)?;
+        let study = path.join(STUDY);
+        if let Some(sum) = state.sums().and_then(|sums| sums.study) {
+            check(&study, &sum, false)?;
+        }
+        let study = Study::read(&study).map_err(Box::new)?;
         Ok(Self {
             path: path.to_owned(),
             study,
+            state,
         })
     }
 
@@ -58,27 +104,120 @@ impl RunFolder {
         &self.study
     }
 
+    /// Path of the folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Path of the table of all designs.
+    pub fn designs_path(&self) -> PathBuf {
+        self.path.join(DESIGNS)
+    }
+
+    /// Path of the table of the front, which exists if the run verified one.
+    pub fn front_path(&self) -> PathBuf {
+        self.path.join(FRONT)
+    }
+
+    /// Path of the report, which exists once the run has ended.
+    pub fn report_path(&self) -> PathBuf {
+        self.path.join(REPORT)
+    }
+
+    /// Path of the recording, which exists unless the run was made without one.
+    pub fn recording_path(&self) -> PathBuf {
+        self.path.join(RECORDING)
+    }
+
     /// Reads every evaluated design, in the order of the ids.
     ///
     /// # Errors
-    /// [`TableError`] with the line that is wrong.
-    pub fn designs(&self) -> Result<Vec<TableRow>, TableError> {
-        read_table(&self.path.join(DESIGNS), &self.study)
+    /// [`TableError`] with the line that is wrong; a table that is not the one that the run wrote is an error, too.
+    pub fn designs(&self) -> Result<TableContents, TableError> {
+        let path = self.designs_path();
+        let contents = read_run_table(&path, &self.study)?;
+        if let Some(sum) = self.state.sums().and_then(|sums| sums.designs) {
+            compare_table(&path, &sum, self.checkpoint().is_some())?;
+        }
+        Ok(contents)
+    }
+
+    /// Reads the designs to resume the run. Rows that are missing at the end of the table are evaluated again, so that
+    /// their absence is no error here but a note.
+    ///
+    /// # Errors
+    /// As [`RunFolder::designs`].
+    pub(super) fn designs_to_resume(&self, notes: &mut Vec<String>) -> Result<TableContents, TableError> {
+        let path = self.designs_path();
+        let sum = self.state.sums().and_then(|sums| sums.designs);
+        if let Some(sum) = sum {
+            match compare_table(&path, &sum, true) {
+                Err(TableError {
+                    fault: TableFault::Differs(Difference::Shorter { .. }),
+                    ..
+                }) => notes.push(format!(
+                    "{DESIGNS} has lost rows since the run wrote {}; they are evaluated again",
+                    sum.rows.unwrap_or(0)
+                )),
+                result => result?,
+            }
+        }
+        if std::fs::metadata(&path).is_ok_and(|found| found.len() < header_length()) {
+            return Ok(TableContents {
+                rows: Vec::new(),
+                cut_line: Some(1),
+            });
+        }
+        read_run_table(&path, &self.study)
     }
 
     /// Reads the verified front; `None` for a run that did not verify one.
     ///
     /// # Errors
-    /// [`TableError`] with the line that is wrong.
-    pub fn front(&self) -> Result<Option<Vec<TableRow>>, TableError> {
-        let path = self.path.join(FRONT);
-        path.exists().then(|| read_table(&path, &self.study)).transpose()
+    /// As [`RunFolder::designs`].
+    pub fn front(&self) -> Result<Option<TableContents>, TableError> {
+        let path = self.front_path();
+        if !path.exists() {
+            return Ok(None);
+        }
+        let contents = read_table(&path, &self.study)?;
+        if let Some(sum) = self.state.sums().and_then(|sums| sums.front) {
+            compare_table(&path, &sum, false)?;
+        }
+        Ok(Some(contents))
     }
 
-    /// Reads `run.json`. `None` if it is missing, or not of this version: nothing depends on it, because a run that was
-    /// killed leaves none.
-    pub fn report(&self) -> Option<RunReport> {
-        serde_json::from_slice(&std::fs::read(self.path.join(REPORT)).ok()?).ok()
+    /// Checks that a file of the run is the one that it wrote; any other file, and a table that still grows, passes.
+    ///
+    /// # Errors
+    /// [`RunFolderError::Differs`].
+    pub fn check_file(&self, path: &Path) -> Result<(), RunFolderError> {
+        let Some(sums) = self.state.sums() else { return Ok(()) };
+        let named = |name: &str| path.file_name().is_some_and(|found| found == name);
+        match (
+            sums.designs.filter(|_| named(DESIGNS)),
+            sums.front.filter(|_| named(FRONT)),
+        ) {
+            (Some(sum), _) => check(path, &sum, self.checkpoint().is_some()),
+            (_, Some(sum)) => check(path, &sum, false),
+            _ => Ok(()),
+        }
+    }
+
+    /// Contents of `run.json`; `None` for a run that has not ended, and for one whose report is not of this version.
+    pub fn report(&self) -> Option<&RunReport> {
+        match &self.state {
+            RunState::Ended(report) => Some(report),
+            _ => None,
+        }
+    }
+
+    /// The last checkpoint of a run that has not ended.
+    pub fn checkpoint(&self) -> Option<&Checkpoint> {
+        match &self.state {
+            RunState::Unfinished(checkpoint) => Some(checkpoint),
+            _ => None,
+        }
     }
 
     /// Name of the folder, without the path to it, which a published report must not reveal.
@@ -87,4 +226,76 @@ impl RunFolder {
         let name = path.file_name().unwrap_or(path.as_os_str());
         name.to_string_lossy().into_owned()
     }
+}
+
+impl RunState {
+    fn read(folder: &Path) -> Result<Self, RunFolderError> {
+        // While a run goes on, a report is that of an earlier, shorter run of the same folder.
+        if let Some(checkpoint) = read_json(&folder.join(PROGRESS))? {
+            return Ok(Self::Unfinished(checkpoint));
+        }
+        Ok(read_json(&folder.join(REPORT))?.map_or(Self::Unknown, |report| Self::Ended(Box::new(report))))
+    }
+
+    /// The sums of the files, as far as they are known.
+    fn sums(&self) -> Option<FileSums> {
+        match self {
+            Self::Unfinished(checkpoint) => Some(FileSums {
+                study: checkpoint.study,
+                designs: Some(checkpoint.designs),
+                front: None,
+            }),
+            Self::Ended(report) => report.files,
+            Self::Unknown => None,
+        }
+    }
+}
+
+/// Reads a JSON file of a run; `None` if it is missing, or if it is JSON of another version.
+fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, RunFolderError> {
+    let text = match std::fs::read(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(cause) => {
+            return Err(RunFolderError::Read {
+                path: path.to_owned(),
+                cause,
+            });
+        }
+    };
+    let value: serde_json::Value = serde_json::from_slice(&text).map_err(|cause| RunFolderError::Damaged {
+        path: path.to_owned(),
+        cause,
+    })?;
+    Ok(T::deserialize(value).ok())
+}
+
+/// Number of bytes of the header of `designs.csv`.
+fn header_length() -> u64 {
+    table_bytes(Column::of_designs(), []).map_or(0, |header| header.len() as u64)
+}
+
+fn check(path: &Path, sum: &FileSum, may_grow: bool) -> Result<(), RunFolderError> {
+    let difference = sum.compare(path, may_grow).map_err(|cause| RunFolderError::Read {
+        path: path.to_owned(),
+        cause,
+    })?;
+    difference.map_or(Ok(()), |difference| {
+        Err(RunFolderError::Differs {
+            path: path.to_owned(),
+            difference,
+        })
+    })
+}
+
+fn compare_table(path: &Path, sum: &FileSum, may_grow: bool) -> Result<(), TableError> {
+    let fault = match sum.compare(path, may_grow) {
+        Ok(None) => return Ok(()),
+        Ok(Some(difference)) => difference.into(),
+        Err(error) => error.into(),
+    };
+    Err(TableError {
+        path: path.to_owned(),
+        fault,
+    })
 }

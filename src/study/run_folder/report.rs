@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::FileSum;
 use crate::study::{AlgorithmName, EndReason, GenerationSummary, RunSummary, RunTimes, Study};
 use kinefront_model::mechanism::Architecture;
 
 /// Contents of `run.json`.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct RunReport {
     /// Version of the program.
     pub kinefront_version: String,
@@ -33,7 +33,8 @@ pub struct RunReport {
     pub front_size: usize,
     /// Designs of the front on the reference grid that are infeasible or dominated on the fine grid.
     pub front_dropped_by_verification: usize,
-    /// Designs of the verified front before it was thinned.
+    /// Designs of the verified front before it was thinned; 0 in a report of a version that did not thin.
+    #[serde(default)]
     pub front_verified: usize,
     /// Reference point of the hypervolumes.
     pub hypervolume_reference: HypervolumeReference,
@@ -45,10 +46,30 @@ pub struct RunReport {
     pub times: RunTimes,
     /// State after each generation.
     pub history: Vec<GenerationSummary>,
+    /// Every how many generations one is recorded; `None` for a run without a recording.
+    #[serde(default)]
+    pub record_every: Option<usize>,
+    /// Sums of the files; `None` in a report that was not written to a run folder, and of earlier versions.
+    #[serde(default)]
+    pub files: Option<FileSums>,
+}
+
+/// Sums of the files of a run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FileSums {
+    /// Sum of `study.toml`.
+    #[serde(rename = "study.toml")]
+    pub study: Option<FileSum>,
+    /// Sum of `designs.csv`.
+    #[serde(rename = "designs.csv")]
+    pub designs: Option<FileSum>,
+    /// Sum of `front.csv`; `None` for a run that did not verify a front.
+    #[serde(rename = "front.csv")]
+    pub front: Option<FileSum>,
 }
 
 /// Reference point of a hypervolume.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct HypervolumeReference {
     /// Mass \[kg\].
     pub mass_kg: f64,
@@ -82,6 +103,8 @@ impl RunReport {
             verified_hypervolume_kg_m: summary.verified_hypervolume,
             times: summary.times,
             history: summary.history.clone(),
+            record_every: None,
+            files: None,
         }
     }
 }

@@ -1,25 +1,49 @@
 //! Writing a run folder.
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::mpsc::Receiver;
+use std::time::{Duration, Instant};
 
-use super::{DESIGNS, FRONT, RECORDING, REPORT, RunReport, STUDY};
-use crate::study::table::{Cell, Column, Row, TableRow, TableWriter, table_bytes};
+use super::durable::{remove, sync_folder};
+use super::sum::checksum;
+use super::{
+    Checkpoint, DESIGNS, FRONT, FileSum, FileSums, PROGRESS, RECORDING, REPORT, RunReport, STUDY, write_whole,
+};
+use crate::study::table::{Cell, Column, Row, TableRow, append_row, table_bytes};
 use crate::study::{Batch, Event, RunSummary, Study};
+
+/// Time between two checkpoints: at most the designs of this time are lost when the power fails.
+const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(5);
+
+/// A checkpoint waits until this many times the duration of the last one has passed, so that a slow disk takes at most
+/// 2 % of the time of a run.
+const CHECKPOINT_SHARE: u32 = 50;
 
 /// Error of writing a run folder.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The folder already holds a run.
-    #[error("{} already holds a run ({found}); choose another folder, or move that one away", path.display())]
+    #[error(
+        "{} already holds a run ({found}); continue it with --resume, choose another folder, or move that one away",
+        path.display()
+    )]
     Occupied {
         /// Path of the folder.
         path: PathBuf,
         /// Name of a file of the run that it holds.
         found: &'static str,
+    },
+    /// Another process writes the run.
+    #[error("{} is in use: another process writes its run", .0.display())]
+    InUse(PathBuf),
+    /// The table is no longer the one that is being written.
+    #[error("{} was changed by another program while the run wrote it: {message}", path.display())]
+    Changed {
+        /// Path of the file.
+        path: PathBuf,
+        /// What is different.
+        message: String,
     },
     /// A file cannot be written.
     #[error("cannot write {}: {cause}", path.display())]
@@ -31,43 +55,84 @@ pub enum WriteError {
     },
 }
 
-/// Names of the files of a run.
-const FILES: [&str; 5] = [STUDY, DESIGNS, FRONT, REPORT, RECORDING];
+impl WriteError {
+    /// Converts an I/O error of the file at `path`.
+    pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |cause| Self::Write { path, cause }
+    }
+}
 
-/// A run folder that is being written.
+/// A run folder that is being written. It stays locked until the writer is dropped.
 #[derive(Debug)]
 pub struct RunWriter {
     path: PathBuf,
-    designs: TableWriter<BufWriter<File>>,
+    study: Study,
+    record_every: Option<usize>,
+    study_sum: FileSum,
+    table: DesignTable,
+    checkpoint_at: Instant,
 }
 
 impl RunWriter {
-    /// Prepares `path` for a run of `study`: creates the folder, writes `study.toml` and the header of `designs.csv`.
+    /// Prepares `path` for a run of `study`: creates and locks the folder, and writes `study.toml` and the header of
+    /// `designs.csv`. The remains of a start that was killed are replaced.
     ///
     /// # Errors
-    /// [`WriteError::Occupied`] if the folder already holds a run, [`WriteError::Write`] if it cannot be written.
-    pub fn create(path: &Path, study: &Study) -> Result<Self, WriteError> {
-        if let Some(found) = FILES.into_iter().find(|file| path.join(file).exists()) {
+    /// [`WriteError::Occupied`] if the folder already holds a run, [`WriteError::InUse`] if another process prepares it,
+    /// [`WriteError::Write`] if it cannot be written.
+    pub fn create(path: &Path, study: &Study, record_every: Option<usize>) -> Result<Self, WriteError> {
+        let occupied = || {
+            let found = [STUDY, FRONT, REPORT, RECORDING]
+                .into_iter()
+                .find(|file| path.join(file).exists());
+            found.map_or(Ok(()), |found| {
+                Err(WriteError::Occupied {
+                    path: path.to_owned(),
+                    found,
+                })
+            })
+        };
+        occupied()?;
+        fs::create_dir_all(path).map_err(WriteError::at(path))?;
+        // The lock decides between two processes that start at once.
+        let file = open_locked(path, true)?;
+        occupied()?;
+        let mut table = DesignTable::over(file, path);
+        if !table.is_begun_at_most()? {
             return Err(WriteError::Occupied {
                 path: path.to_owned(),
-                found,
+                found: DESIGNS,
             });
         }
-        let at = |path: &Path| {
-            let path = path.to_owned();
-            move |cause| WriteError::Write { path, cause }
-        };
-        fs::create_dir_all(path).map_err(at(path))?;
+        table.begin()?;
+        Self::start(path, study, record_every, table)
+    }
+
+    /// Starts to write a folder whose table is ready: writes the study and the first checkpoint.
+    pub(super) fn start(
+        path: &Path,
+        study: &Study,
+        record_every: Option<usize>,
+        table: DesignTable,
+    ) -> Result<Self, WriteError> {
         let study_path = path.join(STUDY);
-        let text = toml::to_string(study).map_err(|error| at(&study_path)(io::Error::other(error)))?;
-        write_whole(&study_path, text.as_bytes())?;
-        let designs_path = path.join(DESIGNS);
-        let file = File::create_new(&designs_path).map_err(at(&designs_path))?;
-        let designs = TableWriter::new(BufWriter::new(file), Column::of_designs()).map_err(at(&designs_path))?;
-        Ok(Self {
+        let text = toml::to_string(study).map_err(|error| WriteError::at(&study_path)(io::Error::other(error)))?;
+        let mut writer = Self {
             path: path.to_owned(),
-            designs,
-        })
+            study: study.clone(),
+            record_every,
+            study_sum: FileSum::of(text.as_bytes()),
+            table,
+            checkpoint_at: Instant::now(),
+        };
+        // While the study is replaced, its sum is unknown: a crash between the two files must not look like damage.
+        writer.table.synchronize()?;
+        writer.write_checkpoint(None)?;
+        remove(&path.join(REPORT))?;
+        write_whole(&study_path, text.as_bytes())?;
+        writer.checkpoint()?;
+        Ok(writer)
     }
 
     /// Returns the path of the folder.
@@ -75,93 +140,250 @@ impl RunWriter {
         &self.path
     }
 
-    /// Receives the events of a run and writes its files until the run ends.
+    /// The path of the recording.
+    pub fn recording_path(&self) -> PathBuf {
+        self.path.join(RECORDING)
+    }
+
+    /// Every how many generations one is recorded; `None` for a run without a recording.
+    pub fn record_every(&self) -> Option<usize> {
+        self.record_every
+    }
+
+    /// Writes the designs of an event, if there is one; the rows that a resumed run already has are not written again. The
+    /// rows are handed to the operating system before this function returns, and reach the disk every few seconds.
     ///
     /// # Errors
-    /// [`WriteError::Write`] for the first file that cannot be written; files written before are kept.
-    pub fn follow(mut self, events: &Receiver<Arc<Event>>, study: &Study) -> Result<(), WriteError> {
-        for event in events {
-            match &*event {
-                Event::Evaluated(batch) => self.append(batch)?,
-                Event::Finished(summary) => self.finish(study, summary)?,
-                _ => {}
-            }
+    /// [`WriteError`]; the table then ends with its last complete row.
+    pub fn write(&mut self, event: Option<&Event>) -> Result<(), WriteError> {
+        if let Some(Event::Evaluated(batch)) = event
+            && batch.first_id >= self.table.sum.rows.unwrap_or(0)
+        {
+            self.table.append(batch)?;
+        }
+        if Instant::now() >= self.checkpoint_at {
+            self.checkpoint()?;
         }
         Ok(())
     }
 
-    fn append(&mut self, batch: &Batch) -> Result<(), WriteError> {
-        let mut write = || -> io::Result<()> {
-            for (offset, evaluation) in batch.evaluations.iter().enumerate() {
-                let entry = TableRow {
-                    id: batch.first_id + offset,
-                    row: Row::new(batch.generation, evaluation),
-                    reference_radius: None,
-                };
-                self.designs
-                    .write(Column::of_designs().map(|column| column.cell(&entry)))?;
-            }
-            self.designs.flush()
+    /// Writes `front.csv` and `run.json`. If all other files of the run are `complete`, `progress.json` is removed, which
+    /// marks the run as ended.
+    ///
+    /// # Errors
+    /// [`WriteError`] for the first file that cannot be written; files written before are kept.
+    pub fn finish(&mut self, summary: &RunSummary, complete: bool) -> Result<(), WriteError> {
+        self.checkpoint()?;
+        let front_sum = if summary.verified_front() {
+            let front_path = self.path.join(FRONT);
+            let front = front_table(summary).map_err(WriteError::at(&front_path))?;
+            write_whole(&front_path, &front)?;
+            Some(FileSum {
+                rows: Some(summary.front.len()),
+                ..FileSum::of(&front)
+            })
+        } else {
+            None
         };
-        write().map_err(|cause| WriteError::Write {
-            path: self.path.join(DESIGNS),
-            cause,
-        })
+        let report = RunReport {
+            record_every: self.record_every,
+            files: Some(FileSums {
+                study: Some(self.study_sum),
+                designs: Some(self.table.sum),
+                front: front_sum,
+            }),
+            ..RunReport::new(&self.study, summary)
+        };
+        let path = self.path.join(REPORT);
+        let mut text = serde_json::to_vec_pretty(&report).map_err(|error| WriteError::at(&path)(error.into()))?;
+        text.push(b'\n');
+        write_whole(&path, &text)?;
+        if complete {
+            remove(&self.path.join(PROGRESS))?;
+            sync_folder(&self.path).map_err(WriteError::at(&self.path))?;
+        }
+        Ok(())
     }
 
-    fn finish(&mut self, study: &Study, summary: &RunSummary) -> Result<(), WriteError> {
-        let front_path = self.path.join(FRONT);
-        let rows = summary.front.iter().zip(summary.marks()).map(|(member, mark)| {
-            let entry = TableRow {
-                id: member.id,
-                row: Row::new(member.generation, &member.evaluation),
-                reference_radius: Some(member.reference_radius),
-            };
-            let cell = |column| match column {
-                Column::Mark => Cell::Text(mark.into()),
-                column => column.cell(&entry),
-            };
-            Column::of_front().map(cell).collect()
-        });
-        let table = table_bytes(Column::of_front(), rows).map_err(|cause| WriteError::Write {
-            path: front_path.clone(),
-            cause,
-        })?;
-        write_whole(&front_path, &table)?;
+    /// Synchronises the table to the disk and states so in `progress.json`.
+    fn checkpoint(&mut self) -> Result<(), WriteError> {
+        let start = Instant::now();
+        self.table.check()?;
+        self.table.synchronize()?;
+        self.write_checkpoint(Some(self.study_sum))?;
+        self.checkpoint_at = Instant::now() + CHECKPOINT_INTERVAL.max(CHECKPOINT_SHARE * start.elapsed());
+        Ok(())
+    }
 
-        let report_path = self.path.join(REPORT);
-        let mut report =
-            serde_json::to_vec_pretty(&RunReport::new(study, summary)).map_err(|error| WriteError::Write {
-                path: report_path.clone(),
-                cause: error.into(),
-            })?;
-        report.push(b'\n');
-        write_whole(&report_path, &report)
+    fn write_checkpoint(&self, study: Option<FileSum>) -> Result<(), WriteError> {
+        let checkpoint = Checkpoint {
+            kinefront_version: env!("CARGO_PKG_VERSION").to_owned(),
+            record_every: self.record_every,
+            study,
+            designs: self.table.sum,
+        };
+        checkpoint.write(&self.path)
     }
 }
 
-/// Writes a file atomically: writes a temporary file in the same folder and renames it, so that the file is either
-/// complete or unchanged.
-///
-/// # Errors
-/// [`WriteError::Write`].
-pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), WriteError> {
-    let mut name = std::ffi::OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(".partial");
-    let partial = path.with_file_name(name);
-    let write = || -> io::Result<()> {
-        let mut file = File::create(&partial)?;
-        file.write_all(contents)?;
-        file.sync_all()?;
-        fs::rename(&partial, path)
-    };
-    write().map_err(|cause| {
-        // The partial file is useless; failing to remove it does not justify a second error.
-        let _ = fs::remove_file(&partial);
-        WriteError::Write {
-            path: path.to_owned(),
-            cause,
+/// Opens and locks the table of a run folder, which is the lock of the folder.
+pub(super) fn open_locked(folder: &Path, create: bool) -> Result<File, WriteError> {
+    let path = folder.join(DESIGNS);
+    // Rows are appended whatever another program does to the file; a file truncated by others has no gap then.
+    let file = OpenOptions::new()
+        .read(true)
+        .append(true)
+        .create(create)
+        .open(&path)
+        .map_err(WriteError::at(&path))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => Err(WriteError::InUse(folder.to_owned())),
+        // A file system without locks cannot guard the folder; the run goes on as its user asked.
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(file),
+        Err(TryLockError::Error(error)) => Err(WriteError::at(&path)(error)),
+    }
+}
+
+/// `designs.csv` as it grows.
+#[derive(Debug)]
+pub(super) struct DesignTable {
+    file: File,
+    path: PathBuf,
+    sum: FileSum,
+    checksum: crc32fast::Hasher,
+}
+
+impl DesignTable {
+    /// Takes the table of a folder that is open and locked; it counts as empty.
+    pub(super) fn over(file: File, folder: &Path) -> Self {
+        Self {
+            file,
+            path: folder.join(DESIGNS),
+            sum: FileSum {
+                rows: Some(0),
+                bytes: 0,
+                crc32: 0,
+            },
+            checksum: crc32fast::Hasher::new(),
         }
-    })
+    }
+
+    /// Whether the file has nothing but a header, or a part of one, left by a start that was killed.
+    fn is_begun_at_most(&self) -> Result<bool, WriteError> {
+        let header = table_bytes(Column::of_designs(), []).map_err(WriteError::at(&self.path))?;
+        let length = self.file.metadata().map_err(WriteError::at(&self.path))?.len();
+        if length > header.len() as u64 {
+            return Ok(false);
+        }
+        let found = fs::read(&self.path).map_err(WriteError::at(&self.path))?;
+        Ok(header.starts_with(&found))
+    }
+
+    /// Empties the table and writes its header.
+    pub(super) fn begin(&mut self) -> Result<(), WriteError> {
+        let header = table_bytes(Column::of_designs(), []).map_err(WriteError::at(&self.path))?;
+        self.file.set_len(0).map_err(WriteError::at(&self.path))?;
+        self.append_bytes(&header, 0)
+    }
+
+    /// Keeps the first `rows` rows of the table, which end at byte `bytes`.
+    pub(super) fn keep(&mut self, rows: usize, bytes: u64) -> Result<(), WriteError> {
+        let keep = || -> io::Result<crc32fast::Hasher> {
+            self.file.set_len(bytes)?;
+            checksum(File::open(&self.path)?, bytes)
+        };
+        self.checksum = keep().map_err(WriteError::at(&self.path))?;
+        self.sum = FileSum {
+            rows: Some(rows),
+            bytes,
+            crc32: self.checksum.clone().finalize(),
+        };
+        Ok(())
+    }
+
+    fn append(&mut self, batch: &Batch) -> Result<(), WriteError> {
+        let text = || -> io::Result<Vec<u8>> {
+            let mut table = csv::Writer::from_writer(Vec::new());
+            for entry in batch.entries() {
+                append_row(&mut table, Column::of_designs().map(|column| column.cell(&entry)))?;
+            }
+            table.into_inner().map_err(|error| error.into_error())
+        };
+        let text = text().map_err(WriteError::at(&self.path))?;
+        self.append_bytes(&text, batch.rows.len())
+    }
+
+    /// Appends complete rows; if that fails, removes what was written of them.
+    fn append_bytes(&mut self, text: &[u8], rows: usize) -> Result<(), WriteError> {
+        if let Err(error) = self.file.write_all(text) {
+            // Failing to remove the remains does not justify a second error: a reader ignores a cut last row.
+            let _ = self.file.set_len(self.sum.bytes);
+            return Err(WriteError::at(&self.path)(error));
+        }
+        self.checksum.update(text);
+        self.sum = FileSum {
+            rows: Some(self.sum.rows.unwrap_or(0) + rows),
+            bytes: self.sum.bytes + text.len() as u64,
+            crc32: self.checksum.clone().finalize(),
+        };
+        Ok(())
+    }
+
+    fn synchronize(&self) -> Result<(), WriteError> {
+        self.file.sync_data().map_err(WriteError::at(&self.path))
+    }
+
+    /// Checks that the file at the path of the table is still this one and as long as it was written.
+    fn check(&self) -> Result<(), WriteError> {
+        let changed = |message: String| {
+            Err(WriteError::Changed {
+                path: self.path.clone(),
+                message,
+            })
+        };
+        let found = match fs::metadata(&self.path) {
+            Ok(found) => found,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                return changed("it was removed or moved".to_owned());
+            }
+            Err(error) => return Err(WriteError::at(&self.path)(error)),
+        };
+        let own = self.file.metadata().map_err(WriteError::at(&self.path))?;
+        if !is_same_file(&found, &own) {
+            return changed("another file is in its place".to_owned());
+        }
+        if own.len() != self.sum.bytes {
+            return changed(format!("it has {} bytes instead of {}", own.len(), self.sum.bytes));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(unix)]
+fn is_same_file(a: &fs::Metadata, b: &fs::Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    (a.dev(), a.ino()) == (b.dev(), b.ino())
+}
+
+#[cfg(not(unix))]
+fn is_same_file(a: &fs::Metadata, b: &fs::Metadata) -> bool {
+    a.created().ok() == b.created().ok()
+}
+
+/// Returns the verified front as a table.
+pub(super) fn front_table(summary: &RunSummary) -> io::Result<Vec<u8>> {
+    let rows = summary.front.iter().zip(summary.marks()).map(|(member, mark)| {
+        let entry = TableRow {
+            id: member.id,
+            row: Row::new(member.generation, &member.evaluation),
+            reference_radius: Some(member.reference_radius),
+        };
+        let cell = |column| match column {
+            Column::Mark => Cell::Text(mark.into()),
+            column => column.cell(&entry),
+        };
+        Column::of_front().map(cell).collect()
+    });
+    table_bytes(Column::of_front(), rows)
 }

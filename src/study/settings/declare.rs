@@ -101,8 +101,8 @@ impl Check {
         let (valid, expected) = match self {
             Check::Positive => ((1e-12..=1e15).contains(&number), "above 0 (1e-12 to 1e15)".to_owned()),
             Check::NonNegative => (
-                (0.0..=1e15).contains(&number),
-                "at least 0 (and at most 1e15)".to_owned(),
+                number == 0.0 || (1e-12..=1e15).contains(&number),
+                "0, or from 1e-12 to 1e15".to_owned(),
             ),
             Check::Within(low, high, more) => ((low..=high).contains(&number), format!("in [{low}, {high}]{more}")),
             Check::HalfOpen(low, high) => ((low..high).contains(&number), format!("in [{low}, {high})")),

@@ -6,6 +6,7 @@ mod row;
 mod write;
 
 pub use column::{Better, Cell, Column, ColumnType};
-pub use read::{TableError, TableFault, read_designs, read_table};
+pub use read::{TableContents, TableError, TableFault, read_designs, read_run_table, read_table};
 pub use row::{Row, RowError, TableRow};
-pub use write::{TableWriter, table_bytes};
+pub(super) use write::append_row;
+pub use write::table_bytes;

@@ -4,41 +4,18 @@ use std::io::{self, Write};
 
 use super::{Cell, Column};
 
-/// A CSV table that grows row by row.
-#[derive(Debug)]
-pub struct TableWriter<W: Write>(csv::Writer<W>);
-
-impl<W: Write> TableWriter<W> {
-    /// Begins a table with the names of its columns.
-    ///
-    /// # Errors
-    /// The error of the file.
-    pub fn new(file: W, columns: impl IntoIterator<Item = Column>) -> io::Result<Self> {
-        let mut table = csv::Writer::from_writer(file);
-        let names: Vec<_> = columns.into_iter().map(Column::name).collect();
-        table.write_record(names.iter().map(|name| name.as_bytes()))?;
-        table.flush()?;
-        Ok(Self(table))
+/// Appends one row to a table.
+///
+/// # Errors
+/// The error of the file.
+pub(in crate::study) fn append_row<W: Write>(
+    table: &mut csv::Writer<W>,
+    cells: impl IntoIterator<Item = Cell>,
+) -> io::Result<()> {
+    for cell in cells {
+        table.write_field(cell.to_string())?;
     }
-
-    /// Writes one row, a cell for each column.
-    ///
-    /// # Errors
-    /// The error of the file.
-    pub fn write(&mut self, cells: impl IntoIterator<Item = Cell>) -> io::Result<()> {
-        for cell in cells {
-            self.0.write_field(cell.to_string())?;
-        }
-        Ok(self.0.write_record(None::<&[u8]>)?)
-    }
-
-    /// Hands all rows to the file.
-    ///
-    /// # Errors
-    /// The error of the file.
-    pub fn flush(&mut self) -> io::Result<()> {
-        self.0.flush()
-    }
+    Ok(table.write_record(None::<&[u8]>)?)
 }
 
 /// Returns a whole table as CSV.
@@ -49,12 +26,11 @@ pub fn table_bytes(
     columns: impl IntoIterator<Item = Column>,
     rows: impl IntoIterator<Item = Vec<Cell>>,
 ) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let mut table = TableWriter::new(&mut bytes, columns)?;
+    let mut table = csv::Writer::from_writer(Vec::new());
+    let names: Vec<_> = columns.into_iter().map(Column::name).collect();
+    table.write_record(names.iter().map(|name| name.as_bytes()))?;
     for row in rows {
-        table.write(row)?;
+        append_row(&mut table, row)?;
     }
-    table.flush()?;
-    drop(table);
-    Ok(bytes)
+    table.into_inner().map_err(|error| error.into_error())
 }

@@ -1,6 +1,8 @@
 //! Report of an evaluation, derived from the search: smallest values and the poses where they occur, active
 //! constraints, violation.
 
+use glam::DVec2;
+
 use super::{Constraint, ConstraintResult, Evaluation, Model};
 use crate::clearance::Clearance;
 use crate::mechanism::{Design, Leg};
@@ -250,8 +252,51 @@ impl<L: Leg> ConstraintSearch<'_, L> {
         if !reports.iter().any(|report| report.active) {
             self.mark_beyond(&mut reports, sign_of(best_home));
         }
+        if !reports.iter().any(|report| report.required && report.margin < 0.0) {
+            self.visit_window(&mut reports, best_home, sign_of(best_home));
+        }
         let assembly = (-reports[Constraint::Assembly as usize].margin).max(0.0);
         (reports, (mean(best_home) + assembly).max(SMALLEST_VIOLATION))
+    }
+
+    /// Lowers the reports to the poses that leave the design without a workspace although its best centre pose is
+    /// feasible: the centres of the best window, and what lies just beyond them.
+    fn visit_window(&self, reports: &mut ConstraintResults, home: usize, sign: f64) {
+        let centre = self.model.workspace.centre;
+        let pose = |position: DVec2, index: usize| {
+            Pose::new(
+                position.x,
+                position.y,
+                self.found.orientations[index].phi_deg.to_radians(),
+            )
+        };
+        for index in self.found.orientation_grid.window(home) {
+            self.visit(reports, &self.found.centres.get(index), || pose(centre, index), sign);
+        }
+        let mut values = ValueColumns::default();
+        for &(index, beyond) in &self.found.limits {
+            let directions = &self.found.directions;
+            let mut rim = Positions::default();
+            for direction in directions {
+                rim.push(centre + *direction * beyond);
+            }
+            rim.pad();
+            self.checker
+                .at_positions(&self.found.orientations[index].arms, &rim.xs, &rim.ys, &mut values);
+            for (at, direction) in directions.iter().enumerate() {
+                self.visit(
+                    reports,
+                    &values.get(at),
+                    || pose(centre + *direction * beyond, index),
+                    sign,
+                );
+            }
+        }
+        // At the very end of a leg's reach the distance to the limit is 0, though the leg does not reach the pose.
+        let reach = &mut reports[Constraint::Reach as usize];
+        if reach.active && reach.margin == 0.0 {
+            reach.margin = -SMALLEST_VIOLATION;
+        }
     }
 
     /// Returns the sum of the relative shortfalls of g2 … g7 at a pose, and the sign of `det A` (0 if it vanishes or

@@ -137,17 +137,21 @@ pub enum DesignError {
 }
 
 impl Design {
+    /// Largest product of the length of a bar and its squared radius \[m³\] that is accepted, so that its mass is finite.
+    const MAX_VOLUME: f64 = 1e250;
+
     /// Largest ratio of `r` or `L_b` to `R` that is accepted.
     pub const MAX_RATIO: f64 = 1000.0;
 
     /// Creates the design with the real variables given in the order of [`DESIGN_VARIABLES`].
     ///
     /// # Errors
-    /// Returns a [`DesignError`] if a value is not a positive finite length (bar radii may be 0), or if `r` or `L_b`
-    /// exceeds [`Design::MAX_RATIO`] times `R`.
+    /// Returns a [`DesignError`] if a value is not a positive finite length (bar radii may be 0), if `r` or `L_b` exceeds
+    /// [`Design::MAX_RATIO`] times `R`, or if a bar is so large that its mass is not finite.
     pub fn new(architecture: Architecture, working_mode: WorkingMode, values: [f64; 5]) -> Result<Self, DesignError> {
         for (variable, value) in DESIGN_VARIABLES.into_iter().zip(values) {
-            let legal = value.is_finite() && (value > 0.0 || (variable.may_be_zero() && value == 0.0));
+            let above = value > 0.0 || (variable.may_be_zero() && value == 0.0);
+            let legal = above && value.is_finite();
             if !legal {
                 return Err(DesignError::OutOfDomain {
                     key: variable.key(),
@@ -169,6 +173,19 @@ impl Design {
                 return Err(DesignError::OutOfProportion {
                     key: variable.key(),
                     ratio,
+                });
+            }
+        }
+        for (variable, radius, length) in [
+            (DesignVariable::LegBarRadius, values[3], values[2]),
+            (DesignVariable::PlatformBarRadius, values[4], values[1]),
+        ] {
+            let volume = radius * radius * length;
+            if volume.is_nan() || volume > Self::MAX_VOLUME {
+                return Err(DesignError::OutOfDomain {
+                    key: variable.key(),
+                    value: radius,
+                    wanted: "so small that the mass of the bar is a finite number",
                 });
             }
         }

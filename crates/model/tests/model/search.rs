@@ -300,14 +300,14 @@ fn sizes_beyond_measure_stay_finite() {
             (Model::default(), "R=1e160 r=1e159 Lb=1e160 rj=0.1 rp=0.1"),
             (Model::default(), "R=1e-160 r=1e-160 Lb=1e-160 rj=0.1 rp=0.1"),
             (Model::default(), "R=2 r=1 Lb=2 rj=2e74 rp=2e74"),
-            (Model::default(), "R=2 r=1 Lb=2 rj=1e200 rp=1e-200"),
+            (Model::default(), "R=2 r=1 Lb=2 rj=1e120 rp=1e-200"),
             (Model::default(), "R=1 r=1 Lb=1 rj=0.05 rp=0.05"),
             (far, "R=2 r=1 Lb=2 rj=0.05 rp=0.05"),
         ] {
             let design: Design = format!("{architecture} {lengths}").parse().expect("a design");
             let found = model.evaluate(&design, GridChoice::Reference);
             assert!(
-                found.workspace_radius.is_finite() && found.violation.is_finite(),
+                found.workspace_radius.is_finite() && found.violation.is_finite() && found.mass.is_finite(),
                 "{design}"
             );
             for report in &found.constraints {
@@ -318,6 +318,14 @@ fn sizes_beyond_measure_stay_finite() {
             }
             assert!(found.active().next().is_some(), "{design}: no constraint is active");
         }
+    }
+    // The mass of a bar that is larger still would be infinite.
+    for (lengths, key) in [
+        ("R=1 r=1 Lb=1 rj=0 rp=1e200", "rp"),
+        ("R=2 r=1 Lb=2 rj=1e200 rp=0", "rj"),
+    ] {
+        let refused = format!("3-PRR {lengths}").parse::<Design>().expect_err("too large");
+        assert!(refused.to_string().contains(key), "{refused}");
     }
 }
 

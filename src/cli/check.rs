@@ -1,0 +1,185 @@
+//! The command `kinefront check`: checks a run folder and repairs it where nothing has to be guessed.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::sync_channel;
+
+use kinefront::recording::{Recorder, RunFiles, read_apart};
+use kinefront::study::{Event, Inspection, Repair, Resumption, RunControl, RunFolderError, TableRow, spawn_search};
+use miette::miette;
+
+use super::{Ending, Failure, say};
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+The exit code is 0 if the folder is sound, and 2 if something is wrong. A repair cuts an incomplete last row off, and writes
+anew what follows from the study and the designs: the front, run.json, and the recording.")]
+pub struct CheckArguments {
+    /// Run folder.
+    folder: PathBuf,
+    /// Repair what is wrong where nothing has to be guessed.
+    #[arg(long)]
+    repair: bool,
+    /// Print nothing but errors.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+pub fn run(arguments: &CheckArguments) -> Result<Ending, Failure> {
+    let path = &arguments.folder;
+    let inspection = inspect(path)?;
+    let mut out = std::io::stdout().lock();
+    if inspection.findings.is_empty() {
+        if !arguments.quiet {
+            writeln!(out, "{}", soundness(path, &inspection))?;
+        }
+        return Ok(Ending::Done);
+    }
+    for finding in &inspection.findings {
+        let remedy = match finding.repair {
+            Some(Repair::Cut) => " (can be repaired: the row is cut off)",
+            Some(Repair::WriteAnew) => " (can be repaired: it is written anew)",
+            None => "",
+        };
+        writeln!(out, "{}: {}{remedy}", finding.path.display(), finding.message)?;
+    }
+    if !arguments.repair {
+        let message = match inspection.is_repairable() {
+            true => "kinefront check --repair repairs it",
+            false => "this cannot be repaired from the folder itself",
+        };
+        return Err(Failure::Input(miette!("{} is not sound; {message}", path.display())));
+    }
+    if !inspection.is_repairable() {
+        return Err(Failure::Input(miette!(
+            "{} cannot be repaired without guessing",
+            path.display()
+        )));
+    }
+    drop(out);
+    repair(path)?;
+    let again = inspect(path)?;
+    if let Some(finding) = again.findings.first() {
+        return Err(Failure::Runtime(miette!(
+            "{} is still not sound: {}: {}",
+            path.display(),
+            finding.path.display(),
+            finding.message
+        )));
+    }
+    if !arguments.quiet {
+        writeln!(std::io::stdout(), "repaired; {}", soundness(path, &again))?;
+    }
+    Ok(Ending::Done)
+}
+
+fn soundness(path: &Path, inspection: &Inspection) -> String {
+    let count = inspection.designs.as_ref().map_or(0, Vec::len);
+    let state = match (inspection.folder.report(), inspection.folder.checkpoint()) {
+        (Some(_), _) => "the run has ended",
+        (None, Some(_)) => "the run has not ended and can be resumed",
+        (None, None) => "it states no checksums",
+    };
+    format!("{} is sound: {count} designs; {state}", path.display())
+}
+
+fn inspect(path: &Path) -> Result<Inspection, Failure> {
+    let mut inspection = Inspection::new(path).map_err(|error| match error {
+        RunFolderError::Read { .. } => Failure::runtime(error),
+        error => Failure::input(error),
+    })?;
+    check_recording(&mut inspection);
+    Ok(inspection)
+}
+
+/// Compares the recording with the table. That of a run that has not ended may be behind.
+fn check_recording(inspection: &mut Inspection) {
+    let path = inspection.folder.recording_path();
+    let (every, has_ended) = match (inspection.folder.report(), inspection.folder.checkpoint()) {
+        (Some(report), _) if report.files.is_some() => (report.record_every, true),
+        (Some(_), _) => (path.exists().then_some(1), true),
+        (None, Some(checkpoint)) => (checkpoint.record_every, false),
+        (None, None) => (path.exists().then_some(1), false),
+    };
+    let (Some(every), Some(designs)) = (every, inspection.designs.as_deref()) else {
+        return;
+    };
+    let expected: Vec<&TableRow> = designs
+        .iter()
+        .filter(|entry| (entry.row.generation as usize - 1).is_multiple_of(every))
+        .collect();
+    let wrong = match read_apart(&path) {
+        _ if !path.exists() => Some("it is missing".to_owned()),
+        Err(error) => Some(error.to_string()),
+        Ok((_, rows)) => {
+            let differing = rows
+                .iter()
+                .zip(&expected)
+                .position(|(found, entry)| found.row != entry.row);
+            match differing {
+                Some(place) => Some(format!("design #{} is not that of the table", expected[place].id)),
+                None if rows.len() > expected.len() || has_ended && rows.len() < expected.len() => Some(format!(
+                    "it has {} designs, but the table has {}",
+                    rows.len(),
+                    expected.len()
+                )),
+                None => None,
+            }
+        }
+    };
+    // A run that has not ended writes its recording anew when it is resumed.
+    if let Some(message) = wrong.filter(|_| has_ended) {
+        inspection.add(path, message, Some(Repair::WriteAnew));
+    }
+}
+
+/// Cuts an incomplete row off, and writes anew what follows from the study and the designs.
+fn repair(path: &Path) -> Result<(), Failure> {
+    let resumption = Resumption::open(path, None, None).map_err(Failure::input)?;
+    let outcome = resumption.folder().report().map(|report| report.outcome);
+    let every = resumption.record_every();
+    let (folder, mut search) = resumption.start(every).map_err(Failure::runtime)?;
+    let Some(outcome) = outcome else {
+        // The run has not ended: it continues with its next start.
+        return Ok(());
+    };
+    search.end_after_replay(outcome);
+    let recorder = match every {
+        Some(every) => {
+            Some(Recorder::create(&folder.recording_path(), search.study(), every).map_err(Failure::runtime)?)
+        }
+        None => None,
+    };
+    let control = Arc::new(RunControl::default());
+    let (next, events) = sync_channel::<Arc<Event>>(64);
+    let tell = |error: &kinefront::recording::RunFileError| say(format_args!("error: {error}"));
+    let (listeners, files) =
+        RunFiles::start(folder, recorder, next, Arc::clone(&control), tell).map_err(Failure::runtime)?;
+    let worker = spawn_search(search, control, listeners).map_err(Failure::runtime)?;
+    events.into_iter().for_each(drop);
+    let failures = files.join();
+    if worker.join().is_err() || !failures.is_empty() {
+        return Err(Failure::Runtime(miette!("{} could not be repaired", path.display())));
+    }
+    Ok(())
+}
+
+#[derive(Debug, clap::Args)]
+pub struct UnpackArguments {
+    /// Recording.
+    recording: PathBuf,
+    /// Folder to write to.
+    folder: PathBuf,
+}
+
+/// Unpacks a recording; what is wrong with it is printed as one line.
+pub fn unpack(arguments: &UnpackArguments) -> Result<Ending, Failure> {
+    match kinefront::recording::unpack(&arguments.recording, &arguments.folder) {
+        Ok(()) => Ok(Ending::Done),
+        Err(error) => {
+            say(error);
+            Ok(Ending::Refused)
+        }
+    }
+}

@@ -1,0 +1,417 @@
+//! The search of a study: an algorithm that is asked for generations and told their outcomes, and what was found.
+
+use std::fmt;
+use std::sync::Arc;
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+use super::stopping::Stopping;
+use super::{
+    AlgorithmName, Batch, Cell, Column, DesignProblem, EndReason, Event, GenerationSummary, Row, RunControl, RunTimes,
+    Study, TableRow,
+};
+use kinefront_model::mechanism::DesignError;
+use kinefront_model::workspace::GridError;
+use kinefront_optimize::{Algorithm, Archive, Candidate, Evaluated, FrontDe, Moga2, Nsga2, Outcome, hypervolume};
+
+/// Number of rows of a resumed run that are evaluated again and compared.
+const SAMPLED_ROWS: usize = 24;
+
+impl DesignProblem {
+    /// Evaluates a row again and compares all its values.
+    ///
+    /// # Errors
+    /// [`ReplayError::Value`] for the first value that differs.
+    pub fn check_row(&self, entry: &TableRow) -> Result<(), ReplayError> {
+        let evaluation = self.evaluate_design(&entry.row.design);
+        let found = TableRow {
+            row: Row::new(entry.row.generation as usize, &evaluation),
+            ..*entry
+        };
+        let differs = |column: &Column| column.cell(entry) != column.cell(&found);
+        let Some(column) = Column::of_designs().find(differs) else {
+            return Ok(());
+        };
+        let text = |cell: Cell| match cell {
+            Cell::Missing => "no value".to_owned(),
+            cell => cell.to_string(),
+        };
+        Err(ReplayError::Value {
+            id: entry.id,
+            column: column.name().into_owned(),
+            stated: text(column.cell(entry)),
+            found: text(column.cell(&found)),
+        })
+    }
+}
+
+/// Why a search fails; a study that was read without faults gives no cause but the threads.
+#[derive(Debug, thiserror::Error)]
+pub enum SearchError {
+    /// A grid of the study is invalid.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// The worker threads cannot be started.
+    #[error("cannot start the worker threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// The bounds allow values that are no design.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+}
+
+/// Why designs cannot be replayed: they are not those that the study leads to.
+#[derive(Debug, thiserror::Error)]
+pub enum ReplayError {
+    /// The search cannot be prepared.
+    #[error(transparent)]
+    Search(#[from] SearchError),
+    /// The design of a row is not the one that the algorithm asks for.
+    #[error(
+        "design #{id} does not follow from the study and the designs before it; the study, the algorithm or a row before \
+         it was changed"
+    )]
+    Design {
+        /// Id of the row.
+        id: usize,
+    },
+    /// A row states a generation other than that of its place.
+    #[error("design #{id} states generation {found}, but belongs to generation {expected}")]
+    Generation {
+        /// Id of the row.
+        id: usize,
+        /// Generation that the row states.
+        found: u32,
+        /// Generation of its place.
+        expected: usize,
+    },
+    /// A row that was evaluated again has another value.
+    #[error(
+        "design #{id} states {column} = {stated}, but its evaluation gives {found}; the study or the row was changed"
+    )]
+    Value {
+        /// Id of the row.
+        id: usize,
+        /// Name of the column.
+        column: String,
+        /// Value in the row.
+        stated: String,
+        /// Value of the evaluation.
+        found: String,
+    },
+}
+
+/// A search in progress.
+pub struct StudySearch {
+    study: Arc<Study>,
+    pub(super) problem: DesignProblem,
+    algorithm: Box<dyn Algorithm>,
+    pub(super) pool: rayon::ThreadPool,
+    stopping: Stopping,
+    /// Number of evaluations allowed.
+    budget: usize,
+    pub(super) found: Found,
+    pub(super) times: RunTimes,
+    /// Candidates that the algorithm was asked for during a replay, but whose outcomes were not all known.
+    asked: Option<Vec<Candidate>>,
+    /// The reason with which a search ends that evaluates nothing more.
+    ends_with: Option<EndReason>,
+    /// Rows that were replayed and are still to be sent to the listeners.
+    replayed: Vec<TableRow>,
+}
+
+impl fmt::Debug for StudySearch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Search")
+            .field("study", &self.study.name)
+            .field("found", &self.found)
+            .finish_non_exhaustive()
+    }
+}
+
+impl StudySearch {
+    /// Prepares the search of a study.
+    ///
+    /// # Errors
+    /// [`SearchError`].
+    pub fn new(study: Study, threads: Option<usize>) -> Result<Self, SearchError> {
+        let problem = DesignProblem::new(&study)?;
+        let mut pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("kinefront-evaluate-{index}"));
+        if let Some(threads) = threads.or(study.optimizer.threads) {
+            pool = pool.num_threads(threads);
+        }
+        Ok(Self {
+            algorithm: algorithm(&study, &problem),
+            problem,
+            pool: pool.build()?,
+            stopping: Stopping::new(&study.optimizer),
+            budget: study.optimizer.evaluations,
+            found: Found::new(&study),
+            times: RunTimes::default(),
+            asked: None,
+            ends_with: None,
+            replayed: Vec::new(),
+            study: Arc::new(study),
+        })
+    }
+
+    /// Prepares the search of a study from the designs that it has evaluated already: the algorithm is asked for each
+    /// generation and told the outcomes in `rows`, up to the last complete generation. Some rows are evaluated again and
+    /// compared.
+    ///
+    /// # Errors
+    /// [`ReplayError`] if the rows are not those that the study leads to.
+    pub fn resume(study: Study, mut rows: Vec<TableRow>, threads: Option<usize>) -> Result<Self, ReplayError> {
+        let mut search = Self::new(study, threads)?;
+        search.check_sample(&rows)?;
+        let (mut start, mut generation) = (0, 1);
+        while start < rows.len() {
+            let mut candidates = search.algorithm.ask();
+            let count = candidates.len().min(search.budget - start);
+            let whole = rows.get(start..start + count);
+            let present = whole.unwrap_or(&rows[start..]);
+            for (entry, candidate) in present.iter().zip(&candidates) {
+                let (id, found) = (entry.id, entry.row.generation);
+                if found as usize != generation {
+                    return Err(ReplayError::Generation {
+                        id,
+                        found,
+                        expected: generation,
+                    });
+                }
+                if !search.problem.follows(candidate, &entry.row.design) {
+                    return Err(ReplayError::Design { id });
+                }
+            }
+            let Some(whole) = whole else {
+                search.asked = Some(candidates);
+                break;
+            };
+            candidates.truncate(count);
+            let evaluated = whole.iter().zip(candidates).map(|(entry, candidate)| Evaluated {
+                x: DesignProblem::values(&candidate, &entry.row.design),
+                outcome: outcome(&entry.row),
+            });
+            search.algorithm.tell(evaluated.collect());
+            start += count;
+            generation += 1;
+        }
+        rows.truncate(start);
+        search.replayed = rows;
+        Ok(search)
+    }
+
+    /// Evaluates some rows again and compares all their values.
+    fn check_sample(&self, rows: &[TableRow]) -> Result<(), ReplayError> {
+        let last = rows.len().saturating_sub(1);
+        let mut places: Vec<usize> = (0..SAMPLED_ROWS).map(|k| k * last / (SAMPLED_ROWS - 1)).collect();
+        places.dedup();
+        places.retain(|&place| place < rows.len());
+        let problem = &self.problem;
+        self.pool
+            .install(|| places.par_iter().try_for_each(|&place| problem.check_row(&rows[place])))
+    }
+
+    /// Ends the search once the replayed designs are sent, with the reason for which the run had ended.
+    pub fn end_after_replay(&mut self, outcome: EndReason) {
+        self.ends_with = Some(outcome);
+    }
+
+    /// The study of the search.
+    pub fn study(&self) -> &Arc<Study> {
+        &self.study
+    }
+
+    /// Number of worker threads.
+    pub fn threads(&self) -> usize {
+        self.pool.current_num_threads()
+    }
+
+    /// Number of designs that were replayed and not yet sent to the listeners.
+    pub fn replayed(&self) -> usize {
+        self.replayed.len()
+    }
+
+    /// Sends the replayed designs to the listeners, as if they had been evaluated now.
+    pub(super) fn send_replayed(&mut self, mut send: impl FnMut(Event)) {
+        let rows = std::mem::take(&mut self.replayed);
+        for generation in rows.chunk_by(|a, b| a.row.generation == b.row.generation) {
+            self.found
+                .add(generation.iter().map(|entry| entry.row).collect(), &mut send);
+        }
+    }
+
+    /// Searches until the budget is used, or until the search is ended; returns the reason.
+    pub(super) fn run(
+        &mut self,
+        start: Instant,
+        control: &RunControl,
+        mut send: impl FnMut(Event),
+    ) -> Result<EndReason, SearchError> {
+        if let Some(outcome) = self.ends_with {
+            return Ok(outcome);
+        }
+        while self.found.evaluated < self.budget {
+            if !control.go_on() {
+                return Ok(control.end_reason());
+            }
+            let Some(generation) = self.evaluate_generation(control)? else {
+                return Ok(control.end_reason());
+            };
+            self.tell(generation, &mut send);
+            let spent = self.found.evaluated >= self.budget;
+            if let Some(reason) = self
+                .stopping
+                .reason(start.elapsed(), &self.found.history)
+                .filter(|_| !spent)
+            {
+                return Ok(reason);
+            }
+        }
+        Ok(EndReason::Completed)
+    }
+
+    /// Asks the algorithm for a generation and evaluates it; the budget may cut the last one short. `None` if the run is
+    /// interrupted meanwhile.
+    fn evaluate_generation(&mut self, control: &RunControl) -> Result<Option<Generation>, SearchError> {
+        let asking = Instant::now();
+        let mut candidates = self.asked.take().unwrap_or_else(|| self.algorithm.ask());
+        candidates.truncate(self.budget - self.found.evaluated);
+        self.times.optimizer_s += asking.elapsed().as_secs_f64();
+
+        let evaluating = Instant::now();
+        let problem = &self.problem;
+        let number = self.found.history.len() + 1;
+        let evaluate = |candidate| {
+            if control.is_abandoned() {
+                return Ok(None);
+            }
+            let x = kinefront_optimize::Problem::completed(problem, candidate);
+            let evaluation = problem.evaluation(&x)?;
+            Ok(Some((x, Row::new(number, &evaluation))))
+        };
+        let evaluated: Result<Vec<_>, DesignError> =
+            self.pool.install(|| candidates.into_par_iter().map(evaluate).collect());
+        self.times.evaluation_s += evaluating.elapsed().as_secs_f64();
+        let evaluated: Option<Vec<_>> = evaluated?.into_iter().collect();
+        Ok(evaluated.map(|evaluated| {
+            let (values, rows) = evaluated.into_iter().unzip();
+            Generation { values, rows }
+        }))
+    }
+
+    /// Tells the algorithm the outcomes in the order of the candidates, and sends the events.
+    fn tell(&mut self, Generation { values, rows }: Generation, send: impl FnMut(Event)) {
+        let telling = Instant::now();
+        let evaluated = values.into_iter().zip(&rows).map(|(x, row)| Evaluated {
+            x,
+            outcome: outcome(row),
+        });
+        self.algorithm.tell(evaluated.collect());
+        self.times.optimizer_s += telling.elapsed().as_secs_f64();
+        self.found.add(rows, send);
+    }
+}
+
+/// A generation that was evaluated: the candidates as completed, and their rows.
+struct Generation {
+    values: Vec<Vec<f64>>,
+    rows: Vec<Row>,
+}
+
+/// What a search has found so far; it follows from the rows alone.
+#[derive(Debug)]
+pub(super) struct Found {
+    pub archive: Archive,
+    /// The members of the archive, in its order.
+    front: Vec<Arc<TableRow>>,
+    pub history: Vec<GenerationSummary>,
+    pub evaluated: usize,
+    feasible: usize,
+    /// Reference point of the hypervolume.
+    pub reference: [f64; 2],
+}
+
+impl Found {
+    pub fn new(study: &Study) -> Self {
+        Self {
+            archive: Archive::default(),
+            front: Vec::new(),
+            history: Vec::new(),
+            evaluated: 0,
+            feasible: 0,
+            reference: [study.hypervolume.reference_mass_kg, 0.0],
+        }
+    }
+
+    /// Adds the rows of a generation and sends its events.
+    pub fn add(&mut self, rows: Vec<Row>, mut send: impl FnMut(Event)) {
+        let (generation, first_id) = (self.history.len() + 1, self.evaluated);
+        let mut front_changed = false;
+        for (id, row) in (first_id..).zip(&rows) {
+            self.feasible += usize::from(row.is_feasible());
+            let candidate = Evaluated {
+                x: Vec::new(),
+                outcome: outcome(row),
+            };
+            front_changed |= self.archive.insert(id, &candidate);
+        }
+        if front_changed {
+            self.update_front(first_id, &rows);
+        }
+        self.evaluated += rows.len();
+        send(Event::Evaluated(Batch {
+            generation,
+            first_id,
+            rows,
+        }));
+        if front_changed {
+            send(Event::Front(self.front.clone()));
+        }
+        let summary = GenerationSummary {
+            generation,
+            evaluations: self.evaluated,
+            feasible: self.feasible,
+            front_size: self.archive.len(),
+            hypervolume: hypervolume(self.archive.iter().map(|member| member.objectives), self.reference),
+        };
+        self.history.push(summary);
+        send(Event::Generation(summary));
+    }
+
+    /// Follows the archive after the rows from `first_id` on were inserted. Members that stay keep their order.
+    fn update_front(&mut self, first_id: usize, rows: &[Row]) {
+        let mut before = std::mem::take(&mut self.front).into_iter();
+        let entry = |id: usize| match id.checked_sub(first_id) {
+            Some(place) => Some(Arc::new(TableRow {
+                id,
+                row: rows[place],
+                reference_radius: None,
+            })),
+            None => before.find(|entry| entry.id == id),
+        };
+        self.front = self.archive.iter().map(|member| member.id).filter_map(entry).collect();
+    }
+
+    /// The front so far, in the order of mass.
+    pub fn front(&self) -> &[Arc<TableRow>] {
+        &self.front
+    }
+}
+
+/// The outcome that a row states.
+fn outcome(row: &Row) -> Outcome {
+    Outcome {
+        objectives: row.objectives(),
+        violation: row.violation,
+    }
+}
+
+fn algorithm(study: &Study, problem: &DesignProblem) -> Box<dyn Algorithm> {
+    let (variables, seed) = (problem.variables(), study.optimizer.seed);
+    match study.optimizer.algorithm {
+        AlgorithmName::FrontDe => Box::new(FrontDe::new(variables, study.optimizer.front_de, seed)),
+        AlgorithmName::Moga2 => Box::new(Moga2::new(variables, study.optimizer.moga2, seed)),
+        AlgorithmName::Nsga2 => Box::new(Nsga2::new(variables, study.optimizer.nsga2, seed)),
+    }
+}
