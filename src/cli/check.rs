@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::sync_channel;
 
-use kinefront::recording::{Recorder, RunFiles, read_apart};
+use kinefront::recording::{Recorder, RunFiles, is_recorded, read_apart};
 use kinefront::study::{Event, Inspection, Repair, Resumption, RunControl, RunFolderError, TableRow, spawn_search};
 use miette::miette;
 
@@ -105,10 +105,9 @@ fn check_recording(inspection: &mut Inspection) {
     let (Some(every), Some(designs)) = (every, inspection.designs.as_deref()) else {
         return;
     };
-    let expected: Vec<&TableRow> = designs
-        .iter()
-        .filter(|entry| (entry.row.generation as usize - 1).is_multiple_of(every))
-        .collect();
+    let generations = designs.chunk_by(|a, b| a.row.generation == b.row.generation);
+    let recorded = |rows: &&[TableRow]| is_recorded(rows[0].row.generation as usize, rows[0].id, every);
+    let expected: Vec<&TableRow> = generations.filter(recorded).flatten().collect();
     let wrong = match read_apart(&path) {
         _ if !path.exists() => Some("it is missing".to_owned()),
         Err(error) => Some(error.to_string()),

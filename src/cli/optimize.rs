@@ -9,8 +9,8 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use kinefront::recording::{Recorder, RunFileError, RunFiles};
 use kinefront::study::{
-    AlgorithmName, EndReason, Event, ResumeError, Resumption, RunControl, RunFolder, RunFolderError, RunReport,
-    RunSummary, RunWriter, Study, StudySearch, WriteError, spawn_search,
+    AlgorithmName, EndReason, Event, ResumeError, Resumption, RunControl, RunFolderError, RunReport, RunSummary,
+    RunWriter, Study, StudySearch, WriteError, spawn_search,
 };
 use kinefront_model::mechanism::Architecture;
 use miette::miette;
@@ -47,7 +47,7 @@ pub struct OptimizeArguments {
     /// Run folder to write; it must not already hold a run [default: runs/STUDY-seedS].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Record every N-th generation [default: as many as leave at most 100 000 designs].
+    /// Record every N-th generation; beyond 100 000 designs, every 10 N-th, and so on [default: 1].
     #[arg(long, value_name = "N", conflicts_with = "no_recording", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     record_every: Option<u64>,
     /// Write no recording.
@@ -122,7 +122,7 @@ fn begin(arguments: &OptimizeArguments) -> Result<(RunWriter, StudySearch), Fail
     let study = study(arguments)?;
     let search = StudySearch::new(study, None).map_err(Failure::runtime)?;
     let study = search.study();
-    let every = record_every(arguments, Some(study.record_every()));
+    let every = record_every(arguments, Some(1));
     let create = |path: &Path| RunWriter::create(path, study, every);
     let folder = match &arguments.out {
         Some(path) => create(path),
@@ -155,8 +155,8 @@ fn resume(path: &Path, arguments: &OptimizeArguments) -> Result<Option<(RunWrite
     }
     if resumption.is_complete() {
         if arguments.json {
-            let report = serde_json::to_string_pretty(&resumption.folder().report()).map_err(Failure::runtime)?;
-            writeln!(std::io::stdout(), "{report}")?;
+            let text = std::fs::read_to_string(resumption.folder().report_path()).map_err(Failure::runtime)?;
+            write!(std::io::stdout(), "{text}")?;
         } else if !arguments.quiet {
             writeln!(
                 std::io::stdout(),
@@ -257,12 +257,17 @@ fn tell(
 ) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        let written = is_written.then(|| RunFolder::open(path).ok()).flatten();
-        let report = match written.as_ref().and_then(RunFolder::report) {
-            Some(report) => serde_json::to_string_pretty(report),
-            None => serde_json::to_string_pretty(&RunReport::new(study, summary)),
-        };
-        writeln!(out, "{}", report.map_err(Failure::runtime)?)?;
+        // The text is that of the file, if there is one: reading JSON may change the last bit of a number.
+        let written = is_written
+            .then(|| std::fs::read_to_string(path.join("run.json")).ok())
+            .flatten();
+        match written {
+            Some(text) => write!(out, "{text}")?,
+            None => {
+                let report = serde_json::to_string_pretty(&RunReport::new(study, summary));
+                writeln!(out, "{}", report.map_err(Failure::runtime)?)?;
+            }
+        }
     } else if !arguments.quiet {
         let last = summary.history.last();
         if summary.outcome == EndReason::Interrupted {

@@ -45,7 +45,7 @@ pub use apart::{RecordedRunError, UNPACK_COMMAND, read_apart, unpack, unpack_wit
 pub use design::record_design;
 pub use live::{LiveScene, Picked, Pinned, Shown, VisibleLayers};
 pub use read::{CopyError, ReadError, RecordedDesign, RecordedRun, read_run, save_copy};
-pub use recorder::Recorder;
+pub use recorder::{Recorder, is_recorded};
 pub use run_files::{RunFileError, RunFiles};
 pub use scatter::FrontPoint;
 pub use writer::RecordingError;

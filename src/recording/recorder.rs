@@ -48,6 +48,8 @@ pub struct Recorder {
     frame: PlotRange,
     /// Every how many generations one is recorded.
     every: usize,
+    /// Whether the current generation is recorded.
+    records: bool,
     /// Designs not yet written.
     pending: Vec<TableRow>,
     /// Rows of other entities not yet written.
@@ -64,6 +66,20 @@ fn moment(evaluations: usize, generation: usize) -> [(&'static str, usize); 2] {
         (timelines::EVALUATION, evaluations.saturating_sub(1)),
         (timelines::GENERATION, generation),
     ]
+}
+
+/// Whether a generation, whose first design has the id `first_id`, is recorded if one of `every` generations is. The index
+/// of a recording is in memory until it is closed; a run of 10⁷ designs therefore records 280 000 of them: all of the first
+/// 100 000, a tenth of those up to a million, and so on.
+pub fn is_recorded(generation: usize, first_id: usize, every: usize) -> bool {
+    const DENSE: usize = 100_000;
+    let mut step = every.max(1);
+    let mut end = DENSE;
+    while first_id >= end {
+        step = step.saturating_mul(10);
+        end = end.saturating_mul(10);
+    }
+    (generation - 1).is_multiple_of(step)
 }
 
 impl Recorder {
@@ -90,6 +106,7 @@ impl Recorder {
             architectures: study.architectures.clone(),
             frame,
             every: every.max(1),
+            records: true,
             pending: Vec::new(),
             rows: RowBuffer::default(),
             written: Instant::now(),
@@ -126,7 +143,7 @@ impl Recorder {
                     self.front = front.iter().map(|entry| FrontPoint::from(&**entry)).collect();
                     self.front_changed = true;
                 }
-                Some(Event::Generation(summary)) if self.is_recorded(summary.generation) => self.generation(summary),
+                Some(Event::Generation(summary)) if self.records => self.generation(summary),
                 Some(Event::Finished(summary)) => self.finished(summary)?,
                 Some(Event::Generation(_) | Event::Started(_) | Event::Verifying { .. } | Event::Failed(_)) | None => {}
             }
@@ -136,15 +153,12 @@ impl Recorder {
         }
     }
 
-    fn is_recorded(&self, generation: usize) -> bool {
-        (generation - 1).is_multiple_of(self.every)
-    }
-
     fn batch(&mut self, batch: &Batch) {
         for row in &batch.rows {
             self.frame_changed |= self.frame.include(row.mass, row.radius);
         }
-        if !self.is_recorded(batch.generation) {
+        self.records = is_recorded(batch.generation, batch.first_id, self.every);
+        if !self.records {
             return;
         }
         let moment = moment(batch.first_id + batch.rows.len(), batch.generation);
@@ -214,7 +228,7 @@ impl Recorder {
 
     fn finished(&mut self, summary: &RunSummary) -> Result<(), RecordingError> {
         // A generation that was left out may have been the last.
-        if let Some(last) = summary.history.last().filter(|last| !self.is_recorded(last.generation)) {
+        if let Some(last) = summary.history.last().filter(|_| !self.records) {
             self.generation(last);
         }
         self.write_collected()?;

@@ -143,13 +143,6 @@ impl Study {
         }
     }
 
-    /// Every how many generations one is recorded by default, so that a recording holds at most about 100 000 designs: its
-    /// index is in memory until the recording is closed.
-    pub fn record_every(&self) -> usize {
-        const MOST_RECORDED: usize = 100_000;
-        self.optimizer.evaluations.div_ceil(MOST_RECORDED)
-    }
-
     /// Returns the number of candidates of a generation of the study's algorithm.
     pub fn population(&self) -> usize {
         match self.optimizer.algorithm {

@@ -7,5 +7,6 @@ mod recordings;
 mod reports;
 mod runs;
 mod support;
+mod survival;
 #[cfg(feature = "explorer")]
 mod window;

@@ -13,6 +13,14 @@ pub fn agrees_with_its_tables(run: &Path) {
     }
 }
 
+/// Checks that the recordings of two run folders have the same rows.
+pub fn are_alike(run: &Path, other: &Path) {
+    if let Some(python) = python(&["rerun", "pyarrow", "numpy"]) {
+        let paths = [run, other].map(|run| run.join("recording.rrd"));
+        println!("{}", script(python, "compare_recordings.py", &[&paths[0], &paths[1]]));
+    }
+}
+
 #[test]
 fn a_recording_holds_what_the_tables_hold() {
     let folder = folder();

@@ -114,8 +114,7 @@ impl Running {
                 .map_err(cannot)?,
         );
         let place = Place::Temporary(folder);
-        let every = study.record_every();
-        let tables = RunWriter::create(&place.path(), &study, Some(every))?;
+        let tables = RunWriter::create(&place.path(), &study, Some(1))?;
         Self::over(place, tables, Arc::new(study), source, wake)
     }
 

@@ -20,6 +20,9 @@ const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(5);
 /// 2 % of the time of a run.
 const CHECKPOINT_SHARE: u32 = 50;
 
+/// Number of times that a lock is awaited for 10 ms.
+const LOCK_PATIENCE: u32 = 30;
+
 /// Error of writing a run folder.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
@@ -236,7 +239,15 @@ pub(super) fn open_locked(folder: &Path, create: bool) -> Result<File, WriteErro
         .create(create)
         .open(&path)
         .map_err(WriteError::at(&path))?;
-    match file.try_lock() {
+    let mut lock = file.try_lock();
+    // The lock of a process that has just ended may be held for a moment by a process that it was starting.
+    let mut patience = LOCK_PATIENCE;
+    while matches!(lock, Err(TryLockError::WouldBlock)) && patience > 0 {
+        std::thread::sleep(Duration::from_millis(10));
+        patience -= 1;
+        lock = file.try_lock();
+    }
+    match lock {
         Ok(()) => Ok(file),
         Err(TryLockError::WouldBlock) => Err(WriteError::InUse(folder.to_owned())),
         // A file system without locks cannot guard the folder; the run goes on as its user asked.
