@@ -13,6 +13,9 @@ use super::{Fault, Study};
 /// Largest size of a study file \[bytes\].
 const LARGEST_STUDY: u64 = 1 << 18;
 
+/// Largest length of a line of a study \[bytes\].
+const LONGEST_LINE: usize = 4096;
+
 /// Error of reading a study.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum StudyError {
@@ -23,6 +26,16 @@ pub enum StudyError {
         path: PathBuf,
         /// Cause of the error.
         cause: std::io::Error,
+    },
+    /// A line is too long to be one of a study, and to be shown.
+    #[error("line {line} of the study {name} has {length} bytes; the lines of a study have at most {LONGEST_LINE}")]
+    Line {
+        /// Name of the study's file.
+        name: String,
+        /// Number of the line, from 1.
+        line: usize,
+        /// Its length.
+        length: usize,
     },
     /// The text is not TOML, or a key is unknown or has a value of the wrong type.
     #[error("cannot parse the study{}: {message}", key.as_ref().map(|key| format!(" at `{key}`")).unwrap_or_default())]
@@ -78,6 +91,13 @@ impl Study {
     /// # Errors
     /// As [`Study::read`].
     pub fn parse(text: &str, name: &str) -> Result<Self, StudyError> {
+        if let Some((line, text)) = (1..).zip(text.lines()).find(|(_, text)| text.len() > LONGEST_LINE) {
+            return Err(StudyError::Line {
+                name: name.to_owned(),
+                line,
+                length: text.len(),
+            });
+        }
         let source_code = || Arc::new(NamedSource::new(name, text.to_owned()).with_language("TOML"));
         let study: Study = toml::from_str(text).map_err(|error| StudyError::Shape {
             message: error.message().to_owned(),

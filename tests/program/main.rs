@@ -1,7 +1,9 @@
 //! Tests of the program from outside: commands, files and recordings as other programs use them.
 
 mod commands;
+mod damage;
 mod exports;
+mod faults;
 mod outside;
 mod recordings;
 mod reports;

@@ -1,8 +1,11 @@
 //! Helpers: the program, temporary folders, and Python and Node.js, which read the files of the program.
 
 use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
@@ -112,4 +115,68 @@ pub fn node(package: &str) -> Option<Command> {
     assert!(std::env::var_os("KINEFRONT_REQUIRE_NODE").is_none(), "{message}");
     eprintln!("{message}");
     None
+}
+
+/// Files whose bytes a resumed run must reproduce.
+pub const TABLES: [&str; 3] = ["study.toml", "designs.csv", "front.csv"];
+
+pub fn tables(run: &Path) -> [Vec<u8>; 3] {
+    TABLES.map(|file| fs::read(run.join(file)).unwrap_or_else(|error| panic!("{file}: {error}")))
+}
+
+pub fn program() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_kinefront"));
+    command.env_remove("RERUN").env("NO_COLOR", "1");
+    command
+}
+
+/// A run of `study` with more arguments, whose output is dropped.
+pub fn start(study: &Path, run: &Path, more: &[&str]) -> Child {
+    program()
+        .arg("optimize")
+        .arg(study)
+        .arg("--out")
+        .arg(run)
+        .args(more)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts")
+}
+
+pub fn resume(run: &Path, more: &[&str]) -> assert_cmd::assert::Assert {
+    kinefront()
+        .args(["optimize", "--quiet", "--resume"])
+        .arg(run)
+        .args(more)
+        .assert()
+}
+
+pub fn check(run: &Path) -> assert_cmd::assert::Assert {
+    kinefront().arg("check").arg(run).assert()
+}
+
+/// Waits until the table of a run has more than `lines` lines.
+pub fn wait_for(run: &Path, lines: usize) {
+    let since = Instant::now();
+    let count = || File::open(run.join("designs.csv")).map_or(0, |file| BufReader::new(file).lines().count());
+    while count() <= lines {
+        assert!(since.elapsed() < Duration::from_secs(60), "no designs after a minute");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[cfg(unix)]
+pub fn signal(child: &Child, name: &str) {
+    let status = Command::new("kill").args([name, &child.id().to_string()]).status();
+    assert!(status.expect("kill runs").success());
+}
+
+/// `run.json` without what may differ between two runs of a study.
+pub fn report(run: &Path) -> serde_json::Value {
+    let text = fs::read(run.join("run.json")).expect("run.json");
+    let mut report: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+    let object = report.as_object_mut().expect("an object");
+    assert!(object.remove("times").is_some() && object.remove("threads").is_some());
+    report
 }

@@ -340,3 +340,15 @@ fn a_disc_of_many_base_radii_is_searched() {
         found.workspace_radius
     );
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(600))]
+
+    /// An infeasible design names what it lacks: a constraint that it misses.
+    #[test]
+    fn an_infeasible_design_has_a_negative_margin(design in design(0.0)) {
+        let found = Model::default().evaluate(&design, GridChoice::Reference);
+        let misses = found.constraints.iter().any(|report| report.required && report.margin < 0.0);
+        prop_assert_eq!(found.is_feasible(), !misses, "{}: {:?}", design, found.constraints);
+    }
+}

@@ -1,0 +1,219 @@
+//! Faults from below: a folder that goes away, a full disk, no network.
+
+use std::fs::{self, File};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use super::support::{folder, optimize, program, small_study, tables, wait_for};
+
+/// A run whose folder is removed, moved or truncated ends and says so, and leaves no gap in its table.
+#[cfg(unix)]
+#[test]
+fn a_run_notices_that_its_folder_is_gone() {
+    let folder = folder();
+    let study = small_study(folder.path());
+    type Happening = fn(&Path);
+    let faults: [(&str, Happening); 3] = [
+        ("removed", |run| fs::remove_dir_all(run).expect("a folder")),
+        ("moved", |run| {
+            fs::rename(run, run.with_extension("elsewhere")).expect("a folder")
+        }),
+        ("truncated", |run| {
+            let table = File::options()
+                .write(true)
+                .open(run.join("designs.csv"))
+                .expect("a table");
+            table.set_len(3000).expect("a shorter table");
+        }),
+    ];
+    for (name, fault) in faults {
+        let run = folder.path().join(name);
+        let child = program()
+            .arg("optimize")
+            .arg(&study)
+            .args(["--evaluations", "100000000", "--quiet", "--no-recording", "--out"])
+            .arg(&run)
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        wait_for(&run, 200);
+        fault(&run);
+        let ended = child.wait_with_output().expect("an end");
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert_eq!(ended.status.code(), Some(3), "{name}: {said}");
+        assert!(
+            said.contains("designs.csv") || said.contains("progress.json"),
+            "{name}: {said}"
+        );
+        if name == "truncated" {
+            let text = fs::read(run.join("designs.csv")).expect("a table");
+            assert!(!text.contains(&0), "a gap in the table");
+        }
+    }
+}
+
+/// A full disk costs the recording first, then ends the run, which prints its front, loses no row, and resumes when there
+/// is space.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_costs_no_design() {
+    let inside = |script: &str| {
+        Command::new("unshare")
+            .args(["-rm", "sh", "-ec", script])
+            .env("KINEFRONT", env!("CARGO_BIN_EXE_kinefront"))
+            .env_remove("RERUN")
+            .env("NO_COLOR", "1")
+            .output()
+            .expect("unshare runs")
+    };
+    if !inside("mount -t tmpfs none /mnt").status.success() {
+        eprintln!("skipped: a small file system cannot be mounted here");
+        return;
+    }
+    let folder = folder();
+    let study = small_study(folder.path());
+    let whole = folder.path().join("whole");
+    optimize(&study, &whole, &["--evaluations", "900"]);
+    for kib in [8, 16, 40, 120, 200, 300, 400, 440, 480, 600, 2000, 6000] {
+        let kept = folder.path().join(format!("kept{kib}"));
+        // Whether it fails or not, the run ends in good order; then there is space, and it is resumed.
+        let script = format!(
+            "mount -t tmpfs -o size={kib}k none /mnt; mkdir /mnt/other; code=0; \
+             \"$KINEFRONT\" optimize {study} --evaluations 900 --out /mnt/run --json >{out} 2>{err} || code=$?; \
+             echo \"code $code\"; ls -la /mnt/run; \
+             mount -o remount,size=100m /mnt; \
+             if test -e /mnt/run/study.toml; then cp -r /mnt/run {kept}.before; \
+             \"$KINEFRONT\" optimize --resume /mnt/run --quiet; \
+             else \"$KINEFRONT\" optimize {study} --evaluations 900 --out /mnt/run --quiet; fi; \
+             \"$KINEFRONT\" check /mnt/run; cp -r /mnt/run {kept}",
+            study = study.display(),
+            out = folder.path().join("out").display(),
+            err = folder.path().join("err").display(),
+            kept = kept.display(),
+        );
+        let output = inside(&script);
+        let said = format!(
+            "{}{}",
+            String::from_utf8_lossy(&output.stdout),
+            String::from_utf8_lossy(&output.stderr)
+        );
+        assert!(output.status.success(), "{kib} KiB: {said}");
+        let code: i32 = said
+            .lines()
+            .find_map(|line| line.strip_prefix("code "))
+            .expect("a code")
+            .parse()
+            .expect("a number");
+        let told = fs::read_to_string(folder.path().join("err")).expect("what was said");
+        let answer = fs::read_to_string(folder.path().join("out")).expect("an answer");
+        let before = kept.with_extension("before");
+        if before.exists() {
+            // Its name has no extension of its own, so that the first copy stands beside it.
+            assert!(matches!(code, 1 | 3), "{kib} KiB: code {code}: {told}");
+        }
+        if code == 3 {
+            assert!(
+                told.contains("No space left") || told.contains("disk is full"),
+                "{kib} KiB: {told}"
+            );
+            assert!(
+                told.contains("designs.csv")
+                    || told.contains("recording")
+                    || told.contains(".json")
+                    || told.contains("front.csv"),
+                "{kib} KiB: {told}"
+            );
+            let front: serde_json::Value = serde_json::from_str(&answer).expect("the answer arrives");
+            assert!(front["front_size"].as_u64().expect("a number") > 0, "{kib} KiB");
+        }
+        assert!(tables(&kept) == tables(&whole), "{kib} KiB: {said}");
+    }
+}
+
+/// A run needs no network: without a route it is the same, and it opens no socket but those of this machine.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_makes_no_attempt_to_reach_a_network() {
+    let folder = folder();
+    let study = small_study(folder.path());
+    let [whole, run] = ["whole", "run"].map(|name| folder.path().join(name));
+    let log = folder.path().join("calls");
+    optimize(&study, &whole, &["--evaluations", "90"]);
+    let traced = Command::new("unshare")
+        .args([
+            "-rn",
+            "strace",
+            "-f",
+            "-qq",
+            "-e",
+            "trace=socket,connect,bind,listen",
+            "-o",
+        ])
+        .arg(&log)
+        .arg(env!("CARGO_BIN_EXE_kinefront"))
+        .arg("optimize")
+        .arg(&study)
+        .args(["--evaluations", "90", "--quiet", "--out"])
+        .arg(&run)
+        .output();
+    let Ok(traced) = traced else {
+        eprintln!("skipped: there is no unshare");
+        return;
+    };
+    if !log.exists() {
+        eprintln!("skipped: {}", String::from_utf8_lossy(&traced.stderr));
+        return;
+    }
+    assert!(traced.status.success(), "{}", String::from_utf8_lossy(&traced.stderr));
+    let calls = fs::read_to_string(&log).expect("a log");
+    assert!(!calls.contains("AF_INET"), "{calls}");
+    assert!(tables(&run) == tables(&whole));
+}
+
+/// A report that is replaced is there at every instant, the old page or the new one.
+#[test]
+fn a_report_is_replaced_at_once() {
+    let folder = folder();
+    let study = small_study(folder.path());
+    let (run, page) = (folder.path().join("run"), folder.path().join("page"));
+    optimize(&study, &run, &["--evaluations", "120", "--no-recording"]);
+    let replace = || {
+        let mut command = program();
+        command
+            .arg("report")
+            .arg(&run)
+            .arg("--out")
+            .arg(&page)
+            .args([
+                "--replace",
+                "--quiet",
+                "--sensitivity",
+                "0",
+                "--picture-width",
+                "160",
+                "--scale",
+                "0.25",
+            ])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        command
+    };
+    let since = Instant::now();
+    assert!(replace().status().expect("the program runs").success());
+    let duration = since.elapsed();
+    let whole = |text: &str| text.starts_with("<!DOCTYPE html>") && text.trim_end().ends_with("</html>");
+    let stale = page.join("figures/of-another-report.svg");
+    for kill in 0..20u32 {
+        fs::write(&stale, "<svg/>").expect("a figure");
+        let mut child = replace().spawn().expect("the program starts");
+        std::thread::sleep(duration.mul_f64(f64::from(kill) / 20.0));
+        child.kill().expect("a signal");
+        child.wait().expect("an end");
+        let text = fs::read_to_string(page.join("index.html")).expect("a page");
+        assert!(whole(&text), "kill {kill}: {} bytes", text.len());
+    }
+    assert!(replace().status().expect("the program runs").success());
+    assert!(!stale.exists() && page.join("figures").read_dir().expect("figures").count() > 5);
+}
