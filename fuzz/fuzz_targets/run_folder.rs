@@ -1,0 +1,22 @@
+//! A run folder with any files is opened, resumed and checked, or refused.
+#![no_main]
+
+use kinefront::study::{Resumption, RunFolder};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|files: [&[u8]; 5]| {
+    let folder = tempfile::tempdir().expect("a folder");
+    let names = ["study.toml", "designs.csv", "front.csv", "run.json", "progress.json"];
+    for (name, bytes) in names.into_iter().zip(files) {
+        if !bytes.is_empty() {
+            std::fs::write(folder.path().join(name), bytes).expect("a file");
+        }
+    }
+    if let Ok(run) = RunFolder::open(folder.path()) {
+        let _ = (run.designs(), run.front());
+        // A study of large grids is valid, but takes its time.
+        if run.study().grid.reference.directions < 40 && run.study().grid.reference.ray_steps < 60 {
+            let _ = Resumption::open(folder.path(), None, Some(1));
+        }
+    }
+});
