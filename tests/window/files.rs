@@ -1,12 +1,14 @@
 //! Tests of files: saved, opened, dropped, pasted and invalid ones.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::mpsc::sync_channel;
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use kinefront::explorer::{Explorer, FrontEntry, InitialContent, Origin, Phase, open};
-use kinefront::recording::read_run;
+use kinefront::recording::{Recorder, RunFiles, read_run};
+use kinefront::study::{RunControl, RunWriter, StudySearch, spawn_search};
 
 use super::support::{idle_window, opened_window, run_folder, small_study, until, window};
 
@@ -353,4 +355,60 @@ fn layout_axes_and_recent_files_are_remembered() {
     });
     assert_eq!(again.state().scatter_axes(), axes);
     assert_eq!(again.state().recent(), [run_folder()]);
+}
+
+/// Performs the small study with a budget without a window.
+fn perform(evaluations: usize, folder: &Path) {
+    let mut study = small_study();
+    study.optimizer.evaluations = evaluations;
+    let search = StudySearch::new(study, None).expect("a search");
+    let writer = RunWriter::create(folder, search.study(), Some(1)).expect("a folder");
+    let recorder = Recorder::create(&writer.recording_path(), search.study(), 1).expect("a recording");
+    let control = Arc::new(RunControl::default());
+    let (next, events) = sync_channel(64);
+    let (listeners, files) = RunFiles::start(writer, Some(recorder), next, Arc::clone(&control), |error| {
+        panic!("{error}")
+    })
+    .expect("threads");
+    let worker = spawn_search(search, control, listeners).expect("a thread");
+    events.into_iter().for_each(drop);
+    worker.join().expect("the worker ends");
+    assert!(files.join().is_empty());
+}
+
+/// A run folder that is opened can be continued where it lies, and leaves what one run of the larger budget leaves.
+#[test]
+fn an_opened_run_continues_in_its_folder() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [whole, run] = ["whole", "run"].map(|name| folder.path().join(name));
+    perform(240, &whole);
+    perform(100, &run);
+    let mut window = window(InitialContent::Run(run.clone()));
+    window.run_steps(3);
+    window.get_by_label("▶ Continue").click();
+    window.run_steps(3);
+    let notices = &window.state().session().notices;
+    assert!(
+        notices.iter().any(|notice| notice.text.contains("the run is complete")),
+        "{notices:?}"
+    );
+
+    window
+        .state_mut()
+        .session_mut()
+        .editor
+        .change(|study| study.optimizer.evaluations = 240);
+    window.run_steps(2);
+    window.get_by_label("▶ Continue").click();
+    until(&mut window, "the run ends", |explorer| {
+        matches!(explorer.session().phase(), Phase::Finished(_))
+    });
+    assert_eq!(window.state().session().store().len(), 240);
+    until(&mut window, "the files are complete", |_| {
+        !run.join("progress.json").exists()
+    });
+    for file in ["study.toml", "designs.csv", "front.csv"] {
+        let [found, expected] = [&run, &whole].map(|run| std::fs::read(run.join(file)).expect("a table"));
+        assert!(found == expected, "{file}");
+    }
 }
