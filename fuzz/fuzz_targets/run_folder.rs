@@ -1,15 +1,16 @@
-//! A run folder with any files is opened, resumed and checked, or refused.
+//! A run folder with any files, which a line of `===` separates, is opened, resumed and checked, or refused.
 #![no_main]
 
 use kinefront::study::{Resumption, RunFolder};
 use libfuzzer_sys::fuzz_target;
 
-fuzz_target!(|files: [&[u8]; 5]| {
+fuzz_target!(|bytes: &[u8]| {
+    let text = String::from_utf8_lossy(bytes);
     let folder = tempfile::tempdir().expect("a folder");
     let names = ["study.toml", "designs.csv", "front.csv", "run.json", "progress.json"];
-    for (name, bytes) in names.into_iter().zip(files) {
-        if !bytes.is_empty() {
-            std::fs::write(folder.path().join(name), bytes).expect("a file");
+    for (name, text) in names.into_iter().zip(text.split("===\n")) {
+        if !text.is_empty() {
+            std::fs::write(folder.path().join(name), text).expect("a file");
         }
     }
     if let Ok(run) = RunFolder::open(folder.path()) {

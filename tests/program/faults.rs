@@ -217,3 +217,61 @@ fn a_report_is_replaced_at_once() {
     assert!(replace().status().expect("the program runs").success());
     assert!(!stale.exists() && page.join("figures").read_dir().expect("figures").count() > 5);
 }
+
+/// What a file states is on the disk before the file is: each file is synchronised before it is renamed, and its folder
+/// after; the table is synchronised before a checkpoint, the front or the report states its rows.
+#[cfg(target_os = "linux")]
+#[test]
+fn files_are_synchronised_before_they_appear() {
+    let folder = folder();
+    let study = small_study(folder.path());
+    let (run, log) = (folder.path().join("run"), folder.path().join("calls"));
+    let traced = Command::new("strace")
+        .args(["-f", "-qq", "-e", "trace=openat,fsync,fdatasync,rename,write", "-o"])
+        .arg(&log)
+        .arg(env!("CARGO_BIN_EXE_kinefront"))
+        .arg("optimize")
+        .arg(&study)
+        .args(["--evaluations", "90", "--quiet", "--no-recording", "--out"])
+        .arg(&run)
+        .output();
+    if traced.is_err() || !log.exists() {
+        eprintln!("skipped: there is no strace");
+        return;
+    }
+    let calls = fs::read_to_string(&log).expect("a log");
+    // `<... fsync resumed>` belongs to a call that has begun earlier; its begin counts.
+    let calls: Vec<&str> = calls.lines().filter(|call| !call.contains("resumed>")).collect();
+    let mut names = Vec::new();
+    for (place, call) in calls.iter().enumerate().filter(|(_, call)| call.contains(" rename(")) {
+        let before = calls[..place].iter().rev();
+        let steps: Vec<&&str> = before
+            .take_while(|call| !call.contains(".partial\", O_WRONLY"))
+            .collect();
+        assert!(
+            steps.iter().any(|call| call.contains(" fsync(")),
+            "{call}: not synchronised"
+        );
+        let after = calls[place + 1..].iter().take_while(|call| !call.contains("O_WRONLY"));
+        assert!(
+            after.into_iter().any(|call| call.contains(" fsync(")),
+            "{call}: the folder is not synchronised"
+        );
+        let name = call
+            .rsplit('/')
+            .next()
+            .and_then(|rest| rest.split('"').next())
+            .expect("a name");
+        names.push(name.to_owned());
+        if name == "run.json" {
+            let rows = calls[..place]
+                .iter()
+                .rposition(|call| call.contains(" write(") && call.contains(",3-"));
+            let table = calls[..place].iter().rposition(|call| call.contains(" fdatasync("));
+            assert!(rows < table, "the table is not synchronised before run.json");
+        }
+    }
+    assert_eq!(names.first().map(String::as_str), Some("progress.json"));
+    assert_eq!(names[names.len() - 2..], ["front.csv", "run.json"]);
+    assert!(names.iter().any(|name| name == "study.toml"));
+}

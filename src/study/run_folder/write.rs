@@ -98,6 +98,10 @@ impl RunWriter {
         };
         occupied()?;
         fs::create_dir_all(path).map_err(WriteError::at(path))?;
+        // The folder itself must survive a power loss, and so must a folder that was created to hold it.
+        for folder in path.ancestors().skip(1).take(2) {
+            sync_folder(folder).map_err(WriteError::at(folder))?;
+        }
         // The lock decides between two processes that start at once.
         let file = open_locked(path, true)?;
         occupied()?;
