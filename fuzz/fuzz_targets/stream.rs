@@ -24,5 +24,5 @@ fuzz_target!(|line: &str| {
         assert!(json[key].is_number(), "{key} of {line}: {json}");
     }
     let misses = found.constraints.iter().any(|result| result.required && result.margin < 0.0);
-    assert_eq!(misses, !found.is_feasible(), "{line}: {json}");
+    assert!(misses || found.is_feasible(), "{line}: {json}");
 });

@@ -55,7 +55,7 @@ pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
 }
 
 /// Longest line of a stream \[bytes\]; a design takes about a hundred.
-const LONGEST_LINE: u64 = 1 << 16;
+pub const LONGEST_LINE: u64 = 1 << 16;
 
 struct Server {
     model: Model,

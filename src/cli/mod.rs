@@ -1,5 +1,6 @@
 //! The command line: dispatches the arguments to a command and converts errors into exit codes.
 
+mod certify;
 mod check;
 mod evaluate;
 #[cfg(feature = "explorer")]
@@ -42,6 +43,8 @@ enum Command {
     Explore(explore::ExploreArguments),
     /// Compute mass, regular workspace and constraint margins of a design, or of a stream of designs.
     Evaluate(evaluate::EvaluateArguments),
+    /// Prove bounds of the workspace radius of a design, or of a stream of designs.
+    Certify(certify::CertifyArguments),
     /// Compute joint values, dexterity and stiffness of a design at one pose.
     Pose(pose::PoseArguments),
     /// Write a recording of one design with its overlays and a tour of its workspace.
@@ -122,6 +125,7 @@ pub fn run() -> ExitCode {
         #[cfg(not(feature = "explorer"))]
         None => Ok(Ending::Done),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
+        Some(Command::Certify(arguments)) => certify::run(&arguments),
         Some(Command::Pose(arguments)) => pose::run(&arguments),
         Some(Command::Show(arguments)) => show::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),

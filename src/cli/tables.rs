@@ -2,6 +2,7 @@
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{CellAlignment, Table};
+use kinefront::export::CertificateJson;
 use kinefront::study::{FrontMember, RunSummary};
 use kinefront::text::{self, number};
 use kinefront_model::evaluation::{Evaluation, Model, PoseEvaluation, Unreachable};
@@ -195,4 +196,22 @@ pub fn front(summary: &RunSummary) -> String {
         String::new()
     };
     format!("{table}{left_out}")
+}
+
+/// The bounds of a workspace radius and the verdict on it, as sentences.
+pub fn certificate(found: &CertificateJson) -> String {
+    let verdict = match (found.verdict, found.why) {
+        ("open", Some("budget")) => "open: the number of boxes was used up".to_owned(),
+        ("open", _) => "open: a constraint equals its threshold to the precision of a double".to_owned(),
+        (verdict, _) => verdict.to_owned(),
+    };
+    let upper = found
+        .upper_m
+        .map_or("no infeasible pose was found".to_owned(), |upper| {
+            format!("a pose at {upper:.6} m is proved infeasible")
+        });
+    format!(
+        "claimed R_w {:.6} m: {verdict}\nevery pose within {:.6} m is proved feasible; {upper}\n{} boxes",
+        found.claimed_radius_m, found.lower_m, found.boxes
+    )
 }

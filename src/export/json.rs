@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use super::Prepared;
 use crate::scene::{Body, Frame, Linkage};
-use kinefront_model::evaluation::{Evaluation, PoseEvaluation, Unreachable};
+use kinefront_model::certify::{Certificate, CertifyOptions, Verdict};
+use kinefront_model::evaluation::{Evaluation, Model, PoseEvaluation, Unreachable};
 use kinefront_model::mechanism::{Actuator, Design};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::Material;
@@ -116,6 +117,90 @@ impl EvaluationJson {
                     pose: report.pose.map(|pose| PoseJson::new(&pose, pose.phi.to_degrees())),
                 })
                 .collect(),
+        }
+    }
+}
+
+/// The output of `kinefront certify --json`.
+#[derive(Debug, Serialize)]
+pub struct CertificateJson {
+    architecture: &'static str,
+    design: DesignJson,
+    working_mode: [i8; 3],
+    home: PoseJson,
+    /// The radius that was claimed.
+    pub claimed_radius_m: f64,
+    /// Radius of a disc that is proved, rounded down.
+    pub lower_m: f64,
+    /// Distance of a pose that is proved infeasible, rounded up; `None` if none was found.
+    pub upper_m: Option<f64>,
+    relative_gap: Option<f64>,
+    tolerance: f64,
+    closed: bool,
+    /// `proved`, `refuted` or `open`.
+    pub verdict: &'static str,
+    /// Why the verdict is open: `budget` or `precision`.
+    pub why: Option<&'static str>,
+    violation: Option<ViolationJson>,
+    /// Number of boxes that were examined.
+    pub boxes: usize,
+    seconds: f64,
+}
+
+/// A pose that is proved infeasible; `phi_rad` is the orientation of the proof.
+#[derive(Debug, Serialize)]
+struct ViolationJson {
+    #[serde(flatten)]
+    pose: PoseJson,
+    phi_rad: f64,
+    id: &'static str,
+    margin: f64,
+}
+
+impl CertificateJson {
+    /// Creates the output for a certificate that took `seconds`.
+    pub fn new(
+        model: &Model,
+        design: &Design,
+        options: &CertifyOptions,
+        certificate: &Certificate,
+        seconds: f64,
+    ) -> Self {
+        let centre = model.workspace.centre;
+        let (verdict, why) = match certificate.verdict {
+            Verdict::Proved => ("proved", None),
+            Verdict::Refuted => ("refuted", None),
+            Verdict::OpenBudget => ("open", Some("budget")),
+            Verdict::OpenPrecision => ("open", Some("precision")),
+        };
+        Self {
+            architecture: design.architecture.name(),
+            design: design.into(),
+            working_mode: design.working_mode.signs(),
+            home: PoseJson {
+                x_m: centre.x,
+                y_m: centre.y,
+                phi_deg: options.phi_deg,
+            },
+            claimed_radius_m: options.claimed_radius,
+            // The decimal text of a double may lie on either side of it.
+            lower_m: certificate.lower.next_down().max(0.0),
+            upper_m: certificate
+                .upper
+                .map(|upper| if upper > 0.0 { upper.next_up() } else { upper }),
+            relative_gap: certificate.relative_gap(),
+            tolerance: options.tolerance,
+            closed: certificate.is_closed(options.tolerance),
+            verdict,
+            why,
+            violation: certificate.violation.map(|violation| ViolationJson {
+                pose: PoseJson::new(&violation.pose, violation.pose.phi.to_degrees()),
+                phi_rad: violation.pose.phi,
+                id: violation.constraint.id(),
+                margin: model.margin_at(design, &violation.pose, violation.constraint),
+            }),
+            boxes: certificate.boxes,
+            seconds,
         }
     }
 }

@@ -32,7 +32,7 @@ use kinefront_model::evaluation::{Evaluation, Model, Unreachable};
 use kinefront_model::mechanism::Actuator;
 use kinefront_model::spatial::{LEGS, Pose};
 
-pub use json::{DesignJson, EvaluationJson, PoseReportJson};
+pub use json::{CertificateJson, DesignJson, EvaluationJson, PoseReportJson};
 pub use table::{ConversionError, front_to_parquet};
 
 /// A file format.

@@ -52,7 +52,9 @@ fn assert_absent(places: &[&str], words: &[&str]) {
 const CRATES: [&str; 2] = ["crates/model/src", "crates/optimize/src"];
 
 /// The modules of the model that are written once for all architectures and for all instruction sets.
-const PHYSICS: [&str; 5] = [
+const PHYSICS: [&str; 7] = [
+    "crates/model/src/certify",
+    "crates/model/src/enclosure",
     "crates/model/src/clearance",
     "crates/model/src/evaluation",
     "crates/model/src/kinematics",

@@ -74,11 +74,15 @@
 //! | [`clearance`] | clearance between the members |
 //! | [`workspace`] | regular workspace of a design |
 //! | [`evaluation`] | evaluation of a design: objectives, constraints, margins |
+//! | [`enclosure`] | enclosures of real functions over boxes |
+//! | [`certify`] | proofs that every pose of a disc is feasible |
 
 #[macro_use]
 pub mod mechanism;
 
+pub mod certify;
 pub mod clearance;
+pub mod enclosure;
 pub mod evaluation;
 pub mod kinematics;
 pub mod lanes;

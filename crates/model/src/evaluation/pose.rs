@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix6;
 
-use super::Model;
+use super::{Constraint, Model};
 use crate::clearance::Clearance;
 use crate::kinematics::Jacobian;
 use crate::mechanism::{Design, Leg, ReachReason, Shortfall};
@@ -53,6 +53,27 @@ fn words(shortfall: &Shortfall) -> String {
 }
 
 impl Model {
+    /// Returns the margin of a constraint at a pose, in doubles; that of g2 at a pose that is not reached, and for a constraint that
+    /// has no value there, is the shortfall of the leg. The margin of `det_sign` is the absolute value.
+    pub fn margin_at(&self, design: &Design, pose: &Pose, constraint: Constraint) -> f64 {
+        let value = match self.pose(design, pose) {
+            Err(unreachable) => {
+                return Constraint::Reach.margin(unreachable.shortfall.limit_margin, 0.0, design);
+            }
+            Ok(found) => match constraint {
+                Constraint::Assembly => design.link_length + design.platform_radius,
+                Constraint::Reach => found.limit_margin,
+                Constraint::Dexterity => found.inverse_condition,
+                Constraint::StiffnessXy => found.stiffness_values.k_xy,
+                Constraint::StiffnessZ => found.stiffness_values.k_z,
+                Constraint::StiffnessPhiZ => found.stiffness_values.k_phi_z,
+                Constraint::DeterminantSign => found.determinant.abs(),
+                Constraint::Clearance => found.clearance.distance,
+            },
+        };
+        constraint.margin(value, constraint.threshold(design, &self.thresholds), design)
+    }
+
     /// Evaluates `design` at `pose`.
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::{Design, MemberKind, Members};
+use crate::enclosure::{Interval, LegEnclosure, PlanarModel, PoseEnclosure, TurnedFrame};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, LEGS, Pose, Rotation};
 
@@ -276,6 +277,11 @@ pub trait Leg: Copy + Send + Sync {
     /// does not give the reason why a pose is not reached.
     fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> LegLanes<V>;
 
+    /// Encloses leg `index` of a design over a box of poses.
+    ///
+    /// The formulas are written apart from those of [`Leg::lanes`], so that each checks the other.
+    fn enclose(design: &Design, settings: &LegSettings, index: usize, pose: &PoseEnclosure) -> LegEnclosure;
+
     /// Returns the axes of the leg's members at several poses at once, with the end of the leg at `c` and its distal
     /// member along `u`.
     fn members<V: Real>(&self, c: Planar<V>, u: Planar<V>) -> Members<V>;
@@ -379,4 +385,16 @@ fn worst(solved: &[Result<LegPosture, Shortfall>; LEGS]) -> (usize, Shortfall) {
         }
     }
     found.expect("this function is called only if a leg has a shortfall")
+}
+
+/// Encloses the vector from `A_i` to `C_i`, in units of `L_b` and in the axes of `frame`, in which `A_i` stands at `(R, 0)`.
+pub(super) fn leg_vector(design: &Design, frame: &TurnedFrame, pose: &PoseEnclosure) -> PlanarModel {
+    let [x, y] = frame.enter(pose.position);
+    let radius = Interval::exactly(design.platform_radius);
+    let to_unit = Interval::exactly(1.0) / Interval::exactly(design.link_length);
+    let leg = [
+        (x + pose.cosine.scaled(radius)).plus(-Interval::exactly(design.base_radius)),
+        y + pose.sine.scaled(radius),
+    ];
+    leg.map(|part| part.scaled(to_unit))
 }

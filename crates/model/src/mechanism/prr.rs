@@ -7,6 +7,7 @@ use super::{
     Actuator, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, MemberAxis,
     MemberKind, Members, ReachReason, Segment, Shortfall,
 };
+use crate::enclosure::{Interval, LegEnclosure, PoseEnclosure, TaylorModel, TurnedFrame, cross as cross_models, dot};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, HALF_SQRT_3, LEGS, cross};
 
@@ -110,6 +111,41 @@ impl Leg for PrrLeg {
             proximal: None,
             limit_margin,
             reachable: limit_margin.at_least(zero),
+        }
+    }
+
+    /// In axes along `e_i` and to its left, `C_i` lies at the height `h L_b` above the rail, and `u_i = (−σ f, h)` with
+    /// `f = √(1 − h²)`.
+    fn enclose(design: &Design, _: &LegSettings, index: usize, pose: &PoseEnclosure) -> LegEnclosure {
+        let frame = TurnedFrame::by_thirties(4 * index as u8);
+        let [x, y] = frame.enter(pose.position);
+        // In these axes the arm of every leg stands at φ + 210°, and A_i at (−√3/2, −1/2) R.
+        let arm = TurnedFrame::by_thirties(7).direction(pose);
+        let (radius, link) = (
+            Interval::exactly(design.platform_radius),
+            Interval::exactly(design.link_length),
+        );
+        let base = Interval::exactly(design.base_radius);
+        let half = Interval::exactly(0.5);
+        let one = TaylorModel::exactly(1.0);
+        let height = (y + arm[1].scaled(radius))
+            .plus(base * half)
+            .scaled(Interval::exactly(1.0) / link);
+        let transmission_square = one - height.squared();
+        let foot = transmission_square.sqrt();
+        let side = Interval::sqrt_3() * base;
+        let sign = design.working_mode.sign(index);
+        let along_rail = (x + arm[0].scaled(radius)).plus(side * half);
+        let actuator = along_rail + foot.scaled(link).times(sign);
+        let u = [foot.times(-sign), height];
+        LegEnclosure {
+            reach: [transmission_square, actuator, TaylorModel::constant(side) - actuator],
+            u: frame.leave(u),
+            moment: cross_models(arm, u),
+            along: dot(arm, u),
+            transmission_square,
+            distal: one,
+            proximal: None,
         }
     }
 

@@ -3,10 +3,12 @@
 
 use glam::DVec2;
 
+use super::leg::leg_vector;
 use super::{
     Actuator, BarLength, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, MemberAxis,
     MemberKind, Members, ReachReason, Segment, Shortfall,
 };
+use crate::enclosure::{Interval, LegEnclosure, PoseEnclosure, TaylorModel, TurnedFrame, cross as cross_models, dot};
 use crate::lanes::{Planar, Real};
 use crate::spatial::ANCHOR_DIRECTIONS;
 
@@ -95,6 +97,31 @@ impl Leg for RprLeg {
             proximal: None,
             limit_margin,
             reachable: limit_margin.at_least(zero) & length.exceeds(zero),
+        }
+    }
+
+    /// In axes in which `A_i` stands at `(R, 0)`, the leg is the vector `v = p + r (cos φ, sin φ) − (R, 0)`.
+    fn enclose(design: &Design, settings: &LegSettings, index: usize, pose: &PoseEnclosure) -> LegEnclosure {
+        let frame = TurnedFrame::by_thirties(7 + 4 * index as u8);
+        let leg = leg_vector(design, &frame, pose);
+        let one = TaylorModel::exactly(1.0);
+        let square = dot(leg, leg);
+        let shortest = Interval::exactly(settings.telescopic_shortest);
+        let length = square.sqrt();
+        let to_unit = length.reciprocal();
+        let u = leg.map(|part| part * to_unit);
+        let arm = [pose.cosine, pose.sine];
+        LegEnclosure {
+            reach: [square - TaylorModel::constant(shortest.square()), one - square, one],
+            u: frame.leave(u),
+            moment: cross_models(arm, u),
+            along: dot(arm, u),
+            transmission_square: one,
+            distal: match settings.telescopic_bar {
+                BarLength::Current => length,
+                BarLength::Longest => one,
+            },
+            proximal: None,
         }
     }
 

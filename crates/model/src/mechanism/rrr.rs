@@ -2,10 +2,12 @@
 
 use glam::DVec2;
 
+use super::leg::leg_vector;
 use super::{
     Actuator, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, MemberAxis,
     MemberKind, Members, ReachReason, Segment, Shortfall,
 };
+use crate::enclosure::{LegEnclosure, PoseEnclosure, TaylorModel, TurnedFrame, cross as cross_models, dot};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, cross};
 
@@ -91,6 +93,31 @@ impl Leg for RrrLeg {
             proximal: Some(Planar::new((quarter - ratio) * square * to_unit, -transmission)),
             limit_margin: limit_margin.larger(zero).select(reachable, limit_margin.smaller(zero)),
             reachable,
+        }
+    }
+
+    /// In axes in which `A_i` stands at `(R, 0)`, with lengths in units of `L_b`, `v` leads from `A_i` to `C_i`, and
+    /// `u = v/2 − τ v⊥` with `τ = σ √(1/S − 1/4)`, `S = |v|²`.
+    fn enclose(design: &Design, _: &LegSettings, index: usize, pose: &PoseEnclosure) -> LegEnclosure {
+        let frame = TurnedFrame::by_thirties(7 + 4 * index as u8);
+        let [x, y] = leg_vector(design, &frame, pose);
+        let one = TaylorModel::exactly(1.0);
+        let square = dot([x, y], [x, y]);
+        let quarter = square.times(0.25);
+        let elbow = one - quarter;
+        let turn = (square.reciprocal() - one.times(0.25))
+            .sqrt()
+            .times(design.working_mode.sign(index));
+        let u = [x.times(0.5) + turn * y, y.times(0.5) - turn * x];
+        let arm = [pose.cosine, pose.sine];
+        LegEnclosure {
+            reach: [square, elbow, one],
+            u: frame.leave(u),
+            moment: cross_models(arm, u),
+            along: dot(arm, u),
+            transmission_square: square * elbow,
+            distal: one,
+            proximal: Some([square.times(0.5) - one, turn * square]),
         }
     }
 

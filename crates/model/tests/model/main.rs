@@ -1,6 +1,8 @@
 //! The model against identities and independent values: joints, Jacobians, stiffness, clearance, workspace, sizing.
 
+mod certify;
 mod clearance;
+mod enclosure;
 mod forms;
 mod joints;
 mod lanes;

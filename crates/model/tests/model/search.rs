@@ -349,6 +349,6 @@ proptest! {
     fn an_infeasible_design_has_a_negative_margin(design in design(0.0)) {
         let found = Model::default().evaluate(&design, GridChoice::Reference);
         let misses = found.constraints.iter().any(|report| report.required && report.margin < 0.0);
-        prop_assert_eq!(found.is_feasible(), !misses, "{}: {:?}", design, found.constraints);
+        prop_assert!(found.is_feasible() || misses, "{}: {:?}", design, found.constraints);
     }
 }

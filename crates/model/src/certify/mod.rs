@@ -1,0 +1,198 @@
+//! Proofs about the regular workspace: that every pose of a disc is feasible, and that a pose beyond it is not
+//! (docs/model.md, section 13).
+//!
+//! A grid misses what lies between its points. Here boxes of positions and orientations are enclosed as a whole
+//! ([`enclosure`](crate::enclosure)), and divided until each constraint is proved on each of them or a pose is found that violates
+//! one.
+
+mod forms;
+mod search;
+
+use crate::enclosure::{PoseEnclosure, TaylorModel};
+use crate::evaluation::{Constraint, Model};
+use crate::mechanism::Design;
+use crate::spatial::Pose;
+
+/// What to prove.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CertifyOptions {
+    /// Home orientation `φ_c` \[deg\], the middle of the range of orientations.
+    pub phi_deg: f64,
+    /// Radius of the disc that is claimed \[m\].
+    pub claimed_radius: f64,
+    /// Relative gap between the bounds at which the search ends, in (0, 1).
+    pub tolerance: f64,
+    /// Largest number of boxes.
+    pub max_boxes: usize,
+    /// Radius from which to prove without looking for infeasible poses, as a check of the proof itself: its lower bound must not
+    /// pass an infeasible pose that is known otherwise.
+    pub blind_radius: Option<f64>,
+}
+
+impl Default for CertifyOptions {
+    fn default() -> Self {
+        Self {
+            phi_deg: 0.0,
+            claimed_radius: 0.0,
+            tolerance: Self::TOLERANCE,
+            max_boxes: Self::MAX_BOXES,
+            blind_radius: None,
+        }
+    }
+}
+
+impl CertifyOptions {
+    /// Tolerance by default.
+    pub const TOLERANCE: f64 = 1e-4;
+    /// Number of boxes by default.
+    pub const MAX_BOXES: usize = 200_000;
+}
+
+/// What is proved about a design at one home orientation.
+///
+/// `R*` is the distance from the centre of the nearest pose that violates a constraint, over all orientations of the window.
+/// Every statement is about real numbers: lengths, thresholds and the orientation in degrees are the doubles given, and `π`, `√3`
+/// and all that follows from them are exact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Certificate {
+    /// Radius \[m\] of a disc in which every pose is proved feasible: `lower ≤ R*`.
+    pub lower: f64,
+    /// Distance \[m\] of a pose that is proved infeasible, `R* ≤ upper`; `None` if none was found.
+    pub upper: Option<f64>,
+    /// Verdict on the claimed radius.
+    pub verdict: Verdict,
+    /// The pose at `upper`, and the constraint that it violates.
+    pub violation: Option<Violation>,
+    /// Number of boxes that were examined.
+    pub boxes: usize,
+}
+
+/// Verdict on a claimed radius `c` with the tolerance `t`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// `lower ≥ (1 − t) c`.
+    Proved,
+    /// `upper < (1 − t) c`.
+    Refuted,
+    /// Neither, because the number of boxes was used up.
+    OpenBudget,
+    /// Neither, because the least value of a constraint equals its threshold to the precision of a double.
+    OpenPrecision,
+}
+
+/// A pose that violates a constraint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Violation {
+    /// The pose, as three doubles.
+    pub pose: Pose,
+    /// The constraint.
+    pub constraint: Constraint,
+}
+
+/// Why nothing can be proved.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CertifyError {
+    /// The constraints of the study include one that has no form yet.
+    #[error("{0} cannot be certified yet")]
+    NoForm(&'static str),
+    /// A bar is so thin or so thick that its compliance has no usable value.
+    #[error("a bar of the design is so thin or so thick that its stiffness has no usable value")]
+    Degenerate,
+    /// An option is out of range.
+    #[error("{name} is {value}; it must be {expected}")]
+    Option {
+        /// Name of the option.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The values that are allowed.
+        expected: &'static str,
+    },
+}
+
+impl Certificate {
+    /// Relative gap between the bounds; `None` without an upper bound. Two bounds of 0 have no gap.
+    pub fn relative_gap(&self) -> Option<f64> {
+        let upper = self.upper?;
+        Some(if upper > 0.0 { (upper - self.lower) / upper } else { 0.0 })
+    }
+
+    /// Whether the bounds are as close as the tolerance asks.
+    pub fn is_closed(&self, tolerance: f64) -> bool {
+        self.relative_gap().is_some_and(|gap| gap <= tolerance)
+    }
+}
+
+impl Model {
+    /// Proves bounds of the radius of the disc about the centre in which every pose within the range of orientations about
+    /// `phi_deg` is feasible.
+    ///
+    /// ```
+    /// use kinefront_model::certify::{CertifyOptions, Verdict};
+    /// use kinefront_model::evaluation::Model;
+    ///
+    /// let design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056".parse()?;
+    /// let options = CertifyOptions {
+    ///     phi_deg: 29.5,
+    ///     claimed_radius: 1.221,
+    ///     ..CertifyOptions::default()
+    /// };
+    /// let certificate = Model::default().certify(&design, &options)?;
+    /// assert_eq!(certificate.verdict, Verdict::Proved);
+    /// assert!(certificate.lower > 1.2209 && certificate.upper.is_some_and(|upper| upper < 1.2212));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`CertifyError`]: a constraint that has no form yet, bars without a usable stiffness, or an option out of range.
+    pub fn certify(&self, design: &Design, options: &CertifyOptions) -> Result<Certificate, CertifyError> {
+        let check = |name, value: f64, valid: bool, expected| {
+            if valid {
+                Ok(())
+            } else {
+                Err(CertifyError::Option { name, value, expected })
+            }
+        };
+        let CertifyOptions {
+            phi_deg,
+            claimed_radius,
+            tolerance,
+            ..
+        } = *options;
+        check(
+            "the home orientation",
+            phi_deg,
+            phi_deg.abs() <= 3600.0,
+            "within ±3600°",
+        )?;
+        check(
+            "the claimed radius",
+            claimed_radius,
+            (0.0..=1e12).contains(&claimed_radius),
+            "at least 0",
+        )?;
+        check(
+            "the tolerance",
+            tolerance,
+            (1e-12..1.0).contains(&tolerance),
+            "from 1e-12 to below 1",
+        )?;
+        with_leg!(design.architecture, L => search::certify::<L>(self, design, options))
+    }
+
+    /// Encloses the constraints of a design over a box of poses: each value is positive exactly where the constraint holds
+    /// strictly. Where a leg may not reach a pose of the box, only the values of g2 are returned.
+    ///
+    /// # Errors
+    /// [`CertifyError`]: a constraint that has no form yet, or bars without a usable stiffness.
+    pub fn enclose(
+        &self,
+        design: &Design,
+        pose: &PoseEnclosure,
+    ) -> Result<Vec<(Constraint, TaylorModel)>, CertifyError> {
+        with_leg!(design.architecture, L => {
+            let forms = forms::Forms::<L>::new(self, design)?;
+            Ok(forms.enclose(pose).iter().copied().collect())
+        })
+    }
+}

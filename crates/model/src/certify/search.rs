@@ -1,0 +1,510 @@
+//! Branch and bound over boxes of positions, in polar coordinates, and orientations.
+
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
+
+use super::forms::{Enclosures, Forms};
+use super::{Certificate, CertifyError, CertifyOptions, Verdict, Violation};
+use crate::enclosure::{Interval, PoseEnclosure, TaylorModel, VARIABLES};
+use crate::evaluation::{Constraint, Model};
+use crate::mechanism::{Design, Leg};
+use crate::spatial::Pose;
+
+/// A box narrower than this multiple of `R` is not divided.
+const NARROWEST: f64 = 1e-11;
+
+/// Largest number of contractions of one box.
+const CONTRACTIONS: usize = 4;
+
+/// A contraction is worth another one if it leaves less than this part of the box.
+const WORTHWHILE: f64 = 0.3;
+
+/// Radius beyond all reach, as a multiple of the sizes of the design.
+const BEYOND: f64 = 4.0;
+
+/// A box in `(r, θ, φ)`, by its ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct PolarBox {
+    lower: [f64; VARIABLES],
+    upper: [f64; VARIABLES],
+    /// Number of its creation, which decides between boxes of equal distance.
+    number: usize,
+}
+
+impl PolarBox {
+    /// Middle, and a radius that reaches both ends.
+    fn middle_and_radius(&self, k: usize) -> (f64, f64) {
+        let middle = 0.5 * (self.lower[k] + self.upper[k]);
+        let radius = (self.upper[k] - middle).max(middle - self.lower[k]);
+        (middle, if radius == 0.0 { 0.0 } else { radius.next_up() })
+    }
+
+    fn volume(&self) -> f64 {
+        (0..VARIABLES).map(|k| self.upper[k] - self.lower[k]).product()
+    }
+
+    /// The point at `ε ∈ [−1, 1]³`.
+    fn point(&self, epsilon: [f64; VARIABLES]) -> [f64; VARIABLES] {
+        std::array::from_fn(|k| {
+            let (middle, radius) = self.middle_and_radius(k);
+            (middle + epsilon[k] * radius).clamp(self.lower[k], self.upper[k])
+        })
+    }
+}
+
+impl Eq for PolarBox {}
+
+impl PartialOrd for PolarBox {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for PolarBox {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.lower[0]
+            .total_cmp(&other.lower[0])
+            .then(self.number.cmp(&other.number))
+    }
+}
+
+pub(super) fn certify<L: Leg>(
+    model: &Model,
+    design: &Design,
+    options: &CertifyOptions,
+) -> Result<Certificate, CertifyError> {
+    let mut proof = Proof::<L>::new(model, design, options)?;
+    if options.blind_radius.is_none() {
+        proof.find_bad_poses();
+    }
+    proof.divide();
+    Ok(proof.certificate())
+}
+
+struct Proof<'a, L> {
+    model: &'a Model,
+    design: &'a Design,
+    options: &'a CertifyOptions,
+    forms: Forms<'a, L>,
+    /// Orientations of the window, rounded outwards for boxes and inwards for poses \[rad\].
+    window: [f64; 2],
+    inner_window: [f64; 2],
+    /// Range of the direction `θ` \[rad\].
+    sector: f64,
+    upper: Option<f64>,
+    violation: Option<Violation>,
+    heap: BinaryHeap<Reverse<PolarBox>>,
+    /// Least distance of the boxes that were put aside.
+    aside: f64,
+    /// Distance up to which everything in the heap and before is proved.
+    proved: f64,
+    /// Relative gap between the bounds at which the search ends.
+    gap: f64,
+    boxes: usize,
+    created: usize,
+    is_out_of_budget: bool,
+}
+
+impl<'a, L: Leg> Proof<'a, L> {
+    fn new(model: &'a Model, design: &'a Design, options: &'a CertifyOptions) -> Result<Self, CertifyError> {
+        let middle = Interval::exactly(options.phi_deg);
+        let half = Interval::exactly(model.workspace.rotation_range_deg) / Interval::exactly(2.0);
+        let to_radians = Interval::PI / Interval::exactly(180.0);
+        let [first, last] = [(middle - half) * to_radians, (middle + half) * to_radians];
+        let turn = if model.is_symmetric(design) { 120.0 } else { 360.0 };
+        Ok(Self {
+            forms: Forms::new(model, design)?,
+            model,
+            design,
+            options,
+            window: [first.lower, last.upper],
+            inner_window: [first.upper, last.lower],
+            sector: Interval::radians(turn).upper,
+            upper: None,
+            violation: None,
+            heap: BinaryHeap::new(),
+            aside: f64::INFINITY,
+            proved: 0.0,
+            gap: options.tolerance,
+            boxes: 0,
+            created: 0,
+            is_out_of_budget: false,
+        })
+    }
+
+    /// The radius up to which boxes must be proved.
+    fn target(&self) -> f64 {
+        if let Some(radius) = self.options.blind_radius {
+            return radius;
+        }
+        match self.upper {
+            // A few places more, so that rounding does not make the gap wider than the tolerance.
+            Some(upper) => upper * (1.0 - self.gap) * (1.0 + 8.0 * f64::EPSILON),
+            None => {
+                let design = self.design;
+                let centre = self.model.workspace.centre.length();
+                BEYOND * (design.base_radius + design.platform_radius + 2.0 * design.link_length + centre)
+            }
+        }
+    }
+
+    fn enclose_box(&self, polar: &PolarBox) -> Enclosures {
+        let [(r, dr), (theta, dtheta), (phi, dphi)] = [0, 1, 2].map(|k| polar.middle_and_radius(k));
+        let radius = TaylorModel::variable(0, r, dr);
+        let (sine, cosine) = TaylorModel::sine_and_cosine(1, theta, dtheta);
+        let (phi_sine, phi_cosine) = TaylorModel::sine_and_cosine(2, phi, dphi);
+        let centre = self.model.workspace.centre;
+        self.forms.enclose(&PoseEnclosure {
+            position: [
+                (radius * cosine).plus(Interval::exactly(centre.x)),
+                (radius * sine).plus(Interval::exactly(centre.y)),
+            ],
+            cosine: phi_cosine,
+            sine: phi_sine,
+        })
+    }
+
+    /// Encloses the constraints at one pose.
+    fn enclose_pose(&self, pose: &Pose) -> Enclosures {
+        let (sine, cosine) = Interval::exactly(pose.phi).sine_and_cosine();
+        self.forms.enclose(&PoseEnclosure {
+            position: pose.position.to_array().map(TaylorModel::exactly),
+            cosine: TaylorModel::constant(cosine),
+            sine: TaylorModel::constant(sine),
+        })
+    }
+
+    /// The pose at a point in polar coordinates, within the window.
+    fn pose_at(&self, [r, theta, phi]: [f64; VARIABLES]) -> Pose {
+        let centre = self.model.workspace.centre;
+        Pose::new(
+            centre.x + r * libm::cos(theta),
+            centre.y + r * libm::sin(theta),
+            phi.clamp(self.inner_window[0], self.inner_window[1]),
+        )
+    }
+
+    /// Returns a constraint that is proved to be violated at a pose.
+    fn violated_at(&self, pose: &Pose) -> Option<Constraint> {
+        let found = self.enclose_pose(pose);
+        let violated = found.iter().find(|(_, value)| value.range()[1] < 0.0);
+        violated.map(|&(constraint, _)| constraint)
+    }
+
+    /// Lowers the upper bound if the pose at a point is bad; returns whether it is.
+    fn try_point(&mut self, point: [f64; VARIABLES]) -> bool {
+        if self.options.blind_radius.is_some() {
+            return false;
+        }
+        let pose = self.pose_at(point);
+        let Some(constraint) = self.violated_at(&pose) else {
+            return false;
+        };
+        let centre = self.model.workspace.centre;
+        let [x, y] = [pose.position.x - centre.x, pose.position.y - centre.y];
+        // The difference from the centre is exact for the centre O, and rounded by one place otherwise.
+        let [x, y] = [x, y].map(|part| Interval {
+            lower: part.next_down(),
+            upper: part.next_up(),
+        });
+        let distance = (x.square() + y.square()).sqrt().upper;
+        if self.upper.is_none_or(|upper| distance < upper) {
+            self.upper = Some(distance);
+            self.violation = Some(Violation { pose, constraint });
+        }
+        true
+    }
+
+    /// Looks for bad poses: those of a ring just beyond the claimed radius, each moved inwards as long as it stays bad.
+    fn find_bad_poses(&mut self) {
+        const DIRECTIONS: usize = 24;
+        const ORIENTATIONS: usize = 5;
+        let limit = self.target();
+        let mut radius = if self.options.claimed_radius > 0.0 {
+            1.005 * self.options.claimed_radius
+        } else {
+            0.05 * self.design.base_radius
+        };
+        self.try_point([0.0, 0.0, self.options.phi_deg.to_radians()]);
+        while self.upper.is_none() && radius < limit {
+            for place in 0..DIRECTIONS * ORIENTATIONS {
+                let theta = self.sector * (place % DIRECTIONS) as f64 / DIRECTIONS as f64;
+                let [first, last] = self.inner_window;
+                let phi = first + (last - first) * (place / DIRECTIONS) as f64 / (ORIENTATIONS - 1) as f64;
+                if self.upper.is_none_or(|upper| radius <= upper) && self.try_point([radius, theta, phi]) {
+                    self.move_inwards([radius, theta, phi]);
+                }
+            }
+            radius *= 1.5;
+        }
+    }
+
+    /// Moves a bad point towards the centre while it stays bad: along the ray by halving, and sideways by a pattern search.
+    fn move_inwards(&mut self, mut point: [f64; VARIABLES]) {
+        let [first, last] = self.inner_window;
+        let mut steps = [0.05, 0.2 * (last - first)];
+        for _ in 0..40 {
+            point[0] = self.nearest_bad(point);
+            let mut has_moved = false;
+            for (k, &step) in [1, 2].iter().zip(&steps) {
+                for direction in [-1.0, 1.0] {
+                    let mut moved = point;
+                    moved[*k] += direction * step;
+                    moved[2] = moved[2].clamp(first, last);
+                    moved[0] *= 1.0 - 1e-6;
+                    if self.try_point(moved) {
+                        point = moved;
+                        has_moved = true;
+                        break;
+                    }
+                }
+            }
+            if !has_moved {
+                steps = steps.map(|step| 0.3 * step);
+            }
+            if steps[0] < 1e-6 {
+                break;
+            }
+        }
+        self.nearest_bad(point);
+    }
+
+    /// Returns the least radius found at which the pose in the direction of a bad point is bad.
+    fn nearest_bad(&mut self, point: [f64; VARIABLES]) -> f64 {
+        let (mut good, mut bad) = (0.95 * point[0], point[0]);
+        for _ in 0..18 {
+            let middle = 0.5 * (good + bad);
+            if self.try_point([middle, point[1], point[2]]) {
+                bad = middle;
+            } else {
+                good = middle;
+            }
+        }
+        bad
+    }
+
+    /// Divides the disc until everything within the target is proved, or the number of boxes is used up.
+    fn divide(&mut self) {
+        let [first, last] = self.window;
+        self.push([0.0, 0.0, first], [self.target(), self.sector, last]);
+        loop {
+            match self.heap.pop() {
+                Some(Reverse(polar)) if polar.lower[0] < self.target() => {
+                    self.proved = self.proved.max(polar.lower[0]);
+                    if self.boxes >= self.options.max_boxes {
+                        self.is_out_of_budget = true;
+                        return;
+                    }
+                    self.examine(polar);
+                }
+                _ => {
+                    self.proved = self.proved.max(self.target());
+                    // The claimed radius may lie between the bounds: then they are brought closer.
+                    let is_decided = !matches!(self.verdict(), Verdict::OpenPrecision | Verdict::OpenBudget);
+                    if is_decided
+                        || self.options.blind_radius.is_some()
+                        || self.aside <= self.proved
+                        || self.gap <= NARROWEST
+                    {
+                        return;
+                    }
+                    self.gap *= 0.1;
+                    // What lies beyond the former target was not examined, or cut off there.
+                    self.heap.clear();
+                    let [first, last] = self.window;
+                    let proved = self.proved;
+                    self.push([proved, 0.0, first], [self.target(), self.sector, last]);
+                }
+            }
+        }
+    }
+
+    fn push(&mut self, lower: [f64; VARIABLES], upper: [f64; VARIABLES]) {
+        self.created += 1;
+        self.heap.push(Reverse(PolarBox {
+            lower,
+            upper,
+            number: self.created,
+        }));
+    }
+
+    /// Proves, contracts or divides one box.
+    fn examine(&mut self, mut polar: PolarBox) {
+        polar.upper[0] = polar.upper[0].min(self.target());
+        for _ in 0..=CONTRACTIONS {
+            self.boxes += 1;
+            let found = self.enclose_box(&polar);
+            let is_open = |value: &TaylorModel| {
+                // A comparison with NaN is false: nothing is proved then.
+                let is_proved = value.range()[0] > 0.0;
+                !is_proved
+            };
+            if found.is_complete && !found.iter().any(|(_, value)| is_open(value)) {
+                return;
+            }
+            self.try_point(polar.point([0.0; VARIABLES]));
+            if let Some((_, worst)) = found
+                .iter()
+                .filter(|(_, value)| is_open(value))
+                .min_by(|(_, a), (_, b)| relative_least(a).total_cmp(&relative_least(b)))
+            {
+                let point = polar.point(worst.least_point());
+                if self.try_point(point) {
+                    self.nearest_bad(point);
+                }
+            }
+            if polar.lower[0] >= self.target() {
+                return;
+            }
+            polar.upper[0] = polar.upper[0].min(self.target());
+            if !found.is_complete {
+                break;
+            }
+            let before = polar.volume();
+            let open: Vec<&TaylorModel> = found
+                .iter()
+                .map(|(_, value)| value)
+                .filter(|value| is_open(value))
+                .collect();
+            if !contract(&mut polar, &open) {
+                return;
+            }
+            if polar.volume() >= WORTHWHILE * before {
+                break;
+            }
+        }
+        self.halve(polar);
+    }
+
+    /// Halves a box along its longest side; a box that is too narrow is put aside.
+    fn halve(&mut self, polar: PolarBox) {
+        let side = |k: usize| polar.upper[k] - polar.lower[k];
+        let sides = [side(0), polar.upper[0] * side(1), self.design.platform_radius * side(2)];
+        let widest = (0..VARIABLES).fold(0, |best, k| if sides[k] > sides[best] { k } else { best });
+        let middle = 0.5 * (polar.lower[widest] + polar.upper[widest]);
+        let is_narrow = sides[widest] < NARROWEST * self.design.base_radius;
+        if is_narrow || middle <= polar.lower[widest] || middle >= polar.upper[widest] {
+            self.aside = self.aside.min(polar.lower[0]);
+            return;
+        }
+        let (mut lower, mut upper) = (polar.lower, polar.upper);
+        upper[widest] = middle;
+        self.push(polar.lower, upper);
+        lower[widest] = middle;
+        self.push(lower, polar.upper);
+    }
+
+    fn lower(&self) -> f64 {
+        match self.upper {
+            Some(0.0) => 0.0,
+            _ => self.proved.min(self.aside).max(0.0),
+        }
+    }
+
+    fn verdict(&self) -> Verdict {
+        let claim = (1.0 - self.options.tolerance) * self.options.claimed_radius;
+        if self.lower() >= claim {
+            Verdict::Proved
+        } else if self.upper.is_some_and(|upper| upper < claim) {
+            Verdict::Refuted
+        } else if self.is_out_of_budget {
+            Verdict::OpenBudget
+        } else {
+            Verdict::OpenPrecision
+        }
+    }
+
+    fn certificate(&self) -> Certificate {
+        Certificate {
+            lower: self.lower(),
+            upper: self.upper,
+            verdict: self.verdict(),
+            violation: self.violation,
+            boxes: self.boxes,
+        }
+    }
+}
+
+/// Lower bound of a value as a multiple of its size, by which the values of different constraints are compared.
+fn relative_least(value: &TaylorModel) -> f64 {
+    let [lower, upper] = value.range();
+    lower / upper.abs().max(lower.abs()).max(f64::MIN_POSITIVE)
+}
+
+/// Shrinks a box to the hull of the parts in which one of the constraints may not hold; returns whether any part is left.
+///
+/// In a variable, a constraint may fail only where `a ε + b ε² + k ≤ 0`, with `k` the least of all its other terms.
+fn contract(polar: &mut PolarBox, open: &[&TaylorModel]) -> bool {
+    for k in 0..VARIABLES {
+        let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
+        for value in open {
+            if let Some([low, high]) = part_not_above_zero(value.linear[k], value.square[k], value.least_without(k)) {
+                first = first.min(low);
+                last = last.max(high);
+            }
+        }
+        if first > last {
+            return false;
+        }
+        let (middle, radius) = polar.middle_and_radius(k);
+        let (lower, upper) = (polar.lower[k], polar.upper[k]);
+        let place = |epsilon: f64| Interval::exactly(middle) + Interval::exactly(epsilon) * Interval::exactly(radius);
+        if first > -1.0 {
+            polar.lower[k] = place(first).lower.clamp(lower, upper);
+        }
+        if last < 1.0 {
+            polar.upper[k] = place(last).upper.clamp(lower, upper);
+        }
+    }
+    true
+}
+
+/// Returns an interval that contains every `ε ∈ [−1, 1]` with `a ε + b ε² + k ≤ 0`; `None` if there is no such number.
+fn part_not_above_zero(a: f64, b: f64, k: f64) -> Option<[f64; 2]> {
+    // A part is cut off only if the polynomial is proved positive on it.
+    let is_positive = |from: f64, to: f64| {
+        let value = |at: f64| {
+            (
+                a * at + b * at * at + k,
+                a.abs() * at.abs() + b.abs() * at * at + k.abs(),
+            )
+        };
+        let (low, low_size) = value(from);
+        let (high, high_size) = value(to);
+        let mut least = low.min(high);
+        let mut size = low_size.max(high_size);
+        let vertex = -a / (2.0 * b);
+        if b > 0.0 && vertex > from && vertex < to {
+            let (at_vertex, vertex_size) = value(vertex);
+            least = least.min(at_vertex);
+            size = size.max(vertex_size);
+        }
+        // The vertex is known to a few places, and the polynomial is flat there.
+        least > 32.0 * f64::EPSILON * size
+    };
+    if k.is_nan() {
+        return Some([-1.0, 1.0]);
+    }
+    if is_positive(-1.0, 1.0) {
+        return None;
+    }
+    let cut = |sign: f64| {
+        // The greatest part [−1, at] (for sign = −1) or [at, 1] on which the polynomial is positive, by halving.
+        let end = sign;
+        if !is_positive(end, end) {
+            return end;
+        }
+        let (mut positive, mut open) = (end, -sign);
+        for _ in 0..20 {
+            let middle = 0.5 * (positive + open);
+            let (from, to) = if sign < 0.0 { (end, middle) } else { (middle, end) };
+            if is_positive(from, to) {
+                positive = middle;
+            } else {
+                open = middle;
+            }
+        }
+        positive
+    };
+    Some([cut(-1.0), cut(1.0)])
+}

@@ -1,0 +1,15 @@
+//! Enclosures of real functions over boxes, with which statements about every pose of a region are proved.
+//!
+//! | item | purpose |
+//! |---|---|
+//! | [`Interval`] | a constant between two doubles |
+//! | [`TaylorModel`] | a function over a box: a polynomial of degree 2 and a bound of its remainder |
+//! | [`PoseEnclosure`], [`LegEnclosure`] | a box of poses, and what a leg is over it |
+
+mod interval;
+mod pose;
+mod taylor;
+
+pub use interval::Interval;
+pub use pose::{LegEnclosure, PlanarModel, PoseEnclosure, TurnedFrame, cross, dot};
+pub use taylor::{TaylorModel, VARIABLES};

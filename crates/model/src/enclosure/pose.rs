@@ -1,0 +1,96 @@
+//! Enclosures of a pose, and of what a leg is over a box of poses.
+
+use super::{Interval, TaylorModel};
+
+/// A vector in the plane whose components are enclosed.
+pub type PlanarModel = [TaylorModel; 2];
+
+/// A box of poses: position of `P` in the base frame \[m\], and cosine and sine of the orientation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseEnclosure {
+    /// Position of `P` \[m\].
+    pub position: PlanarModel,
+    /// `cos φ`.
+    pub cosine: TaylorModel,
+    /// `sin φ`.
+    pub sine: TaylorModel,
+}
+
+/// What the constraints need of a leg, over a box of poses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LegEnclosure {
+    /// Each of these is positive exactly where the leg reaches the pose within its limits; those that do not exist are 1.
+    pub reach: [TaylorModel; 3],
+    /// `u_i` in base axes.
+    pub u: PlanarModel,
+    /// Moment of the leg's line about `P`, as a multiple of `r`.
+    pub moment: TaylorModel,
+    /// `(C_i − P) · u_i`, as a multiple of `r`.
+    pub along: TaylorModel,
+    /// Square of the transmission `B_ii`, in units of `L_b` for a revolute actuator.
+    pub transmission_square: TaylorModel,
+    /// Length of the distal bar in the beam model, as a multiple of `L_b`.
+    pub distal: TaylorModel,
+    /// `u_i · (B_i − A_i)` and `u_i × (B_i − A_i)` of the proximal bar as multiples of `L_b`, for leg types that have one.
+    pub proximal: Option<PlanarModel>,
+}
+
+/// A frame that is turned by an angle whose cosine and sine are known exactly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TurnedFrame {
+    cosine: Interval,
+    sine: Interval,
+}
+
+impl TurnedFrame {
+    /// The frame that is turned by `thirds` · 30°.
+    pub fn by_thirties(thirds: u8) -> Self {
+        let half = Interval::exactly(0.5);
+        let long = Interval::sqrt_3() * half;
+        let (zero, one) = (Interval::exactly(0.0), Interval::exactly(1.0));
+        let cosine = |thirds: u8| match thirds % 12 {
+            0 => one,
+            1 | 11 => long,
+            2 | 10 => half,
+            3 | 9 => zero,
+            4 | 8 => -half,
+            5 | 7 => -long,
+            _ => -one,
+        };
+        Self {
+            cosine: cosine(thirds),
+            sine: cosine(thirds + 9),
+        }
+    }
+
+    /// Returns the components in this frame of a vector in the frame from which it is turned.
+    pub fn enter(&self, [x, y]: PlanarModel) -> PlanarModel {
+        [
+            x.scaled(self.cosine) + y.scaled(self.sine),
+            y.scaled(self.cosine) - x.scaled(self.sine),
+        ]
+    }
+
+    /// Returns the components in the frame from which this one is turned.
+    pub fn leave(&self, [x, y]: PlanarModel) -> PlanarModel {
+        [
+            x.scaled(self.cosine) - y.scaled(self.sine),
+            x.scaled(self.sine) + y.scaled(self.cosine),
+        ]
+    }
+
+    /// Returns the unit vector at this frame's angle plus the pose's orientation.
+    pub fn direction(&self, pose: &PoseEnclosure) -> PlanarModel {
+        self.leave([pose.cosine, pose.sine])
+    }
+}
+
+/// `a × b`.
+pub fn cross(a: PlanarModel, b: PlanarModel) -> TaylorModel {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// `a · b`.
+pub fn dot(a: PlanarModel, b: PlanarModel) -> TaylorModel {
+    a[0] * b[0] + a[1] * b[1]
+}

@@ -1,0 +1,289 @@
+//! Certificates: published intervals, enclosures against doubles, and proofs that must fail.
+
+use kinefront_model::certify::{Certificate, CertifyError, CertifyOptions, Verdict};
+use kinefront_model::enclosure::{Interval, PoseEnclosure, TaylorModel};
+use kinefront_model::evaluation::{Constraint, GridChoice, Model};
+use kinefront_model::mechanism::{Design, WorkingMode};
+use kinefront_model::spatial::Pose;
+use kinefront_model::stiffness::StiffnessDefinition;
+use proptest::prelude::*;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
+
+use super::strategies::{applicable_cases, design, model};
+
+fn certify(design: &Design, phi_deg: f64, claimed_radius: f64, tolerance: f64) -> Certificate {
+    let options = CertifyOptions {
+        phi_deg,
+        claimed_radius,
+        tolerance,
+        ..CertifyOptions::default()
+    };
+    Model::default().certify(design, &options).expect("a certificate")
+}
+
+/// A case of an independent prototype, whose poses were checked with 50 digits.
+struct Case {
+    name: String,
+    design: Design,
+    phi_deg: f64,
+    fine_radius: f64,
+    lower: f64,
+    upper: f64,
+    violation: Pose,
+    violated: String,
+}
+
+fn cases() -> Vec<Case> {
+    let file: serde_json::Value = serde_json::from_str(include_str!("../fixtures/certificates.json")).expect("JSON");
+    let cases = file["cases"].as_array().expect("cases").iter().map(|case| {
+        let number = |key: &str| case[key].as_f64().expect("a number");
+        let violation = &case["violation"];
+        let part = |key: &str| violation[key].as_f64().expect("a number");
+        Case {
+            name: case["name"].as_str().expect("a name").to_owned(),
+            design: case["design"].as_str().expect("a text").parse().expect("a design"),
+            phi_deg: number("phi_deg"),
+            fine_radius: case["fine_grid_radius_m"].as_f64().unwrap_or(0.0),
+            lower: number("lower_m"),
+            upper: number("upper_m"),
+            violation: Pose::new(part("x_m"), part("y_m"), part("phi_rad")),
+            violated: violation["constraints"][0].as_str().expect("an id").to_owned(),
+        }
+    });
+    cases.collect()
+}
+
+/// The pose as a box without width.
+fn point(pose: &Pose) -> PoseEnclosure {
+    let (sine, cosine) = Interval::exactly(pose.phi).sine_and_cosine();
+    PoseEnclosure {
+        position: pose.position.to_array().map(TaylorModel::exactly),
+        cosine: TaylorModel::constant(cosine),
+        sine: TaylorModel::constant(sine),
+    }
+}
+
+#[test]
+fn certificates_agree_with_published_intervals() {
+    for case in cases() {
+        for tolerance in [1e-4, 1e-6] {
+            let found = certify(&case.design, case.phi_deg, case.fine_radius, tolerance);
+            let upper = found.upper.expect("an infeasible pose");
+            println!(
+                "{}: [{}, {upper}] and [{}, {}], {} boxes, {:?}",
+                case.name, found.lower, case.lower, case.upper, found.boxes, found.verdict
+            );
+            assert!(found.lower <= case.upper && upper >= case.lower, "{}", case.name);
+            assert!(found.is_closed(tolerance), "{}", case.name);
+            assert!(
+                matches!(found.verdict, Verdict::Proved | Verdict::Refuted),
+                "{}",
+                case.name
+            );
+        }
+    }
+}
+
+/// The poses that the prototype proved infeasible, some by less than 1e-8 of the threshold, are proved infeasible here.
+#[test]
+fn poses_that_miss_a_threshold_by_little_are_proved_infeasible() {
+    let model = Model::default();
+    for case in cases() {
+        let values = model.enclose(&case.design, &point(&case.violation)).expect("values");
+        let violated = values
+            .iter()
+            .any(|(constraint, value)| constraint.id() == case.violated && value.range()[1] < 0.0);
+        assert!(violated, "{}: {}", case.name, case.violated);
+        // The enclosure of a pose is narrow: its width is rounding alone.
+        for (constraint, value) in &values {
+            let [lower, upper] = value.range();
+            assert!(
+                upper - lower < 1e-9 * (1.0 + value.constant.abs()),
+                "{}: {}",
+                case.name,
+                constraint.id()
+            );
+        }
+    }
+}
+
+/// A proof that looks for no infeasible pose must stop before the one that is known. A constraint that were dropped, a sector or
+/// window too small, or a box cut too far would let it pass.
+#[test]
+fn a_blind_proof_stops_before_the_known_pose() {
+    cases().par_iter().for_each(|case| {
+        let options = CertifyOptions {
+            phi_deg: case.phi_deg,
+            max_boxes: 30_000,
+            blind_radius: Some(1.3 * case.upper),
+            ..CertifyOptions::default()
+        };
+        let found = Model::default().certify(&case.design, &options).expect("a certificate");
+        assert!(
+            found.lower <= case.upper,
+            "{}: {} beyond {}",
+            case.name,
+            found.lower,
+            case.upper
+        );
+        assert!(found.lower > 0.9 * case.lower, "{}: {}", case.name, found.lower);
+        assert_eq!(found.upper, None);
+    });
+}
+
+/// Random poses of proved discs are feasible, by the model's own formulas.
+#[test]
+fn no_pose_of_a_proved_disc_is_infeasible() {
+    const POSES: usize = 100_000;
+    let model = Model::default();
+    let half = 0.5 * model.workspace.rotation_range_deg.to_radians();
+    let infeasible: usize = cases()
+        .par_iter()
+        .map(|case| {
+            let proved = certify(&case.design, case.phi_deg, case.fine_radius, 1e-4).lower;
+            let mut random = ChaCha8Rng::seed_from_u64(7);
+            let mut between =
+                |low: f64, high: f64| low + (high - low) * f64::from(random.next_u32()) / f64::from(u32::MAX);
+            let poses = (0..POSES).map(|_| {
+                let (radius, angle) = (proved * between(0.0, 1.0).sqrt(), between(0.0, std::f64::consts::TAU));
+                let phi = case.phi_deg.to_radians() + between(-half, half);
+                Pose::new(radius * angle.cos(), radius * angle.sin(), phi)
+            });
+            poses.filter(|pose| !holds(&model, &case.design, pose, -1e-9)).count()
+        })
+        .sum();
+    assert_eq!(infeasible, 0);
+}
+
+/// Whether all constraints have at least a margin at a pose.
+fn holds(model: &Model, design: &Design, pose: &Pose, margin: f64) -> bool {
+    model.pose(design, pose).is_ok()
+        && AT_POSES
+            .iter()
+            .all(|&constraint| model.margin_at(design, pose, constraint) >= margin)
+}
+
+const AT_POSES: [Constraint; 5] = [
+    Constraint::Reach,
+    Constraint::Dexterity,
+    Constraint::StiffnessXy,
+    Constraint::StiffnessZ,
+    Constraint::StiffnessPhiZ,
+];
+
+proptest! {
+    #![proptest_config(applicable_cases(400))]
+
+    /// At a pose, the forms have the signs of the margins of the model, whose formulas are others.
+    #[test]
+    fn forms_have_the_signs_of_the_margins(design in design(0.005), x in -1.0..1.0f64, y in -1.0..1.0f64, phi in -3.0..3.0f64) {
+        let model = Model::default();
+        let scale = 0.4 * design.base_radius;
+        let pose = Pose::new(scale * x, scale * y, phi);
+        let values = model.enclose(&design, &point(&pose)).expect("values");
+        let is_reached = model.pose(&design, &pose).is_ok();
+        let least = |wanted: Constraint| {
+            let of = values.iter().filter(|(constraint, _)| *constraint == wanted);
+            of.map(|(_, value)| value.constant).fold(f64::INFINITY, f64::min)
+        };
+        prop_assert_eq!(least(Constraint::Reach) > 0.0, is_reached, "{} {:?}", design, pose);
+        if !is_reached {
+            return Err(TestCaseError::reject("the legs do not reach"));
+        }
+        for constraint in AT_POSES {
+            let margin = model.margin_at(&design, &pose, constraint);
+            if margin.abs() > 1e-6 {
+                prop_assert_eq!(least(constraint) > 0.0, margin > 0.0, "{} {:?} {}: {}", design, pose, constraint.id(), margin);
+            }
+        }
+    }
+
+    /// The enclosure of a box contains the values at its poses.
+    #[test]
+    fn enclosures_contain_the_values_of_their_boxes(
+        design in design(0.005),
+        middle in (0.0..0.3f64, -3.0..3.0f64, -3.0..3.0f64),
+        width in 0.001..0.2f64,
+        places in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64), 20),
+    ) {
+        let model = Model::default();
+        let radius = middle.0 * design.base_radius;
+        let widths = [width * radius, width, 0.5 * width];
+        let (sine, cosine) = TaylorModel::sine_and_cosine(1, middle.1, widths[1]);
+        let (phi_sine, phi_cosine) = TaylorModel::sine_and_cosine(2, middle.2, widths[2]);
+        let distance = TaylorModel::variable(0, radius, widths[0]);
+        let pose = PoseEnclosure { position: [distance * cosine, distance * sine], cosine: phi_cosine, sine: phi_sine };
+        let enclosed = model.enclose(&design, &pose).expect("values");
+        if enclosed.len() < 12 || enclosed.iter().any(|(_, value)| value.range()[0].is_nan()) {
+            return Err(TestCaseError::reject("the legs may not reach the whole box"));
+        }
+        for (a, b, c) in places {
+            let at = radius + a * widths[0];
+            let (theta, phi) = (middle.1 + b * widths[1], middle.2 + c * widths[2]);
+            let values = model
+                .enclose(&design, &point(&Pose::new(at * theta.cos(), at * theta.sin(), phi)))
+                .expect("values");
+            prop_assert_eq!(values.len(), enclosed.len());
+            for ((constraint, value), (_, whole)) in values.iter().zip(&enclosed) {
+                let [lower, upper] = value.range();
+                // Within the remainder of the polynomial, not only within its range.
+                let polynomial = whole.value([a, b, c]);
+                let slack = whole.remainder + value.remainder + 1e-13 * (1.0 + polynomial.abs());
+                prop_assert!((value.constant - polynomial).abs() <= slack, "{}: {} is not {} ± {}", constraint.id(), value.constant, polynomial, slack);
+                let [low, high] = whole.range();
+                prop_assert!(lower <= high && upper >= low, "{}: [{}, {}] in [{}, {}]", constraint.id(), lower, upper, low, high);
+            }
+        }
+    }
+}
+
+/// Other studies: mixed working modes and a centre away from O are certified, and what has no form yet is refused by name.
+#[test]
+fn other_studies_are_certified_or_refused() {
+    let shifted = model(|settings| {
+        settings.workspace.centre = glam::DVec2::new(0.1, -0.05);
+    });
+    let design = Design {
+        working_mode: WorkingMode::new([true, true, false]),
+        ..cases()[1].design
+    };
+    for model in [&shifted, &Model::default()] {
+        let evaluation = model.evaluate(&design, GridChoice::Fine);
+        let options = CertifyOptions {
+            phi_deg: evaluation.home_phi_deg.expect("a home"),
+            claimed_radius: evaluation.workspace_radius,
+            ..CertifyOptions::default()
+        };
+        let found = model.certify(&design, &options).expect("a certificate");
+        let upper = found.upper.expect("an infeasible pose");
+        println!("{} claimed, [{}, {upper}]", evaluation.workspace_radius, found.lower);
+        assert!((upper / evaluation.workspace_radius - 1.0).abs() < 0.01);
+        assert!(found.is_closed(1e-4));
+    }
+    let refused = |model: &Model, words: &str| {
+        let error = model.certify(&design, &CertifyOptions::default()).expect_err("no form");
+        assert!(
+            matches!(error, CertifyError::NoForm(_)) && error.to_string().contains(words),
+            "{error}"
+        );
+    };
+    refused(&model(|settings| settings.thresholds.clearance = Some(0.005)), "g7");
+    refused(
+        &model(|settings| settings.stiffness_definition = StiffnessDefinition::Compliance),
+        "compliance",
+    );
+    refused(
+        &model(|settings| {
+            settings.characteristic_length = kinefront_model::kinematics::CharacteristicLength::Isotropic;
+        }),
+        "isotropic",
+    );
+    let far = CertifyOptions {
+        tolerance: 2.0,
+        ..CertifyOptions::default()
+    };
+    let error = Model::default().certify(&design, &far).expect_err("an option");
+    assert!(error.to_string().contains("tolerance"));
+}

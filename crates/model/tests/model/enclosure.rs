@@ -1,0 +1,103 @@
+//! Taylor models against the functions that they enclose, and their rounding against fused operations.
+
+use kinefront_model::enclosure::{Interval, TaylorModel};
+
+/// Numbers between −1 and 1 that look random, from a linear congruential generator.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn model(&mut self) -> TaylorModel {
+        let mut terms = || [self.next(), self.next(), self.next()].map(|term| 0.2 * term);
+        let (linear, square, mixed) = (terms(), terms(), terms());
+        TaylorModel {
+            constant: 2.0 + self.next(),
+            linear,
+            square,
+            mixed,
+            remainder: 0.01 * self.next().abs(),
+        }
+    }
+}
+
+/// A function that is enclosed by two models has its sum, product, reciprocal and root enclosed by theirs.
+#[test]
+fn operations_enclose_what_their_operands_enclose() {
+    let mut numbers = Numbers(1);
+    for _ in 0..20_000 {
+        let (a, b) = (numbers.model(), numbers.model());
+        let at = [numbers.next(), numbers.next(), numbers.next()];
+        // The function lies anywhere within the remainder, often at its end.
+        let mut within =
+            |model: &TaylorModel| model.value(at) + model.remainder * (3.0 * numbers.next()).clamp(-1.0, 1.0);
+        let (x, y) = (within(&a), within(&b));
+        for (result, expected) in [
+            (a + b, x + y),
+            (a - b, x - y),
+            (a * b, x * y),
+            (a.squared(), x * x),
+            (a.times(0.7), 0.7 * x),
+            (
+                a.scaled(Interval {
+                    lower: 0.69,
+                    upper: 0.71,
+                }),
+                0.7 * x,
+            ),
+            (a.reciprocal(), 1.0 / x),
+            (a.sqrt(), x.sqrt()),
+        ] {
+            if result.constant.is_nan() {
+                continue;
+            }
+            let error = (result.value(at) - expected).abs();
+            assert!(error <= result.remainder + 1e-14, "{error} of {}", result.remainder);
+            let [lower, upper] = result.range();
+            assert!(lower <= expected + 1e-14 && expected <= upper + 1e-14);
+        }
+    }
+}
+
+/// The remainder of a result without width covers its rounding, which fused operations tell exactly.
+#[test]
+fn remainders_cover_rounding() {
+    let mut numbers = Numbers(2);
+    for _ in 0..20_000 {
+        let (x, y) = (1.5 + numbers.next(), 1.5 + numbers.next());
+        let [a, b] = [x, y].map(TaylorModel::exactly);
+        let product = a * b;
+        assert!(x.mul_add(y, -product.constant).abs() <= product.remainder);
+        assert!(product.remainder < 1e-13);
+        let sum = (a + b).constant;
+        let lost = (x - (sum - y)) + (y - (sum - (sum - y)));
+        assert!(lost.abs() <= (a + b).remainder);
+        let reciprocal = a.reciprocal();
+        let error = x.mul_add(reciprocal.constant, -1.0) / x;
+        assert!(error.abs() <= reciprocal.remainder && reciprocal.remainder < 1e-13);
+        let root = a.sqrt();
+        let error = root.constant.mul_add(root.constant, -x) / (2.0 * root.constant);
+        assert!(error.abs() <= 1.01 * root.remainder && root.remainder < 1e-13);
+    }
+}
+
+#[test]
+fn what_has_no_value_is_never_proved() {
+    let zero = TaylorModel::variable(0, 0.5, 1.0);
+    for nothing in [
+        zero.reciprocal(),
+        zero.sqrt(),
+        TaylorModel::exactly(-1.0).sqrt(),
+        TaylorModel::exactly(f64::MAX).squared(),
+    ] {
+        let [lower, _] = nothing.range();
+        let is_proved = lower > 0.0;
+        assert!(!is_proved, "{nothing:?}");
+    }
+}

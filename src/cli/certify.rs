@@ -1,0 +1,177 @@
+//! The command `kinefront certify`: proves bounds of the workspace radius.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::io::{BufRead, Read, Write};
+use std::sync::mpsc::sync_channel;
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+use kinefront::export::CertificateJson;
+use kinefront_model::certify::{CertifyError, CertifyOptions};
+use kinefront_model::evaluation::{GridChoice, Model};
+use kinefront_model::mechanism::{Design, TextError, WorkingMode};
+
+use super::evaluate::LONGEST_LINE;
+use super::{Ending, Failure, load_study, tables, to_json};
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+The lower bound is the radius of a disc in which every pose is proved feasible, at every orientation of the window; the upper
+bound is the distance of a pose that is proved infeasible. The verdict on the claimed radius is proved, refuted or open.")]
+pub struct CertifyArguments {
+    /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
+    #[arg(long, required_unless_present = "stdin", conflicts_with = "stdin")]
+    design: Option<String>,
+    /// Read one design per line from standard input and write one JSON object per line.
+    #[arg(long)]
+    stdin: bool,
+    /// Study file, or name of a built-in study [default: paper].
+    #[arg(long, value_name = "FILE")]
+    study: Option<OsString>,
+    /// Home orientation in degrees [default: the one that `evaluate --grid fine` reports].
+    #[arg(long, value_name = "F", allow_negative_numbers = true)]
+    phi_deg: Option<f64>,
+    /// Claimed workspace radius in metres [default: that of the fine grid].
+    #[arg(long, value_name = "C", allow_negative_numbers = true)]
+    radius: Option<f64>,
+    /// Relative tolerance of the claim, and gap between the bounds at which the proof ends.
+    #[arg(long, value_name = "T", default_value_t = CertifyOptions::TOLERANCE, allow_negative_numbers = true)]
+    tolerance: f64,
+    /// Largest number of boxes.
+    #[arg(long, value_name = "N", default_value_t = CertifyOptions::MAX_BOXES as u64, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    max_boxes: u64,
+    /// Print the result as one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(arguments: &CertifyArguments) -> Result<Ending, Failure> {
+    let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
+    let prover = Prover {
+        model: study.model().map_err(Failure::runtime)?,
+        mode: study.working_mode,
+        arguments,
+    };
+    match &arguments.design {
+        None => prover.serve()?,
+        Some(text) => {
+            let found = prover.certify(text).map_err(Failure::input)?;
+            let mut out = std::io::stdout().lock();
+            if arguments.json {
+                writeln!(out, "{}", to_json(&found).map_err(Failure::Runtime)?)?;
+            } else {
+                writeln!(out, "{}", tables::certificate(&found))?;
+            }
+        }
+    }
+    Ok(Ending::Done)
+}
+
+/// Why a line has no certificate.
+#[derive(Debug, thiserror::Error)]
+enum LineError {
+    #[error(transparent)]
+    Text(#[from] TextError),
+    #[error(transparent)]
+    Certify(#[from] CertifyError),
+}
+
+struct Prover<'a> {
+    model: Model,
+    mode: WorkingMode,
+    arguments: &'a CertifyArguments,
+}
+
+impl Prover<'_> {
+    fn certify(&self, text: &str) -> Result<CertificateJson, LineError> {
+        let design = Design::parse(text, self.mode)?;
+        let since = Instant::now();
+        let evaluation = self.model.evaluate(&design, GridChoice::Fine);
+        let home = self.model.home(&evaluation);
+        let phi_deg = self.arguments.phi_deg.or(evaluation.home_phi_deg);
+        let options = CertifyOptions {
+            // The constraints of an infeasible design are reported at an orientation of the grid.
+            phi_deg: phi_deg.unwrap_or_else(|| (1e9 * home.phi.to_degrees()).round() / 1e9),
+            claimed_radius: self.arguments.radius.unwrap_or(evaluation.workspace_radius),
+            tolerance: self.arguments.tolerance,
+            max_boxes: self.arguments.max_boxes as usize,
+            ..CertifyOptions::default()
+        };
+        let certificate = self.model.certify(&design, &options)?;
+        let seconds = since.elapsed().as_secs_f64();
+        Ok(CertificateJson::new(
+            &self.model,
+            &design,
+            &options,
+            &certificate,
+            seconds,
+        ))
+    }
+
+    fn answer(&self, line: &[u8]) -> String {
+        let answer = std::str::from_utf8(line)
+            .map_err(|_| "the line is not UTF-8".to_owned())
+            .and_then(|text| self.certify(text).map_err(|error| error.to_string()))
+            .and_then(|found| to_json(&found).map_err(|error| error.to_string()));
+        answer.unwrap_or_else(|message| serde_json::json!({ "error": message }).to_string())
+    }
+
+    /// Answers each line with one line, in order, on all cores.
+    fn serve(&self) -> Result<(), Failure> {
+        let workers = std::thread::available_parallelism().map_or(1, usize::from);
+        let (to_workers, lines) = sync_channel::<(usize, Vec<u8>)>(4 * workers);
+        let (to_writer, answers) = sync_channel::<(usize, String)>(4 * workers);
+        let lines = Mutex::new(lines);
+        std::thread::scope(|scope| {
+            for _ in 0..workers {
+                let (lines, to_writer) = (&lines, to_writer.clone());
+                scope.spawn(move || {
+                    loop {
+                        let next = lines.lock().unwrap_or_else(PoisonError::into_inner).recv();
+                        let Ok((number, line)) = next else { return };
+                        if to_writer.send((number, self.answer(&line))).is_err() {
+                            return;
+                        }
+                    }
+                });
+            }
+            drop(to_writer);
+            let reading = scope.spawn(move || read_lines(|number, line| to_workers.send((number, line)).is_ok()));
+            let mut out = std::io::stdout().lock();
+            let (mut next, mut waiting) = (0, BTreeMap::new());
+            for (number, answer) in answers {
+                waiting.insert(number, answer);
+                while let Some(answer) = waiting.remove(&next) {
+                    writeln!(out, "{answer}")?;
+                    out.flush()?;
+                    next += 1;
+                }
+            }
+            match reading.join() {
+                Ok(read) => Ok(read?),
+                Err(_) => Err(Failure::Runtime(miette::miette!(
+                    "the thread that reads the designs panicked"
+                ))),
+            }
+        })
+    }
+}
+
+/// Reads the lines of the standard input and hands them on with their numbers, as long as they are taken.
+fn read_lines(mut hand_on: impl FnMut(usize, Vec<u8>) -> bool) -> std::io::Result<()> {
+    let mut input = std::io::stdin().lock();
+    for number in 0.. {
+        let mut line = Vec::new();
+        if (&mut input).take(LONGEST_LINE).read_until(b'\n', &mut line)? == 0 {
+            break;
+        }
+        if line.len() as u64 == LONGEST_LINE && !line.ends_with(b"\n") {
+            input.skip_until(b'\n')?;
+        }
+        if !hand_on(number, line) {
+            break;
+        }
+    }
+    Ok(())
+}
