@@ -17,8 +17,11 @@ pub const UNPACK_COMMAND: &str = "unpack-recording";
 const STUDY: &str = "study.toml";
 const DESIGNS: &str = "designs.csv";
 
-/// Address space of the process \[KiB\]: what the program itself maps, and room for a recording of 100 000 designs.
-const MEMORY_KIB: u64 = 6 << 20;
+/// Address space of the process \[KiB\] for what the program itself maps, most of it never touched.
+const BASE_KIB: u64 = 1_000_000;
+
+/// Address space for each byte of the recording; reading takes a third of it.
+const PER_BYTE: u64 = 8;
 
 /// Time after which a process that still reads is ended.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -83,9 +86,10 @@ pub fn read_apart(path: &Path) -> Result<(Study, Vec<TableRow>), RecordedRunErro
 
 /// Runs the program on a recording; returns what it said if it failed.
 fn run_limited(program: &Path, recording: &Path, folder: &Path) -> std::io::Result<Option<String>> {
+    let limit = BASE_KIB + PER_BYTE * std::fs::metadata(recording)?.len() / 1024;
     let mut command = if cfg!(unix) {
         let mut shell = Command::new("sh");
-        let script = format!("ulimit -v {MEMORY_KIB} 2>/dev/null; exec \"$0\" \"$@\"");
+        let script = format!("ulimit -v {limit} 2>/dev/null; exec \"$0\" \"$@\"");
         shell.arg("-c").arg(script).arg(program);
         shell
     } else {

@@ -333,6 +333,12 @@ fn a_damaged_recording_does_no_harm() {
         refused += u32::from(code == Some(2));
     }
     assert!(refused > 20, "{refused}");
+    // Found by fuzzing: two kilobytes that ask their decoder for gigabytes.
+    let hostile = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/recording/asks-for-gigabytes");
+    fs::copy(hostile, &path).expect("a recording");
+    check(&run)
+        .code(2)
+        .stdout(contains("recording.rrd").and(contains("is not a recording of a run")));
 }
 
 /// Paths need not be UTF-8, and a study may come from a pipe.
