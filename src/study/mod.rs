@@ -6,6 +6,7 @@ mod error;
 mod events;
 mod file;
 mod problem;
+mod replay;
 mod run;
 mod run_folder;
 mod search;
@@ -19,12 +20,13 @@ pub use error::StudyError;
 pub use events::{Batch, EndReason, Event, FrontMember, GenerationSummary, RunSummary, RunTimes, Started, Subscriber};
 pub use file::Study;
 pub use problem::DesignProblem;
+pub use replay::ReplayError;
 pub use run::{spawn, spawn_search};
 pub use run_folder::{
     Checkpoint, Difference, FileSum, FileSums, Finding, HypervolumeReference, Inspection, Repair, ResumeError,
     Resumption, RunFolder, RunFolderError, RunReport, RunWriter, WriteError, partial_path, write_whole,
 };
-pub use search::{ReplayError, SearchError, StudySearch};
+pub use search::{SearchError, StudySearch};
 pub use settings::{
     ActuatorSection, AlgorithmName, Bounds, Check, Fault, GridSection, Grids, HypervolumeSection, Initial,
     LengthChoice, MaterialSection, ModelSection, OptimizerSection, ReferenceDesign, RequirementSection, Setting,

@@ -337,3 +337,99 @@ fn bodies_that_cannot_be_are_told_with_their_keys() {
         assert!(words.contains(part), "{part} is not in {words}");
     }
 }
+
+/// Certificates have the keys that others rely on; a stream answers in order, on all cores.
+#[test]
+fn certificates_answer_one_design_or_a_stream() {
+    let found = json(["certify", "--design", DESIGN, "--json"]);
+    assert_eq!(
+        keys(&found),
+        [
+            "architecture",
+            "boxes",
+            "claimed_radius_m",
+            "closed",
+            "design",
+            "home",
+            "lower_m",
+            "relative_gap",
+            "seconds",
+            "tolerance",
+            "upper_m",
+            "verdict",
+            "violation",
+            "why",
+            "working_mode"
+        ]
+    );
+    assert_eq!(
+        keys(&found["violation"]),
+        ["id", "margin", "phi_deg", "phi_rad", "x_m", "y_m"]
+    );
+    let number = |key: &str| found[key].as_f64().expect("a number");
+    assert!(number("lower_m") <= 1.221_104_6 && number("upper_m") >= 1.221_103_3);
+    assert_eq!(found["verdict"], "proved");
+    assert!(found["violation"]["margin"].as_f64().expect("a number") < 0.0);
+
+    // A radius that is claimed too large is refuted; without boxes nothing is proved.
+    let claim = json([
+        "certify",
+        "--design",
+        DESIGN,
+        "--radius",
+        "1.3",
+        "--phi-deg",
+        "29.5",
+        "--json",
+    ]);
+    assert_eq!(claim["verdict"], "refuted");
+    let few = json(["certify", "--design", DESIGN, "--max-boxes", "3", "--json"]);
+    assert_eq!(
+        (few["verdict"].as_str(), few["why"].as_str()),
+        (Some("open"), Some("budget"))
+    );
+    assert!(few["lower_m"].as_f64().expect("a number") < 1.22);
+
+    // The pocket of a design of a front: the grid claims 0.7147 m, of which 0.6423 m are there.
+    let pocket = "3-RRR R=1.0094566953033497 r=0.13093847935116149 Lb=0.7999739586075939 rj=0.03839109236004963 rp=0.02315007385818249";
+    let lines = format!("{DESIGN}\nnonsense\n{pocket}\n3-PRR R=9 r=0.5 Lb=1 rj=0.03 rp=0.03\n");
+    let told = kinefront()
+        .args(["certify", "--stdin"])
+        .write_stdin(lines.repeat(5))
+        .assert()
+        .success();
+    let answers = String::from_utf8_lossy(&told.get_output().stdout).into_owned();
+    let answers: Vec<Value> = answers
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .collect();
+    assert_eq!(answers.len(), 20);
+    for four in answers.chunks(4) {
+        assert_eq!(four[0]["verdict"], "proved");
+        assert!(
+            four[1]["error"]
+                .as_str()
+                .is_some_and(|words| words.contains("nonsense")),
+            "{}",
+            four[1]
+        );
+        assert_eq!(four[2]["verdict"], "refuted");
+        assert!(four[2]["upper_m"].as_f64().expect("a number") < 0.643);
+        // A design that cannot be assembled has no disc.
+        assert_eq!(
+            (four[3]["lower_m"].as_f64(), four[3]["upper_m"].as_f64()),
+            (Some(0.0), Some(0.0))
+        );
+    }
+
+    kinefront()
+        .args(["certify", "--design", DESIGN, "--study", "paper-without-collisions"])
+        .assert()
+        .code(2)
+        .stderr(contains("g7"));
+    kinefront()
+        .args(["certify", "--design", DESIGN, "--tolerance", "-1"])
+        .assert()
+        .code(2)
+        .stderr(contains("tolerance"));
+}

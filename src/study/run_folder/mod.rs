@@ -9,6 +9,7 @@
 
 mod check;
 mod checkpoint;
+mod design_table;
 mod durable;
 mod read;
 mod report;

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
+use super::design_table::{DesignTable, open_locked};
 use super::durable::remove;
-use super::write::{DesignTable, open_locked};
 use super::{DESIGNS, FRONT, RECORDING, RunFolder, RunFolderError, RunWriter, WriteError};
 use crate::study::{EndReason, ReplayError, StudySearch, TableError};
 

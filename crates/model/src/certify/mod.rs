@@ -6,6 +6,7 @@
 //! one.
 
 mod forms;
+mod polar_box;
 mod search;
 
 use crate::enclosure::{PoseEnclosure, TaylorModel};

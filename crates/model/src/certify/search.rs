@@ -1,9 +1,10 @@
 //! Branch and bound over boxes of positions, in polar coordinates, and orientations.
 
-use std::cmp::{Ordering, Reverse};
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::forms::{Enclosures, Forms};
+use super::polar_box::PolarBox;
 use super::{Certificate, CertifyError, CertifyOptions, Verdict, Violation};
 use crate::enclosure::{Interval, PoseEnclosure, TaylorModel, VARIABLES};
 use crate::evaluation::{Constraint, Model};
@@ -21,52 +22,6 @@ const WORTHWHILE: f64 = 0.3;
 
 /// Radius beyond all reach, as a multiple of the sizes of the design.
 const BEYOND: f64 = 4.0;
-
-/// A box in `(r, θ, φ)`, by its ends.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct PolarBox {
-    lower: [f64; VARIABLES],
-    upper: [f64; VARIABLES],
-    /// Number of its creation, which decides between boxes of equal distance.
-    number: usize,
-}
-
-impl PolarBox {
-    /// Middle, and a radius that reaches both ends.
-    fn middle_and_radius(&self, k: usize) -> (f64, f64) {
-        let middle = 0.5 * (self.lower[k] + self.upper[k]);
-        let radius = (self.upper[k] - middle).max(middle - self.lower[k]);
-        (middle, if radius == 0.0 { 0.0 } else { radius.next_up() })
-    }
-
-    fn volume(&self) -> f64 {
-        (0..VARIABLES).map(|k| self.upper[k] - self.lower[k]).product()
-    }
-
-    /// The point at `ε ∈ [−1, 1]³`.
-    fn point(&self, epsilon: [f64; VARIABLES]) -> [f64; VARIABLES] {
-        std::array::from_fn(|k| {
-            let (middle, radius) = self.middle_and_radius(k);
-            (middle + epsilon[k] * radius).clamp(self.lower[k], self.upper[k])
-        })
-    }
-}
-
-impl Eq for PolarBox {}
-
-impl PartialOrd for PolarBox {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for PolarBox {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.lower[0]
-            .total_cmp(&other.lower[0])
-            .then(self.number.cmp(&other.number))
-    }
-}
 
 pub(super) fn certify<L: Leg>(
     model: &Model,
@@ -200,19 +155,23 @@ impl<'a, L: Leg> Proof<'a, L> {
         let Some(constraint) = self.violated_at(&pose) else {
             return false;
         };
-        let centre = self.model.workspace.centre;
-        let [x, y] = [pose.position.x - centre.x, pose.position.y - centre.y];
-        // The difference from the centre is exact for the centre O, and rounded by one place otherwise.
-        let [x, y] = [x, y].map(|part| Interval {
-            lower: part.next_down(),
-            upper: part.next_up(),
-        });
-        let distance = (x.square() + y.square()).sqrt().upper;
+        let distance = self.distance(&pose);
         if self.upper.is_none_or(|upper| distance < upper) {
             self.upper = Some(distance);
             self.violation = Some(Violation { pose, constraint });
         }
         true
+    }
+
+    /// Returns the distance of a pose from the centre, rounded up.
+    fn distance(&self, pose: &Pose) -> f64 {
+        let centre = self.model.workspace.centre;
+        if pose.position == centre {
+            return 0.0;
+        }
+        let part = |at: f64, of: f64| (Interval::exactly(at) - Interval::exactly(of)).square();
+        let square = part(pose.position.x, centre.x) + part(pose.position.y, centre.y);
+        square.sqrt().upper
     }
 
     /// Looks for bad poses: those of a ring just beyond the claimed radius, each moved inwards as long as it stays bad.
@@ -225,11 +184,17 @@ impl<'a, L: Leg> Proof<'a, L> {
         } else {
             0.05 * self.design.base_radius
         };
-        self.try_point([0.0, 0.0, self.options.phi_deg.to_radians()]);
+        let [first, last] = self.inner_window;
+        for place in 0..=4 * ORIENTATIONS {
+            self.try_point([
+                0.0,
+                0.0,
+                first + (last - first) * place as f64 / (4 * ORIENTATIONS) as f64,
+            ]);
+        }
         while self.upper.is_none() && radius < limit {
             for place in 0..DIRECTIONS * ORIENTATIONS {
                 let theta = self.sector * (place % DIRECTIONS) as f64 / DIRECTIONS as f64;
-                let [first, last] = self.inner_window;
                 let phi = first + (last - first) * (place / DIRECTIONS) as f64 / (ORIENTATIONS - 1) as f64;
                 if self.upper.is_none_or(|upper| radius <= upper) && self.try_point([radius, theta, phi]) {
                     self.move_inwards([radius, theta, phi]);
@@ -366,7 +331,7 @@ impl<'a, L: Leg> Proof<'a, L> {
                 .map(|(_, value)| value)
                 .filter(|value| is_open(value))
                 .collect();
-            if !contract(&mut polar, &open) {
+            if !polar.contract(&open) {
                 return;
             }
             if polar.volume() >= WORTHWHILE * before {
@@ -429,82 +394,4 @@ impl<'a, L: Leg> Proof<'a, L> {
 fn relative_least(value: &TaylorModel) -> f64 {
     let [lower, upper] = value.range();
     lower / upper.abs().max(lower.abs()).max(f64::MIN_POSITIVE)
-}
-
-/// Shrinks a box to the hull of the parts in which one of the constraints may not hold; returns whether any part is left.
-///
-/// In a variable, a constraint may fail only where `a ε + b ε² + k ≤ 0`, with `k` the least of all its other terms.
-fn contract(polar: &mut PolarBox, open: &[&TaylorModel]) -> bool {
-    for k in 0..VARIABLES {
-        let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
-        for value in open {
-            if let Some([low, high]) = part_not_above_zero(value.linear[k], value.square[k], value.least_without(k)) {
-                first = first.min(low);
-                last = last.max(high);
-            }
-        }
-        if first > last {
-            return false;
-        }
-        let (middle, radius) = polar.middle_and_radius(k);
-        let (lower, upper) = (polar.lower[k], polar.upper[k]);
-        let place = |epsilon: f64| Interval::exactly(middle) + Interval::exactly(epsilon) * Interval::exactly(radius);
-        if first > -1.0 {
-            polar.lower[k] = place(first).lower.clamp(lower, upper);
-        }
-        if last < 1.0 {
-            polar.upper[k] = place(last).upper.clamp(lower, upper);
-        }
-    }
-    true
-}
-
-/// Returns an interval that contains every `ε ∈ [−1, 1]` with `a ε + b ε² + k ≤ 0`; `None` if there is no such number.
-fn part_not_above_zero(a: f64, b: f64, k: f64) -> Option<[f64; 2]> {
-    // A part is cut off only if the polynomial is proved positive on it.
-    let is_positive = |from: f64, to: f64| {
-        let value = |at: f64| {
-            (
-                a * at + b * at * at + k,
-                a.abs() * at.abs() + b.abs() * at * at + k.abs(),
-            )
-        };
-        let (low, low_size) = value(from);
-        let (high, high_size) = value(to);
-        let mut least = low.min(high);
-        let mut size = low_size.max(high_size);
-        let vertex = -a / (2.0 * b);
-        if b > 0.0 && vertex > from && vertex < to {
-            let (at_vertex, vertex_size) = value(vertex);
-            least = least.min(at_vertex);
-            size = size.max(vertex_size);
-        }
-        // The vertex is known to a few places, and the polynomial is flat there.
-        least > 32.0 * f64::EPSILON * size
-    };
-    if k.is_nan() {
-        return Some([-1.0, 1.0]);
-    }
-    if is_positive(-1.0, 1.0) {
-        return None;
-    }
-    let cut = |sign: f64| {
-        // The greatest part [−1, at] (for sign = −1) or [at, 1] on which the polynomial is positive, by halving.
-        let end = sign;
-        if !is_positive(end, end) {
-            return end;
-        }
-        let (mut positive, mut open) = (end, -sign);
-        for _ in 0..20 {
-            let middle = 0.5 * (positive + open);
-            let (from, to) = if sign < 0.0 { (end, middle) } else { (middle, end) };
-            if is_positive(from, to) {
-                positive = middle;
-            } else {
-                open = middle;
-            }
-        }
-        positive
-    };
-    Some([cut(-1.0), cut(1.0)])
 }

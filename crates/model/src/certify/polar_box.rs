@@ -1,0 +1,134 @@
+//! Boxes of poses in polar coordinates.
+
+use std::cmp::Ordering;
+
+use crate::enclosure::{Interval, TaylorModel, VARIABLES};
+
+/// A box in `(r, θ, φ)`, by its ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PolarBox {
+    /// Lower ends.
+    pub lower: [f64; VARIABLES],
+    /// Upper ends.
+    pub upper: [f64; VARIABLES],
+    /// Number of its creation, which decides between boxes of equal distance.
+    pub number: usize,
+}
+
+impl PolarBox {
+    /// Middle, and a radius that reaches both ends.
+    pub fn middle_and_radius(&self, k: usize) -> (f64, f64) {
+        let middle = 0.5 * (self.lower[k] + self.upper[k]);
+        let radius = (self.upper[k] - middle).max(middle - self.lower[k]);
+        (middle, if radius == 0.0 { 0.0 } else { radius.next_up() })
+    }
+
+    /// Volume in the units of its variables.
+    pub fn volume(&self) -> f64 {
+        (0..VARIABLES).map(|k| self.upper[k] - self.lower[k]).product()
+    }
+
+    /// The point at `ε ∈ [−1, 1]³`.
+    pub fn point(&self, epsilon: [f64; VARIABLES]) -> [f64; VARIABLES] {
+        std::array::from_fn(|k| {
+            let (middle, radius) = self.middle_and_radius(k);
+            (middle + epsilon[k] * radius).clamp(self.lower[k], self.upper[k])
+        })
+    }
+
+    /// Shrinks a box to the hull of the parts in which one of the constraints may not hold; returns whether any part is left.
+    ///
+    /// In a variable, a constraint may fail only where `a ε + b ε² + k ≤ 0`, with `k` the least of all its other terms.
+    pub fn contract(&mut self, open: &[&TaylorModel]) -> bool {
+        for k in 0..VARIABLES {
+            let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
+            for value in open {
+                if let Some([low, high]) = part_not_above_zero(value.linear[k], value.square[k], value.least_without(k))
+                {
+                    first = first.min(low);
+                    last = last.max(high);
+                }
+            }
+            if first > last {
+                return false;
+            }
+            let (middle, radius) = self.middle_and_radius(k);
+            let (lower, upper) = (self.lower[k], self.upper[k]);
+            let place =
+                |epsilon: f64| Interval::exactly(middle) + Interval::exactly(epsilon) * Interval::exactly(radius);
+            if first > -1.0 {
+                self.lower[k] = place(first).lower.clamp(lower, upper);
+            }
+            if last < 1.0 {
+                self.upper[k] = place(last).upper.clamp(lower, upper);
+            }
+        }
+        true
+    }
+}
+
+impl Eq for PolarBox {}
+
+impl PartialOrd for PolarBox {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for PolarBox {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.lower[0]
+            .total_cmp(&other.lower[0])
+            .then(self.number.cmp(&other.number))
+    }
+}
+
+/// Returns an interval that contains every `ε ∈ [−1, 1]` with `a ε + b ε² + k ≤ 0`; `None` if there is no such number.
+fn part_not_above_zero(a: f64, b: f64, k: f64) -> Option<[f64; 2]> {
+    // A part is cut off only if the polynomial is proved positive on it.
+    let is_positive = |from: f64, to: f64| {
+        let value = |at: f64| {
+            (
+                a * at + b * at * at + k,
+                a.abs() * at.abs() + b.abs() * at * at + k.abs(),
+            )
+        };
+        let (low, low_size) = value(from);
+        let (high, high_size) = value(to);
+        let mut least = low.min(high);
+        let mut size = low_size.max(high_size);
+        let vertex = -a / (2.0 * b);
+        if b > 0.0 && vertex > from && vertex < to {
+            let (at_vertex, vertex_size) = value(vertex);
+            least = least.min(at_vertex);
+            size = size.max(vertex_size);
+        }
+        // The vertex is known to a few places, and the polynomial is flat there.
+        least > 32.0 * f64::EPSILON * size
+    };
+    if k.is_nan() {
+        return Some([-1.0, 1.0]);
+    }
+    if is_positive(-1.0, 1.0) {
+        return None;
+    }
+    let cut = |sign: f64| {
+        // The greatest part [−1, at] (for sign = −1) or [at, 1] on which the polynomial is positive, by halving.
+        let end = sign;
+        if !is_positive(end, end) {
+            return end;
+        }
+        let (mut positive, mut open) = (end, -sign);
+        for _ in 0..20 {
+            let middle = 0.5 * (positive + open);
+            let (from, to) = if sign < 0.0 { (end, middle) } else { (middle, end) };
+            if is_positive(from, to) {
+                positive = middle;
+            } else {
+                open = middle;
+            }
+        }
+        positive
+    };
+    Some([cut(-1.0), cut(1.0)])
+}
