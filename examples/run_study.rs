@@ -32,7 +32,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         for event in for_writer {
             writer.write(Some(&event))?;
             if let Event::Finished(summary) = &*event {
-                writer.finish(summary, true)?;
+                writer.finish(summary)?;
+                writer.conclude()?;
             }
         }
         Ok(())

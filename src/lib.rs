@@ -36,6 +36,7 @@
 //! | [`report`] | report pages of a run: figures, pictures, comparison with the paper |
 //! | [`palette`] | colours and their meaning |
 //! | [`recording`] | conversion of events to Rerun recordings |
+//! | [`signals`] | signals that ask the program to end |
 //! | [`text`] | formatting of numbers for display |
 //! | `explorer` | the application window (feature `explorer`) |
 
@@ -46,6 +47,7 @@ pub mod palette;
 pub mod recording;
 pub mod report;
 pub mod scene;
+pub mod signals;
 pub mod study;
 pub mod text;
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::io::{BufRead, Read, Write};
 use std::sync::mpsc::sync_channel;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use kinefront::export::CertificateJson;
@@ -32,7 +32,7 @@ pub struct CertifyArguments {
     /// Home orientation in degrees [default: the one that `evaluate --grid fine` reports].
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     phi_deg: Option<f64>,
-    /// Claimed workspace radius in metres [default: that of the fine grid].
+    /// Claimed workspace radius in metres [default: that of the fine grid at its own home orientation].
     #[arg(long, value_name = "C", allow_negative_numbers = true)]
     radius: Option<f64>,
     /// Relative tolerance of the claim, and gap between the bounds at which the proof ends.
@@ -109,9 +109,14 @@ impl Prover<'_> {
         ))
     }
 
-    fn answer(&self, line: &[u8]) -> String {
-        let answer = std::str::from_utf8(line)
-            .map_err(|_| "the line is not UTF-8".to_owned())
+    /// Answers a line; `None` is one that is too long.
+    fn answer(&self, line: Option<&[u8]>) -> String {
+        let text = match line.map(std::str::from_utf8) {
+            Some(Ok(text)) => Ok(text),
+            Some(Err(_)) => Err("the line is not UTF-8".to_owned()),
+            None => Err(format!("the line is longer than {LONGEST_LINE} bytes")),
+        };
+        let answer = text
             .and_then(|text| self.certify(text).map_err(|error| error.to_string()))
             .and_then(|found| to_json(&found).map_err(|error| error.to_string()));
         answer.unwrap_or_else(|message| serde_json::json!({ "error": message }).to_string())
@@ -120,23 +125,24 @@ impl Prover<'_> {
     /// Answers each line with one line, in order, on all cores.
     fn serve(&self) -> Result<(), Failure> {
         let workers = std::thread::available_parallelism().map_or(1, usize::from);
-        let (to_workers, lines) = sync_channel::<(usize, Vec<u8>)>(4 * workers);
+        let (to_workers, lines) = sync_channel::<(usize, Option<Vec<u8>>)>(4 * workers);
         let (to_writer, answers) = sync_channel::<(usize, String)>(4 * workers);
-        let lines = Mutex::new(lines);
+        // The workers alone hold the receiver: when they end, the reader does, too.
+        let lines = Arc::new(Mutex::new(lines));
         std::thread::scope(|scope| {
             for _ in 0..workers {
-                let (lines, to_writer) = (&lines, to_writer.clone());
+                let (lines, to_writer) = (Arc::clone(&lines), to_writer.clone());
                 scope.spawn(move || {
                     loop {
                         let next = lines.lock().unwrap_or_else(PoisonError::into_inner).recv();
                         let Ok((number, line)) = next else { return };
-                        if to_writer.send((number, self.answer(&line))).is_err() {
+                        if to_writer.send((number, self.answer(line.as_deref()))).is_err() {
                             return;
                         }
                     }
                 });
             }
-            drop(to_writer);
+            drop((to_writer, lines));
             let reading = scope.spawn(move || read_lines(|number, line| to_workers.send((number, line)).is_ok()));
             let mut out = std::io::stdout().lock();
             let (mut next, mut waiting) = (0, BTreeMap::new());
@@ -159,17 +165,18 @@ impl Prover<'_> {
 }
 
 /// Reads the lines of the standard input and hands them on with their numbers, as long as they are taken.
-fn read_lines(mut hand_on: impl FnMut(usize, Vec<u8>) -> bool) -> std::io::Result<()> {
+fn read_lines(mut hand_on: impl FnMut(usize, Option<Vec<u8>>) -> bool) -> std::io::Result<()> {
     let mut input = std::io::stdin().lock();
     for number in 0.. {
         let mut line = Vec::new();
         if (&mut input).take(LONGEST_LINE).read_until(b'\n', &mut line)? == 0 {
             break;
         }
-        if line.len() as u64 == LONGEST_LINE && !line.ends_with(b"\n") {
+        let is_whole = (line.len() as u64) < LONGEST_LINE || line.ends_with(b"\n");
+        if !is_whole {
             input.skip_until(b'\n')?;
         }
-        if !hand_on(number, line) {
+        if !hand_on(number, is_whole.then_some(line)) {
             break;
         }
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::sync_channel;
 
-use kinefront::recording::{Recorder, RunFiles, is_recorded, read_apart};
+use kinefront::recording::{RecordedRunError, Recorder, RunFiles, is_recorded, read_apart};
 use kinefront::study::{Event, Inspection, Repair, Resumption, RunControl, RunFolderError, TableRow, spawn_search};
 use miette::miette;
 
@@ -89,12 +89,12 @@ fn inspect(path: &Path) -> Result<Inspection, Failure> {
         RunFolderError::Read { .. } => Failure::runtime(error),
         error => Failure::input(error),
     })?;
-    check_recording(&mut inspection);
+    check_recording(&mut inspection)?;
     Ok(inspection)
 }
 
 /// Compares the recording with the table. That of a run that has not ended may be behind.
-fn check_recording(inspection: &mut Inspection) {
+fn check_recording(inspection: &mut Inspection) -> Result<(), Failure> {
     let path = inspection.folder.recording_path();
     let (every, has_ended) = match (inspection.folder.report(), inspection.folder.checkpoint()) {
         (Some(report), _) if report.files.is_some() => (report.record_every, true),
@@ -103,15 +103,20 @@ fn check_recording(inspection: &mut Inspection) {
         (None, None) => (path.exists().then_some(1), false),
     };
     let (Some(every), Some(designs)) = (every, inspection.designs.as_deref()) else {
-        return;
+        return Ok(());
     };
     let generations = designs.chunk_by(|a, b| a.row.generation == b.row.generation);
     let recorded = |rows: &&[TableRow]| is_recorded(rows[0].row.generation as usize, rows[0].id, every);
     let expected: Vec<&TableRow> = generations.filter(recorded).flatten().collect();
-    let wrong = match read_apart(&path) {
-        _ if !path.exists() => Some("it is missing".to_owned()),
-        Err(error) => Some(error.to_string()),
-        Ok((_, rows)) => {
+    let read = path.exists().then(|| read_apart(&path));
+    let wrong = match read {
+        None => Some("it is missing".to_owned()),
+        // That it cannot be read here says nothing about the recording.
+        Some(Err(error @ (RecordedRunError::Process { .. } | RecordedRunError::Write(_)))) => {
+            return Err(Failure::runtime(error));
+        }
+        Some(Err(error)) => Some(error.to_string()),
+        Some(Ok((_, rows))) => {
             let differing = rows
                 .iter()
                 .zip(&expected)
@@ -131,18 +136,18 @@ fn check_recording(inspection: &mut Inspection) {
     if let Some(message) = wrong.filter(|_| has_ended) {
         inspection.add(path, message, Some(Repair::WriteAnew));
     }
+    Ok(())
 }
 
 /// Cuts an incomplete row off, and writes anew what follows from the study and the designs.
 fn repair(path: &Path) -> Result<(), Failure> {
     let resumption = Resumption::open(path, None, None).map_err(Failure::input)?;
-    let outcome = resumption.folder().report().map(|report| report.outcome);
+    let Some(outcome) = resumption.folder().report().map(|report| report.outcome) else {
+        // The run has not ended: its other files are written when it is resumed.
+        return resumption.cut().map_err(Failure::runtime);
+    };
     let every = resumption.record_every();
     let (folder, mut search) = resumption.start(every).map_err(Failure::runtime)?;
-    let Some(outcome) = outcome else {
-        // The run has not ended: it continues with its next start.
-        return Ok(());
-    };
     search.end_after_replay(outcome);
     let recorder = match every {
         Some(every) => {

@@ -82,6 +82,8 @@ const FILES_INCOMPLETE: u8 = 3;
 enum Failure {
     /// The input is invalid: exit code 2.
     Input(Report),
+    /// A file of a run cannot be written: exit code 3.
+    Files(Report),
     /// Something else failed: exit code 1.
     Runtime(Report),
     /// The reader of standard output has closed the pipe: exit code 0.
@@ -93,6 +95,10 @@ impl Failure {
         Self::Input(Report::from_err(error))
     }
 
+    fn files(error: impl std::error::Error + Send + Sync + 'static) -> Self {
+        Self::Files(Report::from_err(error))
+    }
+
     fn runtime(error: impl std::error::Error + Send + Sync + 'static) -> Self {
         Self::Runtime(Report::from_err(error))
     }
@@ -102,7 +108,7 @@ impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Self {
         match error.kind() {
             std::io::ErrorKind::BrokenPipe => Self::BrokenPipe,
-            _ => Self::runtime(error),
+            _ => Self::Runtime(miette!("cannot write to the standard output: {error}")),
         }
     }
 }
@@ -136,10 +142,10 @@ pub fn run() -> ExitCode {
         Some(Command::Study(arguments)) => study::run(&arguments),
     };
     // What the standard output still holds may not be writable either.
-    let outcome = outcome.and_then(|ending| match std::io::stdout().flush() {
-        Ok(()) => Ok(ending),
-        Err(error) => Err(error.into()),
-    });
+    let outcome = match (outcome, std::io::stdout().flush()) {
+        (Ok(Ending::Done), Err(error)) => Err(error.into()),
+        (outcome, _) => outcome,
+    };
     match outcome {
         Ok(Ending::Done) | Err(Failure::BrokenPipe) => ExitCode::SUCCESS,
         Ok(Ending::Interrupted) => ExitCode::from(signals::INTERRUPTED),
@@ -148,6 +154,10 @@ pub fn run() -> ExitCode {
         Err(Failure::Input(report)) => {
             say(format_args!("{report:?}"));
             ExitCode::from(2)
+        }
+        Err(Failure::Files(report)) => {
+            say(format_args!("{report:?}"));
+            ExitCode::from(FILES_INCOMPLETE)
         }
         Err(Failure::Runtime(report)) => {
             say(format_args!("{report:?}"));

@@ -62,15 +62,13 @@ pub struct OptimizeArguments {
 }
 
 pub fn run(arguments: &OptimizeArguments) -> Result<Ending, Failure> {
-    // A signal before the first design must find its handler.
     let control = Arc::new(RunControl::default());
-    interrupt_on_signals(&control, arguments.quiet)?;
     let (folder, search) = match &arguments.resume {
-        Some(path) => match resume(path, arguments)? {
+        Some(path) => match resume(path, arguments, &control)? {
             Some(resumed) => resumed,
             None => return Ok(Ending::Done),
         },
-        None => begin(arguments)?,
+        None => begin(arguments, &control)?,
     };
     let path = folder.path().to_owned();
     let study = Arc::clone(search.study());
@@ -78,15 +76,22 @@ pub fn run(arguments: &OptimizeArguments) -> Result<Ending, Failure> {
     let (ended, failures) = perform(folder, search, &control, &mut progress)?;
     let summary = match ended {
         Ok(summary) => summary,
+        // Interrupted while the designs of a resumed run were replayed: the folder states that the run has not ended.
+        Err(_) if control.is_interrupted() => return Ok(Ending::Interrupted),
         Err(message) => return Err(Failure::Runtime(miette!("the run failed: {message}"))),
     };
-    // The front is printed even if it could not be written.
-    tell(&study, &summary, &path, arguments, failures.is_empty())?;
-    Ok(match summary.outcome {
+    let ending = match summary.outcome {
+        EndReason::Interrupted => Ending::Interrupted,
+        _ if control.is_interrupted() && !failures.is_empty() => Ending::Interrupted,
         _ if !failures.is_empty() => Ending::FilesIncomplete,
         EndReason::Completed | EndReason::TimeUp | EndReason::Stagnated | EndReason::Stopped => Ending::Done,
-        EndReason::Interrupted => Ending::Interrupted,
-    })
+    };
+    // The front is printed even if it could not be written. That nobody reads it changes nothing about a run that did not end
+    // well.
+    match (tell(&study, &summary, &path, arguments, failures.is_empty()), ending) {
+        (Err(failure), Ending::Done) => Err(failure),
+        (_, ending) => Ok(ending),
+    }
 }
 
 /// Runs a search and writes its files; returns its summary, and the errors of its files.
@@ -97,10 +102,7 @@ fn perform(
     progress: &mut Progress,
 ) -> Result<(Result<RunSummary, String>, Vec<RunFileError>), Failure> {
     let recorder = match folder.record_every() {
-        Some(every) => {
-            let recorder = Recorder::create(&folder.recording_path(), search.study(), every);
-            Some(recorder.map_err(Failure::runtime)?)
-        }
+        Some(every) => Some(Recorder::create(&folder.recording_path(), search.study(), every).map_err(Failure::files)?),
         None => None,
     };
     let (next, events) = sync_channel(CHANNEL);
@@ -118,9 +120,11 @@ fn perform(
 }
 
 /// Prepares a new run in its folder.
-fn begin(arguments: &OptimizeArguments) -> Result<(RunWriter, StudySearch), Failure> {
+fn begin(arguments: &OptimizeArguments, control: &Arc<RunControl>) -> Result<(RunWriter, StudySearch), Failure> {
     let study = study(arguments)?;
     let search = StudySearch::new(study, None).map_err(Failure::runtime)?;
+    // A signal before there is a folder ends the program as it is; from here on it finds its handler.
+    interrupt_on_signals(control, arguments.quiet)?;
     let study = search.study();
     let every = record_every(arguments, Some(1));
     let create = |path: &Path| RunWriter::create(path, study, every);
@@ -139,7 +143,11 @@ fn begin(arguments: &OptimizeArguments) -> Result<(RunWriter, StudySearch), Fail
 }
 
 /// Prepares a run to be continued; `None` if nothing is left to do.
-fn resume(path: &Path, arguments: &OptimizeArguments) -> Result<Option<(RunWriter, StudySearch)>, Failure> {
+fn resume(
+    path: &Path,
+    arguments: &OptimizeArguments,
+    control: &Arc<RunControl>,
+) -> Result<Option<(RunWriter, StudySearch)>, Failure> {
     let number = |number: Option<u64>| number.map(|number| number as usize);
     let resumption = Resumption::open(path, number(arguments.evaluations), number(arguments.threads)).map_err(
         |error| match error {
@@ -168,6 +176,7 @@ fn resume(path: &Path, arguments: &OptimizeArguments) -> Result<Option<(RunWrite
         return Ok(None);
     }
     let every = record_every(arguments, resumption.record_every());
+    interrupt_on_signals(control, arguments.quiet)?;
     resumption.start(every).map(Some).map_err(write_failure)
 }
 
@@ -183,7 +192,7 @@ fn record_every(arguments: &OptimizeArguments, other: Option<usize>) -> Option<u
 fn write_failure(error: WriteError) -> Failure {
     match error {
         WriteError::Occupied { .. } | WriteError::InUse(_) => Failure::input(error),
-        WriteError::Write { .. } | WriteError::Changed { .. } => Failure::runtime(error),
+        WriteError::Write { .. } | WriteError::Changed { .. } => Failure::files(error),
     }
 }
 

@@ -2,6 +2,8 @@
 //! `--quiet`.
 
 use std::io::IsTerminal;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::Builder;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -21,7 +23,44 @@ pub enum Progress {
         budget: usize,
         /// Number of twentieths of the budget reported so far.
         reported: usize,
+        /// What prints the lines.
+        printer: Printer,
     },
+}
+
+/// Prints lines on a thread of its own, so that a terminal that is held, for example by Ctrl-S, does not hold the run. Lines
+/// that do not fit are left out.
+pub struct Printer {
+    lines: Option<SyncSender<String>>,
+    ended: Receiver<()>,
+}
+
+impl Printer {
+    fn new() -> Self {
+        let (lines, waiting) = sync_channel::<String>(32);
+        let (end, ended) = sync_channel(1);
+        let printing = Builder::new().name("kinefront-progress".to_owned()).spawn(move || {
+            waiting.into_iter().for_each(say);
+            let _ = end.send(());
+        });
+        Self {
+            lines: printing.is_ok().then_some(lines),
+            ended,
+        }
+    }
+
+    fn print(&self, line: String) {
+        if let Some(lines) = &self.lines {
+            let _ = lines.try_send(line);
+        }
+    }
+
+    /// Waits for the lines that are still to be printed, but not for a terminal that is held.
+    fn finish(&mut self) {
+        const PATIENCE: Duration = Duration::from_millis(500);
+        self.lines = None;
+        let _ = self.ended.recv_timeout(PATIENCE);
+    }
 }
 
 impl Progress {
@@ -31,11 +70,16 @@ impl Progress {
             return Self::Quiet;
         }
         if !std::io::stderr().is_terminal() {
+            let printer = Printer::new();
             if done > 0 {
-                say(format_args!("resumed at {done}/{budget} evaluations"));
+                printer.print(format!("resumed at {done}/{budget} evaluations"));
             }
             let reported = 20 * done / budget;
-            return Self::Lines { budget, reported };
+            return Self::Lines {
+                budget,
+                reported,
+                printer,
+            };
         }
         let style =
             ProgressStyle::with_template("{bar:30.cyan/blue} {pos}/{len} evaluations  {per_sec:.0}  {eta} left  {msg}")
@@ -57,11 +101,15 @@ impl Progress {
                     summary.front_size, summary.hypervolume
                 ));
             }
-            Self::Lines { budget, reported } => {
+            Self::Lines {
+                budget,
+                reported,
+                printer,
+            } => {
                 let reached = 20 * summary.evaluations / *budget;
                 if reached > *reported {
                     *reported = reached;
-                    say(format_args!(
+                    printer.print(format!(
                         "generation {}: {}/{budget} evaluations, {} feasible, front {}, hypervolume {:.1} kg m",
                         summary.generation,
                         summary.evaluations,
@@ -79,17 +127,19 @@ impl Progress {
         match self {
             Self::Quiet => {}
             Self::Bar(bar) => bar.set_message(format!("verifying the front on the fine grid: {done}/{total}")),
-            Self::Lines { .. } if done == 0 => {
-                say(format_args!("verifying {total} designs of the front on the fine grid"));
+            Self::Lines { printer, .. } if done == 0 => {
+                printer.print(format!("verifying {total} designs of the front on the fine grid"));
             }
             Self::Lines { .. } => {}
         }
     }
 
-    /// Removes the progress bar.
-    pub fn finish(&self) {
-        if let Self::Bar(bar) = self {
-            bar.finish_and_clear();
+    /// Removes the progress bar, or waits for the last lines.
+    pub fn finish(&mut self) {
+        match self {
+            Self::Quiet => {}
+            Self::Bar(bar) => bar.finish_and_clear(),
+            Self::Lines { printer, .. } => printer.finish(),
         }
     }
 }

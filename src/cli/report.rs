@@ -7,7 +7,7 @@ use indicatif::ProgressBar;
 use kinefront::report::{Options, Report, ReportError, Source, free};
 use miette::Report as Words;
 
-use super::{Ending, Failure};
+use super::{Ending, Failure, say};
 
 const SENSITIVITY: u32 = 2000;
 const PICTURE_WIDTH: u32 = 800;
@@ -104,7 +104,17 @@ pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
         Report::of_paper(options, &mut tell)
     } else {
         let sources: Result<Vec<Source>, ReportError> = arguments.runs.iter().map(|run| Source::read(run)).collect();
-        sources.and_then(|sources| Report::make(&sources, options, &mut tell))
+        sources.and_then(|sources| {
+            for source in &sources {
+                if let Some(line) = source.cut_line {
+                    say(format_args!(
+                        "{}: line {line} of designs.csv is incomplete and was left out",
+                        source.name
+                    ));
+                }
+            }
+            Report::make(&sources, options, &mut tell)
+        })
     };
     let written = report.and_then(|report| report.write(&folder, arguments.replace));
     spinner.finish_and_clear();

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use kinefront::signals::at_end_signals;
 use kinefront::study::RunControl;
 
 use super::{Failure, say};
@@ -11,11 +12,11 @@ use super::{Failure, say};
 pub const INTERRUPTED: u8 = 130;
 
 /// Installs the handler of the signals: the first one interrupts the run, whose files are then completed within a second;
-/// the second exits the program immediately. A closed terminal changes neither.
+/// the second exits the program immediately. A signal that the caller ignores, as `nohup` does with SIGHUP, stays ignored.
 pub fn interrupt_on_signals(control: &Arc<RunControl>, quiet: bool) -> Result<(), Failure> {
     let control = Arc::clone(control);
     let is_second = AtomicBool::new(false);
-    ctrlc::set_handler(move || {
+    at_end_signals(move || {
         if is_second.swap(true, Ordering::SeqCst) {
             std::process::exit(INTERRUPTED.into());
         }

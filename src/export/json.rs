@@ -173,6 +173,14 @@ impl CertificateJson {
             Verdict::OpenBudget => ("open", Some("budget")),
             Verdict::OpenPrecision => ("open", Some("precision")),
         };
+        // The decimal text of a double may lie on either side of it. The gap is that of the numbers as printed.
+        let printed = Certificate {
+            lower: certificate.lower.next_down().max(0.0),
+            upper: certificate
+                .upper
+                .map(|upper| if upper > 0.0 { upper.next_up() } else { upper }),
+            ..*certificate
+        };
         Self {
             architecture: design.architecture.name(),
             design: design.into(),
@@ -183,14 +191,11 @@ impl CertificateJson {
                 phi_deg: options.phi_deg,
             },
             claimed_radius_m: options.claimed_radius,
-            // The decimal text of a double may lie on either side of it.
-            lower_m: certificate.lower.next_down().max(0.0),
-            upper_m: certificate
-                .upper
-                .map(|upper| if upper > 0.0 { upper.next_up() } else { upper }),
-            relative_gap: certificate.relative_gap(),
+            lower_m: printed.lower,
+            upper_m: printed.upper,
+            relative_gap: printed.relative_gap(),
             tolerance: options.tolerance,
-            closed: certificate.is_closed(options.tolerance),
+            closed: printed.is_closed(options.tolerance),
             verdict,
             why,
             violation: certificate.violation.map(|violation| ViolationJson {

@@ -144,7 +144,7 @@ impl Recorder {
                     self.front_changed = true;
                 }
                 Some(Event::Generation(summary)) if self.records => self.generation(summary),
-                Some(Event::Finished(summary)) => self.finished(summary)?,
+                Some(Event::Finished(summary)) => self.finished(summary, give_up)?,
                 Some(Event::Generation(_) | Event::Started(_) | Event::Verifying { .. } | Event::Failed(_)) | None => {}
             }
             if self.pending.len() >= DESIGNS_AT_ONCE || self.written.elapsed() >= WRITE_INTERVAL {
@@ -226,7 +226,7 @@ impl Recorder {
         }
     }
 
-    fn finished(&mut self, summary: &RunSummary) -> Result<(), RecordingError> {
+    fn finished(&mut self, summary: &RunSummary, give_up: &AtomicBool) -> Result<(), RecordingError> {
         // A generation that was left out may have been the last.
         if let Some(last) = summary.history.last().filter(|_| !self.records) {
             self.generation(last);
@@ -238,6 +238,9 @@ impl Recorder {
             self.writer.row(&along_front(name), ALWAYS, &lines)?;
         }
         for step in 0..summary.front.len() {
+            if give_up.load(Ordering::Relaxed) {
+                return Err(RecordingError::GivenUp);
+            }
             self.step(&[(timelines::FRONT, step)], step, summary)?;
             self.writer.check()?;
         }

@@ -21,7 +21,7 @@ const TICK: Duration = Duration::from_millis(500);
 #[derive(Debug, thiserror::Error)]
 pub enum RunFileError {
     /// The tables. The search ends, because its designs would be lost; it can be resumed.
-    #[error("{0}; the search ends, and the run can be resumed")]
+    #[error("{}; the search ends{}", .0, hint(.0))]
     Tables(WriteError),
     /// The recording. The search continues; a resumed run writes the recording anew.
     #[error("{cause}; the search continues without its recording")]
@@ -30,8 +30,19 @@ pub enum RunFileError {
         cause: RecordingError,
     },
     /// The recording was removed so that the tables have space.
-    #[error("the disk is full; the recording was removed so that the tables have space, and the search continues")]
-    Removed,
+    #[error("{cause}; the recording was removed so that the tables have space, and the run continues")]
+    Removed {
+        /// The file of the tables that had no space.
+        cause: String,
+    },
+}
+
+/// What can be done after an error of the tables; a folder that was taken away cannot be resumed.
+fn hint(error: &WriteError) -> &'static str {
+    match error {
+        WriteError::Changed { .. } => "",
+        _ => ", and the run can be resumed",
+    }
 }
 
 /// Files of a run that are being written.
@@ -71,6 +82,8 @@ impl RunFiles {
             None => None,
         };
         let thread = Builder::new().name("kinefront-tables".to_owned()).spawn(move || {
+            // Whatever happens to this thread, a search whose designs are lost does not go on.
+            let guard = StopOnPanic(Arc::clone(&control));
             let mut writer = TableThread {
                 folder,
                 recording,
@@ -79,14 +92,10 @@ impl RunFiles {
                 tell,
             };
             writer.follow(&events, next);
+            drop(guard);
             writer.failures
         })?;
         Ok((listeners, Self { thread }))
-    }
-
-    /// Whether all files are complete, or given up.
-    pub fn is_finished(&self) -> bool {
-        self.thread.is_finished()
     }
 
     /// Waits until all files are complete; returns the errors, which `tell` was given already.
@@ -101,6 +110,16 @@ impl RunFiles {
     }
 }
 
+struct StopOnPanic(Arc<RunControl>);
+
+impl Drop for StopOnPanic {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.stop();
+        }
+    }
+}
+
 struct TableThread<T> {
     folder: RunWriter,
     recording: Option<RecordingThread>,
@@ -111,36 +130,63 @@ struct TableThread<T> {
 
 impl<T: Fn(&RunFileError)> TableThread<T> {
     fn follow(&mut self, events: &Receiver<Arc<Event>>, next: Subscriber) {
-        let mut last = None;
+        let mut is_finished = false;
         loop {
             match events.recv_timeout(TICK) {
                 Ok(event) => {
                     self.write(Some(&event));
-                    if let Event::Finished(_) = &*event {
-                        last = Some(Arc::clone(&event));
+                    if let Event::Finished(summary) = &*event {
+                        // The front is on the disk before its scenes are drawn.
+                        is_finished = true;
+                        self.attempt(|folder| folder.finish(summary));
                     }
-                    // A display that has ended does not stop the run.
-                    let _ = next.send(event);
+                    // What was not written is not reported as evaluated. A display that has ended does not stop the run.
+                    let is_report = matches!(&*event, Event::Evaluated(_) | Event::Generation(_));
+                    if self.tables_are_written() || !is_report {
+                        let _ = next.send(event);
+                    }
                 }
                 Err(RecvTimeoutError::Timeout) => self.write(None),
                 Err(RecvTimeoutError::Disconnected) => break,
             }
         }
         drop(next);
-        let is_recorded = match self.recording.take().map(RecordingThread::join) {
+        let is_recorded = match self.recording.take().map(|recording| recording.join(&self.control)) {
             Some(Err(error)) => {
                 self.failures.push(error);
                 false
             }
-            Some(Ok(())) | None => true,
+            Some(Ok(())) | None => !self
+                .failures
+                .iter()
+                .any(|failure| matches!(failure, RunFileError::Removed { .. })),
         };
         // A run that failed, or was abandoned, has no summary: its folder states that it has not ended.
-        if let Some(Event::Finished(summary)) = last.as_deref()
-            && self.tables_are_written()
-            && let Err(error) = self.folder.finish(summary, is_recorded)
-        {
+        if is_finished && is_recorded && self.tables_are_written() {
+            self.attempt(RunWriter::conclude);
+        }
+    }
+
+    /// Writes something; if the disk is full, once more without the recording.
+    fn attempt(&mut self, mut write: impl FnMut(&mut RunWriter) -> Result<(), WriteError>) {
+        if !self.tables_are_written() {
+            return;
+        }
+        let Err(error) = write(&mut self.folder) else { return };
+        let is_full = matches!(&error, WriteError::Write { cause, .. } if is_out_of_space(cause));
+        if is_full && let Some(recording) = self.recording.take() {
+            // The recording can be written anew from the tables, but not the other way round.
+            self.failures.push(recording.give_up(&error, &self.tell));
+            if let Err(error) = write(&mut self.folder) {
+                self.fail(error);
+            }
+        } else {
             self.fail(error);
         }
+    }
+
+    fn write(&mut self, event: Option<&Event>) {
+        self.attempt(|folder| folder.write(event));
     }
 
     fn tables_are_written(&self) -> bool {
@@ -148,23 +194,6 @@ impl<T: Fn(&RunFileError)> TableThread<T> {
             .failures
             .iter()
             .any(|failure| matches!(failure, RunFileError::Tables(_)))
-    }
-
-    fn write(&mut self, event: Option<&Event>) {
-        if !self.tables_are_written() {
-            return;
-        }
-        let Err(error) = self.folder.write(event) else { return };
-        let is_full = matches!(&error, WriteError::Write { cause, .. } if is_out_of_space(cause));
-        if is_full && let Some(recording) = self.recording.take() {
-            // The recording can be written anew from the tables, but not the other way round.
-            self.failures.push(recording.give_up(&self.tell));
-            if let Err(error) = self.folder.write(event) {
-                self.fail(error);
-            }
-        } else {
-            self.fail(error);
-        }
     }
 
     fn fail(&mut self, error: WriteError) {
@@ -193,7 +222,7 @@ impl RecordingThread {
         let thread = Builder::new().name("kinefront-recorder".to_owned()).spawn(move || {
             match recorder.follow(&events, &given_up, TICK) {
                 Ok(()) => Ok(()),
-                Err(_) if given_up.load(Ordering::Relaxed) => Err(RunFileError::Removed),
+                Err(cause) if given_up.load(Ordering::Relaxed) => Err(RunFileError::Recording { cause }),
                 Err(cause) => {
                     if matches!(&cause, RecordingError::Write { cause, .. } if is_out_of_space(cause)) {
                         // What is left of it would keep space from the tables.
@@ -208,16 +237,28 @@ impl RecordingThread {
         Ok(Self { thread, path, give_up })
     }
 
-    fn join(self) -> Result<(), RunFileError> {
-        self.thread.join().unwrap_or_else(|_| {
-            Err(RunFileError::Recording {
-                cause: RecordingError::encode("the thread that writes it panicked"),
-            })
-        })
+    /// Waits until the recording is complete. An interrupted run waits no longer than it takes to close the file.
+    fn join(self, control: &RunControl) -> Result<(), RunFileError> {
+        while !self.thread.is_finished() {
+            if control.is_interrupted() {
+                self.give_up.store(true, Ordering::Relaxed);
+            }
+            sleep(Duration::from_millis(5));
+        }
+        let cause = match self.thread.join() {
+            Ok(Ok(())) if self.path.exists() => return Ok(()),
+            Ok(Ok(())) => RecordingError::Write {
+                path: self.path,
+                cause: io::ErrorKind::NotFound.into(),
+            },
+            Ok(Err(error)) => return Err(error),
+            Err(_) => RecordingError::encode("the thread that writes it panicked"),
+        };
+        Err(RunFileError::Recording { cause })
     }
 
     /// Ends the recording and removes its file.
-    fn give_up(self, tell: &impl Fn(&RunFileError)) -> RunFileError {
+    fn give_up(self, cause: &WriteError, tell: &impl Fn(&RunFileError)) -> RunFileError {
         const PATIENCE: Duration = Duration::from_secs(10);
         self.give_up.store(true, Ordering::Relaxed);
         let since = Instant::now();
@@ -225,8 +266,11 @@ impl RecordingThread {
             sleep(Duration::from_millis(10));
         }
         let _ = std::fs::remove_file(&self.path);
-        tell(&RunFileError::Removed);
-        RunFileError::Removed
+        let removed = RunFileError::Removed {
+            cause: cause.to_string(),
+        };
+        tell(&removed);
+        removed
     }
 }
 

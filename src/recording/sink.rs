@@ -21,7 +21,7 @@ pub(super) struct RrdFile(Arc<Mutex<State>>);
 struct State {
     encoder: Option<Encoder<File>>,
     file: File,
-    error: Option<String>,
+    error: Option<(io::ErrorKind, String)>,
 }
 
 impl RrdFile {
@@ -48,7 +48,7 @@ impl RrdFile {
     /// Returns the first error so far.
     pub(super) fn check(&self) -> io::Result<()> {
         match &self.state().error {
-            Some(error) => Err(io::Error::other(error.clone())),
+            Some((kind, message)) => Err(io::Error::new(*kind, message.clone())),
             None => Ok(()),
         }
     }
@@ -58,7 +58,9 @@ impl RrdFile {
         self.check()?;
         let mut state = self.state();
         if let Some(mut encoder) = state.encoder.take() {
-            encoder.finish().map_err(io::Error::other)?;
+            encoder
+                .finish()
+                .map_err(|error| io::Error::new(kind_of(&error), error.to_string()))?;
         }
         state.file.sync_all()
     }
@@ -71,7 +73,7 @@ impl LogSink for RrdFile {
             return;
         };
         if let Err(error) = encoder.append(&message) {
-            state.error = Some(error.to_string());
+            state.error = Some((kind_of(&error), error.to_string()));
             // Dropping the encoder would try to write a footer.
             if let Some(encoder) = state.encoder.take() {
                 let _ = encoder.into_inner();
@@ -86,4 +88,16 @@ impl LogSink for RrdFile {
     fn defers_finalization_to_shutdown(&self) -> bool {
         true
     }
+}
+
+/// Returns the kind of the I/O error that caused an error of the encoder.
+fn kind_of(error: &(dyn std::error::Error + 'static)) -> io::ErrorKind {
+    let mut cause = Some(error);
+    while let Some(error) = cause {
+        if let Some(error) = error.downcast_ref::<io::Error>() {
+            return error.kind();
+        }
+        cause = error.source();
+    }
+    io::ErrorKind::Other
 }

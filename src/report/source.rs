@@ -20,6 +20,8 @@ pub struct Source {
     pub times: Option<RunTimes>,
     /// Version of the program that ran the search; empty if unknown.
     pub version: String,
+    /// Line of an incomplete last row of the table, which was left out.
+    pub cut_line: Option<u64>,
 }
 
 impl Source {
@@ -30,10 +32,12 @@ impl Source {
     pub fn read(folder: &Path) -> Result<Self, ReportError> {
         let run = RunFolder::open(folder)?;
         let report = run.report();
+        let designs = run.designs()?;
         Ok(Self {
             name: run.name(),
             study: run.study().clone(),
-            rows: run.designs()?.rows.into_iter().map(|entry| entry.row).collect(),
+            cut_line: designs.cut_line,
+            rows: designs.rows.into_iter().map(|entry| entry.row).collect(),
             times: report.map(|report| report.times),
             version: report
                 .map(|report| report.kinefront_version.clone())
@@ -73,6 +77,7 @@ impl Source {
                 rows,
                 times,
                 version: env!("CARGO_PKG_VERSION").to_owned(),
+                cut_line: None,
             }),
         }
     }

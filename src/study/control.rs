@@ -68,8 +68,7 @@ impl RunControl {
         self.change(|state| state.stop = true);
     }
 
-    /// Ends the run after the current generation or the current part of the verification; nothing more is verified or
-    /// reported.
+    /// Ends the run at once; nothing more is verified or reported.
     pub fn abandon(&self) {
         self.change(|state| {
             state.stop = true;

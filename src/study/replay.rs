@@ -15,6 +15,14 @@ pub enum ReplayError {
     /// The search cannot be prepared.
     #[error(transparent)]
     Search(#[from] SearchError),
+    /// The table has more rows than the study allows.
+    #[error("the table has {rows} designs, but the study allows {budget} evaluations; one of the two was changed")]
+    Budget {
+        /// Number of rows.
+        rows: usize,
+        /// Budget of the study.
+        budget: usize,
+    },
     /// The design of a row is not the one that the algorithm asks for.
     #[error(
         "design #{id} does not follow from the study and the designs before it; the study, the algorithm or a row before \
@@ -59,6 +67,12 @@ impl StudySearch {
     /// [`ReplayError`] if the rows are not those that the study leads to.
     pub fn resume(study: Study, mut rows: Vec<TableRow>, threads: Option<usize>) -> Result<Self, ReplayError> {
         let mut search = Self::new(study, threads)?;
+        if rows.len() > search.budget {
+            return Err(ReplayError::Budget {
+                rows: rows.len(),
+                budget: search.budget,
+            });
+        }
         search.check_sample(&rows)?;
         let (mut start, mut generation) = (0, 1);
         while start < rows.len() {

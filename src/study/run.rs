@@ -5,13 +5,12 @@
 //!                  │
 //! study ─► worker thread: ask ─► evaluate (thread pool) ─► tell ─► what was found
 //!                  │ Arc<Event>, bounded channels
-//!                  ├─► tables    (designs.csv, front.csv, run.json)
-//!                  ├─► recorder  (recording.rrd)
-//!                  └─► terminal or window
+//!                  ├─► tables    (designs.csv, front.csv, run.json) ─► terminal or window
+//!                  └─► recorder  (recording.rrd)
 //! ```
 //!
 //! The channels are bounded: the worker thread waits for a slow listener and never drops an event. A listener that has
-//! ended (because of a full disk or a closed window) receives no further events, and the run continues. The candidates
+//! ended (such as a recorder whose disk is full) receives no further events, and the run continues. The candidates
 //! of a generation are evaluated in parallel and told to the algorithm in their order, so the result depends neither on
 //! the number of threads nor on the listeners.
 
@@ -97,7 +96,9 @@ fn run(mut search: StudySearch, control: &RunControl, publisher: &mut Publisher)
         study: Arc::clone(search.study()),
         threads: search.threads(),
     }));
-    search.send_replayed(|event| publisher.send(event));
+    if !search.send_replayed(control, |event| publisher.send(event)) {
+        return Ok(());
+    }
     let outcome = search.run(start, control, |event| publisher.send(event))?;
     search.times.search_s = start.elapsed().as_secs_f64();
 
@@ -123,7 +124,7 @@ fn run(mut search: StudySearch, control: &RunControl, publisher: &mut Publisher)
 /// Verifies the front of a search that was resumed, as at the end of its run; returns the summary of a run that ended for
 /// the reason `outcome`.
 pub(super) fn verify_replayed(mut search: StudySearch, outcome: EndReason) -> RunSummary {
-    search.send_replayed(|_| {});
+    search.send_replayed(&RunControl::default(), |_| {});
     let front = search.found.front().to_vec();
     let mut publisher = Publisher {
         subscribers: Vec::new(),

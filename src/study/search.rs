@@ -103,13 +103,18 @@ impl StudySearch {
         self.replayed.len()
     }
 
-    /// Sends the replayed designs to the listeners, as if they had been evaluated now.
-    pub(super) fn send_replayed(&mut self, mut send: impl FnMut(Event)) {
+    /// Sends the replayed designs to the listeners, as if they had been evaluated now. Returns whether all were sent: a run
+    /// that is abandoned stops here.
+    pub(super) fn send_replayed(&mut self, control: &RunControl, mut send: impl FnMut(Event)) -> bool {
         let rows = std::mem::take(&mut self.replayed);
         for generation in rows.chunk_by(|a, b| a.row.generation == b.row.generation) {
+            if control.is_abandoned() {
+                return false;
+            }
             self.found
                 .add(generation.iter().map(|entry| entry.row).collect(), &mut send);
         }
+        true
     }
 
     /// Searches until the budget is used, or until the search is ended; returns the reason.

@@ -173,6 +173,20 @@ fn a_resumed_run_names_what_was_changed() {
     resume(&run, &more)
         .code(2)
         .stderr(contains("run.json").and(contains("damaged")));
+    // JSON that lacks a key is as damaged as what is not JSON: the checksums would be lost with it.
+    fs::write(run.join("run.json"), report.replace("\"outcome\"", "\"outcomf\"")).expect("a report");
+    resume(&run, &more)
+        .code(2)
+        .stderr(contains("run.json").and(contains("outcome")));
+    check(&run).code(2);
+    // More rows than the study allows.
+    unknown();
+    change("study.toml", "evaluations = 300", "evaluations = 200");
+    resume(&run, &[])
+        .code(2)
+        .stderr(contains("300 designs").and(contains("200 evaluations")));
+    check(&run).code(2);
+    change("study.toml", "evaluations = 200", "evaluations = 300");
     fs::write(run.join("run.json"), &report).expect("a report");
     resume(&run, &more).success();
 }

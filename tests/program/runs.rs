@@ -227,7 +227,7 @@ fn a_full_disk_is_told() {
     kinefront()
         .arg("optimize")
         .arg(&study)
-        .args(["--quiet", "--out"])
+        .args(["--quiet", "--no-recording", "--out"])
         .arg(&out)
         .assert()
         .code(3)

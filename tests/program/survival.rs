@@ -104,7 +104,23 @@ fn signals_end_a_run_in_good_order() {
         resume(&run, &[]).success();
         assert!(tables(&run) == tables(&whole), "{name}");
     }
-    // Before the first design, and during the verification.
+    // A signal that the caller ignores, as `nohup` does, stays ignored.
+    let run = folder.path().join("nohup");
+    let script = format!(
+        "trap '' HUP; exec '{}' optimize '{}' --evaluations 600 --quiet --no-recording --out '{}'",
+        env!("CARGO_BIN_EXE_kinefront"),
+        study.display(),
+        run.display()
+    );
+    let mut child = std::process::Command::new("sh")
+        .args(["-c", &script])
+        .spawn()
+        .expect("a shell");
+    wait_for(&run, 60);
+    signal(&child, "-HUP");
+    assert_eq!(child.wait().expect("an end").code(), Some(0));
+    assert_eq!(report(&run)["outcome"], "completed");
+    // At the start.
     for wait in [0, 15] {
         let run = folder.path().join(format!("early{wait}"));
         let mut child = start(&study, &run, &["--evaluations", "4000"]);

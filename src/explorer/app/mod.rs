@@ -328,7 +328,7 @@ pub fn run(subject: InitialContent, script: Option<Script>) -> Result<(), AnyErr
         let explorer = Explorer::new(cc, subject, script, true)?;
         // An interrupt at the terminal closes the window normally; without a handler, the run's files would remain.
         let ctx = cc.egui_ctx.clone();
-        let _ = ctrlc::set_handler(move || {
+        let _ = crate::signals::at_end_signals(move || {
             ctx.send_viewport_cmd(ViewportCommand::Close);
             ctx.request_repaint();
         });

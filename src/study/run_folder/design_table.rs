@@ -10,6 +10,9 @@ use super::{DESIGNS, FileSum, WriteError};
 use crate::study::Batch;
 use crate::study::table::{Column, append_row, table_bytes};
 
+/// `ENOLCK` of Linux: a network file system without a lock service.
+const NO_LOCKS: i32 = 37;
+
 /// Number of times that a lock is awaited for 10 ms.
 const LOCK_PATIENCE: u32 = 30;
 
@@ -35,7 +38,11 @@ pub(super) fn open_locked(folder: &Path, create: bool) -> Result<File, WriteErro
         Ok(()) => Ok(file),
         Err(TryLockError::WouldBlock) => Err(WriteError::InUse(folder.to_owned())),
         // A file system without locks cannot guard the folder; the run goes on as its user asked.
-        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(file),
+        Err(TryLockError::Error(error))
+            if error.kind() == io::ErrorKind::Unsupported || error.raw_os_error() == Some(NO_LOCKS) =>
+        {
+            Ok(file)
+        }
         Err(TryLockError::Error(error)) => Err(WriteError::at(&path)(error)),
     }
 }

@@ -1,5 +1,7 @@
 //! Reading a run folder.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
@@ -54,12 +56,12 @@ pub enum RunFolderError {
         /// Cause of the error.
         cause: std::io::Error,
     },
-    /// A file is not JSON.
+    /// A file is not JSON, or lacks a key.
     #[error("{} is damaged: {cause}", path.display())]
     Damaged {
         /// Path of the file.
         path: PathBuf,
-        /// Where it is no JSON.
+        /// What is wrong in it.
         cause: serde_json::Error,
     },
     /// A file is not the one that the run wrote.
@@ -151,7 +153,7 @@ impl RunFolder {
         let path = self.designs_path();
         let sum = self.state.sums().and_then(|sums| sums.designs);
         if let Some(sum) = sum {
-            match compare_table(&path, &sum, true) {
+            match compare_table(&path, &sum, self.checkpoint().is_some()) {
                 Err(TableError {
                     fault: TableFault::Differs(Difference::Shorter { .. }),
                     ..
@@ -162,11 +164,26 @@ impl RunFolder {
                 result => result?,
             }
         }
-        if std::fs::metadata(&path).is_ok_and(|found| found.len() < header_length()) {
+        let header = header();
+        let found = File::open(&path).and_then(|file| {
+            let mut found = Vec::new();
+            file.take(header.len() as u64).read_to_end(&mut found)?;
+            Ok(found)
+        });
+        let failed = |fault: TableFault| TableError {
+            path: path.clone(),
+            fault,
+        };
+        let found = found.map_err(|error| failed(error.into()))?;
+        if found != header && header.starts_with(&found) {
             return Ok(TableContents {
                 rows: Vec::new(),
                 cut_line: Some(1),
             });
+        }
+        // Rows are appended in the order of the columns of this version.
+        if found != header {
+            return Err(failed(TableFault::Header));
         }
         read_run_table(&path, &self.study)
     }
@@ -177,7 +194,8 @@ impl RunFolder {
     /// As [`RunFolder::designs`].
     pub fn front(&self) -> Result<Option<TableContents>, TableError> {
         let path = self.front_path();
-        if !path.exists() {
+        // While a run goes on, a front is that of an earlier, shorter run of the same folder.
+        if self.checkpoint().is_some() || !path.exists() {
             return Ok(None);
         }
         let contents = read_table(&path, &self.study)?;
@@ -263,16 +281,25 @@ fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, RunFolderErr
             });
         }
     };
-    let value: serde_json::Value = serde_json::from_slice(&text).map_err(|cause| RunFolderError::Damaged {
+    let damaged = |cause| RunFolderError::Damaged {
         path: path.to_owned(),
         cause,
-    })?;
-    Ok(T::deserialize(value).ok())
+    };
+    let value: serde_json::Value = serde_json::from_slice(&text).map_err(damaged)?;
+    // Another version may have other keys; the keys of this one are known.
+    let is_of_another_version = value["kinefront_version"]
+        .as_str()
+        .is_some_and(|version| version != env!("CARGO_PKG_VERSION"));
+    match T::deserialize(value) {
+        Ok(contents) => Ok(Some(contents)),
+        Err(_) if is_of_another_version => Ok(None),
+        Err(cause) => Err(damaged(cause)),
+    }
 }
 
-/// Number of bytes of the header of `designs.csv`.
-fn header_length() -> u64 {
-    table_bytes(Column::of_designs(), []).map_or(0, |header| header.len() as u64)
+/// The header of `designs.csv`.
+fn header() -> Vec<u8> {
+    table_bytes(Column::of_designs(), []).unwrap_or_default()
 }
 
 fn check(path: &Path, sum: &FileSum, may_grow: bool) -> Result<(), RunFolderError> {

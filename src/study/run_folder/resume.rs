@@ -19,6 +19,8 @@ pub struct Resumption {
     folder: RunFolder,
     table: DesignTable,
     search: StudySearch,
+    /// Complete rows.
+    evaluated: usize,
     /// Rows of complete generations, which are kept.
     kept: usize,
     record_every: Option<usize>,
@@ -134,6 +136,7 @@ impl Resumption {
             folder,
             table,
             search,
+            evaluated,
             kept,
             record_every,
             notes,
@@ -146,7 +149,7 @@ impl Resumption {
         &self.search
     }
 
-    /// Whether nothing is left to do: the run used its budget, and its files are complete.
+    /// Whether nothing is left to do: the run used its budget and stated that its files are complete.
     pub fn is_complete(&self) -> bool {
         self.is_complete
     }
@@ -164,6 +167,18 @@ impl Resumption {
     /// What was found in the folder that its user should know.
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// Removes an incomplete last row, and nothing else.
+    ///
+    /// # Errors
+    /// [`WriteError`] if the table cannot be cut.
+    pub fn cut(mut self) -> Result<(), WriteError> {
+        let path = self.folder.designs_path();
+        match end_of_row(&path, self.evaluated).map_err(WriteError::at(&path))? {
+            Some(end) => self.table.keep(self.evaluated, end),
+            None => self.table.begin(),
+        }
     }
 
     /// Begins to write the folder again: cuts the table after its last complete generation, and removes the front and the

@@ -95,9 +95,15 @@ impl RunWriter {
         };
         occupied()?;
         fs::create_dir_all(path).map_err(WriteError::at(path))?;
-        // The folder itself must survive a power loss, and so must a folder that was created to hold it.
+        // The folder itself must survive a power loss, and so must one that was created to hold it. A folder of others may not
+        // be open to us; it was not created here then.
         for folder in path.ancestors().skip(1).take(2) {
-            sync_folder(folder).map_err(WriteError::at(folder))?;
+            match sync_folder(folder) {
+                Err(error) if error.kind() != io::ErrorKind::PermissionDenied => {
+                    return Err(WriteError::at(folder)(error));
+                }
+                _ => {}
+            }
         }
         // The lock decides between two processes that start at once.
         let file = open_locked(path, true)?;
@@ -171,12 +177,11 @@ impl RunWriter {
         Ok(())
     }
 
-    /// Writes `front.csv` and `run.json`. If all other files of the run are `complete`, `progress.json` is removed, which
-    /// marks the run as ended.
+    /// Writes `front.csv` and `run.json`.
     ///
     /// # Errors
     /// [`WriteError`] for the first file that cannot be written; files written before are kept.
-    pub fn finish(&mut self, summary: &RunSummary, complete: bool) -> Result<(), WriteError> {
+    pub fn finish(&mut self, summary: &RunSummary) -> Result<(), WriteError> {
         self.checkpoint()?;
         let front_sum = if summary.verified_front() {
             let front_path = self.path.join(FRONT);
@@ -201,12 +206,16 @@ impl RunWriter {
         let path = self.path.join(REPORT);
         let mut text = serde_json::to_vec_pretty(&report).map_err(|error| WriteError::at(&path)(error.into()))?;
         text.push(b'\n');
-        write_whole(&path, &text)?;
-        if complete {
-            remove(&self.path.join(PROGRESS))?;
-            sync_folder(&self.path).map_err(WriteError::at(&self.path))?;
-        }
-        Ok(())
+        write_whole(&path, &text)
+    }
+
+    /// Removes `progress.json`, which marks the run as ended: all its files are complete.
+    ///
+    /// # Errors
+    /// [`WriteError`] if the file cannot be removed.
+    pub fn conclude(&mut self) -> Result<(), WriteError> {
+        remove(&self.path.join(PROGRESS))?;
+        sync_folder(&self.path).map_err(WriteError::at(&self.path))
     }
 
     /// Synchronises the table to the disk and states so in `progress.json`.

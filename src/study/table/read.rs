@@ -37,6 +37,11 @@ pub enum TableFault {
     /// Columns are missing.
     #[error("line 1: the columns {} are missing; is this a table of designs?", .0.join(", "))]
     Columns(Vec<String>),
+    /// The columns are not those of this version, in their order.
+    #[error(
+        "line 1: the columns are not those of designs.csv of this version, in their order; no rows can be appended"
+    )]
+    Header,
     /// A row is invalid.
     #[error("line {line}: {error}")]
     Row {

@@ -1,14 +1,14 @@
 //! The constraints as functions that are positive exactly where they hold strictly (docs/model.md, section 13.3).
 //!
 //! They are cleared of roots and quotients where this keeps the enclosures narrow, and are written apart from those that the
-//! search evaluates.
+//! evaluation uses.
 
 use super::CertifyError;
 use crate::enclosure::{Interval, LegEnclosure, PoseEnclosure, TaylorModel};
 use crate::evaluation::{Constraint, Model};
 use crate::kinematics::CharacteristicLength;
 use crate::mechanism::{Design, Leg};
-use crate::spatial::LEGS;
+use crate::spatial::{LEGS, Pose};
 use crate::stiffness::StiffnessDefinition;
 
 /// Largest number of constraints that are evaluated at a pose: three per leg, and those of the manipulator.
@@ -45,6 +45,8 @@ impl Enclosures {
 
 /// The constraints of one design, prepared for many boxes.
 pub(super) struct Forms<'a, L> {
+    /// Sign of `det A` at the home pose.
+    sign: f64,
     design: &'a Design,
     model: &'a Model,
     compliance: Compliances,
@@ -131,6 +133,7 @@ impl Compliances {
 }
 
 impl<'a, L: Leg> Forms<'a, L> {
+    /// Prepares the forms of a design; the sign of `det A` counts as positive.
     pub fn new(model: &'a Model, design: &'a Design) -> Result<Self, CertifyError> {
         if model.thresholds.clearance.is_some() {
             return Err(CertifyError::NoForm("a required clearance (g7)"));
@@ -139,11 +142,22 @@ impl<'a, L: Leg> Forms<'a, L> {
             return Err(CertifyError::NoForm("the stiffness definition `compliance`"));
         }
         Ok(Self {
+            sign: 1.0,
             design,
             model,
             compliance: Compliances::new::<L>(model, design)?,
             leg: std::marker::PhantomData,
         })
+    }
+
+    /// Takes the sign of `det A` from a pose; if it cannot be told there, it stays positive.
+    pub fn with_sign_at(mut self, pose: &Pose) -> Self {
+        if let Ok(found) = self.model.pose(self.design, pose)
+            && found.determinant < 0.0
+        {
+            self.sign = -1.0;
+        }
+        self
     }
 
     /// Encloses the constraints over a box of poses.
@@ -163,8 +177,8 @@ impl<'a, L: Leg> Forms<'a, L> {
         found
     }
 
-    /// g3, `9 D² − t² Σ β_i² (μ_j² + μ_k² − 2 μ_j μ_k C_i + w_i²) Σ (1 + μ_i²)/β_i²`, where `t` is the threshold. If that is 0, the
-    /// square of `det A` takes its place, which is positive exactly where the sign is kept.
+    /// g3, `9 D² − t² Σ β_i² (μ_j² + μ_k² − 2 μ_j μ_k C_i + w_i²) Σ (1 + μ_i²)/β_i²`, where `t` is the threshold. If that is 0,
+    /// `det A` takes its place, with the sign that it has at the home pose.
     fn enclose_dexterity(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
         let one = TaylorModel::exactly(1.0);
         let moments = legs.map(|leg| leg.moment.scaled(self.compliance.to_length));
@@ -181,14 +195,13 @@ impl<'a, L: Leg> Forms<'a, L> {
             forward = forward + legs[i].transmission_square * row;
             inverse = inverse + (one + squares[i]) * legs[i].transmission_square.reciprocal();
         }
-        let threshold = Interval::exactly(self.model.thresholds.inverse_condition).square();
-        let square = determinant.squared().times(9.0);
-        let constraint = if threshold.upper > 0.0 {
-            Constraint::Dexterity
+        let threshold = self.model.thresholds.inverse_condition;
+        if threshold > 0.0 {
+            let scaled = (forward * inverse).scaled(Interval::exactly(threshold).square());
+            found.push(Constraint::Dexterity, determinant.squared().times(9.0) - scaled);
         } else {
-            Constraint::DeterminantSign
-        };
-        found.push(constraint, square - (forward * inverse).scaled(threshold));
+            found.push(Constraint::DeterminantSign, determinant.times(self.sign));
+        }
     }
 
     /// g4, g5 and g6. With `γ_i` the compliances along the lines and `T` the threshold, `k_xy > T` where
@@ -199,8 +212,8 @@ impl<'a, L: Leg> Forms<'a, L> {
         let pairs = [along[1] * along[2], along[2] * along[0], along[0] * along[1]];
         let product = along[0] * pairs[0];
         let sum = pairs[0] + pairs[1] + pairs[2];
-        let is_asked = |threshold: Interval| threshold.upper > 0.0;
-        if is_asked(compliance.in_plane) {
+        let thresholds = &self.model.thresholds;
+        if thresholds.k_xy > 0.0 {
             let mut turns = TaylorModel::exactly(0.0);
             for i in 0..LEGS {
                 let turn = crate::enclosure::cross(legs[(i + 1) % LEGS].u, legs[(i + 2) % LEGS].u);
@@ -211,14 +224,14 @@ impl<'a, L: Leg> Forms<'a, L> {
             found.push(Constraint::StiffnessXy, determinant);
             found.push(Constraint::StiffnessXy, sum - product.times(2.0).scaled(threshold));
         }
-        if is_asked(compliance.rotation) {
+        if thresholds.k_phi_z > 0.0 {
             let mut moments = TaylorModel::exactly(0.0);
             for i in 0..LEGS {
                 moments = moments + legs[i].moment.squared() * pairs[i];
             }
             found.push(Constraint::StiffnessPhiZ, moments - product.scaled(compliance.rotation));
         }
-        if is_asked(compliance.vertical) {
+        if thresholds.k_z > 0.0 {
             let mut stiffness = TaylorModel::constant(-compliance.vertical);
             for leg in legs {
                 let [minor, determinant] = self.vertical(leg);

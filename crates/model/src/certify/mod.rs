@@ -170,7 +170,14 @@ impl Model {
             "the claimed radius",
             claimed_radius,
             (0.0..=1e12).contains(&claimed_radius),
-            "at least 0",
+            "from 0 to 1e12 m",
+        )?;
+        let blind_radius = options.blind_radius.unwrap_or(1.0);
+        check(
+            "the blind radius",
+            blind_radius,
+            (0.0..=1e12).contains(&blind_radius),
+            "from 0 to 1e12 m",
         )?;
         check(
             "the tolerance",

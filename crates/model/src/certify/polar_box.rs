@@ -132,3 +132,56 @@ fn part_not_above_zero(a: f64, b: f64, k: f64) -> Option<[f64; 2]> {
     };
     Some([cut(-1.0), cut(1.0)])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers between −1 and 1 that look random.
+    fn numbers() -> impl FnMut() -> f64 {
+        let mut state = 7u64;
+        move || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+    }
+
+    /// No point at which a constraint may fail leaves a box that is contracted.
+    #[test]
+    fn a_contraction_keeps_every_point_that_may_fail() {
+        let mut next = numbers();
+        let mut cut = 0;
+        for _ in 0..3000 {
+            let mut model = |shift: f64| {
+                let mut terms = || [next(), next(), next()];
+                TaylorModel {
+                    linear: terms(),
+                    square: terms(),
+                    mixed: terms().map(|term| 0.2 * term),
+                    constant: shift + terms()[0],
+                    remainder: 0.01,
+                }
+            };
+            let open = [model(1.0), model(0.7)];
+            let before = PolarBox {
+                lower: [1.0, -0.3, 2.0],
+                upper: [1.5, 0.4, 2.2],
+                number: 1,
+            };
+            let mut after = before;
+            let is_left = after.contract(&open.iter().collect::<Vec<_>>());
+            cut += usize::from(after != before || !is_left);
+            for _ in 0..200 {
+                let epsilon = [next(), next(), next()];
+                let may_fail = open.iter().any(|model| model.value(epsilon) - model.remainder <= 0.0);
+                let point = before.point(epsilon);
+                let is_inside = is_left
+                    && (0..VARIABLES).all(|k| point[k] >= after.lower[k] - 1e-12 && point[k] <= after.upper[k] + 1e-12);
+                assert!(!may_fail || is_inside, "{epsilon:?} of {after:?}");
+            }
+        }
+        assert!(cut > 500, "{cut} contractions");
+    }
+}

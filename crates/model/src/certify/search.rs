@@ -51,7 +51,7 @@ struct Proof<'a, L> {
     heap: BinaryHeap<Reverse<PolarBox>>,
     /// Least distance of the boxes that were put aside.
     aside: f64,
-    /// Distance up to which everything in the heap and before is proved.
+    /// Everything nearer than this is proved, apart from the boxes that were put aside.
     proved: f64,
     /// Relative gap between the bounds at which the search ends.
     gap: f64,
@@ -68,7 +68,10 @@ impl<'a, L: Leg> Proof<'a, L> {
         let [first, last] = [(middle - half) * to_radians, (middle + half) * to_radians];
         let turn = if model.is_symmetric(design) { 120.0 } else { 360.0 };
         Ok(Self {
-            forms: Forms::new(model, design)?,
+            forms: Forms::new(model, design)?.with_sign_at(&Pose {
+                position: model.workspace.centre,
+                phi: options.phi_deg.to_radians(),
+            }),
             model,
             design,
             options,
@@ -94,7 +97,7 @@ impl<'a, L: Leg> Proof<'a, L> {
         }
         match self.upper {
             // A few places more, so that rounding does not make the gap wider than the tolerance.
-            Some(upper) => upper * (1.0 - self.gap) * (1.0 + 8.0 * f64::EPSILON),
+            Some(upper) => upper * (1.0 - self.gap) * (1.0 + 16.0 * f64::EPSILON),
             None => {
                 let design = self.design;
                 let centre = self.model.workspace.centre.length();
@@ -148,7 +151,9 @@ impl<'a, L: Leg> Proof<'a, L> {
 
     /// Lowers the upper bound if the pose at a point is bad; returns whether it is.
     fn try_point(&mut self, point: [f64; VARIABLES]) -> bool {
-        if self.options.blind_radius.is_some() {
+        // In a window without width, no double is known to lie.
+        let [first, last] = self.inner_window;
+        if self.options.blind_radius.is_some() || first > last {
             return false;
         }
         let pose = self.pose_at(point);
@@ -178,13 +183,16 @@ impl<'a, L: Leg> Proof<'a, L> {
     fn find_bad_poses(&mut self) {
         const DIRECTIONS: usize = 24;
         const ORIENTATIONS: usize = 5;
+        let [first, last] = self.inner_window;
+        if first > last {
+            return;
+        }
         let limit = self.target();
         let mut radius = if self.options.claimed_radius > 0.0 {
             1.005 * self.options.claimed_radius
         } else {
             0.05 * self.design.base_radius
         };
-        let [first, last] = self.inner_window;
         for place in 0..=4 * ORIENTATIONS {
             self.try_point([
                 0.0,
@@ -295,8 +303,9 @@ impl<'a, L: Leg> Proof<'a, L> {
 
     /// Proves, contracts or divides one box.
     fn examine(&mut self, mut polar: PolarBox) {
-        polar.upper[0] = polar.upper[0].min(self.target());
         for _ in 0..=CONTRACTIONS {
+            // The box is cut before it is enclosed: what is found refers to the box as enclosed.
+            polar.upper[0] = polar.upper[0].min(self.target());
             self.boxes += 1;
             let found = self.enclose_box(&polar);
             let is_open = |value: &TaylorModel| {
@@ -307,7 +316,11 @@ impl<'a, L: Leg> Proof<'a, L> {
             if found.is_complete && !found.iter().any(|(_, value)| is_open(value)) {
                 return;
             }
-            self.try_point(polar.point([0.0; VARIABLES]));
+            let middle = polar.point([0.0; VARIABLES]);
+            self.try_point(middle);
+            if polar.lower[0] == 0.0 {
+                self.try_point([0.0, 0.0, middle[2]]);
+            }
             if let Some((_, worst)) = found
                 .iter()
                 .filter(|(_, value)| is_open(value))
@@ -321,7 +334,6 @@ impl<'a, L: Leg> Proof<'a, L> {
             if polar.lower[0] >= self.target() {
                 return;
             }
-            polar.upper[0] = polar.upper[0].min(self.target());
             if !found.is_complete {
                 break;
             }
@@ -372,7 +384,7 @@ impl<'a, L: Leg> Proof<'a, L> {
             Verdict::Proved
         } else if self.upper.is_some_and(|upper| upper < claim) {
             Verdict::Refuted
-        } else if self.is_out_of_budget {
+        } else if self.is_out_of_budget && self.aside > self.proved {
             Verdict::OpenBudget
         } else {
             Verdict::OpenPrecision

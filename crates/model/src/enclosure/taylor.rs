@@ -256,7 +256,8 @@ fn quadratic_range(a: f64, b: f64) -> [f64; 2] {
     let (mut low, mut high) = (b - a.abs(), b + a.abs());
     // The vertex lies inside.
     if a.abs() < 2.0 * b.abs() {
-        let vertex = -a * a / (4.0 * b);
+        // |a/b| < 2, so that nothing underflows that is not negligible.
+        let vertex = -0.25 * a * (a / b);
         low = low.min(vertex);
         high = high.max(vertex);
     }

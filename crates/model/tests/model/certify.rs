@@ -77,11 +77,13 @@ fn certificates_agree_with_published_intervals() {
             );
             assert!(found.lower <= case.upper && upper >= case.lower, "{}", case.name);
             assert!(found.is_closed(tolerance), "{}", case.name);
-            assert!(
-                matches!(found.verdict, Verdict::Proved | Verdict::Refuted),
-                "{}",
-                case.name
-            );
+            let claim = (1.0 - tolerance) * case.fine_radius;
+            let expected = if case.lower >= claim {
+                Verdict::Proved
+            } else {
+                Verdict::Refuted
+            };
+            assert_eq!(found.verdict, expected, "{}", case.name);
         }
     }
 }
@@ -286,4 +288,42 @@ fn other_studies_are_certified_or_refused() {
     };
     let error = Model::default().certify(&design, &far).expect_err("an option");
     assert!(error.to_string().contains("tolerance"));
+}
+
+/// A window without width has no upper bound, since no double lies in it; a wide one, thresholds of 0 and a negative home
+/// orientation are certified.
+#[test]
+fn extreme_settings_are_certified() {
+    let design = cases()[1].design;
+    let certify = |change: fn(&mut kinefront_model::evaluation::ModelSettings), phi_deg: f64| {
+        let options = CertifyOptions {
+            phi_deg,
+            max_boxes: 20_000,
+            ..CertifyOptions::default()
+        };
+        model(change).certify(&design, &options).expect("a certificate")
+    };
+    let narrow = certify(|settings| settings.workspace.rotation_range_deg = 0.0, 29.5);
+    assert!(narrow.upper.is_none() && narrow.lower > 1.2, "{narrow:?}");
+    let paper = certify(|_| {}, 29.5);
+    let turned = certify(|_| {}, 29.5 - 360.0);
+    assert!((paper.lower - turned.lower).abs() < 2e-4 * paper.lower);
+    let wide = certify(|settings| settings.workspace.rotation_range_deg = 40.0, 29.5);
+    assert!(wide.upper.expect("an infeasible pose") < paper.lower);
+    let free = certify(
+        |settings| {
+            settings.thresholds.inverse_condition = 0.0;
+            settings.thresholds.k_xy = 0.0;
+            settings.thresholds.k_z = 0.0;
+            settings.thresholds.k_phi_z = 0.0;
+        },
+        29.5,
+    );
+    // Reach and the sign of det A alone allow a larger disc, and end it.
+    assert!(free.lower > paper.lower && free.is_closed(1e-4), "{free:?}");
+    let violation = free.violation.expect("a pose");
+    assert!(matches!(
+        violation.constraint,
+        Constraint::Reach | Constraint::DeterminantSign
+    ));
 }
