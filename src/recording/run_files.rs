@@ -237,10 +237,13 @@ impl RecordingThread {
         Ok(Self { thread, path, give_up })
     }
 
-    /// Waits until the recording is complete. An interrupted run waits no longer than it takes to close the file.
+    /// Waits until the recording is complete. An interrupted run waits long enough to close the file, but not to draw all
+    /// scenes of its front.
     fn join(self, control: &RunControl) -> Result<(), RunFileError> {
+        const PATIENCE: Duration = Duration::from_millis(500);
+        let since = Instant::now();
         while !self.thread.is_finished() {
-            if control.is_interrupted() {
+            if control.is_interrupted() && since.elapsed() > PATIENCE {
                 self.give_up.store(true, Ordering::Relaxed);
             }
             sleep(Duration::from_millis(5));
