@@ -13,7 +13,7 @@ use super::{Ending, Failure, say};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-The exit code is 0 if the folder is sound, and 2 if something is wrong. A repair cuts an incomplete last row off, and writes
+The exit code is 0 if the folder is sound, and 2 if something is wrong. A repair removes an incomplete last row, and writes
 anew what follows from the study and the designs: the front, run.json, and the recording.")]
 pub struct CheckArguments {
     /// Run folder.
@@ -38,7 +38,7 @@ pub fn run(arguments: &CheckArguments) -> Result<Ending, Failure> {
     }
     for finding in &inspection.findings {
         let remedy = match finding.repair {
-            Some(Repair::Cut) => " (can be repaired: the row is cut off)",
+            Some(Repair::Cut) => " (can be repaired: the row is removed)",
             Some(Repair::WriteAnew) => " (can be repaired: it is written anew)",
             None => "",
         };

@@ -23,7 +23,7 @@ pub struct RunMessages {
     pub finished: Option<Box<RunSummary>>,
     /// Reason why the run failed.
     pub failed: Option<String>,
-    /// Errors that do not stop the run, such as a table that cannot be written.
+    /// Errors of the files of the run, each of which says what follows from it.
     pub troubles: Vec<String>,
 }
 
