@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
-use std::io::{BufRead, Read, Write};
+use std::io::Write;
 use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -12,7 +12,7 @@ use kinefront_model::certify::{CertifyError, CertifyOptions};
 use kinefront_model::evaluation::{GridChoice, Model};
 use kinefront_model::mechanism::{Design, TextError, WorkingMode};
 
-use super::evaluate::LONGEST_LINE;
+use super::stream::{Line, answer, next_line};
 use super::{Ending, Failure, load_study, tables, to_json};
 
 #[derive(Debug, clap::Args)]
@@ -109,23 +109,10 @@ impl Prover<'_> {
         ))
     }
 
-    /// Answers a line; `None` is one that is too long.
-    fn answer(&self, line: Option<&[u8]>) -> String {
-        let text = match line.map(std::str::from_utf8) {
-            Some(Ok(text)) => Ok(text),
-            Some(Err(_)) => Err("the line is not UTF-8".to_owned()),
-            None => Err(format!("the line is longer than {LONGEST_LINE} bytes")),
-        };
-        let answer = text
-            .and_then(|text| self.certify(text).map_err(|error| error.to_string()))
-            .and_then(|found| to_json(&found).map_err(|error| error.to_string()));
-        answer.unwrap_or_else(|message| serde_json::json!({ "error": message }).to_string())
-    }
-
     /// Answers each line with one line, in order, on all cores.
     fn serve(&self) -> Result<(), Failure> {
         let workers = std::thread::available_parallelism().map_or(1, usize::from);
-        let (to_workers, lines) = sync_channel::<(usize, Option<Vec<u8>>)>(4 * workers);
+        let (to_workers, lines) = sync_channel::<(usize, Line)>(4 * workers);
         let (to_writer, answers) = sync_channel::<(usize, String)>(4 * workers);
         // The workers alone hold the receiver: when they end, the reader does, too.
         let lines = Arc::new(Mutex::new(lines));
@@ -136,14 +123,26 @@ impl Prover<'_> {
                     loop {
                         let next = lines.lock().unwrap_or_else(PoisonError::into_inner).recv();
                         let Ok((number, line)) = next else { return };
-                        if to_writer.send((number, self.answer(line.as_deref()))).is_err() {
+                        if to_writer
+                            .send((number, answer(line, |text| self.certify(text))))
+                            .is_err()
+                        {
                             return;
                         }
                     }
                 });
             }
             drop((to_writer, lines));
-            let reading = scope.spawn(move || read_lines(|number, line| to_workers.send((number, line)).is_ok()));
+            let reading = scope.spawn(move || -> std::io::Result<()> {
+                let mut input = std::io::stdin().lock();
+                for number in 0.. {
+                    let Some(line) = next_line(&mut input)? else { break };
+                    if to_workers.send((number, line)).is_err() {
+                        break;
+                    }
+                }
+                Ok(())
+            });
             let mut out = std::io::stdout().lock();
             let (mut next, mut waiting) = (0, BTreeMap::new());
             for (number, answer) in answers {
@@ -162,23 +161,4 @@ impl Prover<'_> {
             }
         })
     }
-}
-
-/// Reads the lines of the standard input and hands them on with their numbers, as long as they are taken.
-fn read_lines(mut hand_on: impl FnMut(usize, Option<Vec<u8>>) -> bool) -> std::io::Result<()> {
-    let mut input = std::io::stdin().lock();
-    for number in 0.. {
-        let mut line = Vec::new();
-        if (&mut input).take(LONGEST_LINE).read_until(b'\n', &mut line)? == 0 {
-            break;
-        }
-        let is_whole = (line.len() as u64) < LONGEST_LINE || line.ends_with(b"\n");
-        if !is_whole {
-            input.skip_until(b'\n')?;
-        }
-        if !hand_on(number, is_whole.then_some(line)) {
-            break;
-        }
-    }
-    Ok(())
 }

@@ -3,12 +3,13 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::sync_channel;
 
-use kinefront::recording::{RecordedRunError, Recorder, RunFiles, is_recorded, read_apart};
-use kinefront::study::{Event, Inspection, Repair, Resumption, RunControl, RunFolderError, TableRow, spawn_search};
+use kinefront::recording::{RecordedRunError, is_recorded, read_apart};
+use kinefront::study::{Inspection, Repair, Resumption, RunControl, RunFolderError, TableRow};
 use miette::miette;
 
+use super::optimize::perform;
+use super::progress::Progress;
 use super::{Ending, Failure, say};
 
 #[derive(Debug, clap::Args)]
@@ -149,24 +150,13 @@ fn repair(path: &Path) -> Result<(), Failure> {
     let every = resumption.record_every();
     let (folder, mut search) = resumption.start(every).map_err(Failure::runtime)?;
     search.end_after_replay(outcome);
-    let recorder = match every {
-        Some(every) => {
-            Some(Recorder::create(&folder.recording_path(), search.study(), every).map_err(Failure::runtime)?)
-        }
-        None => None,
-    };
     let control = Arc::new(RunControl::default());
-    let (next, events) = sync_channel::<Arc<Event>>(64);
-    let tell = |error: &kinefront::recording::RunFileError| say(format_args!("error: {error}"));
-    let (listeners, files) =
-        RunFiles::start(folder, recorder, next, Arc::clone(&control), tell).map_err(Failure::runtime)?;
-    let worker = spawn_search(search, control, listeners).map_err(Failure::runtime)?;
-    events.into_iter().for_each(drop);
-    let failures = files.join();
-    if worker.join().is_err() || !failures.is_empty() {
-        return Err(Failure::Runtime(miette!("{} could not be repaired", path.display())));
+    match perform(folder, search, &control, &mut Progress::Quiet) {
+        Ok((Ok(_), failures)) if failures.is_empty() => Ok(()),
+        Ok(_) => Err(Failure::Runtime(miette!("{} could not be repaired", path.display()))),
+        Err(Failure::Files(report)) => Err(Failure::Runtime(report)),
+        Err(failure) => Err(failure),
     }
-    Ok(())
 }
 
 #[derive(Debug, clap::Args)]

@@ -1,12 +1,13 @@
 //! The command `kinefront evaluate`.
 
 use std::ffi::OsString;
-use std::io::{BufRead, Read, Write};
+use std::io::Write;
 
 use kinefront::export::EvaluationJson;
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{Design, TextError, WorkingMode};
 
+use super::stream::{answer, next_line};
 use super::{Ending, Failure, GridArgument, load_study, tables, to_json};
 
 #[derive(Debug, clap::Args)]
@@ -54,9 +55,6 @@ pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
     Ok(Ending::Done)
 }
 
-/// Longest line of a stream \[bytes\]; a design takes about a hundred.
-pub const LONGEST_LINE: u64 = 1 << 16;
-
 struct Server {
     model: Model,
     mode: WorkingMode,
@@ -73,27 +71,13 @@ impl Server {
     fn serve(&self) -> Result<(), Failure> {
         let mut input = std::io::stdin().lock();
         let mut out = std::io::stdout().lock();
-        let mut line = Vec::new();
-        loop {
-            line.clear();
-            if (&mut input).take(LONGEST_LINE).read_until(b'\n', &mut line)? == 0 {
-                return Ok(());
-            }
-            let is_whole = line.len() < LONGEST_LINE as usize || line.ends_with(b"\n");
-            if !is_whole {
-                input.skip_until(b'\n')?;
-            }
-            let text = match std::str::from_utf8(&line) {
-                _ if !is_whole => Err(format!("the line is longer than {LONGEST_LINE} bytes")),
-                Ok(text) => Ok(text),
-                Err(_) => Err("the line is not UTF-8".to_owned()),
-            };
-            let answer = text
-                .and_then(|text| self.evaluate(text).map_err(|error| error.to_string()))
-                .and_then(|evaluation| to_json(&EvaluationJson::new(&evaluation)).map_err(|error| error.to_string()))
-                .unwrap_or_else(|message| serde_json::json!({ "error": message }).to_string());
+        while let Some(line) = next_line(&mut input)? {
+            let answer = answer(line, |text| {
+                self.evaluate(text).map(|evaluation| EvaluationJson::new(&evaluation))
+            });
             writeln!(out, "{answer}")?;
             out.flush()?;
         }
+        Ok(())
     }
 }

@@ -12,6 +12,7 @@ mod progress;
 mod report;
 mod show;
 mod signals;
+mod stream;
 mod study;
 mod subject;
 mod tables;

@@ -95,20 +95,18 @@ pub fn run(arguments: &OptimizeArguments) -> Result<Ending, Failure> {
 }
 
 /// Runs a search and writes its files; returns its summary, and the errors of its files.
-fn perform(
+pub fn perform(
     folder: RunWriter,
     search: StudySearch,
     control: &Arc<RunControl>,
     progress: &mut Progress,
 ) -> Result<(Result<RunSummary, String>, Vec<RunFileError>), Failure> {
-    let recorder = match folder.record_every() {
-        Some(every) => Some(Recorder::create(&folder.recording_path(), search.study(), every).map_err(Failure::files)?),
-        None => None,
-    };
+    let recorder = Recorder::of_run(&folder, search.study()).map_err(Failure::files)?;
     let (next, events) = sync_channel(CHANNEL);
     let tell = |error: &RunFileError| say(format_args!("error: {error}"));
-    let (listeners, files) = RunFiles::start(folder, recorder, next, Arc::clone(control), tell)?;
-    let worker = spawn_search(search, Arc::clone(control), listeners)?;
+    let (listeners, files) =
+        RunFiles::start(folder, recorder, next, Arc::clone(control), tell).map_err(Failure::runtime)?;
+    let worker = spawn_search(search, Arc::clone(control), listeners).map_err(Failure::runtime)?;
     let ended = watch(&events, progress);
     progress.finish();
     let failures = files.join();

@@ -12,7 +12,7 @@ use super::rows::RowBuffer;
 use super::scatter::{FrontPoint, INFEASIBLE_COLOR, PlotRange, front_points, points, selected, staircase};
 use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
 use super::{blueprint, colors, columns, design, paths, timelines};
-use crate::study::{Batch, Event, GenerationSummary, Row, RunSummary, Study, TableRow};
+use crate::study::{Batch, Event, GenerationSummary, Row, RunSummary, RunWriter, Study, TableRow};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Architecture;
 
@@ -114,6 +114,15 @@ impl Recorder {
             front_changed: false,
             frame_changed: true,
         })
+    }
+
+    /// Creates the recording of the run that `folder` writes; `None` for a run without one.
+    ///
+    /// # Errors
+    /// As [`Recorder::create`].
+    pub fn of_run(folder: &RunWriter, study: &Study) -> Result<Option<Self>, RecordingError> {
+        let create = |every| Self::create(&folder.recording_path(), study, every);
+        folder.record_every().map(create).transpose()
     }
 
     /// Writes the events of a run until it ends, then closes the file. What was collected is written every few seconds,

@@ -101,7 +101,31 @@ fn run(mut search: StudySearch, control: &RunControl, publisher: &mut Publisher)
     }
     let outcome = search.run(start, control, |event| publisher.send(event))?;
     search.times.search_s = start.elapsed().as_secs_f64();
+    if let Some(summary) = conclude(search, outcome, control, publisher) {
+        publisher.send(Event::Finished(summary));
+    }
+    Ok(())
+}
 
+/// Verifies the front of a search that was resumed, as at the end of its run; returns the summary of a run that ended for
+/// the reason `outcome`.
+pub(super) fn verify_replayed(mut search: StudySearch, outcome: EndReason) -> Option<RunSummary> {
+    let control = RunControl::default();
+    search.send_replayed(&control, |_| {});
+    let mut nobody = Publisher {
+        subscribers: Vec::new(),
+        spent: Duration::ZERO,
+    };
+    conclude(search, outcome, &control, &mut nobody)
+}
+
+/// Verifies the front of a search that has ended and sums it up; `None` if the run was abandoned.
+fn conclude(
+    mut search: StudySearch,
+    outcome: EndReason,
+    control: &RunControl,
+    publisher: &mut Publisher,
+) -> Option<RunSummary> {
     let verifying = Instant::now();
     let front = search.found.front().to_vec();
     let verified = match outcome {
@@ -110,33 +134,12 @@ fn run(mut search: StudySearch, control: &RunControl, publisher: &mut Publisher)
     };
     search.times.verification_s = verifying.elapsed().as_secs_f64();
     search.times.publish_s = publisher.spent.as_secs_f64();
-    let summary = match verified {
-        Some(verified) => summary(search, outcome, front.len(), &verified),
-        None if control.is_interrupted() || outcome == EndReason::Interrupted => {
-            summary(search, EndReason::Interrupted, 0, &[])
-        }
-        None => return Ok(()),
-    };
-    publisher.send(Event::Finished(summary));
-    Ok(())
-}
-
-/// Verifies the front of a search that was resumed, as at the end of its run; returns the summary of a run that ended for
-/// the reason `outcome`.
-pub(super) fn verify_replayed(mut search: StudySearch, outcome: EndReason) -> RunSummary {
-    search.send_replayed(&RunControl::default(), |_| {});
-    let front = search.found.front().to_vec();
-    let mut publisher = Publisher {
-        subscribers: Vec::new(),
-        spent: Duration::ZERO,
-    };
-    let verified = match outcome {
-        EndReason::Interrupted => None,
-        _ => verify(&front, &search, &RunControl::default(), &mut publisher),
-    };
     match verified {
-        Some(verified) => summary(search, outcome, front.len(), &verified),
-        None => summary(search, outcome, 0, &[]),
+        Some(verified) => Some(summary(search, outcome, front.len(), &verified)),
+        None if control.is_interrupted() || outcome == EndReason::Interrupted => {
+            Some(summary(search, EndReason::Interrupted, 0, &[]))
+        }
+        None => None,
     }
 }
 

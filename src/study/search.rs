@@ -50,7 +50,7 @@ pub struct StudySearch {
 
 impl fmt::Debug for StudySearch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Search")
+        f.debug_struct("StudySearch")
             .field("study", &self.study.name)
             .field("found", &self.found)
             .finish_non_exhaustive()

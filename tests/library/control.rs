@@ -22,14 +22,9 @@ fn study() -> Study {
 }
 
 /// Performs a search and its files while `operate` controls it; returns the reason why it ended, if it has a summary.
-fn perform(
-    writer: RunWriter,
-    search: StudySearch,
-    record: bool,
-    operate: impl FnOnce(&RunControl) + Send,
-) -> Option<EndReason> {
+fn perform(writer: RunWriter, search: StudySearch, operate: impl FnOnce(&RunControl) + Send) -> Option<EndReason> {
     let control = Arc::new(RunControl::default());
-    let recorder = record.then(|| Recorder::create(&writer.recording_path(), search.study(), 1).expect("a recording"));
+    let recorder = Recorder::of_run(&writer, search.study()).expect("a recording");
     let (next, events) = sync_channel(4);
     let (listeners, files) =
         RunFiles::start(writer, recorder, next, Arc::clone(&control), |error| panic!("{error}")).expect("threads");
@@ -59,18 +54,21 @@ fn tables(run: &Path) -> [Vec<u8>; 3] {
 fn a_run_survives_its_controls() {
     let folder = tempfile::tempdir().expect("a folder");
     let whole = folder.path().join("whole");
-    let start = |path: &Path| {
+    let start = |path: &Path, record: bool| {
         let search = StudySearch::new(study(), None).expect("a search");
-        (RunWriter::create(path, search.study(), None).expect("a folder"), search)
+        (
+            RunWriter::create(path, search.study(), record.then_some(1)).expect("a folder"),
+            search,
+        )
     };
-    let (writer, search) = start(&whole);
-    assert_eq!(perform(writer, search, false, |_| {}), Some(EndReason::Completed));
+    let (writer, search) = start(&whole, false);
+    assert_eq!(perform(writer, search, |_| {}), Some(EndReason::Completed));
     let mut ended = [0; 4];
     for seed in 0..SEEDS {
         let run = folder.path().join("run");
-        let (writer, search) = start(&run);
+        let (writer, search) = start(&run, seed.is_multiple_of(50));
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let outcome = perform(writer, search, seed.is_multiple_of(50), move |control| {
+        let outcome = perform(writer, search, move |control| {
             for _ in 0..6 {
                 match random.next_u32() % 6 {
                     0 => control.pause(),
@@ -103,7 +101,7 @@ fn a_run_survives_its_controls() {
         if !resumption.is_complete() {
             let (writer, search) = resumption.start(None).expect("a folder");
             assert_eq!(
-                perform(writer, search, false, |_| {}),
+                perform(writer, search, |_| {}),
                 Some(EndReason::Completed),
                 "seed {seed}"
             );

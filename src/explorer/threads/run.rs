@@ -141,10 +141,7 @@ impl Running {
         let cannot = |error: std::io::Error| format!("cannot start the run: {error}");
         let intake = Arc::new(Intake::new(wake));
         let control = Arc::new(RunControl::default());
-        let recorder = match tables.record_every() {
-            Some(every) => Some(Recorder::create(&tables.recording_path(), &study, every)?),
-            None => None,
-        };
+        let recorder = Recorder::of_run(&tables, &study)?;
         let writing = Writing::default();
         let (next, events) = sync_channel(CHANNEL);
         let messages = Arc::clone(&intake);

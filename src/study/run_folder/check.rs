@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::write::front_table;
 use super::{RunFolder, RunFolderError, RunReport};
 use crate::study::run::verify_replayed;
-use crate::study::{EndReason, StudySearch, TableError, TableRow};
+use crate::study::{RunSummary, StudySearch, TableError, TableRow};
 
 /// Something that is wrong in a run folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -92,21 +92,12 @@ impl Inspection {
         let Some(report) = self.folder.report().cloned() else {
             return;
         };
-        if report.outcome != EndReason::Interrupted {
-            self.check_front();
-        }
         let study = self.folder.study().clone();
-        let summary = verify_replayed(search, report.outcome);
-        if report.outcome != EndReason::Interrupted {
-            let path = self.folder.front_path();
-            let expected = front_table(&summary);
-            let found = std::fs::read(&path);
-            if let (Ok(expected), Ok(found)) = (expected, found)
-                && found != expected
-            {
-                let message = "it is not the front that follows from the designs".to_owned();
-                self.add(path, message, Some(Repair::WriteAnew));
-            }
+        let Some(summary) = verify_replayed(search, report.outcome) else {
+            return;
+        };
+        if summary.verified_front() {
+            self.check_front(&summary);
         }
         for (key, stated, found) in differences(&report, &RunReport::new(&study, &summary)) {
             let message = format!("`{key}` is {stated}, but {found} follows from the study and the designs");
@@ -114,13 +105,19 @@ impl Inspection {
         }
     }
 
-    fn check_front(&mut self) {
+    fn check_front(&mut self, summary: &RunSummary) {
         let path = self.folder.front_path();
-        match self.folder.front() {
-            Ok(Some(_)) => {}
-            Ok(None) => self.add(path, "it is missing".to_owned(), Some(Repair::WriteAnew)),
-            Err(error) => self.add(error.path, error.fault.to_string(), Some(Repair::WriteAnew)),
-        }
+        let message = match self.folder.front() {
+            Ok(None) => "it is missing".to_owned(),
+            Err(error) => error.fault.to_string(),
+            Ok(Some(_)) => match (front_table(summary), std::fs::read(&path)) {
+                (Ok(expected), Ok(found)) if found != expected => {
+                    "it is not the front that follows from the designs".to_owned()
+                }
+                _ => return,
+            },
+        };
+        self.add(path, message, Some(Repair::WriteAnew));
     }
 }
 

@@ -56,6 +56,13 @@ fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluation) 
             let fraction = length / way[0].hypot(way[1]);
             [from[0] + fraction * way[0], from[1] + fraction * way[1]]
         };
+        let link = body(
+            format!("leg{number}_link"),
+            &[b.clone(), c.clone()],
+            [at_b, at_c],
+            layers.link,
+            rj,
+        );
         match design.architecture {
             Architecture::Prr => {
                 let half = (0.5 * model.bodies.slider_length - model.bodies.slider_half_width) * rj;
@@ -71,13 +78,7 @@ fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluation) 
                     layers.slider,
                     thick,
                 ));
-                all.push(body(
-                    format!("leg{number}_link"),
-                    &[b, c.clone()],
-                    [at_b, at_c],
-                    layers.link,
-                    rj,
-                ));
+                all.push(link);
             }
             Architecture::Rpr => {
                 let shortest = model.legs.telescopic_shortest;
@@ -103,13 +104,7 @@ fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluation) 
                     layers.crank,
                     rj,
                 ));
-                all.push(body(
-                    format!("leg{number}_link"),
-                    &[b, c.clone()],
-                    [at_b, at_c],
-                    layers.link,
-                    rj,
-                ));
+                all.push(link);
             }
         }
         all.push(body(
