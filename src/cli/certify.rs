@@ -12,7 +12,7 @@ use kinefront_model::certify::{CertifyError, CertifyOptions};
 use kinefront_model::evaluation::{GridChoice, Model};
 use kinefront_model::mechanism::{Design, TextError, WorkingMode};
 
-use super::stream::{Line, answer, next_line};
+use super::stream::{InputLine, answer, next_line};
 use super::{Ending, Failure, load_study, tables, to_json};
 
 #[derive(Debug, clap::Args)]
@@ -112,7 +112,7 @@ impl Prover<'_> {
     /// Answers each line with one line, in order, on all cores.
     fn serve(&self) -> Result<(), Failure> {
         let workers = std::thread::available_parallelism().map_or(1, usize::from);
-        let (to_workers, lines) = sync_channel::<(usize, Line)>(4 * workers);
+        let (to_workers, lines) = sync_channel::<(usize, InputLine)>(4 * workers);
         let (to_writer, answers) = sync_channel::<(usize, String)>(4 * workers);
         // The workers alone hold the receiver: when they end, the reader does, too.
         let lines = Arc::new(Mutex::new(lines));

@@ -11,10 +11,10 @@ use super::to_json;
 const LONGEST_LINE: u64 = 1 << 16;
 
 /// A line as text, or what is wrong with it.
-pub type Line = Result<String, String>;
+pub type InputLine = Result<String, String>;
 
 /// Reads the next line; `None` at the end of the input.
-pub fn next_line(mut input: impl BufRead) -> io::Result<Option<Line>> {
+pub fn next_line(mut input: impl BufRead) -> io::Result<Option<InputLine>> {
     let mut line = Vec::new();
     if (&mut input).take(LONGEST_LINE).read_until(b'\n', &mut line)? == 0 {
         return Ok(None);
@@ -29,7 +29,7 @@ pub fn next_line(mut input: impl BufRead) -> io::Result<Option<Line>> {
 }
 
 /// Answers a line with what `evaluate` makes of it, or with an object that has the key `error` alone.
-pub fn answer<T: Serialize, E: Error>(line: Line, evaluate: impl FnOnce(&str) -> Result<T, E>) -> String {
+pub fn answer<T: Serialize, E: Error>(line: InputLine, evaluate: impl FnOnce(&str) -> Result<T, E>) -> String {
     line.and_then(|text| evaluate(&text).map_err(|error| error.to_string()))
         .and_then(|found| to_json(&found).map_err(|error| error.to_string()))
         .unwrap_or_else(|message| serde_json::json!({ "error": message }).to_string())
