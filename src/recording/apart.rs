@@ -155,6 +155,7 @@ fn rows(path: &Path, recorded: &RecordedRun) -> Result<(Study, Vec<TableRow>), R
             id: index,
             row,
             reference_radius: None,
+            certified: None,
         })
     });
     let rows = rows.collect::<Result<Vec<_>, TableError>>()?;

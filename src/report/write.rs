@@ -42,6 +42,7 @@ impl Report {
                 id,
                 row: Row::new(0, member),
                 reference_radius: None,
+                certified: None,
             };
             let cell = |column| match column {
                 Column::OnJointFront => Cell::Flag(joint(member)),

@@ -3,8 +3,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
 
-use super::{DesignProblem, Row, Study, TableRow};
-use kinefront_model::evaluation::Evaluation;
+use super::{FrontMember, FrontProofs, Row, Study, TableRow};
 use kinefront_optimize::{knee, spread};
 
 /// Channel to a listener that receives events.
@@ -22,11 +21,11 @@ pub enum Event {
     /// The archive of non-dominated designs changed. Its members are sorted by mass; their workspace radii are those of
     /// the reference grid.
     Front(Vec<Arc<TableRow>>),
-    /// The front is being verified on the fine grid.
+    /// The front is being verified on the fine grid, and its workspaces are being proved.
     Verifying {
-        /// Number of designs verified so far.
+        /// Number of verifications and proofs that are done.
         done: usize,
-        /// Total number of designs to verify.
+        /// Number of all of them.
         total: usize,
     },
     /// The run ended normally.
@@ -62,6 +61,7 @@ impl Batch {
             id,
             row: *row,
             reference_radius: None,
+            certified: None,
         })
     }
 }
@@ -79,26 +79,6 @@ pub struct GenerationSummary {
     pub front_size: usize,
     /// Hypervolume of the front on the reference grid \[kg·m\].
     pub hypervolume: f64,
-}
-
-/// A design of the verified front.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FrontMember {
-    /// Id of its evaluation.
-    pub id: usize,
-    /// Generation of its evaluation.
-    pub generation: usize,
-    /// Evaluation of the design on the fine grid.
-    pub evaluation: Evaluation,
-    /// `R_w` on the reference grid \[m\].
-    pub reference_radius: f64,
-}
-
-impl FrontMember {
-    /// Returns both objectives, which are minimised.
-    pub fn objectives(&self) -> [f64; 2] {
-        DesignProblem::outcome(&self.evaluation).objectives
-    }
 }
 
 /// Reason why a run ended.
@@ -130,6 +110,9 @@ pub struct RunTimes {
     pub publish_s: f64,
     /// Time for verifying the front on the fine grid.
     pub verification_s: f64,
+    /// Time for proving the workspaces of the front.
+    #[serde(default)]
+    pub certification_s: f64,
 }
 
 /// Summary of a run at its end.
@@ -141,7 +124,7 @@ pub struct RunSummary {
     pub threads: usize,
     /// State of the run after each generation.
     pub history: Vec<GenerationSummary>,
-    /// The front, verified on the fine grid and thinned to evenly spread designs, sorted by `R_w`.
+    /// The front, verified on the fine grid, thinned to evenly spread designs and proved, sorted by `R_w`.
     pub front: Vec<FrontMember>,
     /// Number of designs of the verified front before it was thinned.
     pub verified: usize,
@@ -150,6 +133,8 @@ pub struct RunSummary {
     pub dropped: usize,
     /// Hypervolume of the verified front before it was thinned \[kg·m\].
     pub verified_hypervolume: f64,
+    /// What the proofs of the workspaces of the front found; `None` if the study asks for none.
+    pub proofs: Option<FrontProofs>,
     /// Times of the parts of the run.
     pub times: RunTimes,
 }

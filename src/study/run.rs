@@ -24,8 +24,8 @@ use rayon::prelude::*;
 
 use super::search::{Found, SearchError};
 use super::{
-    DesignProblem, EndReason, Event, FrontMember, RunControl, RunSummary, Started, Study, StudySearch, Subscriber,
-    TableRow,
+    DesignProblem, EndReason, Event, FrontMember, FrontProofs, FrontProver, RunControl, RunSummary, Started, Study,
+    StudySearch, Subscriber, TableRow,
 };
 use kinefront_model::evaluation::{Evaluation, GridChoice};
 use kinefront_optimize::{Archive, Evaluated, hypervolume, spread};
@@ -133,23 +133,80 @@ fn conclude(
         _ => verify(&front, &search, control, publisher),
     };
     search.times.verification_s = verifying.elapsed().as_secs_f64();
+    let certifying = Instant::now();
+    let reported = verified.and_then(|verified| report(verified, &search, control, publisher));
+    search.times.certification_s = certifying.elapsed().as_secs_f64();
     search.times.publish_s = publisher.spent.as_secs_f64();
-    match verified {
-        Some(verified) => Some(summary(search, outcome, front.len(), &verified)),
+    match reported {
+        Some(reported) => Some(summary(search, outcome, front.len(), reported)),
         None if control.is_interrupted() || outcome == EndReason::Interrupted => {
-            Some(summary(search, EndReason::Interrupted, 0, &[]))
+            Some(summary(search, EndReason::Interrupted, 0, Reported::default()))
         }
         None => None,
     }
 }
 
-/// The summary of a run, with the verified front thinned to evenly spread designs.
-fn summary(search: StudySearch, outcome: EndReason, found: usize, verified: &[FrontMember]) -> RunSummary {
+/// What a run reports of its verified front.
+#[derive(Default)]
+struct Reported {
+    /// Number of designs of the verified front.
+    verified: usize,
+    /// Its hypervolume.
+    hypervolume: f64,
+    /// The designs that are reported.
+    front: Vec<FrontMember>,
+    proofs: Option<FrontProofs>,
+}
+
+/// Thins the verified front to evenly spread designs and proves their workspaces, if the study asks for it. Returns `None` if
+/// the run was interrupted or abandoned.
+fn report(
+    verified: Vec<FrontMember>,
+    search: &StudySearch,
+    control: &RunControl,
+    publisher: &mut Publisher,
+) -> Option<Reported> {
+    let (study, reference) = (search.study(), search.found.reference);
     let objectives: Vec<[f64; 2]> = verified.iter().map(FrontMember::objectives).collect();
-    let shown = spread(&objectives, search.study().optimizer.front_designs);
+    let shown = spread(&objectives, study.optimizer.front_designs);
+    let front: Vec<FrontMember> = shown.into_iter().map(|place| verified[place].clone()).collect();
+    let reported = Reported {
+        verified: verified.len(),
+        hypervolume: hypervolume(objectives, reference),
+        front,
+        proofs: None,
+    };
+    if !study.workspace.certify {
+        return Some(reported);
+    }
+    let goes_on = || !control.is_abandoned();
+    let thickest = [study.bounds.rj_m[1], study.bounds.rp_m[1]];
+    let mut prover = FrontProver::new(search.problem.model(), thickest, &goes_on);
+    let (found, total) = (search.found.front().len(), reported.front.len());
+    let mut done = 0;
+    for part in reported.front.chunks(4 * search.threads()) {
+        publisher.send(Event::Verifying {
+            done: found + done,
+            total: found + total,
+        });
+        search.pool.install(|| prover.prove(part));
+        if control.is_abandoned() {
+            return None;
+        }
+        done += part.len();
+    }
+    let (front, proofs) = prover.conclude(search.found.evaluated, reference);
+    Some(Reported {
+        front,
+        proofs: Some(proofs),
+        ..reported
+    })
+}
+
+fn summary(search: StudySearch, outcome: EndReason, found: usize, reported: Reported) -> RunSummary {
     let threads = search.threads();
     let StudySearch {
-        found: Found { history, reference, .. },
+        found: Found { history, .. },
         times,
         ..
     } = search;
@@ -157,10 +214,11 @@ fn summary(search: StudySearch, outcome: EndReason, found: usize, verified: &[Fr
         outcome,
         threads,
         history,
-        dropped: found - verified.len(),
-        verified_hypervolume: hypervolume(objectives, reference),
-        verified: verified.len(),
-        front: shown.into_iter().map(|place| verified[place].clone()).collect(),
+        dropped: found - reported.verified,
+        verified_hypervolume: reported.hypervolume,
+        verified: reported.verified,
+        front: reported.front,
+        proofs: reported.proofs,
         times,
     }
 }
@@ -173,7 +231,13 @@ fn verify(
     control: &RunControl,
     publisher: &mut Publisher,
 ) -> Option<Vec<FrontMember>> {
-    let (total, model) = (front.len(), search.problem.model());
+    let study = search.study();
+    let proofs = if study.workspace.certify {
+        front.len().min(study.optimizer.front_designs)
+    } else {
+        0
+    };
+    let (total, model) = (front.len() + proofs, search.problem.model());
     let mut archive = Archive::default();
     let mut verified: BTreeMap<usize, FrontMember> = BTreeMap::new();
     let mut done = 0;
@@ -199,6 +263,7 @@ fn verify(
                     generation: entry.row.generation as usize,
                     evaluation,
                     reference_radius: entry.row.radius,
+                    certified: None,
                 },
             );
         }

@@ -263,6 +263,7 @@ impl Found {
                 id,
                 row: rows[place],
                 reference_radius: None,
+                certified: None,
             })),
             None => before.find(|entry| entry.id == id),
         };

@@ -125,7 +125,15 @@ pub fn tables(run: &Path) -> [Vec<u8>; 3] {
 }
 
 pub fn program() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_kinefront"));
+    let path = env!("CARGO_BIN_EXE_kinefront");
+    let mut command = if cfg!(target_os = "linux") {
+        // Signals that the tests themselves ignore, as in the background of a shell, would be ignored by the program, too.
+        let mut command = Command::new("env");
+        command.arg("--default-signal").arg(path);
+        command
+    } else {
+        Command::new(path)
+    };
     command.env_remove("RERUN").env("NO_COLOR", "1");
     command
 }

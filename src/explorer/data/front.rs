@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::study::Row;
-use crate::study::{Column, FrontMember, TableRow};
+use crate::study::{CertifiedRadius, Column, FrontMember, TableRow};
 use kinefront_model::evaluation::Evaluation;
 use kinefront_optimize::{Archive, Evaluated, Outcome};
 
@@ -18,6 +18,8 @@ pub struct FrontEntry {
     pub reference_radius: f64,
     /// Whether it was evaluated on the fine grid.
     pub verified: bool,
+    /// What is proved about `R_w`.
+    pub certified: Option<CertifiedRadius>,
     /// Its evaluation on the fine grid, if the run is in the window; a table holds no evaluations.
     pub evaluation: Option<Arc<Evaluation>>,
 }
@@ -30,6 +32,7 @@ impl FrontEntry {
             row: Row::new(member.generation, &member.evaluation),
             reference_radius: member.reference_radius,
             verified: true,
+            certified: member.certified,
             evaluation: Some(Arc::new(member.evaluation.clone())),
         }
     }
@@ -41,6 +44,7 @@ impl FrontEntry {
             row: entry.row,
             reference_radius: entry.reference_radius.unwrap_or(entry.row.radius),
             verified,
+            certified: entry.certified,
             evaluation: None,
         }
     }
@@ -72,6 +76,7 @@ pub fn front_of(store: &super::Store) -> Vec<FrontEntry> {
             reference_radius: row.radius,
             row,
             verified: false,
+            certified: None,
             evaluation: None,
         })
     });

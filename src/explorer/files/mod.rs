@@ -333,14 +333,20 @@ fn read_filter(path: &Path) -> Result<super::Filter, AnyError> {
 
 /// Returns the front as a CSV table, which begins with the columns common to all tables of designs.
 fn front_table(session: &Session) -> Result<Vec<u8>, AnyError> {
-    use Column::{Note, ReferenceRadius, Starred, Verified};
-    let columns = || Column::common().chain([ReferenceRadius, Verified, Starred, Note]);
+    use Column::{Certificate, CertifiedLower, CertifiedUpper, Note, ReferenceRadius, Starred, Verified};
+    let proofs = [CertifiedLower, CertifiedUpper, Certificate];
+    let columns = || {
+        Column::common()
+            .chain([ReferenceRadius, Verified, Starred, Note])
+            .chain(proofs)
+    };
     let document = session.document();
     let rows = session.front().iter().map(|entry| {
         let row = TableRow {
             id: entry.id,
             row: entry.row,
             reference_radius: Some(entry.reference_radius),
+            certified: entry.certified,
         };
         let cell = |column| match column {
             Verified => Cell::Flag(entry.verified),

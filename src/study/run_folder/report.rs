@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::FileSum;
-use crate::study::{AlgorithmName, EndReason, GenerationSummary, RunSummary, RunTimes, Study};
+use crate::study::{AlgorithmName, EndReason, FrontProofs, GenerationSummary, RunSummary, RunTimes, Study};
 use kinefront_model::mechanism::Architecture;
 
 /// Contents of `run.json`.
@@ -52,6 +52,9 @@ pub struct RunReport {
     /// Sums of the files; `None` in a report that was not written to a run folder, and of earlier versions.
     #[serde(default)]
     pub files: Option<FileSums>,
+    /// What the proofs of the workspaces of the front found; `None` if the study asks for none.
+    #[serde(default)]
+    pub proofs: Option<FrontProofs>,
 }
 
 /// Sums of the files of a run.
@@ -105,6 +108,7 @@ impl RunReport {
             history: summary.history.clone(),
             record_every: None,
             files: None,
+            proofs: summary.proofs.clone(),
         }
     }
 }

@@ -10,7 +10,7 @@ use super::durable::{remove, sync_folder};
 use super::{
     Checkpoint, DESIGNS, FRONT, FileSum, FileSums, PROGRESS, RECORDING, REPORT, RunReport, STUDY, write_whole,
 };
-use crate::study::table::{Cell, Column, Row, TableRow, table_bytes};
+use crate::study::table::{Cell, Column, table_bytes};
 use crate::study::{Event, RunSummary, Study};
 
 /// Time between two checkpoints: at most the designs of this time are lost when the power fails.
@@ -242,11 +242,7 @@ impl RunWriter {
 /// Returns the verified front as a table.
 pub(super) fn front_table(summary: &RunSummary) -> io::Result<Vec<u8>> {
     let rows = summary.front.iter().zip(summary.marks()).map(|(member, mark)| {
-        let entry = TableRow {
-            id: member.id,
-            row: Row::new(member.generation, &member.evaluation),
-            reference_radius: Some(member.reference_radius),
-        };
+        let entry = member.row();
         let cell = |column| match column {
             Column::Mark => Cell::Text(mark.into()),
             column => column.cell(&entry),

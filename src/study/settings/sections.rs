@@ -67,6 +67,8 @@ section! {
         rotation_range_deg: f64 = 20.0, Check::Within(0.0, 350.0, "");
         /// Centre of the disc, in the base frame.
         centre_m: [f64; 2] = [0.0, 0.0], Check::Finite;
+        /// Whether the workspaces of the front are proved, so that the reported radii hold for every pose.
+        certify: bool = true, Check::Any;
         optional {
             /// Home orientation; if omitted, the best one is determined for each design.
             home_phi_deg: f64, Check::Within(-360.0, 360.0, ""), Initial::Number(0.0);

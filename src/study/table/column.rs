@@ -50,6 +50,12 @@ pub enum Column {
     ReferenceRadius,
     /// What the design stands out by on its front: `lightest`, `knee` or `largest`.
     Mark,
+    /// Radius of a disc in which every pose is proved feasible \[m\], in a front whose workspaces were proved.
+    CertifiedLower,
+    /// Distance of a pose that is proved infeasible \[m\].
+    CertifiedUpper,
+    /// State of the proof: `proved` or `open`.
+    Certificate,
     /// Whether the design is on the front of all architectures together.
     OnJointFront,
     /// Whether the design was verified on the fine grid.
@@ -134,7 +140,13 @@ impl Column {
 
     /// The columns of `front.csv`, in their order.
     pub fn of_front() -> impl Iterator<Item = Column> {
-        Self::of_designs().chain([Self::ReferenceRadius, Self::Mark])
+        Self::of_designs().chain([
+            Self::ReferenceRadius,
+            Self::Mark,
+            Self::CertifiedLower,
+            Self::CertifiedUpper,
+            Self::Certificate,
+        ])
     }
 
     /// Every column that a table may have.
@@ -180,6 +192,9 @@ impl Column {
             Self::Violation => "violation",
             Self::ReferenceRadius => "workspace_radius_reference_m",
             Self::Mark => "mark",
+            Self::CertifiedLower => "certified_lower_m",
+            Self::CertifiedUpper => "certified_upper_m",
+            Self::Certificate => "certificate",
             Self::OnJointFront => "on_joint_front",
             Self::Verified => "verified",
             Self::Starred => "starred",
@@ -191,7 +206,9 @@ impl Column {
     pub fn kind(self) -> ColumnType {
         match self {
             Self::Id | Self::Generation => ColumnType::Integer,
-            Self::Architecture | Self::WorkingMode | Self::Active | Self::Mark | Self::Note => ColumnType::Text,
+            Self::Architecture | Self::WorkingMode | Self::Active | Self::Mark | Self::Certificate | Self::Note => {
+                ColumnType::Text
+            }
             Self::Feasible | Self::OnJointFront | Self::Verified | Self::Starred => ColumnType::Flag,
             Self::Dimension(_)
             | Self::Mass
@@ -200,14 +217,20 @@ impl Column {
             | Self::Margin(_)
             | Self::Value(_)
             | Self::Violation
-            | Self::ReferenceRadius => ColumnType::Number,
+            | Self::ReferenceRadius
+            | Self::CertifiedLower
+            | Self::CertifiedUpper => ColumnType::Number,
         }
     }
 
     /// Unit of the values; empty for a number without a unit and for texts.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Dimension(_) | Self::WorkspaceRadius | Self::ReferenceRadius => "m",
+            Self::Dimension(_)
+            | Self::WorkspaceRadius
+            | Self::ReferenceRadius
+            | Self::CertifiedLower
+            | Self::CertifiedUpper => "m",
             Self::Mass => "kg",
             Self::HomePhi => "°",
             Self::Value(constraint) => constraint.unit(),
@@ -217,7 +240,10 @@ impl Column {
 
     /// Whether a row may have no value.
     pub fn is_optional(self) -> bool {
-        matches!(self, Self::HomePhi | Self::Margin(_) | Self::Value(_))
+        matches!(
+            self,
+            Self::HomePhi | Self::Margin(_) | Self::Value(_) | Self::CertifiedLower | Self::CertifiedUpper
+        )
     }
 
     /// Name to display, without the unit.
@@ -281,6 +307,12 @@ impl Column {
                 Cell::Text(active.join("+").into())
             }
             Self::ReferenceRadius => entry.reference_radius.into(),
+            Self::CertifiedLower => entry.certified.map(|certified| certified.lower).into(),
+            Self::CertifiedUpper => entry.certified.and_then(|certified| certified.upper).into(),
+            Self::Certificate => match entry.certified {
+                Some(certified) => Cell::Text(certified.state().into()),
+                None => Cell::Missing,
+            },
             Self::Mark | Self::OnJointFront | Self::Verified | Self::Starred | Self::Note => Cell::Missing,
             _ => row.number(self).into(),
         }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::row::read_design;
 use super::{Column, ColumnType, Row, RowError, TableRow};
-use crate::study::Study;
+use crate::study::{CertifiedRadius, Study};
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::Design;
 
@@ -206,6 +206,9 @@ impl<'a> Fields<'a> {
                 ColumnType::Number => finite(text).is_some(),
                 ColumnType::Flag => matches!(text, "true" | "false"),
                 ColumnType::Text if column == Column::Active => is_list_of_constraints(text),
+                ColumnType::Text if column == Column::Certificate => {
+                    matches!(text, "" | CertifiedRadius::PROVED | CertifiedRadius::OPEN)
+                }
                 ColumnType::Text => true,
             };
             if !is_value {
@@ -213,6 +216,17 @@ impl<'a> Fields<'a> {
             }
         }
         Ok(())
+    }
+
+    fn certified(&self) -> Result<Option<CertifiedRadius>, RowError> {
+        let state = self.text(Column::Certificate).filter(|state| !state.is_empty());
+        let Some(state) = state else { return Ok(None) };
+        let lower = self.number(Column::CertifiedLower);
+        Ok(Some(CertifiedRadius {
+            lower: lower.ok_or(RowError::Value(Column::CertifiedLower))?,
+            upper: self.number(Column::CertifiedUpper),
+            is_proved: state == CertifiedRadius::PROVED,
+        }))
     }
 
     fn table_row(&self, study: &Study) -> Result<TableRow, RowError> {
@@ -234,6 +248,7 @@ impl<'a> Fields<'a> {
             id: self.whole(Column::Id)?,
             row,
             reference_radius: self.number(Column::ReferenceRadius),
+            certified: self.certified()?,
         })
     }
 }

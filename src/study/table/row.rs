@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::Column;
-use crate::study::Study;
+use crate::study::{CertifiedRadius, Study};
 use kinefront_model::evaluation::{Constraint, Evaluation};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignError, TextError};
 
@@ -186,4 +186,6 @@ pub struct TableRow {
     pub row: Row,
     /// `R_w` on the reference grid \[m\], in a verified front.
     pub reference_radius: Option<f64>,
+    /// What is proved about `R_w`, in a front whose workspaces were proved.
+    pub certified: Option<CertifiedRadius>,
 }

@@ -9,6 +9,8 @@ mod forms;
 mod polar_box;
 mod search;
 
+use forms::ProvedForms;
+
 use crate::enclosure::{PoseEnclosure, TaylorModel};
 use crate::evaluation::{Constraint, Model};
 use crate::mechanism::Design;
@@ -25,6 +27,8 @@ pub struct CertifyOptions {
     pub tolerance: f64,
     /// Largest number of boxes.
     pub max_boxes: usize,
+    /// Distance from the centre \[m\]: the proof ends once a pose nearer than this is proved infeasible.
+    pub enough: f64,
     /// Radius from which to prove without looking for infeasible poses, as a check of the proof itself: its lower bound must not
     /// pass an infeasible pose that is known otherwise.
     pub blind_radius: Option<f64>,
@@ -37,6 +41,7 @@ impl Default for CertifyOptions {
             claimed_radius: 0.0,
             tolerance: Self::TOLERANCE,
             max_boxes: Self::MAX_BOXES,
+            enough: 0.0,
             blind_radius: None,
         }
     }
@@ -75,7 +80,7 @@ pub enum Verdict {
     Proved,
     /// `upper < (1 − t) c`.
     Refuted,
-    /// Neither, because the number of boxes was used up.
+    /// Neither, because the number of boxes was used up, or the proof was ended early.
     OpenBudget,
     /// Neither, because the least value of a constraint equals its threshold to the precision of a double.
     OpenPrecision,
@@ -93,9 +98,6 @@ pub struct Violation {
 /// Why nothing can be proved.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CertifyError {
-    /// The constraints of the study include one that has no form yet.
-    #[error("{0} cannot be certified yet")]
-    NoForm(&'static str),
     /// A bar is so thin or so thick that its compliance has no usable value.
     #[error("a bar of the design is so thin or so thick that its stiffness has no usable value")]
     Degenerate,
@@ -145,8 +147,21 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// [`CertifyError`]: a constraint that has no form yet, bars without a usable stiffness, or an option out of range.
+    /// [`CertifyError`]: bars without a usable stiffness, or an option out of range.
     pub fn certify(&self, design: &Design, options: &CertifyOptions) -> Result<Certificate, CertifyError> {
+        self.certify_while(design, options, &|| true)
+    }
+
+    /// Proves bounds like [`Model::certify`], but ends early, with an open proof, once `goes_on` returns false.
+    ///
+    /// # Errors
+    /// As [`Model::certify`].
+    pub fn certify_while(
+        &self,
+        design: &Design,
+        options: &CertifyOptions,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Result<Certificate, CertifyError> {
         let check = |name, value: f64, valid: bool, expected| {
             if valid {
                 Ok(())
@@ -185,14 +200,14 @@ impl Model {
             (1e-12..1.0).contains(&tolerance),
             "from 1e-12 to below 1",
         )?;
-        with_leg!(design.architecture, L => search::certify::<L>(self, design, options))
+        with_leg!(design.architecture, L => search::certify::<L>(self, design, options, goes_on))
     }
 
-    /// Encloses the constraints of a design over a box of poses: each value is positive exactly where the constraint holds
-    /// strictly. Where a leg may not reach a pose of the box, only the values of g2 are returned.
+    /// Encloses the constraints of a design over a box of poses: each value is positive only where the constraint holds
+    /// strictly, and exactly there but for g7. Where a leg may not reach a pose of the box, only the values of g2 are returned.
     ///
     /// # Errors
-    /// [`CertifyError`]: a constraint that has no form yet, or bars without a usable stiffness.
+    /// [`CertifyError::Degenerate`]: bars without a usable stiffness.
     pub fn enclose(
         &self,
         design: &Design,
@@ -200,7 +215,7 @@ impl Model {
     ) -> Result<Vec<(Constraint, TaylorModel)>, CertifyError> {
         with_leg!(design.architecture, L => {
             let forms = forms::Forms::<L>::new(self, design)?;
-            Ok(forms.enclose(pose).iter().copied().collect())
+            Ok(forms.enclose(pose, ProvedForms::default()).iter().copied().collect())
         })
     }
 }

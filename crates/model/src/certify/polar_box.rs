@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use super::forms::ProvedForms;
 use crate::enclosure::{Interval, TaylorModel, VARIABLES};
 
 /// A box in `(r, θ, φ)`, by its ends.
@@ -11,6 +12,8 @@ pub struct PolarBox {
     pub lower: [f64; VARIABLES],
     /// Upper ends.
     pub upper: [f64; VARIABLES],
+    /// What is proved on it.
+    pub proved: ProvedForms,
     /// Number of its creation, which decides between boxes of equal distance.
     pub number: usize,
 }
@@ -168,6 +171,7 @@ mod tests {
             let before = PolarBox {
                 lower: [1.0, -0.3, 2.0],
                 upper: [1.5, 0.4, 2.2],
+                proved: ProvedForms::default(),
                 number: 1,
             };
             let mut after = before;

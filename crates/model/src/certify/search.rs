@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::forms::{Enclosures, Forms};
+use super::forms::{Enclosures, Forms, ProvedForms};
 use super::polar_box::PolarBox;
 use super::{Certificate, CertifyError, CertifyOptions, Verdict, Violation};
 use crate::enclosure::{Interval, PoseEnclosure, TaylorModel, VARIABLES};
@@ -20,6 +20,9 @@ const CONTRACTIONS: usize = 4;
 /// A contraction is worth another one if it leaves less than this part of the box.
 const WORTHWHILE: f64 = 0.3;
 
+/// Number of boxes after which a proof asks whether it goes on.
+const BOXES_BETWEEN_QUESTIONS: usize = 64;
+
 /// Radius beyond all reach, as a multiple of the sizes of the design.
 const BEYOND: f64 = 4.0;
 
@@ -27,12 +30,13 @@ pub(super) fn certify<L: Leg>(
     model: &Model,
     design: &Design,
     options: &CertifyOptions,
+    goes_on: &dyn Fn() -> bool,
 ) -> Result<Certificate, CertifyError> {
     let mut proof = Proof::<L>::new(model, design, options)?;
     if options.blind_radius.is_none() {
         proof.find_bad_poses();
     }
-    proof.divide();
+    proof.divide(goes_on);
     Ok(proof.certificate())
 }
 
@@ -112,24 +116,26 @@ impl<'a, L: Leg> Proof<'a, L> {
         let (sine, cosine) = TaylorModel::sine_and_cosine(1, theta, dtheta);
         let (phi_sine, phi_cosine) = TaylorModel::sine_and_cosine(2, phi, dphi);
         let centre = self.model.workspace.centre;
-        self.forms.enclose(&PoseEnclosure {
+        let pose = PoseEnclosure {
             position: [
                 (radius * cosine).plus(Interval::exactly(centre.x)),
                 (radius * sine).plus(Interval::exactly(centre.y)),
             ],
             cosine: phi_cosine,
             sine: phi_sine,
-        })
+        };
+        self.forms.enclose(&pose, polar.proved)
     }
 
-    /// Encloses the constraints at one pose.
-    fn enclose_pose(&self, pose: &Pose) -> Enclosures {
+    /// Encloses the constraints at one pose, but for those that are proved there.
+    fn enclose_pose(&self, pose: &Pose, proved: ProvedForms) -> Enclosures {
         let (sine, cosine) = Interval::exactly(pose.phi).sine_and_cosine();
-        self.forms.enclose(&PoseEnclosure {
+        let pose = PoseEnclosure {
             position: pose.position.to_array().map(TaylorModel::exactly),
             cosine: TaylorModel::constant(cosine),
             sine: TaylorModel::constant(sine),
-        })
+        };
+        self.forms.enclose_pose(&pose, proved)
     }
 
     /// The pose at a point in polar coordinates, within the window.
@@ -142,30 +148,29 @@ impl<'a, L: Leg> Proof<'a, L> {
         )
     }
 
-    /// Returns a constraint that is proved to be violated at a pose.
-    fn violated_at(&self, pose: &Pose) -> Option<Constraint> {
-        let found = self.enclose_pose(pose);
+    /// Returns a constraint that is proved to be violated at a pose, of those that are not proved there.
+    fn violated_at(&self, pose: &Pose, proved: ProvedForms) -> Option<Constraint> {
+        let found = self.enclose_pose(pose, proved);
         let violated = found.iter().find(|(_, value)| value.range()[1] < 0.0);
         violated.map(|&(constraint, _)| constraint)
     }
 
-    /// Lowers the upper bound if the pose at a point is bad; returns whether it is.
-    fn try_point(&mut self, point: [f64; VARIABLES]) -> bool {
+    /// Lowers the upper bound if the pose at a point is bad; returns a constraint that it violates, of those that are not proved
+    /// there.
+    fn try_point(&mut self, point: [f64; VARIABLES], proved: ProvedForms) -> Option<Constraint> {
         // In a window without width, no double is known to lie.
         let [first, last] = self.inner_window;
         if self.options.blind_radius.is_some() || first > last {
-            return false;
+            return None;
         }
         let pose = self.pose_at(point);
-        let Some(constraint) = self.violated_at(&pose) else {
-            return false;
-        };
+        let constraint = self.violated_at(&pose, proved)?;
         let distance = self.distance(&pose);
         if self.upper.is_none_or(|upper| distance < upper) {
             self.upper = Some(distance);
             self.violation = Some(Violation { pose, constraint });
         }
-        true
+        Some(constraint)
     }
 
     /// Returns the distance of a pose from the centre, rounded up.
@@ -194,18 +199,18 @@ impl<'a, L: Leg> Proof<'a, L> {
             0.05 * self.design.base_radius
         };
         for place in 0..=4 * ORIENTATIONS {
-            self.try_point([
-                0.0,
-                0.0,
-                first + (last - first) * place as f64 / (4 * ORIENTATIONS) as f64,
-            ]);
+            let phi = first + (last - first) * place as f64 / (4 * ORIENTATIONS) as f64;
+            self.try_point([0.0, 0.0, phi], ProvedForms::default());
         }
         while self.upper.is_none() && radius < limit {
             for place in 0..DIRECTIONS * ORIENTATIONS {
                 let theta = self.sector * (place % DIRECTIONS) as f64 / DIRECTIONS as f64;
                 let phi = first + (last - first) * (place / DIRECTIONS) as f64 / (ORIENTATIONS - 1) as f64;
-                if self.upper.is_none_or(|upper| radius <= upper) && self.try_point([radius, theta, phi]) {
-                    self.move_inwards([radius, theta, phi]);
+                let point = [radius, theta, phi];
+                if self.upper.is_none_or(|upper| radius <= upper)
+                    && let Some(constraint) = self.try_point(point, ProvedForms::default())
+                {
+                    self.move_inwards(point, constraint);
                 }
             }
             radius *= 1.5;
@@ -213,11 +218,13 @@ impl<'a, L: Leg> Proof<'a, L> {
     }
 
     /// Moves a bad point towards the centre while it stays bad: along the ray by halving, and sideways by a pattern search.
-    fn move_inwards(&mut self, mut point: [f64; VARIABLES]) {
+    /// Only the constraint that it violates is looked at, which any bad pose nearer to the centre may violate.
+    fn move_inwards(&mut self, mut point: [f64; VARIABLES], constraint: Constraint) {
+        let others = ProvedForms::all_but(constraint);
         let [first, last] = self.inner_window;
         let mut steps = [0.05, 0.2 * (last - first)];
         for _ in 0..40 {
-            point[0] = self.nearest_bad(point);
+            point[0] = self.nearest_bad(point, constraint);
             let mut has_moved = false;
             for (k, &step) in [1, 2].iter().zip(&steps) {
                 for direction in [-1.0, 1.0] {
@@ -225,7 +232,7 @@ impl<'a, L: Leg> Proof<'a, L> {
                     moved[*k] += direction * step;
                     moved[2] = moved[2].clamp(first, last);
                     moved[0] *= 1.0 - 1e-6;
-                    if self.try_point(moved) {
+                    if self.try_point(moved, others).is_some() {
                         point = moved;
                         has_moved = true;
                         break;
@@ -239,15 +246,16 @@ impl<'a, L: Leg> Proof<'a, L> {
                 break;
             }
         }
-        self.nearest_bad(point);
+        self.nearest_bad(point, constraint);
     }
 
-    /// Returns the least radius found at which the pose in the direction of a bad point is bad.
-    fn nearest_bad(&mut self, point: [f64; VARIABLES]) -> f64 {
+    /// Returns the least radius found at which the pose in the direction of a bad point violates the same constraint.
+    fn nearest_bad(&mut self, point: [f64; VARIABLES], constraint: Constraint) -> f64 {
+        let others = ProvedForms::all_but(constraint);
         let (mut good, mut bad) = (0.95 * point[0], point[0]);
         for _ in 0..18 {
             let middle = 0.5 * (good + bad);
-            if self.try_point([middle, point[1], point[2]]) {
+            if self.try_point([middle, point[1], point[2]], others).is_some() {
                 bad = middle;
             } else {
                 good = middle;
@@ -257,14 +265,17 @@ impl<'a, L: Leg> Proof<'a, L> {
     }
 
     /// Divides the disc until everything within the target is proved, or the number of boxes is used up.
-    fn divide(&mut self) {
+    fn divide(&mut self, goes_on: &dyn Fn() -> bool) {
+        let is_enough = |proof: &Self| proof.upper.is_some_and(|upper| upper < proof.options.enough);
         let [first, last] = self.window;
-        self.push([0.0, 0.0, first], [self.target(), self.sector, last]);
+        let nothing = ProvedForms::default();
+        self.push([0.0, 0.0, first], [self.target(), self.sector, last], nothing);
         loop {
             match self.heap.pop() {
                 Some(Reverse(polar)) if polar.lower[0] < self.target() => {
                     self.proved = self.proved.max(polar.lower[0]);
-                    if self.boxes >= self.options.max_boxes {
+                    let is_ended = self.boxes.is_multiple_of(BOXES_BETWEEN_QUESTIONS) && !goes_on();
+                    if self.boxes >= self.options.max_boxes || is_ended || is_enough(self) {
                         self.is_out_of_budget = true;
                         return;
                     }
@@ -286,17 +297,18 @@ impl<'a, L: Leg> Proof<'a, L> {
                     self.heap.clear();
                     let [first, last] = self.window;
                     let proved = self.proved;
-                    self.push([proved, 0.0, first], [self.target(), self.sector, last]);
+                    self.push([proved, 0.0, first], [self.target(), self.sector, last], nothing);
                 }
             }
         }
     }
 
-    fn push(&mut self, lower: [f64; VARIABLES], upper: [f64; VARIABLES]) {
+    fn push(&mut self, lower: [f64; VARIABLES], upper: [f64; VARIABLES], proved: ProvedForms) {
         self.created += 1;
         self.heap.push(Reverse(PolarBox {
             lower,
             upper,
+            proved,
             number: self.created,
         }));
     }
@@ -308,27 +320,23 @@ impl<'a, L: Leg> Proof<'a, L> {
             polar.upper[0] = polar.upper[0].min(self.target());
             self.boxes += 1;
             let found = self.enclose_box(&polar);
-            let is_open = |value: &TaylorModel| {
-                // A comparison with NaN is false: nothing is proved then.
-                let is_proved = value.range()[0] > 0.0;
-                !is_proved
-            };
-            if found.is_complete && !found.iter().any(|(_, value)| is_open(value)) {
+            let open: Vec<&TaylorModel> = found.open().map(|(_, value)| value).collect();
+            if found.is_complete && open.is_empty() {
                 return;
             }
+            polar.proved = polar.proved.with(&found);
             let middle = polar.point([0.0; VARIABLES]);
-            self.try_point(middle);
+            self.try_point(middle, polar.proved);
             if polar.lower[0] == 0.0 {
-                self.try_point([0.0, 0.0, middle[2]]);
+                self.try_point([0.0, 0.0, middle[2]], polar.proved);
             }
-            if let Some((_, worst)) = found
+            let worst = open
                 .iter()
-                .filter(|(_, value)| is_open(value))
-                .min_by(|(_, a), (_, b)| relative_least(a).total_cmp(&relative_least(b)))
-            {
+                .min_by(|a, b| relative_least(a).total_cmp(&relative_least(b)));
+            if let Some(worst) = worst {
                 let point = polar.point(worst.least_point());
-                if self.try_point(point) {
-                    self.nearest_bad(point);
+                if let Some(constraint) = self.try_point(point, polar.proved) {
+                    self.nearest_bad(point, constraint);
                 }
             }
             if polar.lower[0] >= self.target() {
@@ -338,11 +346,6 @@ impl<'a, L: Leg> Proof<'a, L> {
                 break;
             }
             let before = polar.volume();
-            let open: Vec<&TaylorModel> = found
-                .iter()
-                .map(|(_, value)| value)
-                .filter(|value| is_open(value))
-                .collect();
             if !polar.contract(&open) {
                 return;
             }
@@ -366,9 +369,9 @@ impl<'a, L: Leg> Proof<'a, L> {
         }
         let (mut lower, mut upper) = (polar.lower, polar.upper);
         upper[widest] = middle;
-        self.push(polar.lower, upper);
+        self.push(polar.lower, upper, polar.proved);
         lower[widest] = middle;
-        self.push(lower, polar.upper);
+        self.push(lower, polar.upper, polar.proved);
     }
 
     fn lower(&self) -> f64 {

@@ -11,10 +11,30 @@ use crate::mechanism::{Design, Leg, Manipulator, MemberAxis, MemberKind, Members
 use crate::spatial::{LEGS, nearest_on_segment};
 
 /// Number of rows of members: the proximal members of the legs, the distal members of the legs, and the platform bars.
-const ROWS: usize = 3;
-const PROXIMAL: usize = 0;
-const DISTAL: usize = 1;
-const PLATFORM: usize = 2;
+pub(crate) const ROWS: usize = 3;
+pub(crate) const PROXIMAL: usize = 0;
+pub(crate) const DISTAL: usize = 1;
+pub(crate) const PLATFORM: usize = 2;
+
+/// Returns the kinds of the members of each row; `None` for a row that legs of this type do not have.
+pub(crate) fn kinds<L: Leg>() -> [Option<MemberKind>; ROWS] {
+    [L::PROXIMAL, Some(L::DISTAL), Some(MemberKind::PlatformBar)]
+}
+
+/// Returns the pairs of members that are not joined, as indices `LEGS · row + leg`.
+pub(crate) fn pairs_not_joined(kinds: [Option<MemberKind>; ROWS]) -> impl Iterator<Item = [usize; 2]> {
+    let all = (0..ROWS * LEGS).flat_map(|first| (first + 1..ROWS * LEGS).map(move |second| [first, second]));
+    all.filter(move |places| {
+        let rows = places.map(|place| place / LEGS);
+        let of_one_leg = places[0] % LEGS == places[1] % LEGS;
+        let joined = match rows {
+            [PLATFORM, PLATFORM] => true,
+            [PROXIMAL, DISTAL] | [DISTAL, PLATFORM] => of_one_leg,
+            _ => false,
+        };
+        rows.iter().all(|&row| kinds[row].is_some()) && !joined
+    })
+}
 
 /// Largest number of pairs of members that are not joined: 3 + 3 + 6 between legs, 9 + 6 with the platform bars.
 const MAX_PAIRS: usize = 27;
@@ -52,7 +72,7 @@ type Axes<V> = [MemberAxis<V>; ROWS * LEGS];
 impl Bodies {
     /// Prepares the members of `design`, whose legs are of type `L`.
     pub fn new<L: Leg>(design: &Design, settings: &BodySettings) -> Self {
-        let kinds = [L::PROXIMAL, Some(L::DISTAL), Some(MemberKind::PlatformBar)];
+        let kinds = kinds::<L>();
         // The limit keeps squares and sums finite, whatever radii a design has.
         let radii = kinds.map(|kind| kind.map_or(0.0, |kind| settings.radius(kind, design).min(NUMBER_LIMIT)));
         let height = |kind| settings.height(kind, design).clamp(-NUMBER_LIMIT, NUMBER_LIMIT);
@@ -79,31 +99,17 @@ impl Bodies {
 
     /// Fills in the pairs of members that are not joined.
     fn pair_up(&mut self) {
-        for first in 0..ROWS * LEGS {
-            for second in first + 1..ROWS * LEGS {
-                let rows = [first / LEGS, second / LEGS];
-                if rows.iter().any(|&row| self.kinds[row].is_none()) {
-                    continue;
-                }
-                let of_one_leg = first % LEGS == second % LEGS;
-                let joined = match rows {
-                    [PLATFORM, PLATFORM] => true,
-                    [PROXIMAL, DISTAL] | [DISTAL, PLATFORM] => of_one_leg,
-                    _ => false,
-                };
-                if joined {
-                    continue;
-                }
-                let gap = (self.heights[rows[0]] - self.heights[rows[1]]).abs();
-                let radii = self.radii[rows[0]] + self.radii[rows[1]];
-                self.pairs[self.count] = Pair {
-                    places: [first, second],
-                    radii,
-                    layers_squared: gap * gap,
-                    least: gap - radii,
-                };
-                self.count += 1;
-            }
+        for places in pairs_not_joined(self.kinds) {
+            let rows = places.map(|place| place / LEGS);
+            let gap = (self.heights[rows[0]] - self.heights[rows[1]]).abs();
+            let radii = self.radii[rows[0]] + self.radii[rows[1]];
+            self.pairs[self.count] = Pair {
+                places,
+                radii,
+                layers_squared: gap * gap,
+                least: gap - radii,
+            };
+            self.count += 1;
         }
         self.pairs[..self.count].sort_by(|a, b| a.least.total_cmp(&b.least));
     }

@@ -42,6 +42,17 @@ impl Layers {
         crank: 0.0,
         slider: 0.0,
     };
+
+    /// Returns the layer of members of `kind`.
+    pub fn of(&self, kind: MemberKind) -> f64 {
+        match kind {
+            MemberKind::Slider => self.slider,
+            MemberKind::TelescopicLeg => self.telescopic_leg,
+            MemberKind::Crank => self.crank,
+            MemberKind::Link => self.link,
+            MemberKind::PlatformBar => self.platform,
+        }
+    }
 }
 
 impl Default for Layers {
@@ -72,14 +83,7 @@ impl Default for BodySettings {
 impl BodySettings {
     /// Returns the height of members of `kind` above `z = 0` \[m\].
     pub fn height(&self, kind: MemberKind, design: &Design) -> f64 {
-        let layer = match kind {
-            MemberKind::Slider => self.layers.slider,
-            MemberKind::TelescopicLeg => self.layers.telescopic_leg,
-            MemberKind::Crank => self.layers.crank,
-            MemberKind::Link => self.layers.link,
-            MemberKind::PlatformBar => self.layers.platform,
-        };
-        layer * 2.0 * design.leg_bar_radius.max(design.platform_bar_radius)
+        self.layers.of(kind) * 2.0 * design.leg_bar_radius.max(design.platform_bar_radius)
     }
 
     /// Returns the radius of members of `kind` \[m\].

@@ -17,6 +17,7 @@ mod distance;
 mod layers;
 
 pub use bodies::Bodies;
+pub(crate) use bodies::{DISTAL, PLATFORM, PROXIMAL, ROWS, kinds, pairs_not_joined};
 pub use capsule::{Capsule, Clearance, MemberId, Neighbour};
 pub use layers::{BodySettings, Layers};
 

@@ -4,12 +4,14 @@
 //! |---|---|
 //! | [`Interval`] | a constant between two doubles |
 //! | [`TaylorModel`] | a function over a box: a polynomial of degree 2 and a bound of its remainder |
-//! | [`PoseEnclosure`], [`LegEnclosure`] | a box of poses, and what a leg is over it |
+//! | [`PoseEnclosure`], [`LegEnclosure`], [`MembersEnclosure`] | a box of poses, and what a leg and its members are over it |
 
 mod interval;
 mod pose;
 mod taylor;
 
 pub use interval::Interval;
-pub use pose::{LegEnclosure, PlanarModel, PoseEnclosure, TurnedFrame, cross, dot};
+pub use pose::{
+    AxisEnclosure, LegEnclosure, MembersEnclosure, PlanarModel, PoseEnclosure, TurnedFrame, cross, difference, dot, sum,
+};
 pub use taylor::{TaylorModel, VARIABLES};

@@ -35,6 +35,37 @@ pub struct LegEnclosure {
     pub proximal: Option<PlanarModel>,
 }
 
+/// Axis of a member in the base frame, relative to `P`, over a box of poses; lengths are multiples of `L_b`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisEnclosure {
+    /// Points whose hull the axis is; they lie on one line.
+    pub points: [PlanarModel; 3],
+    /// Unit vector along the axis.
+    pub direction: PlanarModel,
+}
+
+impl AxisEnclosure {
+    /// The axis between two points.
+    pub fn between(from: PlanarModel, to: PlanarModel, direction: PlanarModel) -> Self {
+        Self {
+            points: [from, to, to],
+            direction,
+        }
+    }
+}
+
+/// The axes of a leg's members, over a box of poses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MembersEnclosure {
+    /// Axis of the proximal member, for leg types that have one; that of a slider is the point at its centre, with the direction of
+    /// its rail.
+    pub proximal: Option<AxisEnclosure>,
+    /// Axis of the distal member.
+    pub distal: AxisEnclosure,
+    /// Distances of a slider's centre from the ends of its rail \[m\].
+    pub rail: Option<[TaylorModel; 2]>,
+}
+
 /// A frame that is turned by an angle whose cosine and sine are known exactly.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TurnedFrame {
@@ -61,6 +92,16 @@ impl TurnedFrame {
             cosine: cosine(thirds),
             sine: cosine(thirds + 9),
         }
+    }
+
+    /// The frame in whose x axis `A_i` of a leg stands, and `c_i` in the platform.
+    pub fn of_leg(index: usize) -> Self {
+        Self::by_thirties(7 + 4 * index as u8)
+    }
+
+    /// The x axis, in the frame from which this one is turned.
+    pub fn axis(&self) -> [Interval; 2] {
+        [self.cosine, self.sine]
     }
 
     /// Returns the components in this frame of a vector in the frame from which it is turned.
@@ -93,4 +134,14 @@ pub fn cross(a: PlanarModel, b: PlanarModel) -> TaylorModel {
 /// `a · b`.
 pub fn dot(a: PlanarModel, b: PlanarModel) -> TaylorModel {
     a[0] * b[0] + a[1] * b[1]
+}
+
+/// `a + b`.
+pub fn sum(a: PlanarModel, b: PlanarModel) -> PlanarModel {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+/// `a − b`.
+pub fn difference(a: PlanarModel, b: PlanarModel) -> PlanarModel {
+    [a[0] - b[0], a[1] - b[1]]
 }

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{Design, MemberKind, Members};
-use crate::enclosure::{Interval, LegEnclosure, PlanarModel, PoseEnclosure, TurnedFrame};
+use crate::enclosure::{Interval, LegEnclosure, MembersEnclosure, PlanarModel, PoseEnclosure, TurnedFrame};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, LEGS, Pose, Rotation};
 
@@ -281,6 +281,16 @@ pub trait Leg: Copy + Send + Sync {
     ///
     /// The formulas are written apart from those of [`Leg::lanes`], so that each checks the other.
     fn enclose(design: &Design, settings: &LegSettings, index: usize, pose: &PoseEnclosure) -> LegEnclosure;
+
+    /// Encloses the axes of the members of leg `index` over a box of poses, relative to `P` and in multiples of `L_b`: `anchor` is
+    /// `A_i`, and `tip` is `C_i`.
+    fn enclose_members(
+        settings: &LegSettings,
+        index: usize,
+        leg: &LegEnclosure,
+        anchor: PlanarModel,
+        tip: PlanarModel,
+    ) -> MembersEnclosure;
 
     /// Returns the axes of the leg's members at several poses at once, with the end of the leg at `c` and its distal
     /// member along `u`.

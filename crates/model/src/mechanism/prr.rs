@@ -7,7 +7,10 @@ use super::{
     Actuator, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, MemberAxis,
     MemberKind, Members, ReachReason, Segment, Shortfall,
 };
-use crate::enclosure::{Interval, LegEnclosure, PoseEnclosure, TaylorModel, TurnedFrame, cross as cross_models, dot};
+use crate::enclosure::{
+    AxisEnclosure, Interval, LegEnclosure, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, TurnedFrame,
+    cross as cross_models, difference, dot,
+};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, HALF_SQRT_3, LEGS, cross};
 
@@ -146,6 +149,24 @@ impl Leg for PrrLeg {
             transmission_square,
             distal: one,
             proximal: None,
+        }
+    }
+
+    fn enclose_members(
+        _: &LegSettings,
+        index: usize,
+        leg: &LegEnclosure,
+        _: PlanarModel,
+        tip: PlanarModel,
+    ) -> MembersEnclosure {
+        let slider = difference(tip, leg.u);
+        let (one, zero) = (TaylorModel::exactly(1.0), TaylorModel::exactly(0.0));
+        let axis = TurnedFrame::by_thirties(4 * index as u8).leave([one, zero]);
+        let [_, from_start, to_end] = leg.reach;
+        MembersEnclosure {
+            proximal: Some(AxisEnclosure::between(slider, slider, axis)),
+            distal: AxisEnclosure::between(slider, tip, leg.u),
+            rail: Some([from_start, to_end]),
         }
     }
 

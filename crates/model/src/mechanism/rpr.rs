@@ -8,7 +8,10 @@ use super::{
     Actuator, BarLength, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, MemberAxis,
     MemberKind, Members, ReachReason, Segment, Shortfall,
 };
-use crate::enclosure::{Interval, LegEnclosure, PoseEnclosure, TaylorModel, TurnedFrame, cross as cross_models, dot};
+use crate::enclosure::{
+    AxisEnclosure, Interval, LegEnclosure, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, TurnedFrame,
+    cross as cross_models, difference, dot,
+};
 use crate::lanes::{Planar, Real};
 use crate::spatial::ANCHOR_DIRECTIONS;
 
@@ -102,7 +105,7 @@ impl Leg for RprLeg {
 
     /// In axes in which `A_i` stands at `(R, 0)`, the leg is the vector `v = p + r (cos φ, sin φ) − (R, 0)`.
     fn enclose(design: &Design, settings: &LegSettings, index: usize, pose: &PoseEnclosure) -> LegEnclosure {
-        let frame = TurnedFrame::by_thirties(7 + 4 * index as u8);
+        let frame = TurnedFrame::of_leg(index);
         let leg = leg_vector(design, &frame, pose);
         let one = TaylorModel::exactly(1.0);
         let square = dot(leg, leg);
@@ -122,6 +125,32 @@ impl Leg for RprLeg {
                 BarLength::Longest => one,
             },
             proximal: None,
+        }
+    }
+
+    /// The rod, of constant length, ends at `C_i`. Where it protrudes behind `A_i`, the axis begins at its inner end.
+    fn enclose_members(
+        settings: &LegSettings,
+        _: usize,
+        leg: &LegEnclosure,
+        anchor: PlanarModel,
+        tip: PlanarModel,
+    ) -> MembersEnclosure {
+        let one = Interval::exactly(1.0);
+        let shortest = Interval::exactly(settings.telescopic_shortest);
+        // A rod that never protrudes counts as one that ends at `A_i`.
+        let inner = if settings.telescopic_shortest < 0.5 {
+            difference(tip, leg.u.map(|part| part.scaled(one - shortest)))
+        } else {
+            anchor
+        };
+        MembersEnclosure {
+            proximal: None,
+            distal: AxisEnclosure {
+                points: [anchor, inner, tip],
+                direction: leg.u,
+            },
+            rail: None,
         }
     }
 

@@ -7,7 +7,10 @@ use super::{
     Actuator, Design, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, MemberAxis,
     MemberKind, Members, ReachReason, Segment, Shortfall,
 };
-use crate::enclosure::{LegEnclosure, PoseEnclosure, TaylorModel, TurnedFrame, cross as cross_models, dot};
+use crate::enclosure::{
+    AxisEnclosure, LegEnclosure, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, TurnedFrame,
+    cross as cross_models, difference, dot,
+};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{ANCHOR_DIRECTIONS, cross};
 
@@ -99,7 +102,7 @@ impl Leg for RrrLeg {
     /// In axes in which `A_i` stands at `(R, 0)`, with lengths in units of `L_b`, `v` leads from `A_i` to `C_i`, and
     /// `u = v/2 − τ v⊥` with `τ = σ √(1/S − 1/4)`, `S = |v|²`.
     fn enclose(design: &Design, _: &LegSettings, index: usize, pose: &PoseEnclosure) -> LegEnclosure {
-        let frame = TurnedFrame::by_thirties(7 + 4 * index as u8);
+        let frame = TurnedFrame::of_leg(index);
         let [x, y] = leg_vector(design, &frame, pose);
         let one = TaylorModel::exactly(1.0);
         let square = dot([x, y], [x, y]);
@@ -118,6 +121,21 @@ impl Leg for RrrLeg {
             transmission_square: square * elbow,
             distal: one,
             proximal: Some([square.times(0.5) - one, turn * square]),
+        }
+    }
+
+    fn enclose_members(
+        _: &LegSettings,
+        _: usize,
+        leg: &LegEnclosure,
+        anchor: PlanarModel,
+        tip: PlanarModel,
+    ) -> MembersEnclosure {
+        let elbow = difference(tip, leg.u);
+        MembersEnclosure {
+            proximal: Some(AxisEnclosure::between(anchor, elbow, difference(elbow, anchor))),
+            distal: AxisEnclosure::between(elbow, tip, leg.u),
+            rail: None,
         }
     }
 

@@ -1,0 +1,389 @@
+//! Forms of the clearance, g7 (docs/model.md, section 13.4).
+//!
+//! Two members are farther apart than `δ` in the plane if a direction `n` separates them: `n · (b − a) > δ |n|` for all points `a`
+//! of one axis and `b` of the other. The axes are straight, so that their ends suffice. The direction is that of the shortest line
+//! between the axes in the middle of the box, and it turns with the members. The forms are therefore positive only where the
+//! constraint holds, and for small boxes almost everywhere there.
+
+use super::Enclosures;
+use crate::clearance::{BodySettings, DISTAL, PLATFORM, PROXIMAL, ROWS, kinds, pairs_not_joined};
+use crate::enclosure::{
+    AxisEnclosure, Interval, LegEnclosure, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, TurnedFrame,
+    difference, dot, sum,
+};
+use crate::evaluation::{Constraint, Model};
+use crate::mechanism::{Design, Leg, LegSettings, MemberKind};
+use crate::spatial::LEGS;
+
+/// What g7 needs of a design. Lengths are multiples of `L_b` unless stated otherwise.
+pub(super) struct Separations {
+    settings: LegSettings,
+    /// `r`.
+    platform: Interval,
+    /// `A_i`.
+    anchors: [[Interval; 2]; LEGS],
+    /// `1/L_b` \[1/m\].
+    to_unit: Interval,
+    /// Half the length of the axis of a slider.
+    slider: Interval,
+    /// Distance that the centre of a slider must keep from the ends of its rail \[m\].
+    from_rail_end: Interval,
+    pairs: Vec<SeparatedPair>,
+}
+
+/// Two members that must keep a distance.
+struct SeparatedPair {
+    /// Indices of both members: `LEGS · row + leg`.
+    places: [usize; 2],
+    /// Square of the distance that their axes must keep in the plane: that of the sum of the radii and the clearance, less that of
+    /// their layers.
+    square: Interval,
+    /// Upper bound of this distance.
+    distance: f64,
+}
+
+/// The members over a box of poses.
+pub(super) struct MemberBoxes {
+    /// The axes, indexed by `LEGS · row + leg`.
+    axes: [Option<AxisEnclosure>; ROWS * LEGS],
+    rails: [Option<[TaylorModel; 2]>; LEGS],
+}
+
+impl Separations {
+    /// Returns `None` if the study requires no clearance.
+    pub fn new<L: Leg>(model: &Model, design: &Design) -> Option<Self> {
+        let clearance = Interval::exactly(model.thresholds.clearance?);
+        let exactly = Interval::exactly;
+        let bodies = &model.bodies;
+        let to_unit = exactly(1.0) / exactly(design.link_length);
+        let base = exactly(design.base_radius) * to_unit;
+        let leg_bar = exactly(design.leg_bar_radius);
+        let half_length = exactly(0.5) * exactly(bodies.slider_length) * leg_bar;
+        let half_axis = half_length - exactly(bodies.slider_half_width) * leg_bar;
+        Some(Self {
+            settings: model.legs,
+            platform: exactly(design.platform_radius) * to_unit,
+            anchors: [0, 1, 2].map(|leg| TurnedFrame::of_leg(leg).axis().map(|part| part * base)),
+            to_unit,
+            slider: Interval {
+                lower: half_axis.lower.max(0.0),
+                upper: half_axis.upper.max(0.0),
+            } * to_unit,
+            from_rail_end: half_length + clearance,
+            pairs: pairs::<L>(bodies, design, clearance),
+        })
+    }
+
+    /// Lays the members out over a box of poses.
+    pub fn lay_out<L: Leg>(&self, pose: &PoseEnclosure, legs: &[LegEnclosure; LEGS]) -> MemberBoxes {
+        let mut boxes = MemberBoxes {
+            axes: [None; ROWS * LEGS],
+            rails: [None; LEGS],
+        };
+        let position = pose.position.map(|part| part.scaled(self.to_unit));
+        for (index, leg) in legs.iter().enumerate() {
+            let arm = TurnedFrame::of_leg(index).direction(pose);
+            let tip = arm.map(|part| part.scaled(self.platform));
+            let anchor = difference(self.anchors[index].map(TaylorModel::constant), position);
+            let MembersEnclosure { proximal, distal, rail } =
+                L::enclose_members(&self.settings, index, leg, anchor, tip);
+            boxes.axes[LEGS * PROXIMAL + index] = proximal.map(|axis| match L::PROXIMAL {
+                Some(MemberKind::Slider) => {
+                    let half = axis.direction.map(|part| part.scaled(self.slider));
+                    let [centre, ..] = axis.points;
+                    AxisEnclosure::between(difference(centre, half), sum(centre, half), axis.direction)
+                }
+                _ => axis,
+            });
+            boxes.axes[LEGS * DISTAL + index] = Some(distal);
+            let middle = [TaylorModel::exactly(0.0); 2];
+            boxes.axes[LEGS * PLATFORM + index] = Some(AxisEnclosure::between(middle, tip, arm));
+            boxes.rails[index] = rail;
+        }
+        boxes
+    }
+
+    /// Encloses g7 over a box: a form per rail end, and those of the pairs that are not proved.
+    pub fn enclose(&self, boxes: &MemberBoxes, found: &mut Enclosures) {
+        self.enclose_rail_ends(boxes, found);
+        self.for_near_pairs(boxes, |pair, a, b| separate(a, b, pair.distance, found));
+    }
+
+    /// Encloses g7 at a pose: the square of the distance between two points of the axes, less that which they must keep.
+    pub fn enclose_pose(&self, boxes: &MemberBoxes, found: &mut Enclosures) {
+        self.enclose_rail_ends(boxes, found);
+        self.for_near_pairs(boxes, |pair, a, b| {
+            let way = difference(nearest(b, a), nearest(a, b));
+            found.push(Constraint::Clearance, dot(way, way).plus(-pair.square));
+        });
+    }
+
+    fn enclose_rail_ends(&self, boxes: &MemberBoxes, found: &mut Enclosures) {
+        for distance in boxes.rails.iter().flatten().flatten() {
+            found.push(Constraint::Clearance, distance.plus(-self.from_rail_end));
+        }
+    }
+
+    /// Calls `examine` with the pairs whose bounding boxes are not far enough from each other.
+    fn for_near_pairs(
+        &self,
+        boxes: &MemberBoxes,
+        mut examine: impl FnMut(&SeparatedPair, &AxisEnclosure, &AxisEnclosure),
+    ) {
+        let bounds = boxes.axes.map(|axis| axis.map(|axis| Bounds::of(&axis)));
+        for pair in &self.pairs {
+            let [first, second] = pair.places;
+            if let (Some(a), Some(b), Some(bounds_a), Some(bounds_b)) =
+                (&boxes.axes[first], &boxes.axes[second], &bounds[first], &bounds[second])
+                && !bounds_a.is_farther(bounds_b, pair.distance)
+            {
+                examine(pair, a, b);
+            }
+        }
+    }
+}
+
+/// The pairs that their layers alone do not keep apart.
+fn pairs<L: Leg>(bodies: &BodySettings, design: &Design, clearance: Interval) -> Vec<SeparatedPair> {
+    let exactly = Interval::exactly;
+    let to_unit = exactly(1.0) / exactly(design.link_length);
+    let thicker = exactly(2.0) * exactly(design.leg_bar_radius.max(design.platform_bar_radius));
+    let kinds = kinds::<L>();
+    let radius = |kind| match kind {
+        MemberKind::Slider => exactly(bodies.slider_half_width) * exactly(design.leg_bar_radius),
+        kind => exactly(bodies.radius(kind, design)),
+    };
+    let keep = |places: [usize; 2]| {
+        let [Some(first), Some(second)] = places.map(|place| kinds[place / LEGS]) else {
+            return None;
+        };
+        let distance = radius(first) + radius(second) + clearance;
+        let layers = (exactly(bodies.layers.of(first)) - exactly(bodies.layers.of(second))) * thicker;
+        let square = (distance.square() - layers.square()) * to_unit.square();
+        (distance.upper > 0.0 && square.upper > 0.0).then(|| SeparatedPair {
+            places,
+            square,
+            distance: exactly(square.upper).sqrt().upper,
+        })
+    };
+    pairs_not_joined(kinds).filter_map(keep).collect()
+}
+
+/// A rectangle that contains an axis.
+struct Bounds([[f64; 2]; 2]);
+
+impl Bounds {
+    fn of(axis: &AxisEnclosure) -> Self {
+        let along = |k: usize| {
+            let hull = |all: [f64; 2], [lower, upper]: [f64; 2]| {
+                // The functions min and max pass over NaN.
+                if lower.is_nan() || upper.is_nan() || all[0].is_nan() {
+                    [f64::NAN; 2]
+                } else {
+                    [all[0].min(lower), all[1].max(upper)]
+                }
+            };
+            let [first, second, third] = axis.points.map(|point| point[k].range());
+            hull(hull(first, second), third)
+        };
+        Self([along(0), along(1)])
+    }
+
+    /// Whether two rectangles are farther apart than a distance. The factor covers the rounding of the comparison, and a comparison
+    /// with NaN is false.
+    fn is_farther(&self, other: &Self, distance: f64) -> bool {
+        let gap = |k: usize| {
+            (other.0[k][0] - self.0[k][1])
+                .max(self.0[k][0] - other.0[k][1])
+                .max(0.0)
+        };
+        let square = gap(0) * gap(0) + gap(1) * gap(1);
+        let has_values = self.0.iter().chain(&other.0).flatten().all(|end| !end.is_nan());
+        has_values && square > distance * distance * (1.0 + 1e-12)
+    }
+}
+
+/// Pushes the forms of a pair that are not proved.
+fn separate(a: &AxisEnclosure, b: &AxisEnclosure, distance: f64, found: &mut Enclosures) {
+    let mut push = |value: TaylorModel| {
+        // A comparison with NaN is false: nothing is proved then.
+        let is_proved = value.range()[0] > 0.0;
+        if !is_proved {
+            found.push(Constraint::Clearance, value);
+        }
+    };
+    let keep = Interval::exactly(distance);
+    match direction(a, b) {
+        None => push(TaylorModel::exactly(-1.0)),
+        // All points of the axis to which the direction is normal lie on one side.
+        Some(Direction::Normal { of_first, sign }) => {
+            let (straight, other) = if of_first { (a, b) } else { (b, a) };
+            let [x, y] = straight.direction;
+            let normal = [-y.times(sign), x.times(sign)];
+            for point in distinct(other) {
+                push(dot(normal, difference(point, straight.points[0])).plus(-keep));
+            }
+        }
+        Some(Direction::Between { from, to }) => {
+            let way = difference(b.points[to], a.points[from]);
+            let square = dot(way, way);
+            // |n| ≤ (|n|²/m + m)/2 for every m, with equality at m = |n|.
+            let length = square.constant.sqrt();
+            let half = Interval::exactly(0.5);
+            let longest = square
+                .scaled(half / Interval::exactly(length))
+                .plus(half * Interval::exactly(length));
+            let least = longest.scaled(keep);
+            for end in distinct(b) {
+                for start in distinct(a) {
+                    push(dot(way, difference(end, start)) - least);
+                }
+            }
+        }
+    }
+}
+
+/// The direction of the shortest line from one axis to another, in the middle of a box.
+enum Direction {
+    /// Normal to one of the axes; `sign` tells to which side of it the other one lies.
+    Normal { of_first: bool, sign: f64 },
+    /// From a point of the first axis to a point of the second.
+    Between { from: usize, to: usize },
+}
+
+/// Returns the direction of the shortest line between two axes, in plain doubles; `None` if they cross.
+fn direction(a: &AxisEnclosure, b: &AxisEnclosure) -> Option<Direction> {
+    let [first, second] = [a, b].map(middle);
+    if crossing(&first, &second).is_some() {
+        return None;
+    }
+    let mut best: Option<(f64, Direction)> = None;
+    let mut offer = |square: f64, direction: Direction| {
+        if best.as_ref().is_none_or(|(least, _)| square < *least) {
+            best = Some((square, direction));
+        }
+    };
+    for (from, p) in first.iter().enumerate() {
+        for (to, q) in second.iter().enumerate() {
+            offer(length_squared(minus(*q, *p)), Direction::Between { from, to });
+        }
+    }
+    for (of_first, straight, other, axis) in [(true, &first, &second, a), (false, &second, &first, b)] {
+        let along = axis.direction.map(|part| part.constant);
+        let places = straight.map(|point| scalar(minus(point, straight[0]), along));
+        let (least, most) = places
+            .iter()
+            .fold((0.0f64, 0.0f64), |(low, high), &at| (low.min(at), high.max(at)));
+        for point in other {
+            let way = minus(*point, straight[0]);
+            let (place, height) = (scalar(way, along), along[0] * way[1] - along[1] * way[0]);
+            if place > least && place < most {
+                offer(
+                    height * height,
+                    Direction::Normal {
+                        of_first,
+                        sign: if height < 0.0 { -1.0 } else { 1.0 },
+                    },
+                );
+            }
+        }
+    }
+    best.map(|(_, direction)| direction)
+}
+
+/// Encloses the point of an axis that is nearest to another axis in the middle of a box; it lies on the axis in any case.
+fn nearest(of: &AxisEnclosure, to: &AxisEnclosure) -> PlanarModel {
+    let (own, other) = (middle(of), middle(to));
+    let [first, last] = ends(&own, of.direction.map(|part| part.constant));
+    let way = minus(own[last], own[first]);
+    let square = length_squared(way);
+    let fraction = crossing(&own, &other).unwrap_or_else(|| {
+        let on_segment = |from: [f64; 2], way: [f64; 2], point: [f64; 2]| {
+            let square = length_squared(way);
+            if square > 0.0 {
+                (scalar(minus(point, from), way) / square).clamp(0.0, 1.0)
+            } else {
+                0.0
+            }
+        };
+        let [start, end] = ends(&other, to.direction.map(|part| part.constant));
+        let other_way = minus(other[end], other[start]);
+        // An end of one of the axes is nearest.
+        let mut best = (f64::INFINITY, 0.0);
+        let mut offer = |fraction: f64, other_fraction: f64| {
+            let between = minus(
+                [0, 1].map(|k| other[start][k] + other_fraction * other_way[k]),
+                [0, 1].map(|k| own[first][k] + fraction * way[k]),
+            );
+            if length_squared(between) < best.0 {
+                best = (length_squared(between), fraction);
+            }
+        };
+        for (at, point) in [(0.0, own[first]), (1.0, own[last])] {
+            offer(at, on_segment(other[start], other_way, point));
+        }
+        for (at, point) in [(0.0, other[start]), (1.0, other[end])] {
+            offer(on_segment(own[first], way, point), at);
+        }
+        best.1
+    });
+    if square == 0.0 {
+        return of.points[first];
+    }
+    let part = difference(of.points[last], of.points[first]).map(|part| part.times(fraction));
+    sum(of.points[first], part)
+}
+
+/// Returns the fraction of the first axis at which it crosses the second, if it does.
+fn crossing(a: &[[f64; 2]; 3], b: &[[f64; 2]; 3]) -> Option<f64> {
+    let far = |points: &[[f64; 2]; 3]| {
+        let along = [minus(points[1], points[0]), minus(points[2], points[0])];
+        let along = if length_squared(along[0]) > length_squared(along[1]) {
+            along[0]
+        } else {
+            along[1]
+        };
+        let [first, last] = ends(points, along);
+        (points[first], minus(points[last], points[first]))
+    };
+    let ((from_a, way_a), (from_b, way_b)) = (far(a), far(b));
+    let turn = way_a[0] * way_b[1] - way_a[1] * way_b[0];
+    let between = minus(from_b, from_a);
+    let on_a = (between[0] * way_b[1] - between[1] * way_b[0]) / turn;
+    let on_b = (between[0] * way_a[1] - between[1] * way_a[0]) / turn;
+    let crosses = (0.0..=1.0).contains(&on_a) && (0.0..=1.0).contains(&on_b);
+    crosses.then_some(on_a)
+}
+
+/// The points of an axis in the middle of the box.
+fn middle(axis: &AxisEnclosure) -> [[f64; 2]; 3] {
+    axis.points.map(|point| point.map(|part| part.constant))
+}
+
+/// Places of the first and the last point along a direction.
+fn ends(points: &[[f64; 2]; 3], along: [f64; 2]) -> [usize; 2] {
+    let place = |k: usize| scalar(points[k], along);
+    let order = |better: fn(&f64, &f64) -> bool| {
+        (1..3).fold(0, |best, k| if better(&place(k), &place(best)) { k } else { best })
+    };
+    [order(f64::lt), order(f64::gt)]
+}
+
+/// The points of an axis, each once.
+fn distinct(axis: &AxisEnclosure) -> impl Iterator<Item = PlanarModel> {
+    let [_, second, third] = axis.points;
+    let count = if second == third { 2 } else { 3 };
+    axis.points.into_iter().take(count)
+}
+
+fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn scalar(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn length_squared(a: [f64; 2]) -> f64 {
+    scalar(a, a)
+}

@@ -1,0 +1,269 @@
+//! The constraints as functions that are positive exactly where they hold strictly (docs/model.md, section 13.3).
+//!
+//! They are cleared of roots and quotients where this keeps the enclosures narrow, and are written apart from those that the
+//! evaluation uses.
+
+mod clearance;
+mod compliances;
+mod stiffness;
+
+use clearance::{MemberBoxes, Separations};
+use compliances::Compliances;
+
+use super::CertifyError;
+use crate::enclosure::{Interval, LegEnclosure, PoseEnclosure, TaylorModel};
+use crate::evaluation::{Constraint, Model};
+use crate::kinematics::CharacteristicLength;
+use crate::mechanism::{Design, Leg};
+use crate::spatial::{LEGS, Pose};
+
+/// Which constraints are proved on a box, and therefore on every part of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct ProvedForms(u8);
+
+impl ProvedForms {
+    fn bit(constraint: Constraint) -> u8 {
+        1 << constraint as u8
+    }
+
+    /// Everything but one constraint, where no other is of interest.
+    pub fn all_but(constraint: Constraint) -> Self {
+        Self(!Self::bit(constraint))
+    }
+
+    /// Whether a constraint is proved.
+    pub fn contains(self, constraint: Constraint) -> bool {
+        self.0 & Self::bit(constraint) != 0
+    }
+
+    /// Adds what is proved on a box on which `found` was enclosed.
+    pub fn with(self, found: &Enclosures) -> Self {
+        // Where a leg may not reach, nothing is known of the others.
+        if !found.is_complete {
+            return self;
+        }
+        let open = found
+            .open()
+            .fold(0, |bits, (constraint, _)| bits | Self::bit(*constraint));
+        // What a leg reaches is part of every other constraint, and is enclosed in any case.
+        Self(self.0 | !(open | Self::bit(Constraint::Reach)))
+    }
+}
+
+/// The constraints over a box of poses.
+#[derive(Debug, Clone)]
+pub(super) struct Enclosures {
+    values: Vec<(Constraint, TaylorModel)>,
+    /// Whether every constraint could be evaluated: where a leg may not reach, the others have no value.
+    pub is_complete: bool,
+    /// Constraints that need no form.
+    proved: ProvedForms,
+}
+
+impl Enclosures {
+    fn new(proved: ProvedForms) -> Self {
+        Self {
+            values: Vec::with_capacity(3 * LEGS + 8),
+            is_complete: true,
+            proved,
+        }
+    }
+
+    fn push(&mut self, constraint: Constraint, value: TaylorModel) {
+        self.values.push((constraint, value));
+    }
+
+    fn needs(&self, constraint: Constraint) -> bool {
+        !self.proved.contains(constraint)
+    }
+
+    /// The constraints that are not proved, with their values.
+    pub fn open(&self) -> impl Iterator<Item = &(Constraint, TaylorModel)> {
+        self.iter().filter(|(_, value)| {
+            // A comparison with NaN is false: nothing is proved then.
+            let is_proved = value.range()[0] > 0.0;
+            !is_proved
+        })
+    }
+
+    /// The constraints with their values.
+    pub fn iter(&self) -> impl Iterator<Item = &(Constraint, TaylorModel)> {
+        self.values.iter()
+    }
+}
+
+/// The constraints of one design, prepared for many boxes.
+pub(super) struct Forms<'a, L> {
+    /// Sign of `det A` at the home pose.
+    sign: f64,
+    design: &'a Design,
+    model: &'a Model,
+    compliance: Compliances,
+    /// `r / ℓ`.
+    to_length: Interval,
+    /// What g7 needs, if the study requires a clearance.
+    separations: Option<Separations>,
+    leg: std::marker::PhantomData<L>,
+}
+
+impl<'a, L: Leg> Forms<'a, L> {
+    /// Prepares the forms of a design; the sign of `det A` counts as positive.
+    pub fn new(model: &'a Model, design: &'a Design) -> Result<Self, CertifyError> {
+        Ok(Self {
+            sign: 1.0,
+            design,
+            model,
+            compliance: Compliances::new::<L>(model, design)?,
+            to_length: Interval::exactly(design.platform_radius) / characteristic_length::<L>(model, design),
+            separations: Separations::new::<L>(model, design),
+            leg: std::marker::PhantomData,
+        })
+    }
+
+    /// Takes the sign of `det A` from a pose; if it cannot be told there, it stays positive.
+    pub fn with_sign_at(mut self, pose: &Pose) -> Self {
+        if let Ok(found) = self.model.pose(self.design, pose)
+            && found.determinant < 0.0
+        {
+            self.sign = -1.0;
+        }
+        self
+    }
+
+    /// Encloses the constraints over a box of poses, but for those that are proved there: each value is positive only where the
+    /// constraint holds.
+    pub fn enclose(&self, pose: &PoseEnclosure, proved: ProvedForms) -> Enclosures {
+        self.enclose_with(pose, proved, Separations::enclose)
+    }
+
+    /// Encloses the constraints over a box without width, but for those that are proved there: each value is negative only where
+    /// the constraint is violated.
+    pub fn enclose_pose(&self, pose: &PoseEnclosure, proved: ProvedForms) -> Enclosures {
+        self.enclose_with(pose, proved, Separations::enclose_pose)
+    }
+
+    fn enclose_with(
+        &self,
+        pose: &PoseEnclosure,
+        proved: ProvedForms,
+        separate: fn(&Separations, &MemberBoxes, &mut Enclosures),
+    ) -> Enclosures {
+        let mut found = Enclosures::new(proved);
+        let legs: [LegEnclosure; LEGS] = [0, 1, 2].map(|index| L::enclose(self.design, &self.model.legs, index, pose));
+        for reach in legs.iter().flat_map(|leg| leg.reach) {
+            found.push(Constraint::Reach, reach);
+            found.is_complete &= reach.range()[0] > 0.0;
+        }
+        if found.is_complete {
+            if found.needs(self.dexterity()) {
+                self.enclose_dexterity(&legs, &mut found);
+            }
+            self.enclose_stiffness(&legs, &mut found);
+            if let Some(separations) = &self.separations
+                && found.needs(Constraint::Clearance)
+            {
+                separate(separations, &separations.lay_out::<L>(pose, &legs), &mut found);
+            }
+            let has_values = found.iter().all(|(_, value)| !value.range()[0].is_nan());
+            found.is_complete = has_values;
+        }
+        found
+    }
+
+    /// The constraint that keeps poses away from singularities: g3, or the sign of `det A` if g3 has no threshold.
+    fn dexterity(&self) -> Constraint {
+        if self.model.thresholds.inverse_condition > 0.0 {
+            Constraint::Dexterity
+        } else {
+            Constraint::DeterminantSign
+        }
+    }
+
+    /// g3, `9 D² − t² Σ β_i² (μ_j² + μ_k² − 2 μ_j μ_k C_i + w_i²) Σ (1 + μ_i²)/β_i²`, where `t` is the threshold. If that is 0,
+    /// `det A` takes its place, with the sign that it has at the home pose.
+    fn enclose_dexterity(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
+        let one = TaylorModel::exactly(1.0);
+        let moments = legs.map(|leg| leg.moment.scaled(self.to_length));
+        let squares = moments.map(|moment| moment.squared());
+        let mut determinant = TaylorModel::exactly(0.0);
+        let (mut forward, mut inverse) = (TaylorModel::exactly(0.0), TaylorModel::exactly(0.0));
+        for i in 0..LEGS {
+            let (j, k) = ((i + 1) % LEGS, (i + 2) % LEGS);
+            let turn = crate::enclosure::cross(legs[j].u, legs[k].u);
+            let cosine = crate::enclosure::dot(legs[j].u, legs[k].u);
+            determinant = determinant + moments[i] * turn;
+            let mixed = (moments[j] * moments[k] * cosine).times(2.0);
+            let row = squares[j] + squares[k] - mixed + turn.squared();
+            forward = forward + legs[i].transmission_square * row;
+            inverse = inverse + (one + squares[i]) * legs[i].transmission_square.reciprocal();
+        }
+        let constraint = self.dexterity();
+        let value = if constraint == Constraint::Dexterity {
+            let threshold = Interval::exactly(self.model.thresholds.inverse_condition);
+            determinant.squared().times(9.0) - (forward * inverse).scaled(threshold.square())
+        } else {
+            determinant.times(self.sign)
+        };
+        found.push(constraint, value);
+    }
+}
+
+/// Encloses the characteristic length \[m\].
+///
+/// The isotropic length is the largest of a finite set: the moments at the orientations of the reference grid with `P` at `O`. An
+/// orientation of which it is not known whether it is reached may or may not count.
+fn characteristic_length<L: Leg>(model: &Model, design: &Design) -> Interval {
+    let platform = Interval::exactly(design.platform_radius);
+    match model.characteristic_length {
+        CharacteristicLength::PlatformRadius => platform,
+        CharacteristicLength::Fixed(length) => Interval::exactly(length),
+        CharacteristicLength::Isotropic => {
+            let grid = &model.reference_grid;
+            // The largest moment of the orientations that are reached for certain, and of all that may be.
+            let (mut certain, mut possible) = (Interval::exactly(0.0), Interval::exactly(0.0));
+            let mut is_certain = false;
+            for k in 0..grid.orientations() {
+                let (sine, cosine) = Interval::radians(k as f64 * grid.phi_step_deg()).sine_and_cosine();
+                let pose = PoseEnclosure {
+                    position: [TaylorModel::exactly(0.0); 2],
+                    cosine: TaylorModel::constant(cosine),
+                    sine: TaylorModel::constant(sine),
+                };
+                let legs = [0, 1, 2].map(|index| L::enclose(design, &model.legs, index, &pose));
+                let mut limits = legs.iter().flat_map(|leg| leg.reach).map(|limit| limit.range());
+                if limits.clone().any(|[_, upper]| upper < 0.0) {
+                    continue;
+                }
+                let is_reached = limits.all(|[lower, _]| lower > 0.0);
+                is_certain |= is_reached;
+                for [lower, upper] in legs.map(|leg| leg.moment.range()) {
+                    if lower.is_nan() || upper.is_nan() {
+                        return Interval::exactly(f64::NAN);
+                    }
+                    let (least, largest) = (lower.max(-upper).max(0.0), upper.max(-lower));
+                    possible.upper = possible.upper.max(largest);
+                    if is_reached {
+                        certain.lower = certain.lower.max(least);
+                        certain.upper = certain.upper.max(largest);
+                    }
+                }
+            }
+            let to_length = Interval::exactly(2.0).sqrt() * platform;
+            let largest = Interval {
+                lower: certain.lower,
+                upper: certain.upper.max(possible.upper),
+            } * to_length;
+            if is_certain && largest.lower > 0.0 {
+                largest
+            } else if possible.upper == 0.0 {
+                platform
+            } else {
+                // It may also be that no orientation is reached, for which the length is r.
+                Interval {
+                    lower: platform.lower.min(largest.lower),
+                    upper: platform.upper.max(largest.upper),
+                }
+            }
+        }
+    }
+}

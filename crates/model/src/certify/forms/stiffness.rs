@@ -1,0 +1,321 @@
+//! Forms of the constraints on stiffness, g4, g5 and g6 (docs/model.md, section 13.3).
+
+use super::{Enclosures, Forms};
+use crate::enclosure::{Interval, LegEnclosure, PlanarModel, TaylorModel, cross, dot};
+use crate::evaluation::Constraint;
+use crate::mechanism::Leg;
+use crate::spatial::LEGS;
+use crate::stiffness::StiffnessDefinition;
+
+/// The upper triangle of a symmetric 3×3 matrix, row by row.
+type Symmetric = [TaylorModel; 6];
+
+/// What the forms in the plane have in common: with `γ_i` the compliances along the lines of the legs, `γ_j γ_k` for each leg and
+/// `γ_1 γ_2 γ_3`.
+struct AlongLines {
+    one: [TaylorModel; LEGS],
+    pairs: [TaylorModel; LEGS],
+    product: TaylorModel,
+}
+
+impl<L: Leg> Forms<'_, L> {
+    /// g4, g5 and g6, as the study defines the stiffness values.
+    pub(super) fn enclose_stiffness(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
+        let definition = self.model.stiffness_definition;
+        if self.is_required(Constraint::StiffnessXy, found) || self.is_required(Constraint::StiffnessPhiZ, found) {
+            let one = legs.map(|leg| self.along_line(&leg));
+            let pairs = [one[1] * one[2], one[2] * one[0], one[0] * one[1]];
+            let along = AlongLines {
+                one,
+                pairs,
+                product: one[0] * pairs[0],
+            };
+            match definition {
+                StiffnessDefinition::Stiffness => self.enclose_entries(legs, &along, found),
+                StiffnessDefinition::Compliance => self.enclose_reciprocals(legs, &along, found),
+            }
+        }
+        if self.is_required(Constraint::StiffnessZ, found) {
+            match definition {
+                StiffnessDefinition::Stiffness => self.enclose_vertical(legs, found),
+                StiffnessDefinition::Compliance => self.enclose_vertical_reciprocal(legs, found),
+            }
+        }
+    }
+
+    /// Whether a stiffness value has a threshold that is not proved yet.
+    fn is_required(&self, constraint: Constraint, found: &Enclosures) -> bool {
+        constraint.threshold(self.design, &self.model.thresholds) > 0.0 && found.needs(constraint)
+    }
+
+    /// g4 and g6 for the entries of `K`. With `T` the threshold, `k_xy > T` where `(λ₁ − T)(λ₂ − T) > 0` and `λ₁ + λ₂ > 2T`.
+    fn enclose_entries(&self, legs: &[LegEnclosure; LEGS], along: &AlongLines, found: &mut Enclosures) {
+        let product = along.product;
+        if self.is_required(Constraint::StiffnessXy, found) {
+            let sum = along.pairs[0] + along.pairs[1] + along.pairs[2];
+            let threshold = self.compliance.in_plane;
+            let determinant = sum_of_legs(|i| along.one[i] * turn(legs, i).squared()) - sum.scaled(threshold)
+                + product.scaled(threshold.square());
+            found.push(Constraint::StiffnessXy, determinant);
+            found.push(Constraint::StiffnessXy, sum - product.times(2.0).scaled(threshold));
+        }
+        if self.is_required(Constraint::StiffnessPhiZ, found) {
+            let moments = sum_of_legs(|i| legs[i].moment.squared() * along.pairs[i]);
+            found.push(
+                Constraint::StiffnessPhiZ,
+                moments - product.scaled(self.compliance.rotation),
+            );
+        }
+    }
+
+    /// g4 and g6 for the reciprocals of entries of `K⁻¹`. Let `S = K_xy − k k^T/K_φφ`, with `k` the column of the rotation, whose
+    /// inverse is the block of `K⁻¹`. Multiplied by `γ_1 γ_2 γ_3 K_φφ/r²`, its determinant is `D²`, its trace
+    /// `Σ γ_i (μ_j² + μ_k² − 2 μ_j μ_k C_i)`, and 1 is `Σ μ_i² γ_j γ_k`. The reciprocal for the rotation is `r² D²/Σ γ_i w_i²`.
+    fn enclose_reciprocals(&self, legs: &[LegEnclosure; LEGS], along: &AlongLines, found: &mut Enclosures) {
+        let square = sum_of_legs(|i| legs[i].moment * turn(legs, i)).squared();
+        if self.is_required(Constraint::StiffnessXy, found) {
+            let trace = sum_of_legs(|i| {
+                let [a, b] = others(i).map(|leg| legs[leg]);
+                let mixed = (a.moment * b.moment * dot(a.u, b.u)).times(2.0);
+                along.one[i] * (a.moment.squared() + b.moment.squared() - mixed)
+            });
+            let whole = sum_of_legs(|i| legs[i].moment.squared() * along.pairs[i]);
+            let threshold = self.compliance.in_plane;
+            found.push(
+                Constraint::StiffnessXy,
+                square - trace.scaled(threshold) + whole.scaled(threshold.square()),
+            );
+            found.push(Constraint::StiffnessXy, trace - whole.times(2.0).scaled(threshold));
+        }
+        if self.is_required(Constraint::StiffnessPhiZ, found) {
+            let turns = sum_of_legs(|i| along.one[i] * turn(legs, i).squared());
+            found.push(
+                Constraint::StiffnessPhiZ,
+                square - turns.scaled(self.compliance.rotation),
+            );
+        }
+    }
+
+    /// g5 for the entry of `K`.
+    fn enclose_vertical(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
+        let mut stiffness = TaylorModel::constant(-self.compliance.vertical);
+        for leg in legs {
+            let [minor, determinant] = self.vertical(leg);
+            stiffness = stiffness + minor * determinant.reciprocal();
+        }
+        found.push(Constraint::StiffnessZ, stiffness);
+    }
+
+    /// g5 for the reciprocal of the entry of `K⁻¹`, which is `det K/det K_φφ` of the block out of the plane. `K` is the sum of the
+    /// inverses of the compliances of the legs, and positive definite.
+    fn enclose_vertical_reciprocal(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
+        if self.model.thresholds.k_z > 0.0 {
+            let mut stiffness = [TaylorModel::exactly(0.0); 6];
+            for leg in legs {
+                let compliance = self.bending(leg);
+                let cofactors = cofactors(&compliance);
+                let to_inverse = determinant(&compliance, &cofactors).reciprocal();
+                for (sum, cofactor) in stiffness.iter_mut().zip(cofactors) {
+                    *sum = *sum + cofactor * to_inverse;
+                }
+            }
+            let cofactors = cofactors(&stiffness);
+            let whole = determinant(&stiffness, &cofactors);
+            // The first cofactor is the determinant of the block of the rotations.
+            found.push(
+                Constraint::StiffnessZ,
+                whole - cofactors[0].scaled(self.compliance.vertical),
+            );
+        }
+    }
+
+    /// Encloses the compliance of a leg out of the plane at `P` in base axes: displacement along z, then the rotations, with lengths
+    /// in units of `L_b`.
+    fn bending(&self, leg: &LegEnclosure) -> Symmetric {
+        let compliance = &self.compliance;
+        let radius = compliance.radius;
+        let (one, zero) = (TaylorModel::exactly(1.0), TaylorModel::exactly(0.0));
+        let normal = perp(leg.u);
+        let from_leg = |along: TaylorModel, across: TaylorModel| -> PlanarModel {
+            [0, 1].map(|k| leg.u[k] * along + normal[k] * across)
+        };
+        let mut sum = [zero; 6];
+        // The platform bar runs from C to P, against the arm `along u − moment u⊥`.
+        add_bar(
+            &mut sum,
+            &Bar {
+                section: compliance.platform.map(TaylorModel::constant),
+                direction: from_leg(-leg.along, leg.moment),
+                length: TaylorModel::constant(radius),
+                tip: [zero, zero],
+            },
+        );
+        let (along, across) = (leg.along.scaled(radius), -leg.moment.scaled(radius));
+        add_bar(
+            &mut sum,
+            &Bar {
+                section: compliance.leg.map(|part| leg.distal.scaled(part)),
+                direction: leg.u,
+                length: leg.distal,
+                tip: from_leg(along, across),
+            },
+        );
+        if let Some([x, y]) = leg.proximal {
+            add_bar(
+                &mut sum,
+                &Bar {
+                    section: compliance.leg.map(TaylorModel::constant),
+                    direction: from_leg(x, y),
+                    length: one,
+                    tip: from_leg(along - leg.distal, across),
+                },
+            );
+        }
+        sum
+    }
+
+    /// Encloses the compliance along the line of a leg.
+    fn along_line(&self, leg: &LegEnclosure) -> TaylorModel {
+        let compliance = &self.compliance;
+        let sum = leg.transmission_square.scaled(compliance.actuator)
+            + leg.distal.scaled(compliance.distal_axial)
+            + leg
+                .moment
+                .squared()
+                .scaled(compliance.platform_moment)
+                .plus(compliance.platform_base);
+        match leg.proximal {
+            Some([x, y]) => {
+                sum + x.squared().scaled(compliance.proximal_axial) + y.squared().scaled(compliance.proximal_bending)
+            }
+            None => sum,
+        }
+    }
+
+    /// Encloses `det S_φφ` and `det S` of a leg out of the plane, at `C_i` in axes along `u_i`, with lengths in units of `L_b`
+    /// (docs/model.md, section 4.4).
+    fn vertical(&self, leg: &LegEnclosure) -> [TaylorModel; 2] {
+        let compliance = &self.compliance;
+        let ([b1, t1], [b2, t2], radius) = (compliance.leg, compliance.platform, compliance.radius);
+        let third = Interval::exactly(1.0) / Interval::exactly(3.0);
+        let half = Interval::exactly(0.5);
+        let constant = TaylorModel::constant;
+        // Direction of the platform bar, from C to P, in the axes of the distal bar.
+        let (cosine, sine) = (-leg.along, leg.moment);
+        let length = leg.distal;
+        let (bend, twist) = (length.scaled(b1), length.scaled(t1));
+        let lift = (bend * length.squared())
+            .scaled(third)
+            .plus(b2 * radius.square() * third);
+        let p = (bend * length).times(0.5);
+        let q = constant(half * b2 * radius);
+        let square = cosine.squared();
+        let (bend2, twist2) = (constant(b2), constant(t2));
+        match leg.proximal {
+            None => {
+                let minor = [(twist + bend2) * (bend + twist2), (twist - bend) * (bend2 - twist2)];
+                let (pp, qq) = (p.squared(), q.squared());
+                let tilt = [
+                    pp * (twist + bend2) + qq * (twist2 + bend),
+                    (p * q).times(2.0) * (twist + twist2),
+                    pp * (twist2 - bend2) + qq * (twist - bend),
+                ];
+                [
+                    minor[0] + square * minor[1],
+                    lift * minor[0] - tilt[0] + cosine * tilt[1] + square * (lift * minor[1] - tilt[2]),
+                ]
+            }
+            Some([x, y]) => {
+                let middle = x.plus(half);
+                let twelfth = Interval::exactly(1.0) / Interval::exactly(12.0);
+                let (xx_bar, yy_bar, xy_bar) = (x.squared(), y.squared(), x * y);
+                let (long, wide, both) = (square, sine.squared(), cosine * sine);
+                let lift = lift + length.squared() * (bend * middle.squared().plus(twelfth) + twist * yy_bar);
+                let tilt_x = length * y * ((bend - twist) * x + bend.times(0.5)) - q * sine;
+                let tilt_y = q * cosine - p - length * (twist * yy_bar + bend * middle * x);
+                let xx = twist * xx_bar + bend * yy_bar + twist + twist2 * long + bend2 * wide;
+                let xy = (twist - bend) * xy_bar + (twist2 - bend2) * both;
+                let yy = twist * yy_bar + bend * xx_bar + bend + twist2 * wide + bend2 * long;
+                let minor = xx * yy - xy.squared();
+                let tilt = tilt_x.squared() * yy - (tilt_x * tilt_y * xy).times(2.0) + tilt_y.squared() * xx;
+                [minor, lift * minor - tilt]
+            }
+        }
+    }
+}
+
+/// A bar that bends out of the plane.
+struct Bar {
+    /// Bending and torsional compliance, `L/(EI)` and `L/(GI_x)`.
+    section: [TaylorModel; 2],
+    /// Unit vector towards its tip.
+    direction: PlanarModel,
+    length: TaylorModel,
+    /// Tip, relative to `P`.
+    tip: PlanarModel,
+}
+
+/// Adds the compliance of a bar at `P`. The bending moment at the distance `s` from the tip, at `q`, due to a force `F` along z and
+/// a moment `m` at `P`, is `m + F q⊥`: its part along the bar is constant, and that along the normal grows by `F` per length.
+fn add_bar(sum: &mut Symmetric, bar: &Bar) {
+    let [bend, twist] = bar.section;
+    let [x, y] = bar.direction;
+    let [nx, ny] = perp(bar.direction);
+    let lever = perp(bar.tip);
+    let along = dot(lever, bar.direction);
+    // At the middle of the bar, force and moment are decoupled.
+    let middle = dot(lever, [nx, ny]) - bar.length.times(0.5);
+    let twelfth = Interval::exactly(1.0) / Interval::exactly(12.0);
+    let (by_twist, by_bend) = (twist * along, bend * middle);
+    let parts = [
+        by_twist * along + by_bend * middle + bend * bar.length.squared().scaled(twelfth),
+        by_twist * x + by_bend * nx,
+        by_twist * y + by_bend * ny,
+        twist * x.squared() + bend * nx.squared(),
+        twist * (x * y) + bend * (nx * ny),
+        twist * y.squared() + bend * ny.squared(),
+    ];
+    for (entry, part) in sum.iter_mut().zip(parts) {
+        *entry = *entry + part;
+    }
+}
+
+/// The vector turned by 90°.
+fn perp([x, y]: PlanarModel) -> PlanarModel {
+    [-y, x]
+}
+
+/// The upper triangle of the matrix of cofactors.
+fn cofactors(&[a, b, c, d, e, f]: &Symmetric) -> Symmetric {
+    [
+        d * f - e.squared(),
+        c * e - b * f,
+        b * e - c * d,
+        a * f - c.squared(),
+        b * c - a * e,
+        a * d - b.squared(),
+    ]
+}
+
+fn determinant(matrix: &Symmetric, cofactors: &Symmetric) -> TaylorModel {
+    matrix[0] * cofactors[0] + matrix[1] * cofactors[1] + matrix[2] * cofactors[2]
+}
+
+/// The two legs after leg `i`, in turn.
+fn others(i: usize) -> [usize; 2] {
+    [(i + 1) % LEGS, (i + 2) % LEGS]
+}
+
+/// `w_i = u_j × u_k`.
+fn turn(legs: &[LegEnclosure; LEGS], i: usize) -> TaylorModel {
+    let [j, k] = others(i);
+    cross(legs[j].u, legs[k].u)
+}
+
+fn sum_of_legs(term: impl Fn(usize) -> TaylorModel) -> TaylorModel {
+    let mut sum = term(0);
+    for i in 1..LEGS {
+        sum = sum + term(i);
+    }
+    sum
+}

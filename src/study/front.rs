@@ -1,0 +1,126 @@
+//! The reported front of a run: its designs, each with what is proved about its workspace (docs/model.md, section 13.5).
+
+use serde::{Deserialize, Serialize};
+
+use super::{DesignProblem, Row, TableRow};
+use kinefront_model::certify::{Certificate, Verdict};
+use kinefront_model::evaluation::Evaluation;
+
+/// A design of the verified front.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrontMember {
+    /// Id of its evaluation; a thickened design has an id after those of the search.
+    pub id: usize,
+    /// Generation of its evaluation; that of the design from which it was thickened.
+    pub generation: usize,
+    /// Evaluation of the design on the fine grid. Its `R_w` is the one that is reported: the lower bound of the certificate, if
+    /// there is one.
+    pub evaluation: Evaluation,
+    /// `R_w` on the reference grid \[m\].
+    pub reference_radius: f64,
+    /// What is proved about `R_w`; `None` if the study asks for no proof, or none is possible.
+    pub certified: Option<CertifiedRadius>,
+}
+
+/// Bounds of the workspace radius at the home orientation of a design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CertifiedRadius {
+    /// Radius \[m\] of a disc in which every pose is proved feasible.
+    pub lower: f64,
+    /// Distance \[m\] of a pose that is proved infeasible, if one was found.
+    pub upper: Option<f64>,
+    /// Whether the proof is complete: the bounds are as close as the tolerance asks, or the radius of the fine grid is proved.
+    pub is_proved: bool,
+}
+
+/// What the certificates of a front found.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct FrontProofs {
+    /// Relative tolerance of the certificates.
+    pub tolerance: f64,
+    /// Designs of `front.csv` whose radius is proved.
+    pub proved: usize,
+    /// Designs of `front.csv` whose proof is not complete.
+    pub open: usize,
+    /// Designs that were left out: nothing is proved about them, or with the proved radius another design of the front is
+    /// lighter and has a larger workspace.
+    pub dropped: usize,
+    /// Hypervolume of `front.csv` \[kg·m\].
+    pub hypervolume_kg_m: f64,
+    /// Designs for which a pose within the radius of the fine grid was proved infeasible.
+    pub refuted: Vec<RefutedDesign>,
+}
+
+/// A design whose radius on the fine grid was refuted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RefutedDesign {
+    /// Id of the design.
+    pub id: usize,
+    /// `R_w` on the fine grid \[m\].
+    pub fine_radius_m: f64,
+    /// Distance from the centre of the workspace of the infeasible pose \[m\].
+    pub infeasible_at_m: f64,
+    /// Constraint that the pose violates.
+    pub constraint: String,
+    /// Least margin of this constraint that was found within the radius of the fine grid.
+    pub margin: f64,
+    /// The design with thicker bars that is reported instead, if its workspace is restored.
+    pub thickened: Option<ThickenedDesign>,
+}
+
+/// A design that is reported instead of a refuted one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ThickenedDesign {
+    /// Id of the new design.
+    pub id: usize,
+    /// Relative increase of the radii of the bars.
+    pub increase: f64,
+}
+
+impl FrontMember {
+    /// Returns both objectives, which are minimised.
+    pub fn objectives(&self) -> [f64; 2] {
+        DesignProblem::outcome(&self.evaluation).objectives
+    }
+
+    /// Returns the row of `front.csv`.
+    pub fn row(&self) -> TableRow {
+        TableRow {
+            id: self.id,
+            row: Row::new(self.generation, &self.evaluation),
+            reference_radius: Some(self.reference_radius),
+            certified: self.certified,
+        }
+    }
+
+    /// Reports the proved radius as `R_w`.
+    pub(super) fn report(&mut self, certified: CertifiedRadius) {
+        self.evaluation.workspace_radius = certified.lower;
+        self.certified = Some(certified);
+    }
+
+    pub(super) fn is_proved(&self) -> bool {
+        self.certified.is_some_and(|certified| certified.is_proved)
+    }
+}
+
+impl CertifiedRadius {
+    /// The text of a proof that is complete.
+    pub const PROVED: &str = "proved";
+    /// The text of a proof that is not complete.
+    pub const OPEN: &str = "open";
+
+    /// Takes the bounds of a certificate with a tolerance.
+    pub fn new(certificate: &Certificate, tolerance: f64) -> Self {
+        Self {
+            lower: certificate.lower,
+            upper: certificate.upper,
+            is_proved: certificate.verdict == Verdict::Proved || certificate.is_closed(tolerance),
+        }
+    }
+
+    /// The state of the proof in tables: `proved` or `open`.
+    pub fn state(&self) -> &'static str {
+        if self.is_proved { Self::PROVED } else { Self::OPEN }
+    }
+}
