@@ -90,6 +90,7 @@ impl Stream {
                         generation,
                         evaluation: evaluation.clone(),
                         reference_radius: evaluation.workspace_radius,
+                        certified: None,
                     });
                 }
             }
@@ -109,6 +110,7 @@ impl Stream {
                         id: member.id,
                         row: Row::new(member.generation, &member.evaluation),
                         reference_radius: None,
+                        certified: None,
                     })
                 });
                 waited += tell(Event::Front(front.collect()));
@@ -131,6 +133,7 @@ impl Stream {
             front: members,
             dropped: 0,
             verified_hypervolume: 0.0,
+            proofs: None,
             times: RunTimes::default(),
         }));
         waited

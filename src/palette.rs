@@ -1,6 +1,7 @@
-//! The colours of architectures, parts and clearances in every view, as red, green and blue.
+//! The colours of architectures, parts, constraints and clearances in every view, as red, green and blue.
 
 use crate::scene::Part;
+use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::Architecture;
 
 /// Returns the colour of an architecture. The colours can be distinguished with any type of colour vision (Okabe and
@@ -36,4 +37,18 @@ pub fn part(part: Part) -> [u8; 3] {
 /// Returns the colour of the nearest pair of members: red if it is too near, otherwise green.
 pub fn nearest(too_near: bool) -> [u8; 3] {
     if too_near { [255, 60, 60] } else { [90, 225, 130] }
+}
+
+/// Returns the colour of a constraint. The colours can be distinguished with any type of colour vision (Tol's bright scheme).
+pub fn constraint(constraint: Constraint) -> [u8; 3] {
+    match constraint {
+        Constraint::Assembly => [187, 187, 187],
+        Constraint::Reach => [102, 204, 238],
+        Constraint::Dexterity => [68, 119, 170],
+        Constraint::StiffnessXy => [238, 102, 119],
+        Constraint::StiffnessZ => [204, 187, 68],
+        Constraint::StiffnessPhiZ => [34, 136, 51],
+        Constraint::DeterminantSign => [170, 51, 119],
+        Constraint::Clearance => [238, 153, 51],
+    }
 }

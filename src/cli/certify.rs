@@ -41,6 +41,9 @@ pub struct CertifyArguments {
     /// Largest number of boxes.
     #[arg(long, value_name = "N", default_value_t = CertifyOptions::MAX_BOXES as u64, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     max_boxes: u64,
+    /// Bound the workspace radius over all home orientations, too.
+    #[arg(long)]
+    all_homes: bool,
     /// Print the result as one JSON object.
     #[arg(long)]
     json: bool,
@@ -99,12 +102,17 @@ impl Prover<'_> {
             ..CertifyOptions::default()
         };
         let certificate = self.model.certify(&design, &options)?;
+        let homes = match self.arguments.all_homes {
+            true => self.model.bound_of_homes(&design, certificate.lower)?,
+            false => None,
+        };
         let seconds = since.elapsed().as_secs_f64();
         Ok(CertificateJson::new(
             &self.model,
             &design,
             &options,
             &certificate,
+            homes,
             seconds,
         ))
     }

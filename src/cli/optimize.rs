@@ -287,6 +287,9 @@ fn tell(
             return Ok(());
         }
         writeln!(out, "{}", tables::front(summary))?;
+        if let Some(proofs) = &summary.proofs {
+            writeln!(out, "{proofs}")?;
+        }
         writeln!(
             out,
             "{} evaluations ({} feasible) in {:.1} s{}, verified in {:.1} s; front: {} of {} verified designs kept, \

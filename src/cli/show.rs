@@ -17,6 +17,9 @@ pub struct ShowArguments {
     /// Field whose heatmap is shown first.
     #[arg(long, default_value = Field::InverseCondition.key(), value_parser = field)]
     field: Field,
+    /// Show the proof of the workspace first.
+    #[arg(long, conflicts_with = "field")]
+    proof: bool,
     /// Recording to write; the file must not exist.
     #[arg(long, value_name = "FILE.rrd")]
     record: PathBuf,
@@ -36,7 +39,8 @@ pub fn run(arguments: &ShowArguments) -> Result<Ending, Failure> {
     let (study, design, heading) = arguments.subject.read().map_err(Failure::Input)?;
     let model = study.model().map_err(Failure::runtime)?;
     let evaluation = model.evaluate(&design, GridChoice::Fine);
-    record_design(&arguments.record, &study, &evaluation, &heading, arguments.field).map_err(Failure::runtime)?;
+    let first = (!arguments.proof).then_some(arguments.field);
+    record_design(&arguments.record, &study, &evaluation, &heading, first).map_err(Failure::runtime)?;
     writeln!(std::io::stdout(), "wrote {}", arguments.record.display())?;
     Ok(Ending::Done)
 }

@@ -7,6 +7,7 @@
 //! | `wait finished` | waits for the end of the run |
 //! | `wait evaluations N` | waits until N designs are evaluated |
 //! | `wait drawn` | waits until the design is verified and everything requested of the scene is drawn |
+//! | `wait proved` | waits until the workspace of the selected design is proved |
 //! | `wait frames N` | waits N frames |
 //! | `choose knee`, `choose #ID`, `choose DESIGN` | selects a design |
 //! | `walk N` | moves the selection by N designs along the front |
@@ -14,6 +15,7 @@
 //! | `what-if KEY=VALUE` | changes a dimension \[m\] of the selected design |
 //! | `heatmap FIELD`, `ellipsoids KIND` | shows a layer; `none` hides it |
 //! | `pose x=… y=… phi_deg=…`, `worst ID` | moves the platform to a pose, or to the worst pose of a constraint |
+//! | `violation` | moves the platform to the infeasible pose that ends the proof, and shows the proof |
 //! | `show PANEL` | brings a panel to the front, by its title |
 //! | `compare on`, `compare off` | shows or hides the pinned designs in 3-D |
 //! | `theme dark`, `theme light` | sets the colours |
@@ -52,6 +54,7 @@ enum Step {
     WaitFinished,
     WaitEvaluations(usize),
     WaitDrawn,
+    WaitProved,
     WaitFrames(usize),
     WaitBusy,
     SelectKnee,
@@ -66,6 +69,7 @@ enum Step {
     Ellipsoids(Option<EllipsoidKind>),
     Pose(Pose),
     Worst(Constraint),
+    Violation,
     Show(Panel),
     Compare(bool),
     Dark(bool),
@@ -191,6 +195,7 @@ impl Script {
                 // The viewer shows the scene a few frames later.
                 return verified && session.is_drawn() && self.frames > 12;
             }
+            Step::WaitProved => return session.proof().is_some(),
             Step::WaitFrames(count) => return self.frames >= *count,
             // A picture arrives some frames after its request.
             Step::WaitBusy => return !busy && self.frames > 6,
@@ -206,6 +211,7 @@ impl Script {
             Step::Ellipsoids(kind) => session.staging.layers.ellipsoids = *kind,
             Step::Pose(pose) => drop(session.move_platform(*pose)),
             Step::Worst(constraint) => session.show_worst(*constraint),
+            Step::Violation => session.show_violation(),
             Step::Show(panel) => explorer.show(*panel),
             Step::Compare(on) => session.staging.comparing = *on,
             Step::Dark(dark) => ctx.set_theme(if *dark { egui::Theme::Dark } else { egui::Theme::Light }),
@@ -248,6 +254,7 @@ fn step(line: &str) -> Option<Step> {
         "wait" => match rest.split_once(' ').unwrap_or((rest, "")) {
             ("finished", "") => Step::WaitFinished,
             ("drawn", "") => Step::WaitDrawn,
+            ("proved", "") => Step::WaitProved,
             ("evaluations", count) => Step::WaitEvaluations(count.parse().ok()?),
             ("frames", count) => Step::WaitFrames(count.parse().ok()?),
             _ => return None,
@@ -273,6 +280,7 @@ fn step(line: &str) -> Option<Step> {
         "ellipsoids" => Step::Ellipsoids(Some(EllipsoidKind::ALL.into_iter().find(|kind| kind.key() == rest)?)),
         "pose" => Step::Pose(rest.parse().ok()?),
         "worst" => Step::Worst(Constraint::ALL.into_iter().find(|constraint| constraint.id() == rest)?),
+        "violation" if rest.is_empty() => Step::Violation,
         "show" => Step::Show(Panel::ALL.into_iter().find(|panel| panel.title() == rest)?),
         "compare" => Step::Compare(rest == "on"),
         "theme" => Step::Dark(rest != "light"),

@@ -145,6 +145,8 @@ pub struct CertificateJson {
     /// Number of boxes that were examined.
     pub boxes: usize,
     seconds: f64,
+    /// Bound of the workspace radius over all home orientations, rounded up; `None` if none was asked for or found.
+    pub upper_all_homes_m: Option<f64>,
 }
 
 /// A pose that is proved infeasible; `phi_rad` is the orientation of the proof.
@@ -164,6 +166,7 @@ impl CertificateJson {
         design: &Design,
         options: &CertifyOptions,
         certificate: &Certificate,
+        homes: Option<f64>,
         seconds: f64,
     ) -> Self {
         let centre = model.workspace.centre;
@@ -206,6 +209,7 @@ impl CertificateJson {
             }),
             boxes: certificate.boxes,
             seconds,
+            upper_all_homes_m: homes.map(f64::next_up),
         }
     }
 }

@@ -61,12 +61,16 @@ pub(super) fn send_run_layout(
 
 /// Sends the layout of the recording of one design that extends to the distance `extent` \[m\] from O.
 ///
-/// `first` is the field whose heatmap is in front.
-pub(super) fn send_design_layout(recording: &RecordingStream, extent: f64, first: Field) -> Result<(), ChunkError> {
+/// `first` is the field whose heatmap is in front; `None` brings the proof of the workspace to the front.
+pub(super) fn send_design_layout(
+    recording: &RecordingStream,
+    extent: f64,
+    first: Option<Field>,
+) -> Result<(), ChunkError> {
     let mut layout = ViewLayout::new();
     let mut maps = Vec::new();
-    let others = Field::ALL.into_iter().filter(|&field| field != first);
-    for field in std::iter::once(first).chain(others) {
+    let others = Field::ALL.into_iter().filter(|&field| Some(field) != first);
+    for field in first.into_iter().chain(others) {
         let key = field.key();
         let mut contents = vec![
             format!("+ {}/**", paths::MANIPULATOR),
@@ -85,8 +89,32 @@ pub(super) fn send_design_layout(recording: &RecordingStream, extent: f64, first
         let title = field.title().split(" [").next().unwrap_or(key);
         maps.push(layout.space(title, paths::DESIGN, &contents, extent)?);
     }
+    let contents = [paths::PROOF, paths::WORKSPACE, &format!("{}/base", paths::MANIPULATOR)];
+    let contents = contents.map(|path| format!("+ {path}/**"));
+    let proof = layout.view(
+        "3D",
+        "proof of the workspace",
+        paths::DESIGN,
+        &contents.each_ref().map(String::as_str),
+    )?;
+    layout.eye(&proof, [0.0, -0.7, 1.9], [0.0, -0.05, 0.0], extent)?;
+    maps.insert(if first.is_none() { 0 } else { maps.len() }, proof);
     let maps = layout.container(ContainerKind::Tabs, &maps, &[])?;
-    let configuration = layout.configuration(extent)?;
+    let space = layout.configuration(extent)?;
+    let contents = ["axes", "cylinder", "proof"].map(|name| format!("+ {}/{name}/**", paths::CONFIGURATION));
+    let boxes = layout.view(
+        "3D",
+        "Boxes of the proof (x, y, φ)",
+        paths::CONFIGURATION,
+        &contents.each_ref().map(String::as_str),
+    )?;
+    layout.eye(&boxes, [-0.5, -1.2, 0.8], [0.0, 0.0, 0.0], extent)?;
+    let spaces = if first.is_none() {
+        [boxes, space]
+    } else {
+        [space, boxes]
+    };
+    let configuration = layout.container(ContainerKind::Tabs, &spaces, &[])?;
     let card = layout.text("Design", paths::CARD)?;
     let right = layout.container(ContainerKind::Vertical, &[configuration, card], &[0.8, 1.0])?;
     let root = layout.container(ContainerKind::Horizontal, &[maps, right], &[1.7, 1.0])?;

@@ -1,6 +1,7 @@
 //! The numbers of a design as a card, in markdown.
 
 use crate::scene::{EllipsoidSet, Tour};
+use crate::study::CertifiedRadius;
 use crate::text::{self, short};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::DESIGN_VARIABLES;
@@ -12,6 +13,7 @@ pub(super) fn card(
     evaluation: &Evaluation,
     ellipsoids: &[EllipsoidSet],
     tour: Option<&Tour>,
+    certified: Option<&CertifiedRadius>,
 ) -> String {
     let design = &evaluation.design;
     let mut card = format!(
@@ -32,6 +34,9 @@ pub(super) fn card(
             evaluation.mass
         ),
     };
+    if let Some(certified) = certified {
+        card += &format!("{}\n\n", certified);
+    }
     card += "| R | r | L_b | r_j | r_p |\n|---|---|---|---|---|\n|";
     for (variable, value) in DESIGN_VARIABLES.into_iter().zip(design.values()) {
         card += &if variable.may_be_zero() {
@@ -67,6 +72,10 @@ pub(super) fn card(
             tour.radius,
             tour.forward_error
         );
+    }
+    if certified.is_some() {
+        card += "\nboxes of the proof, filled by the number of divisions, outlined by the constraint that was proved last: g2 cyan · \
+                 g3 blue · g4 red · g5 yellow · g6 green · g7 orange · beyond an infeasible pose: bright red\n";
     }
     card + "\nwhite: regular workspace · magenta: threshold of the field · red: parallel singularity · orange edge: \
             end of a leg's reach (serial singularity) · grey edge: joint limit · red dots: poses at which the active \

@@ -7,8 +7,10 @@ use super::draw::Canvas;
 use super::subject::DrawnDesign;
 use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
 use super::{blueprint, paths, timelines};
-use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour};
-use crate::study::{Study, partial_path};
+use crate::scene::{
+    EllipsoidKind, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour, workspace_proof,
+};
+use crate::study::{CertifiedRadius, Study, partial_path};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::spatial::Pose;
 
@@ -22,7 +24,8 @@ const OUTLINE: HeatmapSettings = HeatmapSettings { cells: 32 };
 /// Number of poses around each rim of a tour.
 const TOUR_STEPS: usize = 72;
 
-/// Records one design with its overlays and its tour to its own file; the tab with the heatmap of `field` is in front.
+/// Records one design with its overlays and its tour to its own file; the tab with the heatmap of the field `first` is in front, or
+/// that of the proof of its workspace.
 ///
 /// # Errors
 /// [`RecordingError::Write`] when the file exists or cannot be written; [`RecordingError::Encode`] otherwise.
@@ -31,7 +34,7 @@ pub fn record_design(
     study: &Study,
     evaluation: &Evaluation,
     heading: &str,
-    field: Field,
+    first: Option<Field>,
 ) -> Result<(), RecordingError> {
     let failed = |cause: std::io::Error| RecordingError::Write {
         path: path.to_owned(),
@@ -43,7 +46,7 @@ pub fn record_design(
     // The file appears when it is complete; what a process that was killed left of it is replaced.
     let partial = partial_path(path);
     let _ = std::fs::remove_file(&partial);
-    let drawn = draw_design(&partial, study, evaluation, heading, field);
+    let drawn = draw_design(&partial, study, evaluation, heading, first);
     let written = drawn.and_then(|()| std::fs::rename(&partial, path).map_err(failed));
     written.map_err(|error| {
         let _ = std::fs::remove_file(&partial);
@@ -59,16 +62,29 @@ fn draw_design(
     study: &Study,
     evaluation: &Evaluation,
     heading: &str,
-    field: Field,
+    first: Option<Field>,
 ) -> Result<(), RecordingError> {
     let model = &study.model()?;
     let writer = RecordingWriter::create(path, heading)?;
+    let proof = study
+        .workspace
+        .certify
+        .then(|| workspace_proof(model, evaluation, &|| true))
+        .flatten();
+    let certified = proof
+        .as_ref()
+        .map(|proof| CertifiedRadius::new(&proof.certificate, proof.claim.tolerance));
+    // What is drawn is the workspace that is proved.
+    let evaluation = &Evaluation {
+        workspace_radius: certified.map_or(evaluation.workspace_radius, |certified| certified.lower),
+        ..evaluation.clone()
+    };
     let subject = DrawnDesign { model, evaluation };
     let cylinder = regular_workspace(evaluation, model.workspace.rotation_range_deg);
     let tour = cylinder.and_then(|cylinder| tour(model, &evaluation.design, &cylinder, TOUR_STEPS));
     let still = [subject.home()];
     let poses: &[Pose] = tour.as_ref().map_or(&still, |tour| &tour.poses);
-    blueprint::send_design_layout(writer.stream(), subject.extent(poses), field)?;
+    blueprint::send_design_layout(writer.stream(), subject.extent(poses), first)?;
     let canvas = Canvas::at(&writer, ALWAYS);
     let floor = subject.floor();
     let home = subject.home();
@@ -88,6 +104,10 @@ fn draw_design(
     subject.workspace(&canvas)?;
     subject.configuration(&canvas)?;
     subject.layers(&canvas, LAYER, true)?;
+    if let Some(proof) = &proof {
+        subject.proof(&canvas, proof, home.phi)?;
+        subject.proof_in_space(&canvas, proof)?;
+    }
 
     let space = subject.space();
     for (index, pose) in poses.iter().enumerate() {
@@ -108,7 +128,7 @@ fn draw_design(
     writer.text(
         paths::CARD,
         ALWAYS,
-        &card(heading, model, evaluation, &sets, tour.as_ref()),
+        &card(heading, model, evaluation, &sets, tour.as_ref(), certified.as_ref()),
     )?;
     writer.close()
 }
@@ -120,6 +140,7 @@ pub(super) fn record_step(
     moment: Moment<'_>,
     model: &Model,
     evaluation: &Evaluation,
+    certified: Option<&CertifiedRadius>,
     heading: &str,
 ) -> Result<(), RecordingError> {
     let subject = DrawnDesign { model, evaluation };
@@ -140,6 +161,6 @@ pub(super) fn record_step(
     writer.text(
         paths::CARD,
         moment,
-        &card(heading, model, evaluation, set.as_slice(), None),
+        &card(heading, model, evaluation, set.as_slice(), None, certified),
     )
 }

@@ -22,7 +22,7 @@ use kinefront_model::spatial::unit;
 
 type DrawResult = Result<(), RecordingError>;
 
-fn point(p: DVec3) -> [f32; 3] {
+pub(super) fn point(p: DVec3) -> [f32; 3] {
     p.as_vec3().to_array()
 }
 
@@ -65,7 +65,7 @@ impl<'a> Canvas<'a> {
         Self(CanvasTarget::Collected { rows, dark_words })
     }
 
-    fn row(&self, entity: &str, archetype: &dyn AsComponents) -> DrawResult {
+    pub(super) fn row(&self, entity: &str, archetype: &dyn AsComponents) -> DrawResult {
         match &self.0 {
             CanvasTarget::Written(writer, moment) => writer.row(entity, moment, archetype),
             CanvasTarget::Collected { rows, .. } => {
@@ -425,7 +425,7 @@ fn limit_text(report: &ConstraintResult) -> String {
     )
 }
 
-fn about_z(angle: f64) -> RotationAxisAngle {
+pub(super) fn about_z(angle: f64) -> RotationAxisAngle {
     RotationAxisAngle::new([0.0, 0.0, 1.0], Angle::from_radians(angle as f32))
 }
 

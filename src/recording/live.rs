@@ -12,7 +12,9 @@ use super::stage::{Rows, Stage};
 use super::subject::DrawnDesign;
 use super::writer::{RecordingError, RecordingWriter};
 use super::{blueprint, colors, paths};
-use crate::scene::{EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Scene, ellipsoids, manipulator};
+use crate::scene::{
+    EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Scene, WorkspaceProof, ellipsoids, manipulator,
+};
 use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::spatial::Pose;
@@ -45,6 +47,8 @@ pub struct VisibleLayers {
     pub workspace: bool,
     /// Parallel singularities and the edge of reach.
     pub singularities: bool,
+    /// Boxes of the proof of the workspace, and the infeasible pose beyond it.
+    pub proof: bool,
     /// Ellipsoids at points of the workspace.
     pub ellipsoids: Option<EllipsoidKind>,
     /// Field below the manipulator.
@@ -62,6 +66,7 @@ impl Default for VisibleLayers {
             clearance: true,
             workspace: true,
             singularities: true,
+            proof: false,
             ellipsoids: None,
             heatmap: Some(Field::InverseCondition),
             configuration: true,
@@ -76,6 +81,8 @@ pub struct Shown<'a> {
     pub model: &'a Model,
     /// The evaluated design.
     pub evaluation: &'a Evaluation,
+    /// The proof of its workspace, once it is known.
+    pub proof: Option<&'a WorkspaceProof>,
     /// Pose of the manipulator; the home pose if `None`.
     pub pose: Option<Pose>,
     /// Orientation of the heatmap \[rad\]; the home orientation if `None`.
@@ -334,9 +341,16 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<(), RecordingError> {
     if layers.workspace {
         subject.workspace(canvas)?;
     }
+    let proof = shown.proof.filter(|_| layers.proof);
+    if let Some(proof) = proof {
+        subject.proof(canvas, proof, shown.heatmap_phi.unwrap_or(home.phi))?;
+    }
     if layers.configuration {
         subject.configuration(canvas)?;
         subject.layers(canvas, OUTLINE, false)?;
+        if let Some(proof) = proof {
+            subject.proof_in_space(canvas, proof)?;
+        }
         let at = subject.space().place(pose.position, pose.phi);
         canvas.mark(&format!("{}/pose", paths::CONFIGURATION), at, "P", colors::ELLIPSOID)?;
     }

@@ -14,6 +14,7 @@
 //! | `/design/heatmap/FIELD/…`, `/design/legend/FIELD/…` | a field with threshold, singularities and edge of reach | `front`, or static |
 //! | `/design/ellipsoids/KIND/…` | stiffness or displacement ellipsoids | `front`, or static |
 //! | `/configuration/…` | the workspace in (x, y, φ): cylinder, heatmaps over φ, the pose | `front`, or static and `tour` |
+//! | `/design/proof/…`, `/configuration/proof/…` | the boxes of the proof of the workspace, and an infeasible pose | static |
 //! | `/card` | the design's numbers, as markdown | `front`, or static |
 //! | `/along_front/…` | design variables and `R_w` along the front | `front` |
 //! | `/pins/N/…` | pinned designs side by side; in a window only | static |
@@ -31,6 +32,7 @@ mod columns;
 mod design;
 mod draw;
 mod live;
+mod proof;
 mod read;
 mod recorder;
 mod rows;
@@ -58,6 +60,7 @@ mod paths {
     pub const MANIPULATOR: &str = "/design/manipulator";
     pub const WORKSPACE: &str = "/design/workspace";
     pub const LIMITS: &str = "/design/limits";
+    pub const PROOF: &str = "/design/proof";
     pub const HEATMAP: &str = "/design/heatmap";
     pub const HEATMAP_LEGEND: &str = "/design/legend";
     pub const ELLIPSOIDS: &str = "/design/ellipsoids";

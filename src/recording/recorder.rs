@@ -275,7 +275,15 @@ impl Recorder {
             step + 1,
             summary.front.len()
         );
-        design::record_step(&self.writer, moment, &self.model, &member.evaluation, &heading)?;
+        let certified = member.certified.as_ref();
+        design::record_step(
+            &self.writer,
+            moment,
+            &self.model,
+            &member.evaluation,
+            certified,
+            &heading,
+        )?;
         for (name, value) in ALONG_FRONT {
             let value = Scalars::single(value(&member.evaluation));
             self.writer.row(&along_front(name), moment, &value)?;
@@ -349,13 +357,19 @@ fn summary_text(summary: &RunSummary) -> String {
     let last = summary.history.last();
     let mut text = format!(
         "# Result\n\n{} evaluations, {} feasible. {} designs are on the front after verification on the fine grid \
-         ({} dropped); hypervolume {:.1} kg·m.\n\n| # | architecture | mass [kg] | R_w [m] | φ_c [°] | R | r | L_b | r_j | \
-         r_p | clearance [mm] | active |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+         ({} dropped); hypervolume {:.1} kg·m.\n\n",
         last.map_or(0, |last| last.evaluations),
         last.map_or(0, |last| last.feasible),
         summary.front.len(),
         summary.dropped,
         summary.verified_hypervolume,
+    );
+    if let Some(proofs) = &summary.proofs {
+        text.push_str(&format!("{proofs}\n\n"));
+    }
+    text.push_str(
+        "| # | architecture | mass [kg] | R_w [m] | φ_c [°] | R | r | L_b | r_j | r_p | clearance [mm] | active |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for (_, member) in summary.spread(MOST_ROWS) {
         let e = &member.evaluation;

@@ -6,7 +6,9 @@ use super::colors::ColorMap;
 use super::draw::Canvas;
 use super::paths;
 use super::writer::RecordingError;
-use crate::scene::{ConfigurationSpace, Field, Heatmap, HeatmapSettings, SolidShape, manipulator, regular_workspace};
+use crate::scene::{
+    ConfigurationSpace, Field, Heatmap, HeatmapSettings, SolidShape, WorkspaceProof, manipulator, regular_workspace,
+};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
@@ -131,6 +133,17 @@ impl DrawnDesign<'_> {
         canvas.cylinder(paths::WORKSPACE, &cylinder, [0.97 * floor, DISC * floor], &label)?;
         let away = self.design().base_radius.max(1.3 * cylinder.radius);
         canvas.limits(paths::LIMITS, self.evaluation, DISC * floor, away)
+    }
+
+    /// Draws the proof of the workspace at the orientation `phi`.
+    pub(super) fn proof(&self, canvas: &Canvas<'_>, proof: &WorkspaceProof, phi: f64) -> Result<(), RecordingError> {
+        // Between the heatmap and the disc of the workspace, so that both remain visible.
+        canvas.proof_at(paths::PROOF, proof, phi, 0.9 * self.floor())
+    }
+
+    /// Draws the proof of the workspace in the configuration space.
+    pub(super) fn proof_in_space(&self, canvas: &Canvas<'_>, proof: &WorkspaceProof) -> Result<(), RecordingError> {
+        canvas.proof_in_space(&format!("{}/proof", paths::CONFIGURATION), proof, &self.space())
     }
 
     /// Draws only the regular workspace, at the entities below `root`.

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::Source;
-use crate::study::{DesignProblem, Study};
+use crate::study::{DesignProblem, FrontMember, FrontProofs, FrontProver, Study};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{Architecture, Design};
 use kinefront_optimize::{Archive, Evaluated, Outcome, knee, spread};
@@ -13,10 +13,11 @@ use kinefront_optimize::{Archive, Evaluated, Outcome, knee, spread};
 pub struct Front {
     /// All designs of the front.
     pub members: Vec<Evaluation>,
-    /// Indices of the designs that are drawn and tabulated: evenly spread, with both ends and the knee.
-    pub shown: Vec<usize>,
-    /// Index of the knee.
-    pub knee: Option<usize>,
+    /// The designs that are drawn and tabulated: evenly spread, with both ends and the knee; once they are certified, with
+    /// the proved radii.
+    pub shown: Vec<Evaluation>,
+    /// What the proofs of the workspaces of the designs shown found.
+    pub proofs: Option<FrontProofs>,
 }
 
 impl Front {
@@ -29,16 +30,28 @@ impl Front {
         }
         let members: Vec<Evaluation> = archive.iter().map(|member| evaluations[member.id].clone()).collect();
         let objectives: Vec<[f64; 2]> = archive.iter().map(|member| member.objectives).collect();
+        let shown = spread(&objectives, most);
         Self {
-            shown: spread(&objectives, most),
-            knee: knee(&objectives),
+            shown: shown.into_iter().map(|place| members[place].clone()).collect(),
             members,
+            proofs: None,
         }
+    }
+
+    /// Proves the workspaces of the designs that are shown, as a run does.
+    fn certify(&mut self, study: &Study, model: &Model) {
+        let shown = self.shown.drain(..).enumerate();
+        let shown: Vec<FrontMember> = shown.map(|(id, found)| FrontMember::of(id, found)).collect();
+        let mut prover = FrontProver::new(model, study.bounds.thickest_bars(), &|| true);
+        prover.prove(&shown);
+        let (proved, proofs) = prover.conclude(shown.len(), study.hypervolume.reference());
+        self.shown = proved.into_iter().map(|member| member.evaluation).collect();
+        self.proofs = Some(proofs);
     }
 
     /// Returns the designs that are shown.
     pub fn shown(&self) -> impl Iterator<Item = &Evaluation> {
-        self.shown.iter().map(|&place| &self.members[place])
+        self.shown.iter()
     }
 
     /// Returns mass and `R_w` of the designs that are shown.
@@ -61,9 +74,17 @@ impl Front {
     /// Returns the designs to be pictured, each with its name: the lightest, the knee and the largest.
     pub fn marked(&self) -> Vec<(&'static str, &Evaluation)> {
         let mut marked = Vec::new();
-        let last = self.members.len().saturating_sub(1);
-        for (place, name) in [(Some(0), "lightest"), (self.knee, "knee"), (Some(last), "largest")] {
-            if let Some(member) = place.and_then(|place| self.members.get(place))
+        let last = self.shown.len().saturating_sub(1);
+        let objectives: Vec<[f64; 2]> = self
+            .shown()
+            .map(|member| DesignProblem::outcome(member).objectives)
+            .collect();
+        for (place, name) in [
+            (Some(0), "lightest"),
+            (knee(&objectives), "knee"),
+            (Some(last), "largest"),
+        ] {
+            if let Some(member) = place.and_then(|place| self.shown.get(place))
                 && !marked
                     .iter()
                     .any(|&(_, other): &(_, &Evaluation)| std::ptr::eq(other, member))
@@ -104,6 +125,14 @@ impl Fronts {
         let all = alone.iter().flat_map(|(_, front)| front.members.iter().cloned());
         let together = Front::new(all.collect(), most);
         (!together.members.is_empty()).then_some(Self { alone, together })
+    }
+
+    /// Proves the workspaces of the designs that are shown of each front.
+    pub fn certify(&mut self, study: &Study, model: &Model) {
+        let alone = self.alone.iter_mut().map(|(_, front)| front);
+        for front in alone.chain([&mut self.together]) {
+            front.certify(study, model);
+        }
     }
 
     /// Returns the front of an architecture.

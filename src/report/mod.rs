@@ -186,7 +186,7 @@ impl Report {
         let model = study.model()?;
         let most = study.optimizer.front_designs;
         tell("verifying the fronts");
-        let fronts = Fronts::new(sources, &model, most).ok_or(ReportError::NothingFeasible)?;
+        let mut fronts = Fronts::new(sources, &model, most).ok_or(ReportError::NothingFeasible)?;
         let joint = match sources {
             // The front of a single search is the one that has just been verified.
             [_] => Some(fronts.together.clone()),
@@ -196,6 +196,10 @@ impl Report {
             [] => None,
             _ => Some(SearchFronts::new(moga2, &study, &model)),
         };
+        if study.workspace.certify {
+            tell("proving the workspaces");
+            fronts.certify(&study, &model);
+        }
         let references = reference::all(&study, &model, &fronts);
         let trends: Vec<_> = fronts
             .alone

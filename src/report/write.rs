@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Report, ReportError, chart, page};
+use super::{Front, Report, ReportError, chart, page};
 use crate::study::{Cell, Column, Row, TableRow, WriteError, table_bytes, write_whole};
 use kinefront_model::evaluation::Evaluation;
 
@@ -34,10 +34,11 @@ impl Report {
         for picture in &self.pictures {
             write_whole(&pictures.join(format!("{}.png", picture.name)), &picture.png)?;
         }
-        let members = self.fronts.alone.iter().flat_map(|(_, front)| front.shown());
-        let joint = |member: &Evaluation| self.fronts.together.members.contains(member);
+        let members = || self.fronts.alone.iter().flat_map(|(_, front)| front.shown());
+        let joint_front = Front::new(members().cloned().collect(), usize::MAX).members;
+        let joint = |member: &Evaluation| joint_front.contains(member);
         let columns = || Column::of_designs().chain([Column::OnJointFront]);
-        let rows = members.enumerate().map(|(id, member)| {
+        let rows = members().enumerate().map(|(id, member)| {
             let entry = TableRow {
                 id,
                 row: Row::new(0, member),

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`manipulator`] | base, rails, legs, platform, joints, frames and labels, to scale |
 //! | [`regular_workspace`] | the cylinder, on the manipulator and in the configuration space |
+//! | [`WorkspaceProof`] | the boxes of the proof of a workspace |
 //! | [`Heatmap`] | a field over the reachable workspace at one φ: triangles, contours, edges of reach, singularities |
 //! | [`ellipsoids`] | stiffness or displacement ellipsoids at points of the regular workspace |
 //! | [`linkage`] | the manipulator as rigid bodies with joints and masses |
@@ -19,6 +20,7 @@ mod heatmap;
 mod linkage;
 mod manipulator;
 mod mesh;
+mod proof;
 mod shape;
 mod tour;
 mod workspace;
@@ -29,6 +31,7 @@ pub use heatmap::{Edge, Heatmap, HeatmapSettings};
 pub use linkage::{Body, Closure, Frame, Joint, Linkage, MassBar, linkage};
 pub use manipulator::manipulator;
 pub use mesh::Mesh;
+pub use proof::{ProofCell, WorkspaceProof, workspace_proof};
 pub use shape::{Label, Line, Nearest, Part, Scene, Solid, SolidShape};
 pub use tour::{Tour, tour};
 pub use workspace::{ConfigurationSpace, RegularCylinder, regular_workspace};

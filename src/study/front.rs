@@ -1,5 +1,7 @@
 //! The reported front of a run: its designs, each with what is proved about its workspace (docs/model.md, section 13.5).
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 use super::{DesignProblem, Row, TableRow};
@@ -78,6 +80,17 @@ pub struct ThickenedDesign {
 }
 
 impl FrontMember {
+    /// A verified design without a run, whose id is its place.
+    pub fn of(id: usize, evaluation: Evaluation) -> Self {
+        Self {
+            id,
+            generation: 0,
+            reference_radius: evaluation.workspace_radius,
+            evaluation,
+            certified: None,
+        }
+    }
+
     /// Returns both objectives, which are minimised.
     pub fn objectives(&self) -> [f64; 2] {
         DesignProblem::outcome(&self.evaluation).objectives
@@ -122,5 +135,34 @@ impl CertifiedRadius {
     /// The state of the proof in tables: `proved` or `open`.
     pub fn state(&self) -> &'static str {
         if self.is_proved { Self::PROVED } else { Self::OPEN }
+    }
+}
+
+impl fmt::Display for CertifiedRadius {
+    /// Writes the state of the proof and its bounds as a sentence.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: every pose within {:.5} m is feasible", self.state(), self.lower)?;
+        match self.upper {
+            Some(upper) => write!(f, ", and one at {upper:.5} m is not"),
+            None => write!(f, ", and no infeasible pose was found"),
+        }
+    }
+}
+
+impl fmt::Display for FrontProofs {
+    /// Writes how many workspaces are proved, and what was found, in one or two sentences.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let count = self.proved + self.open;
+        write!(f, "{} of {count} workspaces are proved", self.proved)?;
+        let thickened = self.refuted.iter().filter(|refuted| refuted.thickened.is_some());
+        match (self.refuted.len(), thickened.count()) {
+            (0, _) => write!(f, "."),
+            (refuted, 0) => write!(f, ". {refuted} radii of the fine grid were too large and are reduced."),
+            (refuted, thickened) => write!(
+                f,
+                ". {refuted} radii of the fine grid were too large: {thickened} of these designs have thicker bars now, \
+                 and the other radii are reduced."
+            ),
+        }
     }
 }

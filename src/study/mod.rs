@@ -23,7 +23,7 @@ pub use events::{Batch, EndReason, Event, GenerationSummary, RunSummary, RunTime
 pub use file::Study;
 pub use front::{CertifiedRadius, FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
 pub use problem::DesignProblem;
-pub use prove::{FrontProver, claim_of};
+pub use prove::FrontProver;
 pub use replay::ReplayError;
 pub use run::{spawn, spawn_search};
 pub use run_folder::{

@@ -1,10 +1,10 @@
 //! The proofs of the workspaces of a front, and the designs with thicker bars that replace refuted ones (docs/model.md,
-//! section 13.6).
+//! section 13.5).
 
 use rayon::prelude::*;
 
 use super::{CertifiedRadius, DesignProblem, FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
-use kinefront_model::certify::{Certificate, CertifyOptions, Verdict, Violation};
+use kinefront_model::certify::{Certificate, CertifyOptions, ProofObserver, Verdict, Violation};
 use kinefront_model::evaluation::{Constraint, Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{Design, DesignVariable};
 use kinefront_model::spatial::Pose;
@@ -19,13 +19,13 @@ const RESTORED: f64 = 0.999;
 /// Radii of the bars, which are thickened.
 const BARS: [DesignVariable; 2] = [DesignVariable::LegBarRadius, DesignVariable::PlatformBarRadius];
 
-/// What is to be proved about an evaluated design: its radius at its home orientation; `None` for a design without a workspace.
-pub fn claim_of(evaluation: &Evaluation) -> Option<CertifyOptions> {
-    Some(CertifyOptions {
-        phi_deg: evaluation.home_phi_deg?,
-        claimed_radius: evaluation.workspace_radius,
-        ..CertifyOptions::default()
-    })
+/// Ends a proof once a function returns false.
+struct Until<'a>(&'a dyn Fn() -> bool);
+
+impl ProofObserver for Until<'_> {
+    fn goes_on(&mut self) -> bool {
+        (self.0)()
+    }
 }
 
 /// A member of the front after its proof.
@@ -78,7 +78,7 @@ impl<'a> FrontProver<'a> {
             instead: None,
         };
         let evaluation = &member.evaluation;
-        let Some(claim) = claim_of(evaluation) else {
+        let Some(claim) = CertifyOptions::of(evaluation) else {
             return proved;
         };
         let wanted = RESTORED * claim.claimed_radius;
@@ -119,7 +119,9 @@ impl<'a> FrontProver<'a> {
 
     fn certify(&self, design: &Design, options: &CertifyOptions) -> Option<Certificate> {
         // Bars without a usable stiffness have no workspace, so that no error is left.
-        self.model.certify_while(design, options, self.goes_on).ok()
+        self.model
+            .certify_observed(design, options, &mut Until(self.goes_on))
+            .ok()
     }
 
     /// Returns the deepest place of the pocket about an infeasible pose, within the radius that was claimed, by a pattern search.
@@ -160,29 +162,19 @@ impl<'a> FrontProver<'a> {
     /// Returns the design with the least thickened bars whose proved radius is almost the verified one, and the increase.
     fn thicken(&self, member: &FrontMember, pocket: &Pocket) -> Option<(FrontMember, f64)> {
         let verified = &member.evaluation;
-        let claim = claim_of(verified)?;
-        let wanted = RESTORED * claim.claimed_radius;
+        let wanted = RESTORED * verified.workspace_radius;
         THICKENINGS.into_iter().find_map(|increase| {
             let design = self.thickened(&verified.design, increase)?;
             // Where the pocket stays one, there is nothing to prove.
             if self.model.margin_at(&design, &pocket.pose, pocket.constraint) < 0.0 {
                 return None;
             }
-            // At the home orientation of the thinner design, most thickenings are decided without an evaluation.
-            let mut certificate = self.certify(
-                &design,
-                &CertifyOptions {
-                    enough: wanted,
-                    ..claim
-                },
-            )?;
-            if certificate.lower < wanted {
-                return None;
-            }
             let evaluation = self.model.evaluate(&design, GridChoice::Fine);
-            if evaluation.home_phi_deg != verified.home_phi_deg {
-                certificate = self.certify(&design, &claim_of(&evaluation)?)?;
-            }
+            let claim = CertifyOptions {
+                enough: wanted,
+                ..CertifyOptions::of(&evaluation)?
+            };
+            let certificate = self.certify(&design, &claim)?;
             if certificate.lower < wanted {
                 return None;
             }

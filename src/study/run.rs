@@ -180,8 +180,7 @@ fn report(
         return Some(reported);
     }
     let goes_on = || !control.is_abandoned();
-    let thickest = [study.bounds.rj_m[1], study.bounds.rp_m[1]];
-    let mut prover = FrontProver::new(search.problem.model(), thickest, &goes_on);
+    let mut prover = FrontProver::new(search.problem.model(), study.bounds.thickest_bars(), &goes_on);
     let (found, total) = (search.found.front().len(), reported.front.len());
     let mut done = 0;
     for part in reported.front.chunks(4 * search.threads()) {

@@ -216,7 +216,7 @@ impl Found {
             history: Vec::new(),
             evaluated: 0,
             feasible: 0,
-            reference: [study.hypervolume.reference_mass_kg, 0.0],
+            reference: study.hypervolume.reference(),
         }
     }
 

@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use super::support::{folder, kinefront, optimize, small_study};
+use super::support::{check, folder, kinefront, optimize, program, small_study};
 
 fn rows(path: &Path) -> Vec<csv::StringRecord> {
     let mut reader = csv::Reader::from_path(path).expect("a table");
@@ -52,17 +52,27 @@ fn a_run_leaves_its_files() {
         .enumerate()
         .map(|(k, key)| format!("{key}={}", &row[4 + k]))
         .collect();
-    let output = kinefront()
-        .args(["evaluate", "--grid", "fine", "--json", "--study"])
-        .arg(out.join("study.toml"))
-        .args(["--design", &format!("{} {}", &row[2], design.join(" "))])
-        .assert()
-        .success()
-        .get_output()
-        .stdout
-        .clone();
-    let found: serde_json::Value = serde_json::from_slice(&output).expect("JSON");
-    for (key, column) in [("workspace_radius_m", 10), ("mass_kg", 9)] {
+    let ask = |command: &[&str]| -> serde_json::Value {
+        let output = kinefront()
+            .args(command)
+            .args(["--json", "--study"])
+            .arg(out.join("study.toml"))
+            .args(["--design", &format!("{} {}", &row[2], design.join(" "))])
+            .assert()
+            .success()
+            .get_output()
+            .stdout
+            .clone();
+        serde_json::from_slice(&output).expect("JSON")
+    };
+    let (evaluated, certified) = (ask(&["evaluate", "--grid", "fine"]), ask(&["certify"]));
+    assert_eq!(&row[35], "proved");
+    for (found, key, column) in [
+        (&evaluated, "mass_kg", 9),
+        (&certified, "lower_m", 10),
+        (&certified, "lower_m", 33),
+        (&certified, "upper_m", 34),
+    ] {
         // Reading JSON may change the last bit.
         let (found, wanted) = (found[key].as_f64().expect("a number"), number(row, column));
         assert!(
@@ -71,10 +81,89 @@ fn a_run_leaves_its_files() {
         );
     }
     // The ends and the knee are marked.
-    let marks: Vec<&str> = front.iter().map(|row| &row[row.len() - 1]).collect();
+    let marks: Vec<&str> = front.iter().map(|row| &row[32]).collect();
     assert_eq!(marks[0], "lightest");
     assert_eq!(marks[marks.len() - 1], "largest");
     assert_eq!(marks.iter().filter(|mark| **mark == "knee").count(), 1);
+}
+
+/// The front of the 3-RRR has pockets that the fine grid misses: they are proved away by thicker bars, or the radius is reduced. No
+/// random pose of a reported disc is infeasible.
+#[test]
+fn a_front_with_pockets_is_proved() {
+    use kinefront::study::{RunFolder, Study};
+    let folder = folder();
+    let out = folder.path().join("run");
+    kinefront()
+        .args([
+            "optimize",
+            "paper",
+            "--architectures",
+            "3-RRR",
+            "--evaluations",
+            "1500",
+            "--seed",
+            "7",
+        ])
+        .args(["--quiet", "--no-recording", "--out"])
+        .arg(&out)
+        .assert()
+        .success();
+    let run = RunFolder::open(&out).expect("a run");
+    let report = run.report().expect("a report");
+    let proofs = report.proofs.as_ref().expect("proofs");
+    let front = run.front().expect("a table").expect("a front").rows;
+    println!("{proofs}");
+    assert_eq!((proofs.proved + proofs.open, proofs.open), (front.len(), 0));
+    let thickened = proofs.refuted.iter().filter_map(|refuted| refuted.thickened.as_ref());
+    let ids: Vec<usize> = thickened.clone().map(|thickened| thickened.id).collect();
+    assert!(
+        ids.len() > 5 && ids.iter().enumerate().all(|(place, id)| *id == 1500 + place),
+        "{ids:?}"
+    );
+    for refuted in &proofs.refuted {
+        assert!(
+            refuted.infeasible_at_m < refuted.fine_radius_m && refuted.margin < 0.0,
+            "{refuted:?}"
+        );
+    }
+    let model = Study::default().model().expect("a model");
+    for entry in &front {
+        let certified = entry.certified.expect("a certificate");
+        assert!(certified.is_proved && certified.lower == entry.row.radius);
+        let phi = entry.row.phi.expect("a home").to_radians();
+        let mut state = entry.id as u64;
+        let mut next = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for _ in 0..2000 {
+            let (radius, theta) = (entry.row.radius * next().sqrt(), std::f64::consts::TAU * next());
+            let turn = 10f64.to_radians() * (2.0 * next() - 1.0);
+            let pose = kinefront_model::spatial::Pose::new(radius * theta.cos(), radius * theta.sin(), phi + turn);
+            let found = model.pose(&entry.row.design, &pose).expect("a reachable pose");
+            let values = found.stiffness_values;
+            let limit = |threshold: f64| (1.0 - 1e-9) * threshold;
+            assert!(
+                found.inverse_condition >= limit(0.1)
+                    && values.k_xy >= limit(1e6)
+                    && values.k_z >= limit(1e5)
+                    && values.k_phi_z >= limit(10.0 / 1f64.to_radians()),
+                "#{} at {pose:?}",
+                entry.id
+            );
+        }
+    }
+    // Without proofs, the radii are those of the fine grid, and the last columns are empty.
+    let study = folder.path().join("unproved.toml");
+    fs::write(&study, "architectures = [\"3-RRR\"]\n[workspace]\ncertify = false\n").expect("a study");
+    let out = folder.path().join("unproved");
+    optimize(&study, &out, &["--evaluations", "200", "--no-recording"]);
+    let rows = rows(&out.join("front.csv"));
+    assert!(!rows.is_empty() && rows.iter().all(|row| row.iter().skip(33).all(str::is_empty)));
+    check(&out).success();
 }
 
 /// A run stops by each of the rules that a study may state besides its budget, and a front may be thinned.
@@ -174,12 +263,11 @@ fn an_interrupted_run_keeps_what_it_has() {
     let folder = folder();
     let study = small_study(folder.path());
     let out = folder.path().join("run");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_kinefront"))
+    let mut child = program()
         .arg("optimize")
         .arg(&study)
         .args(["--evaluations", "1000000", "--json", "--out"])
         .arg(&out)
-        .env_remove("RERUN")
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()

@@ -34,6 +34,7 @@ wanted += ["/design/limits/poses", "/design/ellipsoids/stiffness/bodies", "/desi
 wanted += [f"/design/heatmap/{field}/field" for field in fields] + [f"/design/legend/{field}/strip" for field in fields]
 # The layer at the home orientation; other layers may have no reachable pose.
 wanted += ["/configuration/layers/2/edge"]
+wanted += ["/design/proof/boxes", "/design/proof/depth", "/design/proof/violation", "/configuration/proof/boxes"]
 missing = [entity for entity in wanted if entity not in tables]
 assert not missing, missing
 # Entities that do not move are static: they have no timeline.

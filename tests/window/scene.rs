@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 use kinefront::recording::{LiveScene, Picked, Pinned, Shown, VisibleLayers};
-use kinefront::scene::EllipsoidKind;
+use kinefront::scene::{EllipsoidKind, workspace_proof};
 use kinefront::study::BUILTIN;
 use kinefront_model::evaluation::{GridChoice, Model};
 use kinefront_model::mechanism::{Design, WorkingMode};
@@ -73,14 +73,17 @@ fn what_is_no_longer_drawn_disappears() {
         &design("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"),
         GridChoice::Reference,
     );
+    let proof = workspace_proof(&model, &evaluation, &|| true).expect("a workspace");
     let mut layers = VisibleLayers {
         ellipsoids: Some(EllipsoidKind::Stiffness),
+        proof: true,
         ..VisibleLayers::default()
     };
     let show = |scene: &mut LiveScene, layers: &VisibleLayers| {
         let shown = Shown {
             model: &model,
             evaluation: &evaluation,
+            proof: Some(&proof),
             pose: None,
             heatmap_phi: None,
             layers,
@@ -93,6 +96,9 @@ fn what_is_no_longer_drawn_disappears() {
         "/design/heatmap/inverse_condition/field",
         "/design/ellipsoids/stiffness",
         "/design/manipulator/legs",
+        "/design/proof/boxes",
+        "/design/proof/violation",
+        "/configuration/proof/boxes",
         "/configuration",
     ] {
         assert!(!shown(&standing, below).is_empty(), "{below} is not drawn");

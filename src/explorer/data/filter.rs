@@ -4,7 +4,7 @@ use crate::study::Column;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-use super::Store;
+use super::{FrontEntry, Store};
 use kinefront_model::mechanism::Architecture;
 
 /// Criteria for designs; those that do not pass the filter are dimmed.
@@ -24,7 +24,8 @@ pub struct PreparedFilter<'a> {
     store: &'a Store,
     feasible_only: bool,
     hidden: Vec<Architecture>,
-    ranges: Vec<(&'a [f64], [f64; 2])>,
+    /// A quantity with its values in the store and the range that passes.
+    ranges: Vec<(Column, &'a [f64], [f64; 2])>,
 }
 
 impl Filter {
@@ -57,7 +58,10 @@ impl Filter {
             ranges: self
                 .ranges
                 .iter()
-                .filter_map(|(key, range)| Some((store.column(Column::find_quantity(key)?), *range)))
+                .filter_map(|(key, range)| {
+                    let column = Column::find_quantity(key)?;
+                    Some((column, store.column(column), *range))
+                })
                 .collect(),
         }
     }
@@ -114,6 +118,20 @@ fn quantity_names() -> String {
 }
 
 impl PreparedFilter<'_> {
+    /// Returns whether a design of the front passes the filter; a design with thicker bars is not one of the search.
+    pub fn passes_entry(&self, entry: &FrontEntry) -> bool {
+        if entry.id < self.store.len() {
+            return self.passes(entry.id);
+        }
+        let row = &entry.row;
+        (!self.feasible_only || row.is_feasible())
+            && !self.hidden.contains(&row.design.architecture)
+            && self.ranges.iter().all(|(column, _, [low, high])| {
+                let number = row.number(*column);
+                number.is_some_and(|number| (*low..=*high).contains(&number))
+            })
+    }
+
     /// Returns whether design `id` exists and passes the filter.
     pub fn passes(&self, id: usize) -> bool {
         id < self.store.len()
@@ -122,7 +140,7 @@ impl PreparedFilter<'_> {
             && self
                 .ranges
                 .iter()
-                .all(|(column, [low, high])| (*low..=*high).contains(&column[id]))
+                .all(|(_, values, [low, high])| (*low..=*high).contains(&values[id]))
     }
 }
 

@@ -246,7 +246,7 @@ fn record(session: &mut Session, path: PathBuf) -> Option<Job> {
         .unwrap_or(crate::scene::Field::InverseCondition);
     Some(Box::new(move || {
         replacing(&path, |part| {
-            Ok(record_design(part, &study, &known.evaluation, &name, field)?)
+            Ok(record_design(part, &study, &known.evaluation, &name, Some(field))?)
         })?;
         Ok(format!("exported {}", path.display()))
     }))

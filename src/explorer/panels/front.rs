@@ -102,10 +102,12 @@ impl FrontPanel {
             ui.ctx()
                 .accesskit_node_builder(field.id, |node| node.set_label("Search the table"));
             ui.checkbox(&mut self.starred_only, "starred only");
-            let verified = session.front().iter().filter(|entry| entry.verified).count();
+            let count = |holds: fn(&FrontEntry) -> bool| session.front().iter().filter(|entry| holds(entry)).count();
             ui.weak(format!(
-                "{} designs on the front, {verified} verified on the fine grid",
-                session.front().len()
+                "{} designs on the front, {} verified on the fine grid, {} proved",
+                session.front().len(),
+                count(|entry| entry.verified),
+                count(|entry| entry.certified.is_some_and(|certified| certified.is_proved)),
             ));
         });
     }
@@ -130,6 +132,7 @@ impl FrontPanel {
                 egui_extras::Column::initial(96.0).at_least(40.0).clip(true),
                 columns.len() - 2,
             )
+            .column(egui_extras::Column::initial(150.0).at_least(50.0).clip(true))
             .column(egui_extras::Column::initial(70.0))
             .column(egui_extras::Column::remainder().clip(true))
             .min_scrolled_height(0.0);
@@ -149,7 +152,7 @@ impl FrontPanel {
                 body.rows(18.0, order.len(), |mut row| {
                     let entry = &session.front()[order[row.index()]];
                     let state = RowState {
-                        passes: prepared.passes(entry.id),
+                        passes: prepared.passes_entry(entry),
                         selected: Some(entry.id) == selected,
                     };
                     draw_row(&mut row, session, entry, &columns, state, clicked);
@@ -173,6 +176,7 @@ impl FrontPanel {
                 }
             });
         }
+        header.col(|ui| drop(ui.label("proof")));
         header.col(|ui| drop(ui.label("active")));
         header.col(|ui| drop(ui.label("note")));
     }
@@ -253,6 +257,20 @@ fn draw_row(
             ui.add(Label::new(text).selectable(false));
         });
     }
+    row.col(|ui| {
+        if let Some(certified) = &entry.certified {
+            let color = if certified.is_proved {
+                theme::GOOD
+            } else {
+                theme::ACTIVE
+            };
+            let upper = certified.upper.map_or("∞".to_owned(), |upper| format!("{upper:.4}"));
+            let words = format!("{} [{:.4}, {upper}]", certified.state(), certified.lower);
+            let words = RichText::new(words).color(color);
+            ui.add(Label::new(words).selectable(false))
+                .on_hover_text(certified.to_string());
+        }
+    });
     row.col(|ui| drop(ui.add(Label::new(active(entry)).selectable(false))));
     row.col(|ui| {
         let note = document.notes.get(&entry.id).cloned().unwrap_or_default();

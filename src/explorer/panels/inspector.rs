@@ -1,9 +1,11 @@
 //! The inspector: all results of the selected design, and sliders that modify its dimensions.
 
+use crate::study::CertifiedRadius;
 use crate::text;
-use egui::{Color32, Grid, ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo, WidgetType};
+use egui::{Color32, Grid, RichText, ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo, WidgetType};
 
 use crate::explorer::{Known, Session, theme};
+use kinefront_model::certify::Verdict;
 use kinefront_model::evaluation::ConstraintResult;
 use kinefront_model::mechanism::DESIGN_VARIABLES;
 
@@ -25,6 +27,7 @@ impl Inspector {
             match session.known().cloned() {
                 Some(known) => {
                     objectives(ui, session, &known);
+                    proof(ui, session);
                     ui.separator();
                     constraints(ui, session, &known);
                 }
@@ -184,6 +187,41 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
             format!("platform {} kg", theme::number(platform)),
         );
     });
+}
+
+/// Shows what is proved about the workspace, and leads to the infeasible pose that ends it.
+fn proof(ui: &mut Ui, session: &mut Session) {
+    if !session.study().workspace.certify {
+        return;
+    }
+    let Some(proof) = session.proof().cloned() else {
+        if session.known().is_some_and(|known| known.evaluation.is_feasible()) {
+            ui.weak("proving the workspace…");
+        }
+        return;
+    };
+    let certified = CertifiedRadius::new(&proof.certificate, proof.claim.tolerance);
+    let (color, verdict) = match proof.certificate.verdict {
+        Verdict::Proved => (theme::GOOD, "proved"),
+        Verdict::Refuted => (theme::BAD, "refuted"),
+        Verdict::OpenBudget | Verdict::OpenPrecision => (theme::ACTIVE, "open"),
+    };
+    let mut has_asked = false;
+    ui.horizontal_wrapped(|ui| {
+        ui.label("R_w is");
+        ui.colored_label(color, RichText::new(verdict).strong());
+        let upper = certified.upper.map_or("∞".to_owned(), |upper| format!("{upper:.5}"));
+        ui.label(format!("R* in [{:.5}, {upper}] m", certified.lower))
+            .on_hover_text("every pose nearer than the first number is feasible; a pose at the second is not");
+        if let Some(violation) = proof.violation() {
+            let hover = "moves the platform to the infeasible pose, and shows the boxes of the proof";
+            let words = format!("pose that violates {}", violation.constraint.id());
+            has_asked = ui.small_button(words).on_hover_text(hover).clicked();
+        }
+    });
+    if has_asked {
+        session.show_violation();
+    }
 }
 
 fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {

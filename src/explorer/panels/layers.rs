@@ -20,6 +20,7 @@ impl LayersPanel {
             (&mut layers.clearance, "Nearest pair of members"),
             (&mut layers.workspace, "Regular workspace"),
             (&mut layers.singularities, "Singularities"),
+            (&mut layers.proof, "Proof of the workspace"),
             (&mut layers.configuration, "Configuration space"),
         ] {
             ui.checkbox(flag, name);

@@ -228,7 +228,7 @@ impl ParallelPanel {
         }
         for passes in [false, true] {
             let front = session.front().iter();
-            for entry in front.filter(|entry| prepared.passes(entry.id) == passes) {
+            for entry in front.filter(|entry| prepared.passes_entry(entry) == passes) {
                 let color = theme::architecture(entry.row.design.architecture, dark);
                 let fraction = if passes { 0.7 } else { 0.15 };
                 let value = |axis| entry.row.number(axis).unwrap_or(f64::NAN);

@@ -237,6 +237,7 @@ impl Session {
         // A design of the previous run may be selected again: its values are those of another study.
         if self.answer.study.as_ref().is_some_and(|study| *study != self.as_run) {
             self.answer.known = None;
+            self.answer.proof = None;
             self.answer.pins.clear();
         }
         // A failure is shown once, so that a message that the user dismissed does not come back.
@@ -293,7 +294,7 @@ impl Session {
             architecture: entry.row.design.architecture,
             mass: entry.row.mass,
             radius: entry.row.radius,
-            passes_filter: prepared.passes(entry.id),
+            passes_filter: prepared.passes_entry(entry),
         });
         self.front_points = Arc::new(points.collect());
         self.front_drawn = Some(drawn);
@@ -326,6 +327,7 @@ impl Session {
         let request = Request {
             study: Arc::clone(&self.as_run),
             verified: design.and_then(|design| self.verified(&design)),
+            proof: self.proof().cloned(),
             design,
             pose: self.staging.pose,
             heatmap_phi: self.staging.heatmap_phi,

@@ -15,6 +15,7 @@ use super::threads::{Answer, Known, SceneThread};
 use super::threads::{Running, Writing};
 use super::{Filter, FrontEntry, Row, Store, StudyEditor};
 use crate::recording::{FrontPoint, LiveScene, VisibleLayers};
+use crate::scene::WorkspaceProof;
 use crate::study::{EndReason, GenerationSummary, Study};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::spatial::Pose;
@@ -205,6 +206,15 @@ impl Session {
             Some(place) => Some(self.front[place].row),
             None => self.store.row(id),
         }
+    }
+
+    /// Returns the proof of the workspace of the selected design, once it is known.
+    pub fn proof(&self) -> Option<&Arc<WorkspaceProof>> {
+        let selected = self.document().selected.as_ref()?;
+        self.answer
+            .proof
+            .as_ref()
+            .filter(|proof| proof.design == selected.design)
     }
 
     /// Returns the summary of each generation.

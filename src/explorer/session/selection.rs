@@ -37,8 +37,8 @@ impl Session {
         let passing: Vec<usize> = self
             .front
             .iter()
+            .filter(|entry| prepared.passes_entry(entry))
             .map(|entry| entry.id)
-            .filter(|&id| prepared.passes(id))
             .collect();
         let here = match self.document().selected {
             Some(Selected {

@@ -16,6 +16,7 @@ use std::time::Duration;
 
 use crate::explorer::Wake;
 use crate::recording::{FrontPoint, LiveScene, Pinned, RecordingError, Shown, VisibleLayers};
+use crate::scene::{WorkspaceProof, workspace_proof};
 use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::Design;
@@ -45,6 +46,8 @@ pub struct Request {
     pub light: bool,
     /// Evaluation of the design on the fine grid, if it is known; the scene shows its values.
     pub verified: Option<Arc<Evaluation>>,
+    /// Proof of its workspace, if it is known.
+    pub proof: Option<Arc<WorkspaceProof>>,
     /// The current front.
     pub front: Arc<Vec<FrontPoint>>,
 }
@@ -75,6 +78,8 @@ pub struct Answer {
     pub study: Option<Arc<Study>>,
     /// Evaluation of the selected design, once it is known.
     pub known: Option<Known>,
+    /// Proof of the workspace of the design that was proved last.
+    pub proof: Option<Arc<WorkspaceProof>>,
     /// Evaluations of the pinned designs.
     pub pins: Vec<Evaluation>,
     /// Number of the last request that was drawn.
@@ -107,6 +112,12 @@ impl<T> Mailbox<T> {
         self.changed.notify_all();
     }
 
+    /// Whether it is open and holds no item.
+    fn is_idle(&self) -> bool {
+        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        state.0.is_none() && !state.1
+    }
+
     /// Waits for an item for at most `time`.
     fn wait(&self, time: Duration) -> Option<T> {
         let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
@@ -135,7 +146,7 @@ impl<T> Mailbox<T> {
 
 struct Shared {
     requests: Mailbox<(u64, Request)>,
-    to_verify: Mailbox<(Arc<Study>, Design)>,
+    to_verify: Mailbox<(Arc<Study>, Known)>,
     /// The design verified last, which the scene shows with its values from the fine grid.
     verified: Mutex<Option<(Arc<Study>, Arc<Evaluation>)>>,
     answer: Mutex<Answer>,
@@ -226,9 +237,14 @@ fn verify_requests(shared: &Shared) {
         while let Some(newer) = shared.to_verify.wait(RESTING) {
             wanted = newer;
         }
-        let (study, design) = wanted;
+        let (study, known) = wanted;
+        let design = known.evaluation.design;
         if let Ok(model) = study.model() {
-            let evaluation = Arc::new(model.evaluate(&design, GridChoice::Fine));
+            let evaluation = if known.verified {
+                known.evaluation
+            } else {
+                Arc::new(model.evaluate(&design, GridChoice::Fine))
+            };
             *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) =
                 Some((Arc::clone(&study), Arc::clone(&evaluation)));
             shared.answer(|answer| {
@@ -236,7 +252,17 @@ fn verify_requests(shared: &Shared) {
                     && known.evaluation.design == design
                     && answer.study.as_ref() == Some(&study)
                 {
-                    *known = Known::verified(evaluation);
+                    *known = Known::verified(Arc::clone(&evaluation));
+                }
+            });
+            if !study.workspace.certify {
+                continue;
+            }
+            // A newer design ends a proof that takes long.
+            let proof = workspace_proof(&model, &evaluation, &|| shared.to_verify.is_idle());
+            shared.answer(|answer| {
+                if answer.study.as_ref() == Some(&study) {
+                    answer.proof = proof.map(Arc::new);
                 }
             });
         }
@@ -262,11 +288,11 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
     while let Some((number, request)) = shared.requests.take() {
         let trouble = step(&mut state, shared, &request).err();
         // Verification starts after drawing, because both compete for the processor.
-        if let Some(known) = state.known.as_ref().filter(|known| !known.verified) {
+        if let Some(known) = &state.known {
             let design = known.evaluation.design;
             // A design is sent only once: a change of the pose, as in a tour, needs no new verification.
             if state.verifying.replace(design) != Some(design) {
-                shared.to_verify.put((Arc::clone(&request.study), design));
+                shared.to_verify.put((Arc::clone(&request.study), known.clone()));
             }
         }
         let (known, pins) = (state.known.clone(), state.pins.clone());
@@ -346,6 +372,10 @@ fn draw(
     let shown = state.known.as_ref().map(|known| Shown {
         model,
         evaluation: &known.evaluation,
+        proof: request
+            .proof
+            .as_deref()
+            .filter(|proof| proof.design == known.evaluation.design),
         pose: request.pose,
         heatmap_phi: request.heatmap_phi,
         layers: &request.layers,

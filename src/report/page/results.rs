@@ -98,6 +98,7 @@ pub(super) fn fronts(report: &Report) -> Markup {
             ". At most " (report.study.optimizer.front_designs)
             " evenly spread designs of each front are drawn; they are listed in " code { "fronts.csv" } "."
         }
+        (proofs(report))
         (figures(report, "front"))
         div.scroll { table {
             thead { tr {
@@ -110,6 +111,45 @@ pub(super) fn fronts(report: &Report) -> Markup {
                 (row("all architectures".to_owned(), &report.fronts.together))
             }
         } }
+    }
+}
+
+/// What is proved about the workspaces of the designs that are drawn, and what the pockets that the fine grid missed would cost.
+fn proofs(report: &Report) -> Markup {
+    let fronts = report
+        .fronts
+        .alone
+        .iter()
+        .filter_map(|(architecture, front)| Some((architecture, front.proofs.as_ref()?)));
+    let fronts: Vec<_> = fronts.collect();
+    html! {
+        @if !fronts.is_empty() {
+            p {
+                "The workspaces of the designs drawn are proved: within the radius that is stated, every pose satisfies all constraints, "
+                "not only those of a grid. Where the fine grid had missed infeasible poses, the bars of the design were made thicker, or, "
+                "if that does not help, the radius is the one that is proved. The table states what these poses would have cost."
+            }
+            div.scroll { table {
+                thead { tr {
+                    th { "front" } th.number { "workspaces proved" } th.number { "open" }
+                    th.number { "radius of the fine grid too large" } th.number { "of these with thicker bars" }
+                    th.number { "largest loss of R_w" } th.number { "largest violation of a constraint" }
+                } }
+                tbody {
+                    @for (architecture, proofs) in &fronts {
+                        @let thickened = proofs.refuted.iter().filter(|refuted| refuted.thickened.is_some()).count();
+                        @let loss = proofs.refuted.iter().map(|refuted| 1.0 - refuted.infeasible_at_m / refuted.fine_radius_m).fold(0.0, f64::max);
+                        @let violation = proofs.refuted.iter().map(|refuted| -refuted.margin).fold(0.0, f64::max);
+                        tr {
+                            td { (architecture) }
+                            td.number { (proofs.proved) } td.number { (proofs.open) }
+                            td.number { (proofs.refuted.len()) } td.number { (thickened) }
+                            td.number { (format!("{:.2} %", 100.0 * loss)) } td.number { (format!("{:.2} %", 100.0 * violation)) }
+                        }
+                    }
+                }
+            } }
+        }
     }
 }
 

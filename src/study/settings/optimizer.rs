@@ -123,3 +123,10 @@ section! {
         reference_mass_kg: f64 = 2000.0, Check::Positive;
     }
 }
+
+impl HypervolumeSection {
+    /// Returns the reference point: its mass \[kg\], and 0 for the negative of `R_w`.
+    pub fn reference(&self) -> [f64; 2] {
+        [self.reference_mass_kg, 0.0]
+    }
+}

@@ -158,6 +158,11 @@ impl Bounds {
         }
     }
 
+    /// Returns the largest radii of the leg bars and of the platform bars \[m\].
+    pub fn thickest_bars(&self) -> [f64; 2] {
+        [self.rj_m[1], self.rp_m[1]]
+    }
+
     /// Iterates over the variables, each with the key of its range.
     pub fn keys() -> impl Iterator<Item = (DesignVariable, String)> {
         DESIGN_VARIABLES

@@ -6,13 +6,14 @@
 //! one.
 
 mod forms;
+mod homes;
 mod polar_box;
 mod search;
 
 use forms::ProvedForms;
 
-use crate::enclosure::{PoseEnclosure, TaylorModel};
-use crate::evaluation::{Constraint, Model};
+use crate::enclosure::{PoseEnclosure, TaylorModel, VARIABLES};
+use crate::evaluation::{Constraint, Evaluation, Model};
 use crate::mechanism::Design;
 use crate::spatial::Pose;
 
@@ -52,6 +53,16 @@ impl CertifyOptions {
     pub const TOLERANCE: f64 = 1e-4;
     /// Number of boxes by default.
     pub const MAX_BOXES: usize = 200_000;
+
+    /// What is to be proved about an evaluated design: its radius at its home orientation; `None` for a design without a
+    /// workspace.
+    pub fn of(evaluation: &Evaluation) -> Option<Self> {
+        Some(Self {
+            phi_deg: evaluation.home_phi_deg?,
+            claimed_radius: evaluation.workspace_radius,
+            ..Self::default()
+        })
+    }
 }
 
 /// What is proved about a design at one home orientation.
@@ -85,6 +96,46 @@ pub enum Verdict {
     /// Neither, because the least value of a constraint equals its threshold to the precision of a double.
     OpenPrecision,
 }
+
+/// A box that a proof has done with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExaminedBox {
+    /// Lower ends: distance from the centre \[m\], direction \[rad\], orientation \[rad\].
+    pub lower: [f64; VARIABLES],
+    /// Upper ends.
+    pub upper: [f64; VARIABLES],
+    /// What became of it.
+    pub outcome: BoxOutcome,
+    /// The constraint that was proved last, or that is not proved.
+    pub constraint: Constraint,
+    /// Number of divisions that led to it.
+    pub depth: u32,
+}
+
+/// What became of a box.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BoxOutcome {
+    /// All its poses are feasible.
+    Proved,
+    /// A pose on it or nearer to the centre is infeasible, so that it is of no interest.
+    Beyond,
+    /// It could not be decided.
+    Undecided,
+}
+
+/// Observer of a proof.
+pub trait ProofObserver {
+    /// Whether the proof goes on; asked every few boxes.
+    fn goes_on(&mut self) -> bool {
+        true
+    }
+
+    /// Takes a box that the proof has done with.
+    fn examined(&mut self, _: &ExaminedBox) {}
+}
+
+/// Observes nothing.
+impl ProofObserver for () {}
 
 /// A pose that violates a constraint.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -149,18 +200,18 @@ impl Model {
     /// # Errors
     /// [`CertifyError`]: bars without a usable stiffness, or an option out of range.
     pub fn certify(&self, design: &Design, options: &CertifyOptions) -> Result<Certificate, CertifyError> {
-        self.certify_while(design, options, &|| true)
+        self.certify_observed(design, options, &mut ())
     }
 
-    /// Proves bounds like [`Model::certify`], but ends early, with an open proof, once `goes_on` returns false.
+    /// Proves bounds like [`Model::certify`] under the eyes of an observer, who may end the proof early; it is open then.
     ///
     /// # Errors
     /// As [`Model::certify`].
-    pub fn certify_while(
+    pub fn certify_observed(
         &self,
         design: &Design,
         options: &CertifyOptions,
-        goes_on: &dyn Fn() -> bool,
+        observer: &mut dyn ProofObserver,
     ) -> Result<Certificate, CertifyError> {
         let check = |name, value: f64, valid: bool, expected| {
             if valid {
@@ -200,7 +251,19 @@ impl Model {
             (1e-12..1.0).contains(&tolerance),
             "from 1e-12 to below 1",
         )?;
-        with_leg!(design.architecture, L => search::certify::<L>(self, design, options, goes_on))
+        with_leg!(design.architecture, L => search::certify::<L>(self, design, options, observer))
+    }
+
+    /// Returns a distance that the workspace radius exceeds at no home orientation: with `Certificate::lower` it encloses `R_w`
+    /// itself. `proved` is the lower bound; infeasible poses nearer than that are all alike.
+    ///
+    /// `None` if no bound was found, for a study with a prescribed home orientation, which is the only one, and for a window without
+    /// width.
+    ///
+    /// # Errors
+    /// [`CertifyError::Degenerate`]: bars without a usable stiffness.
+    pub fn bound_of_homes(&self, design: &Design, proved: f64) -> Result<Option<f64>, CertifyError> {
+        with_leg!(design.architecture, L => homes::upper_bound::<L>(self, design, proved))
     }
 
     /// Encloses the constraints of a design over a box of poses: each value is positive only where the constraint holds

@@ -14,6 +14,8 @@ pub struct PolarBox {
     pub upper: [f64; VARIABLES],
     /// What is proved on it.
     pub proved: ProvedForms,
+    /// Number of divisions that led to it.
+    pub depth: u32,
     /// Number of its creation, which decides between boxes of equal distance.
     pub number: usize,
 }
@@ -37,6 +39,20 @@ impl PolarBox {
             let (middle, radius) = self.middle_and_radius(k);
             (middle + epsilon[k] * radius).clamp(self.lower[k], self.upper[k])
         })
+    }
+
+    /// Returns the parts of a box that a smaller box within it leaves out.
+    pub fn cut_to(&self, inner: &Self) -> impl Iterator<Item = Self> {
+        let mut rest = *self;
+        let mut parts = Vec::new();
+        for k in 0..VARIABLES {
+            let (mut below, mut above) = (rest, rest);
+            below.upper[k] = inner.lower[k];
+            above.lower[k] = inner.upper[k];
+            (rest.lower[k], rest.upper[k]) = (inner.lower[k], inner.upper[k]);
+            parts.extend([below, above].into_iter().filter(|part| part.lower[k] < part.upper[k]));
+        }
+        parts.into_iter()
     }
 
     /// Shrinks a box to the hull of the parts in which one of the constraints may not hold; returns whether any part is left.
@@ -172,6 +188,7 @@ mod tests {
                 lower: [1.0, -0.3, 2.0],
                 upper: [1.5, 0.4, 2.2],
                 proved: ProvedForms::default(),
+                depth: 0,
                 number: 1,
             };
             let mut after = before;

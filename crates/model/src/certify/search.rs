@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use super::forms::{Enclosures, Forms, ProvedForms};
 use super::polar_box::PolarBox;
-use super::{Certificate, CertifyError, CertifyOptions, Verdict, Violation};
+use super::{BoxOutcome, Certificate, CertifyError, CertifyOptions, ExaminedBox, ProofObserver, Verdict, Violation};
 use crate::enclosure::{Interval, PoseEnclosure, TaylorModel, VARIABLES};
 use crate::evaluation::{Constraint, Model};
 use crate::mechanism::{Design, Leg};
@@ -30,13 +30,14 @@ pub(super) fn certify<L: Leg>(
     model: &Model,
     design: &Design,
     options: &CertifyOptions,
-    goes_on: &dyn Fn() -> bool,
+    observer: &mut dyn ProofObserver,
 ) -> Result<Certificate, CertifyError> {
-    let mut proof = Proof::<L>::new(model, design, options)?;
+    let mut proof = Proof::<L>::new(model, design, options, observer)?;
     if options.blind_radius.is_none() {
         proof.find_bad_poses();
     }
-    proof.divide(goes_on);
+    proof.divide();
+    proof.report_rest();
     Ok(proof.certificate())
 }
 
@@ -44,6 +45,7 @@ struct Proof<'a, L> {
     model: &'a Model,
     design: &'a Design,
     options: &'a CertifyOptions,
+    observer: &'a mut dyn ProofObserver,
     forms: Forms<'a, L>,
     /// Orientations of the window, rounded outwards for boxes and inwards for poses \[rad\].
     window: [f64; 2],
@@ -65,7 +67,12 @@ struct Proof<'a, L> {
 }
 
 impl<'a, L: Leg> Proof<'a, L> {
-    fn new(model: &'a Model, design: &'a Design, options: &'a CertifyOptions) -> Result<Self, CertifyError> {
+    fn new(
+        model: &'a Model,
+        design: &'a Design,
+        options: &'a CertifyOptions,
+        observer: &'a mut dyn ProofObserver,
+    ) -> Result<Self, CertifyError> {
         let middle = Interval::exactly(options.phi_deg);
         let half = Interval::exactly(model.workspace.rotation_range_deg) / Interval::exactly(2.0);
         let to_radians = Interval::PI / Interval::exactly(180.0);
@@ -79,6 +86,7 @@ impl<'a, L: Leg> Proof<'a, L> {
             model,
             design,
             options,
+            observer,
             window: [first.lower, last.upper],
             inner_window: [first.upper, last.lower],
             sector: Interval::radians(turn).upper,
@@ -265,18 +273,19 @@ impl<'a, L: Leg> Proof<'a, L> {
     }
 
     /// Divides the disc until everything within the target is proved, or the number of boxes is used up.
-    fn divide(&mut self, goes_on: &dyn Fn() -> bool) {
+    fn divide(&mut self) {
         let is_enough = |proof: &Self| proof.upper.is_some_and(|upper| upper < proof.options.enough);
         let [first, last] = self.window;
         let nothing = ProvedForms::default();
-        self.push([0.0, 0.0, first], [self.target(), self.sector, last], nothing);
+        self.push([0.0, 0.0, first], [self.target(), self.sector, last], nothing, 0);
         loop {
             match self.heap.pop() {
                 Some(Reverse(polar)) if polar.lower[0] < self.target() => {
                     self.proved = self.proved.max(polar.lower[0]);
-                    let is_ended = self.boxes.is_multiple_of(BOXES_BETWEEN_QUESTIONS) && !goes_on();
+                    let is_ended = self.boxes.is_multiple_of(BOXES_BETWEEN_QUESTIONS) && !self.observer.goes_on();
                     if self.boxes >= self.options.max_boxes || is_ended || is_enough(self) {
                         self.is_out_of_budget = true;
+                        self.heap.push(Reverse(polar));
                         return;
                     }
                     self.examine(polar);
@@ -297,18 +306,19 @@ impl<'a, L: Leg> Proof<'a, L> {
                     self.heap.clear();
                     let [first, last] = self.window;
                     let proved = self.proved;
-                    self.push([proved, 0.0, first], [self.target(), self.sector, last], nothing);
+                    self.push([proved, 0.0, first], [self.target(), self.sector, last], nothing, 0);
                 }
             }
         }
     }
 
-    fn push(&mut self, lower: [f64; VARIABLES], upper: [f64; VARIABLES], proved: ProvedForms) {
+    fn push(&mut self, lower: [f64; VARIABLES], upper: [f64; VARIABLES], proved: ProvedForms, depth: u32) {
         self.created += 1;
         self.heap.push(Reverse(PolarBox {
             lower,
             upper,
             proved,
+            depth,
             number: self.created,
         }));
     }
@@ -320,8 +330,9 @@ impl<'a, L: Leg> Proof<'a, L> {
             polar.upper[0] = polar.upper[0].min(self.target());
             self.boxes += 1;
             let found = self.enclose_box(&polar);
-            let open: Vec<&TaylorModel> = found.open().map(|(_, value)| value).collect();
+            let open: Vec<&(Constraint, TaylorModel)> = found.open().collect();
             if found.is_complete && open.is_empty() {
+                self.report(&polar, BoxOutcome::Proved, weakest(found.iter()));
                 return;
             }
             polar.proved = polar.proved.with(&found);
@@ -330,30 +341,60 @@ impl<'a, L: Leg> Proof<'a, L> {
             if polar.lower[0] == 0.0 {
                 self.try_point([0.0, 0.0, middle[2]], polar.proved);
             }
-            let worst = open
-                .iter()
-                .min_by(|a, b| relative_least(a).total_cmp(&relative_least(b)));
-            if let Some(worst) = worst {
-                let point = polar.point(worst.least_point());
+            let worst = weakest(open.iter().copied());
+            if let Some((_, value)) = worst {
+                let point = polar.point(value.least_point());
                 if let Some(constraint) = self.try_point(point, polar.proved) {
                     self.nearest_bad(point, constraint);
                 }
             }
             if polar.lower[0] >= self.target() {
+                self.report(&polar, BoxOutcome::Beyond, worst);
                 return;
             }
             if !found.is_complete {
                 break;
             }
-            let before = polar.volume();
+            let before = polar;
+            let open: Vec<&TaylorModel> = open.iter().map(|(_, value)| value).collect();
             if !polar.contract(&open) {
+                self.report(&before, BoxOutcome::Proved, worst);
                 return;
             }
-            if polar.volume() >= WORTHWHILE * before {
+            for part in before.cut_to(&polar) {
+                self.report(&part, BoxOutcome::Proved, worst);
+            }
+            if polar.volume() >= WORTHWHILE * before.volume() {
                 break;
             }
         }
         self.halve(polar);
+    }
+
+    /// Tells the observer what became of a box; `decisive` is the constraint that is nearest to its threshold on it.
+    fn report(&mut self, polar: &PolarBox, outcome: BoxOutcome, decisive: Option<&(Constraint, TaylorModel)>) {
+        self.observer.examined(&ExaminedBox {
+            lower: polar.lower,
+            upper: polar.upper,
+            outcome,
+            constraint: decisive.map_or(Constraint::Reach, |(constraint, _)| *constraint),
+            depth: polar.depth,
+        });
+    }
+
+    /// Tells the observer the boxes that are left.
+    fn report_rest(&mut self) {
+        let target = self.target();
+        for Reverse(polar) in std::mem::take(&mut self.heap) {
+            let outcome = if polar.lower[0] >= target {
+                BoxOutcome::Beyond
+            } else {
+                BoxOutcome::Undecided
+            };
+            let constraint = self.violation.map(|violation| violation.constraint);
+            let decisive = constraint.map(|constraint| (constraint, TaylorModel::exactly(0.0)));
+            self.report(&polar, outcome, decisive.as_ref());
+        }
     }
 
     /// Halves a box along its longest side; a box that is too narrow is put aside.
@@ -365,13 +406,14 @@ impl<'a, L: Leg> Proof<'a, L> {
         let is_narrow = sides[widest] < NARROWEST * self.design.base_radius;
         if is_narrow || middle <= polar.lower[widest] || middle >= polar.upper[widest] {
             self.aside = self.aside.min(polar.lower[0]);
+            self.report(&polar, BoxOutcome::Undecided, None);
             return;
         }
         let (mut lower, mut upper) = (polar.lower, polar.upper);
         upper[widest] = middle;
-        self.push(polar.lower, upper, polar.proved);
+        self.push(polar.lower, upper, polar.proved, polar.depth + 1);
         lower[widest] = middle;
-        self.push(lower, polar.upper, polar.proved);
+        self.push(lower, polar.upper, polar.proved, polar.depth + 1);
     }
 
     fn lower(&self) -> f64 {
@@ -403,6 +445,11 @@ impl<'a, L: Leg> Proof<'a, L> {
             boxes: self.boxes,
         }
     }
+}
+
+/// Returns the constraint that is nearest to its threshold, relative to the size of its value.
+fn weakest<'a>(values: impl Iterator<Item = &'a (Constraint, TaylorModel)>) -> Option<&'a (Constraint, TaylorModel)> {
+    values.min_by(|(_, a), (_, b)| relative_least(a).total_cmp(&relative_least(b)))
 }
 
 /// Lower bound of a value as a multiple of its size, by which the values of different constraints are compared.

@@ -417,6 +417,43 @@ fn other_definitions_are_certified() {
     assert!(10 * count > 8 * closed.len());
 }
 
+/// The bound over all home orientations is above the lower bound at the best one, and not far from the radius of the fine grid.
+#[test]
+fn the_bound_of_all_homes_encloses_the_radius() {
+    let models = other_models();
+    let bounds: Vec<f64> = cases()
+        .par_iter()
+        .map(|case| {
+            let (_, model) = &models[0];
+            let evaluation = model.evaluate(&case.design, GridChoice::Fine);
+            let claim = CertifyOptions::of(&evaluation).expect("a workspace");
+            let found = model.certify(&case.design, &claim).expect("a certificate");
+            let bound = model
+                .bound_of_homes(&case.design, found.lower)
+                .expect("forms")
+                .expect("a bound");
+            println!(
+                "{}: [{}, {bound}], fine grid {}",
+                case.name, found.lower, claim.claimed_radius
+            );
+            assert!(bound > found.lower);
+            // Each home of the fine grid has an infeasible pose within the bound.
+            for phi_deg in (0..360).step_by(24) {
+                let options = CertifyOptions {
+                    phi_deg: f64::from(phi_deg),
+                    max_boxes: 2000,
+                    ..CertifyOptions::default()
+                };
+                let other = model.certify(&case.design, &options).expect("a certificate");
+                assert!(other.lower <= bound, "{} at {phi_deg}°: {}", case.name, other.lower);
+            }
+            bound / claim.claimed_radius
+        })
+        .collect();
+    let close = bounds.iter().filter(|&&ratio| ratio < 1.02).count();
+    assert!(2 * close > bounds.len(), "{bounds:?}");
+}
+
 /// A window without width has no upper bound, since no double lies in it; a wide one, thresholds of 0 and a negative home
 /// orientation are certified.
 #[test]

@@ -79,7 +79,7 @@ impl Scatter {
                 .front()
                 .iter()
                 .filter(|entry| entry.row.design.architecture == architecture)
-                .filter(|entry| prepared.passes(entry.id) == passes)
+                .filter(|entry| prepared.passes_entry(entry) == passes)
                 .map(|entry| self.place(&entry.row))
                 .collect();
             let color = theme::architecture(architecture, colors.dark);
@@ -94,7 +94,28 @@ impl Scatter {
         let architectures = session.study().architectures.iter();
         architectures
             .flat_map(|&architecture| [of(architecture, false), of(architecture, true)])
+            .chain(self.proofs(session, colors))
             .collect()
+    }
+
+    /// A ring about each design whose workspace was certified: closed if it is proved, of dots if it is open.
+    fn proofs<'a>(&self, session: &Session, colors: Colors) -> Vec<LabelledPoints<'a>> {
+        let ink = theme::mix(colors.ink, colors.ground, 0.6);
+        let (mut proved, mut marks) = (Vec::new(), Vec::new());
+        for entry in session.front() {
+            let at = self.place(&entry.row);
+            match entry.certified {
+                Some(certified) if certified.is_proved => proved.push(at),
+                Some(_) => {
+                    let dots = Text::new("", PlotPoint::new(at[0], at[1]), "◌").color(ink);
+                    marks.push((ring(at, 0.0, ink), Some(dots)));
+                }
+                None => {}
+            }
+        }
+        let rings = Points::new("", proved).radius(5.5).filled(false).color(ink);
+        marks.push((rings.shape(MarkerShape::Circle).allow_hover(false), None));
+        marks
     }
 
     fn knee<'a>(&self, session: &Session, colors: Colors) -> Option<LabelledPoints<'a>> {

@@ -143,7 +143,7 @@ impl<L: Leg> Forms<'_, L> {
         // The platform bar runs from C to P, against the arm `along u − moment u⊥`.
         add_bar(
             &mut sum,
-            &Bar {
+            &BentBar {
                 section: compliance.platform.map(TaylorModel::constant),
                 direction: from_leg(-leg.along, leg.moment),
                 length: TaylorModel::constant(radius),
@@ -153,7 +153,7 @@ impl<L: Leg> Forms<'_, L> {
         let (along, across) = (leg.along.scaled(radius), -leg.moment.scaled(radius));
         add_bar(
             &mut sum,
-            &Bar {
+            &BentBar {
                 section: compliance.leg.map(|part| leg.distal.scaled(part)),
                 direction: leg.u,
                 length: leg.distal,
@@ -163,7 +163,7 @@ impl<L: Leg> Forms<'_, L> {
         if let Some([x, y]) = leg.proximal {
             add_bar(
                 &mut sum,
-                &Bar {
+                &BentBar {
                     section: compliance.leg.map(TaylorModel::constant),
                     direction: from_leg(x, y),
                     length: one,
@@ -245,7 +245,7 @@ impl<L: Leg> Forms<'_, L> {
 }
 
 /// A bar that bends out of the plane.
-struct Bar {
+struct BentBar {
     /// Bending and torsional compliance, `L/(EI)` and `L/(GI_x)`.
     section: [TaylorModel; 2],
     /// Unit vector towards its tip.
@@ -257,7 +257,7 @@ struct Bar {
 
 /// Adds the compliance of a bar at `P`. The bending moment at the distance `s` from the tip, at `q`, due to a force `F` along z and
 /// a moment `m` at `P`, is `m + F q⊥`: its part along the bar is constant, and that along the normal grows by `F` per length.
-fn add_bar(sum: &mut Symmetric, bar: &Bar) {
+fn add_bar(sum: &mut Symmetric, bar: &BentBar) {
     let [bend, twist] = bar.section;
     let [x, y] = bar.direction;
     let [nx, ny] = perp(bar.direction);

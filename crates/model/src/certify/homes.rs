@@ -1,0 +1,226 @@
+//! An upper bound of the workspace radius over all home orientations (docs/model.md, section 13.4).
+//!
+//! Every window of orientations contains an infeasible pose at most `U` away from the centre if the orientations of such poses leave
+//! no gap wider than a window.
+
+use super::CertifyError;
+use super::forms::{Forms, ProvedForms};
+use crate::enclosure::{Interval, PoseEnclosure, TaylorModel};
+use crate::evaluation::Model;
+use crate::mechanism::{Design, Leg};
+use crate::spatial::Pose;
+
+/// Number of orientations of the first sample per window.
+const PER_WINDOW: f64 = 16.0;
+
+/// Number of directions over the full turn in which infeasible poses are looked for.
+const DIRECTIONS: usize = 72;
+
+/// Number of times that the widest gap is made smaller.
+const ROUNDS: usize = 24;
+
+/// Distances at which infeasible poses are looked for, as multiples of the first one.
+const GROWTH: f64 = 1.02;
+
+/// An infeasible pose: its orientation, within a turn, and its distance from the centre, both rounded upwards.
+#[derive(Debug, Clone, Copy)]
+struct BadPose {
+    phi: f64,
+    distance: f64,
+}
+
+struct Homes<'a, L> {
+    model: &'a Model,
+    forms: Forms<'a, L>,
+    /// Distance below which infeasible poses are all alike \[m\].
+    near: f64,
+    /// Distance beyond which none is looked for \[m\].
+    far: f64,
+    directions: usize,
+    found: Vec<BadPose>,
+}
+
+pub(super) fn upper_bound<L: Leg>(model: &Model, design: &Design, proved: f64) -> Result<Option<f64>, CertifyError> {
+    let spec = &model.workspace;
+    // With a prescribed home orientation, that is the only one; in a window without width, no double is known to lie.
+    if spec.home_phi_deg.is_some() || spec.rotation_range_deg <= 0.0 {
+        return Ok(None);
+    }
+    let reach = design.base_radius + design.platform_radius + 2.0 * design.link_length + spec.centre.length();
+    let near = proved.max(1e-3 * design.base_radius) * (1.0 + 1e-6);
+    let mut homes = Homes::<L> {
+        forms: Forms::new(model, design)?.with_sign_at(&Pose {
+            position: spec.centre,
+            phi: 0.0,
+        }),
+        model,
+        near,
+        far: (2.0 * near).min(4.0 * reach),
+        directions: if model.is_symmetric(design) {
+            DIRECTIONS / 3
+        } else {
+            DIRECTIONS
+        },
+        found: Vec::new(),
+    };
+    homes.sample();
+    let mut bound = homes.bound();
+    for _ in 0..ROUNDS {
+        let Some((distance, gap)) = bound else { break };
+        if distance <= near {
+            break;
+        }
+        homes.narrow(distance, gap);
+        bound = homes.bound();
+    }
+    Ok(bound.map(|(distance, _)| distance))
+}
+
+impl<L: Leg> Homes<'_, L> {
+    /// Looks for infeasible poses at orientations over the whole turn.
+    fn sample(&mut self) {
+        let count = (PER_WINDOW * 360.0 / self.model.workspace.rotation_range_deg).ceil() as usize;
+        for k in 0..count {
+            self.look_at(std::f64::consts::TAU * k as f64 / count as f64);
+        }
+        self.found.sort_by(|a, b| a.phi.total_cmp(&b.phi));
+    }
+
+    /// Looks for the infeasible pose of an orientation that is nearest to the centre, ring by ring.
+    fn look_at(&mut self, phi: f64) {
+        let mut inner = 0.0;
+        let mut distance = 0.0;
+        while distance <= self.far {
+            for direction in 0..self.directions {
+                let theta = std::f64::consts::TAU * direction as f64 / DIRECTIONS as f64;
+                if self.is_bad(distance, theta, phi) {
+                    let nearest = self.move_inwards(inner, distance, theta, phi);
+                    self.found.push(BadPose { phi, distance: nearest });
+                    return;
+                }
+                if distance == 0.0 {
+                    break;
+                }
+            }
+            inner = distance;
+            distance = if distance == 0.0 { self.near } else { distance * GROWTH };
+        }
+    }
+
+    /// Returns the least distance found at which the orientation has an infeasible pose, near the direction `theta`.
+    fn move_inwards(&self, inner: f64, outer: f64, mut theta: f64, phi: f64) -> f64 {
+        let mut best = outer;
+        let mut step = std::f64::consts::TAU / DIRECTIONS as f64;
+        // Nearer than that, all are alike.
+        let least = inner.max(if outer > self.near { self.near } else { outer });
+        for _ in 0..12 {
+            let (mut good, mut bad) = (least, best);
+            for _ in 0..10 {
+                let middle = 0.5 * (good + bad);
+                if self.is_bad(middle, theta, phi) {
+                    bad = middle;
+                } else {
+                    good = middle;
+                }
+            }
+            best = bad;
+            let turned = [theta - step, theta + step];
+            match turned
+                .into_iter()
+                .find(|&turned| self.is_bad(0.5 * (best + good), turned, phi))
+            {
+                Some(turned) => theta = turned,
+                None => step *= 0.5,
+            }
+        }
+        best
+    }
+
+    fn is_bad(&self, distance: f64, theta: f64, phi: f64) -> bool {
+        let (sine, cosine) = Interval::exactly(phi).sine_and_cosine();
+        let (theta_sine, theta_cosine) = Interval::exactly(theta).sine_and_cosine();
+        let centre = self.model.workspace.centre;
+        let radius = Interval::exactly(distance);
+        let pose = PoseEnclosure {
+            position: [
+                TaylorModel::constant(radius * theta_cosine + Interval::exactly(centre.x)),
+                TaylorModel::constant(radius * theta_sine + Interval::exactly(centre.y)),
+            ],
+            cosine: TaylorModel::constant(cosine),
+            sine: TaylorModel::constant(sine),
+        };
+        let found = self.forms.enclose_pose(&pose, ProvedForms::default());
+        found.iter().any(|(_, value)| value.range()[1] < 0.0)
+    }
+
+    /// Returns the least distance up to which infeasible poses leave no gap wider than a window, and the gap (by the places of its
+    /// ends) that the last of them closes; `None` if those that are known leave one.
+    fn bound(&self) -> Option<(f64, [usize; 2])> {
+        let window = Interval::radians(self.model.workspace.rotation_range_deg).lower;
+        let mut order: Vec<usize> = (0..self.found.len()).collect();
+        order.sort_by(|&a, &b| {
+            self.found[a]
+                .distance
+                .total_cmp(&self.found[b].distance)
+                .then(a.cmp(&b))
+        });
+        // By bisection over the number of poses that count, from the nearest.
+        let covers = |count: usize| self.widest_gap(&order[..count]).is_some_and(|(gap, _)| gap <= window);
+        if !covers(order.len()) {
+            return None;
+        }
+        let (mut open, mut closed) = (0, order.len());
+        while closed - open > 1 {
+            let middle = usize::midpoint(open, closed);
+            if covers(middle) {
+                closed = middle;
+            } else {
+                open = middle;
+            }
+        }
+        let (_, gap) = self.widest_gap(&order[..open])?;
+        Some((self.found[order[closed - 1]].distance, gap))
+    }
+
+    /// Returns the widest gap between the orientations of some poses, rounded upwards, and the places of its ends.
+    fn widest_gap(&self, places: &[usize]) -> Option<(f64, [usize; 2])> {
+        let mut places = places.to_vec();
+        places.sort_unstable();
+        let turn = Interval::radians(360.0).upper;
+        let gap = |k: usize| {
+            let (from, to) = (places[k], places[(k + 1) % places.len()]);
+            let way = Interval::exactly(self.found[to].phi) - Interval::exactly(self.found[from].phi);
+            let around = if k + 1 < places.len() { 0.0 } else { turn };
+            ((way.upper + around).next_up(), [from, to])
+        };
+        (0..places.len())
+            .map(gap)
+            .reduce(|widest, next| if next.0 > widest.0 { next } else { widest })
+    }
+
+    /// Adds poses next to the ends of a gap in which every pose known is at least `distance` away.
+    fn narrow(&mut self, distance: f64, [from, to]: [usize; 2]) {
+        let count = self.found.len();
+        let middle = |a: usize, b: usize| {
+            let (first, second) = (self.found[a].phi, self.found[b].phi);
+            let second = if second < first {
+                second + std::f64::consts::TAU
+            } else {
+                second
+            };
+            (0.5 * (first + second)) % std::f64::consts::TAU
+        };
+        let mut at = vec![middle(from, (from + 1) % count), middle((to + count - 1) % count, to)];
+        // And next to the pose that closes it.
+        if let Some(last) = (0..count).find(|&place| self.found[place].distance == distance) {
+            at.push(middle(last, (last + 1) % count));
+            at.push(middle((last + count - 1) % count, last));
+        }
+        for phi in at {
+            if !self.found.iter().any(|known| known.phi == phi) {
+                self.look_at(phi);
+            }
+        }
+        self.found.sort_by(|a, b| a.phi.total_cmp(&b.phi));
+    }
+}

@@ -1,0 +1,134 @@
+//! The proof of a workspace: the boxes of poses into which it was divided, and the infeasible pose that ends it.
+
+use glam::DVec2;
+
+use kinefront_model::certify::{BoxOutcome, Certificate, CertifyOptions, ExaminedBox, ProofObserver, Violation};
+use kinefront_model::evaluation::{Constraint, Evaluation, Model};
+use kinefront_model::mechanism::Design;
+use kinefront_model::spatial::unit;
+
+/// Largest number of boxes of a proof that is shown.
+const MOST_BOXES: usize = 50_000;
+
+/// The proof of the workspace of a design, with its boxes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorkspaceProof {
+    /// The design.
+    pub design: Design,
+    /// What was to be proved.
+    pub claim: CertifyOptions,
+    /// What was proved.
+    pub certificate: Certificate,
+    /// The boxes, in the order in which they were decided.
+    pub boxes: Vec<ExaminedBox>,
+    /// Centre of the workspace \[m\].
+    pub centre: DVec2,
+}
+
+/// A box in the configuration space: its middle and half its sides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProofCell {
+    /// Position of its middle in the base frame \[m\].
+    pub position: DVec2,
+    /// Orientation of its middle \[rad\].
+    pub phi: f64,
+    /// Half the side away from the centre and half the side across \[m\].
+    pub half: [f64; 2],
+    /// Half the range of orientations \[rad\].
+    pub half_phi: f64,
+    /// Direction of the middle from the centre \[rad\].
+    pub theta: f64,
+    /// What became of the box.
+    pub outcome: BoxOutcome,
+    /// The constraint that was proved last, or that is not proved.
+    pub constraint: Constraint,
+    /// Number of divisions that led to it.
+    pub depth: u32,
+}
+
+struct Collector<'a> {
+    boxes: Vec<ExaminedBox>,
+    goes_on: &'a dyn Fn() -> bool,
+}
+
+impl ProofObserver for Collector<'_> {
+    fn goes_on(&mut self) -> bool {
+        (self.goes_on)()
+    }
+
+    fn examined(&mut self, part: &ExaminedBox) {
+        self.boxes.push(*part);
+    }
+}
+
+/// Proves the workspace of an evaluated design; `None` if it has none, or once `goes_on` returns false.
+pub fn workspace_proof(model: &Model, evaluation: &Evaluation, goes_on: &dyn Fn() -> bool) -> Option<WorkspaceProof> {
+    let claim = CertifyOptions {
+        max_boxes: MOST_BOXES,
+        ..CertifyOptions::of(evaluation)?
+    };
+    let mut collector = Collector {
+        boxes: Vec::new(),
+        goes_on,
+    };
+    let certificate = model
+        .certify_observed(&evaluation.design, &claim, &mut collector)
+        .ok()?;
+    goes_on().then_some(WorkspaceProof {
+        design: evaluation.design,
+        claim,
+        certificate,
+        boxes: collector.boxes,
+        centre: model.workspace.centre,
+    })
+}
+
+impl WorkspaceProof {
+    /// The infeasible pose nearest to the centre that was found.
+    pub fn violation(&self) -> Option<Violation> {
+        self.certificate.violation
+    }
+
+    /// The boxes up to a distance from the centre, as cells; those beyond it are of no interest.
+    pub fn cells(&self) -> impl Iterator<Item = ProofCell> {
+        let limit = 1.05 * self.certificate.upper.unwrap_or(f64::INFINITY);
+        let near = self.boxes.iter().filter(move |part| part.lower[0] < limit);
+        near.map(|part| {
+            let middle = |k: usize| 0.5 * (part.lower[k] + part.upper[k]);
+            let half = |k: usize| 0.5 * (part.upper[k] - part.lower[k]);
+            let (radius, theta) = (middle(0), middle(1));
+            ProofCell {
+                position: self.centre + unit(theta) * radius,
+                phi: middle(2),
+                half: [half(0), radius * half(1)],
+                half_phi: half(2),
+                theta,
+                outcome: part.outcome,
+                constraint: part.constraint,
+                depth: part.depth,
+            }
+        })
+    }
+
+    /// The outlines of the boxes that contain an orientation, as closed strips of positions, each with its box.
+    pub fn outlines(&self, phi: f64) -> impl Iterator<Item = (&ExaminedBox, Vec<DVec2>)> {
+        let centre = self.centre;
+        let at_phi = self
+            .boxes
+            .iter()
+            .filter(move |part| part.lower[2] <= phi && phi < part.upper[2]);
+        at_phi.map(move |part| {
+            let corners = ((part.upper[1] - part.lower[1]) / 0.05).ceil().max(1.0) as u32;
+            let arc = |radius: f64, from: f64, to: f64| {
+                (0..=corners).map(move |corner| {
+                    let theta = from + (to - from) * f64::from(corner) / f64::from(corners);
+                    centre + unit(theta) * radius
+                })
+            };
+            let mut outline: Vec<DVec2> = arc(part.lower[0], part.lower[1], part.upper[1]).collect();
+            outline.extend(arc(part.upper[0], part.upper[1], part.lower[1]));
+            outline.extend(outline.first().copied());
+            (part, outline)
+        })
+    }
+}
