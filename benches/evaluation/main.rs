@@ -8,12 +8,14 @@
 //!   fine grid.
 //! - `threads`: the front's designs on one thread and on two.
 //! - `clearance`: optimizer runs in which members may collide, and in which they must not.
+//! - `proof`: evaluations on the fine grid and proofs of designs of the best fronts known.
 //!
 //! The operations of a pose are counted, and `pose/limit` is the time that the machine takes for as many operations of
 //! each kind, none of which waits for another.
 
 mod counted;
 mod limit;
+mod proofs;
 
 use std::hint::black_box;
 
@@ -34,6 +36,7 @@ use kinefront_optimize::{FrontDe, FrontDeSettings, run, sobol};
 use rayon::prelude::*;
 
 use self::counted::{Operations, operations};
+use self::proofs::proofs;
 
 /// Returns designs of one architecture, spread over the paper's bounds.
 fn sample(architecture: Architecture, count: usize) -> Vec<Design> {
@@ -279,5 +282,5 @@ fn clearance(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, poses, designs, threads, clearance);
+criterion_group!(benches, poses, designs, threads, clearance, proofs);
 criterion_main!(benches);

@@ -103,7 +103,7 @@ impl Prover<'_> {
         };
         let certificate = self.model.certify(&design, &options)?;
         let homes = match self.arguments.all_homes {
-            true => self.model.bound_of_homes(&design, certificate.lower)?,
+            true => Some(self.model.bound_of_homes(&design, certificate.lower)?),
             false => None,
         };
         let seconds = since.elapsed().as_secs_f64();

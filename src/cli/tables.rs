@@ -210,9 +210,11 @@ pub fn certificate(found: &CertificateJson) -> String {
         .map_or("no infeasible pose was found".to_owned(), |upper| {
             format!("a pose at {upper:.6} m is proved infeasible")
         });
-    let homes = found.upper_all_homes_m.map_or(String::new(), |bound| {
-        format!("\nat no home orientation does R_w exceed {bound:.6} m")
-    });
+    let homes = match found.upper_all_homes_m {
+        Some(Some(bound)) => format!("\nat no home orientation does R_w exceed {bound:.6} m"),
+        Some(None) => "\nno bound over all home orientations was found".to_owned(),
+        None => String::new(),
+    };
     format!(
         "claimed R_w {:.6} m: {verdict}\nevery pose within {:.6} m is proved feasible; {upper}\n{} boxes{homes}",
         found.claimed_radius_m, found.lower_m, found.boxes

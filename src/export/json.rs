@@ -145,8 +145,9 @@ pub struct CertificateJson {
     /// Number of boxes that were examined.
     pub boxes: usize,
     seconds: f64,
-    /// Bound of the workspace radius over all home orientations, rounded up; `None` if none was asked for or found.
-    pub upper_all_homes_m: Option<f64>,
+    /// Bound of the workspace radius over all home orientations, rounded up, if it was asked for and found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub upper_all_homes_m: Option<Option<f64>>,
 }
 
 /// A pose that is proved infeasible; `phi_rad` is the orientation of the proof.
@@ -166,7 +167,7 @@ impl CertificateJson {
         design: &Design,
         options: &CertifyOptions,
         certificate: &Certificate,
-        homes: Option<f64>,
+        homes: Option<Option<f64>>,
         seconds: f64,
     ) -> Self {
         let centre = model.workspace.centre;
@@ -209,7 +210,7 @@ impl CertificateJson {
             }),
             boxes: certificate.boxes,
             seconds,
-            upper_all_homes_m: homes.map(f64::next_up),
+            upper_all_homes_m: homes.map(|bound| bound.map(f64::next_up)),
         }
     }
 }

@@ -389,6 +389,9 @@ fn certificates_answer_one_design_or_a_stream() {
         (Some("open"), Some("budget"))
     );
     assert!(few["lower_m"].as_f64().expect("a number") < 1.22);
+    let homes = json(["certify", "--design", DESIGN, "--all-homes", "--json"]);
+    let bound = homes["upper_all_homes_m"].as_f64().expect("a number");
+    assert!(bound > number("lower_m") && bound < 1.225, "{bound}");
 
     // The pocket of a design of a front: the grid claims 0.7147 m, of which 0.6423 m are there.
     let pocket = "3-RRR R=1.0094566953033497 r=0.13093847935116149 Lb=0.7999739586075939 rj=0.03839109236004963 rp=0.02315007385818249";

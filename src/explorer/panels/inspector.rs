@@ -152,15 +152,17 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
         ui.end_row();
         ui.label("R_w");
         ui.horizontal(|ui| {
+            let certified = session.certified().filter(|_| known.verified);
             if evaluation.is_feasible() {
-                ui.strong(format!("{} m", theme::number(evaluation.workspace_radius)));
+                let radius = certified.map_or(evaluation.workspace_radius, |certified| certified.lower);
+                ui.strong(format!("{} m", theme::number(radius)));
             } else {
                 ui.colored_label(theme::BAD, "infeasible: no regular workspace");
             }
-            ui.weak(if known.verified {
-                "fine grid"
-            } else {
-                "reference grid, verifying…"
+            ui.weak(match (certified, known.verified) {
+                (Some(certified), _) => certified.state(),
+                (None, true) => "fine grid",
+                (None, false) => "reference grid, verifying…",
             });
         });
         ui.end_row();
@@ -202,6 +204,8 @@ fn proof(ui: &mut Ui, session: &mut Session) {
     };
     let certified = CertifiedRadius::new(&proof.certificate, proof.claim.tolerance);
     let (color, verdict) = match proof.certificate.verdict {
+        // What the front reports is the proved radius, whatever the fine grid gave.
+        _ if session.certified().is_some_and(|certified| certified.is_proved) => (theme::GOOD, "proved"),
         Verdict::Proved => (theme::GOOD, "proved"),
         Verdict::Refuted => (theme::BAD, "refuted"),
         Verdict::OpenBudget | Verdict::OpenPrecision => (theme::ACTIVE, "open"),

@@ -16,7 +16,7 @@ use super::threads::{Running, Writing};
 use super::{Filter, FrontEntry, Row, Store, StudyEditor};
 use crate::recording::{FrontPoint, LiveScene, VisibleLayers};
 use crate::scene::WorkspaceProof;
-use crate::study::{EndReason, GenerationSummary, Study};
+use crate::study::{CertifiedRadius, EndReason, GenerationSummary, Study};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::spatial::Pose;
 
@@ -205,6 +205,14 @@ impl Session {
         match self.place_on_front(id) {
             Some(place) => Some(self.front[place].row),
             None => self.store.row(id),
+        }
+    }
+
+    /// Returns what the front states about the workspace of the selected design, if it is a design of a certified front.
+    pub fn certified(&self) -> Option<CertifiedRadius> {
+        match self.document().selected.as_ref()?.origin {
+            Origin::Evaluated(id) => self.front[self.place_on_front(id)?].certified,
+            _ => None,
         }
     }
 

@@ -101,3 +101,57 @@ fn what_has_no_value_is_never_proved() {
         assert!(!is_proved, "{nothing:?}");
     }
 }
+
+/// A double by its bits: reading the text of a number may change the last one.
+fn double(bits: &serde_json::Value) -> f64 {
+    f64::from_bits(bits.as_u64().expect("bits"))
+}
+
+/// A number to 32 digits, as the sum of two doubles.
+fn is_enclosed(lower: f64, upper: f64, number: &serde_json::Value) -> bool {
+    let part = |place: usize| double(&number[place]);
+    let (high, low) = (part(0), part(1));
+    // The differences of neighbouring doubles are exact, so that their sums have the right signs.
+    (high - lower) + low >= 0.0 && (upper - high) - low >= 0.0
+}
+
+/// Without width, a model encloses the value to 50 digits, and little else.
+#[test]
+fn values_to_50_digits_are_enclosed() {
+    let file: serde_json::Value = serde_json::from_str(include_str!("../fixtures/elementary.json")).expect("JSON");
+    let cases = file["cases"].as_array().expect("cases");
+    assert_eq!(cases.len(), 300);
+    for case in cases {
+        let exactly = |key: &str| TaylorModel::exactly(double(&case[key]));
+        let (x, y, z) = (exactly("x"), exactly("y"), exactly("z"));
+        let (sine, cosine) = TaylorModel::sine_and_cosine(0, x.constant, 0.0);
+        let one = TaylorModel::exactly(1.0);
+        let root = ((y * x + z).squared() + one).sqrt();
+        let chain = root * (one + z.squared()).reciprocal() - x * x * x + z * y.reciprocal();
+        for (key, found) in [
+            ("sine", sine),
+            ("cosine", cosine),
+            ("root", y.sqrt()),
+            ("reciprocal", y.reciprocal()),
+            ("chain", chain),
+        ] {
+            let [lower, upper] = found.range();
+            assert!(
+                is_enclosed(lower, upper, &case[key]),
+                "{key}: [{lower}, {upper}] for {case}"
+            );
+            let size = 1.0 + found.constant.abs() + (x.constant * y.constant).abs() + x.constant.abs().powi(3);
+            assert!(upper - lower < 1e-11 * size, "{key}: [{lower}, {upper}]");
+        }
+        let (sine, cosine) = Interval::exactly(x.constant).sine_and_cosine();
+        assert!(is_enclosed(sine.lower, sine.upper, &case["sine"]), "{case}");
+        assert!(is_enclosed(cosine.lower, cosine.upper, &case["cosine"]), "{case}");
+        let root = Interval::exactly(y.constant).sqrt();
+        assert!(is_enclosed(root.lower, root.upper, &case["root"]), "{case}");
+        let reciprocal = Interval::exactly(1.0) / Interval::exactly(y.constant);
+        assert!(
+            is_enclosed(reciprocal.lower, reciprocal.upper, &case["reciprocal"]),
+            "{case}"
+        );
+    }
+}
