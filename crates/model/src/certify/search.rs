@@ -168,7 +168,7 @@ impl<'a, L: Leg> Proof<'a, L> {
     fn try_point(&mut self, point: [f64; VARIABLES], proved: ProvedForms) -> Option<Constraint> {
         // In a window without width, no double is known to lie.
         let [first, last] = self.inner_window;
-        if self.options.blind_radius.is_some() || first > last {
+        if self.options.blind_radius.is_some() || first > last || proved.is_all() {
             return None;
         }
         let pose = self.pose_at(point);
@@ -336,15 +336,17 @@ impl<'a, L: Leg> Proof<'a, L> {
                 return;
             }
             polar.proved = polar.proved.with(&found);
+            // What the polynomials tell of a pose need not be tried.
+            let known_at = |epsilon| polar.proved.with_those_that_hold_at(&found, epsilon);
             let middle = polar.point([0.0; VARIABLES]);
-            self.try_point(middle, polar.proved);
+            self.try_point(middle, known_at([0.0; VARIABLES]));
             if polar.lower[0] == 0.0 {
                 self.try_point([0.0, 0.0, middle[2]], polar.proved);
             }
             let worst = weakest(open.iter().copied());
-            if let Some((_, value)) = worst {
-                let point = polar.point(value.least_point());
-                if let Some(constraint) = self.try_point(point, polar.proved) {
+            if let Some(least) = worst.map(|(_, value)| value.least_point()) {
+                let point = polar.point(least);
+                if let Some(constraint) = self.try_point(point, known_at(least)) {
                     self.nearest_bad(point, constraint);
                 }
             }

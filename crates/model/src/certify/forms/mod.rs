@@ -11,7 +11,7 @@ use clearance::{MemberBoxes, Separations};
 use compliances::Compliances;
 
 use super::CertifyError;
-use crate::enclosure::{Interval, LegEnclosure, PoseEnclosure, TaylorModel};
+use crate::enclosure::{Interval, LegEnclosure, PoseEnclosure, TaylorModel, VARIABLES};
 use crate::evaluation::{Constraint, Model};
 use crate::kinematics::CharacteristicLength;
 use crate::mechanism::{Design, Leg};
@@ -29,6 +29,24 @@ impl ProvedForms {
     /// Everything but one constraint, where no other is of interest.
     pub fn all_but(constraint: Constraint) -> Self {
         Self(!Self::bit(constraint))
+    }
+
+    /// Adds the constraints that, of those that are open on a box, its polynomials tell to hold at `ε`.
+    pub fn with_those_that_hold_at(self, found: &Enclosures, epsilon: [f64; VARIABLES]) -> Self {
+        if !found.is_complete {
+            return self;
+        }
+        let fails = found.open().filter(|(_, value)| {
+            // A comparison with NaN is false: nothing is told then.
+            let holds = value.value(epsilon) - value.remainder > 0.0;
+            !holds
+        });
+        Self(!fails.fold(0, |bits, (constraint, _)| bits | Self::bit(*constraint)) | self.0)
+    }
+
+    /// Whether every constraint is proved.
+    pub fn is_all(self) -> bool {
+        self.0 == u8::MAX
     }
 
     /// Whether a constraint is proved.

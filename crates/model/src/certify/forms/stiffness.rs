@@ -96,11 +96,15 @@ impl<L: Leg> Forms<'_, L> {
         }
     }
 
-    /// g5 for the entry of `K`.
+    /// g5 for the entry of `K`, unless the stiffness of one leg alone suffices: those of the others are positive, and no quotient is
+    /// needed for one.
     fn enclose_vertical(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
+        let first = self.vertical(&legs[0]);
+        if (first[0] - first[1].scaled(self.compliance.vertical)).range()[0] > 0.0 {
+            return;
+        }
         let mut stiffness = TaylorModel::constant(-self.compliance.vertical);
-        for leg in legs {
-            let [minor, determinant] = self.vertical(leg);
+        for [minor, determinant] in [first, self.vertical(&legs[1]), self.vertical(&legs[2])] {
             stiffness = stiffness + minor * determinant.reciprocal();
         }
         found.push(Constraint::StiffnessZ, stiffness);
