@@ -118,7 +118,7 @@ impl<'a> FrontProver<'a> {
     }
 
     fn certify(&self, design: &Design, options: &CertifyOptions) -> Option<Certificate> {
-        // Bars without a usable stiffness have no workspace, so that no error is left.
+        // Bars without a usable stiffness have no proof: such a design, of a study without stiffness, stays open.
         self.model
             .certify_observed(design, options, &mut Until(self.goes_on))
             .ok()

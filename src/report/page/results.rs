@@ -133,7 +133,7 @@ fn proofs(report: &Report) -> Markup {
                 thead { tr {
                     th { "front" } th.number { "workspaces proved" } th.number { "open" }
                     th.number { "radius of the fine grid too large" } th.number { "of these with thicker bars" }
-                    th.number { "largest loss of R_w" } th.number { "largest violation of a constraint" }
+                    th.number { "largest loss of R_w, at least" } th.number { "largest violation of a constraint" }
                 } }
                 tbody {
                     @for (architecture, proofs) in &fronts {

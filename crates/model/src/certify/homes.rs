@@ -6,9 +6,8 @@
 use super::CertifyError;
 use super::forms::{Forms, ProvedForms};
 use crate::enclosure::{Interval, PoseEnclosure, TaylorModel};
-use crate::evaluation::Model;
+use crate::evaluation::{Constraint, Model};
 use crate::mechanism::{Design, Leg};
-use crate::spatial::Pose;
 
 /// Number of orientations of the first sample per window.
 const PER_WINDOW: f64 = 16.0;
@@ -22,7 +21,7 @@ const ROUNDS: usize = 24;
 /// Distances at which infeasible poses are looked for, as multiples of the first one.
 const GROWTH: f64 = 1.02;
 
-/// An infeasible pose: its orientation, within a turn, and its distance from the centre, both rounded upwards.
+/// An infeasible pose: its orientation, within a turn \[rad\], and its distance from the centre \[m\], as the doubles of the proof.
 #[derive(Debug, Clone, Copy)]
 struct BadPose {
     phi: f64,
@@ -49,10 +48,7 @@ pub(super) fn upper_bound<L: Leg>(model: &Model, design: &Design, proved: f64) -
     let reach = design.base_radius + design.platform_radius + 2.0 * design.link_length + spec.centre.length();
     let near = proved.max(1e-3 * design.base_radius) * (1.0 + 1e-6);
     let mut homes = Homes::<L> {
-        forms: Forms::new(model, design)?.with_sign_at(&Pose {
-            position: spec.centre,
-            phi: 0.0,
-        }),
+        forms: Forms::new(model, design)?,
         model,
         near,
         far: (2.0 * near).min(4.0 * reach),
@@ -150,7 +146,11 @@ impl<L: Leg> Homes<'_, L> {
             sine: TaylorModel::constant(sine),
         };
         let found = self.forms.enclose_pose(&pose, ProvedForms::default());
-        found.iter().any(|(_, value)| value.range()[1] < 0.0)
+        // The sign of det A that counts is that of each home orientation, not that of one of them.
+        let of_all_homes = found
+            .iter()
+            .filter(|(constraint, _)| *constraint != Constraint::DeterminantSign);
+        of_all_homes.into_iter().any(|(_, value)| value.range()[1] < 0.0)
     }
 
     /// Returns the least distance up to which infeasible poses leave no gap wider than a window, and the gap (by the places of its

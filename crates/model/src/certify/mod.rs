@@ -266,8 +266,8 @@ impl Model {
         with_leg!(design.architecture, L => homes::upper_bound::<L>(self, design, proved))
     }
 
-    /// Encloses the constraints of a design over a box of poses: each value is positive only where the constraint holds
-    /// strictly, and exactly there but for g7. Where a leg may not reach a pose of the box, only the values of g2 are returned.
+    /// Encloses the constraints of a design over a box of poses: a constraint holds strictly where all
+    /// its values are positive, and but for g7 only there. One that holds without a value to tell has none. Where a leg may not reach a pose of the box, only the values of g2 are returned.
     ///
     /// # Errors
     /// [`CertifyError::Degenerate`]: bars without a usable stiffness.

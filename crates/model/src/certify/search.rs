@@ -326,6 +326,10 @@ impl<'a, L: Leg> Proof<'a, L> {
     /// Proves, contracts or divides one box.
     fn examine(&mut self, mut polar: PolarBox) {
         for _ in 0..=CONTRACTIONS {
+            if polar.lower[0] >= self.target() {
+                self.report(&polar, BoxOutcome::Beyond, None);
+                return;
+            }
             // The box is cut before it is enclosed: what is found refers to the box as enclosed.
             polar.upper[0] = polar.upper[0].min(self.target());
             self.boxes += 1;

@@ -453,6 +453,31 @@ fn the_bound_of_all_homes_encloses_the_radius() {
         .collect();
     let close = bounds.iter().filter(|&&ratio| ratio < 1.02).count();
     assert!(2 * close > bounds.len(), "{bounds:?}");
+
+    // Without thresholds, det A may have another sign at each home: the bound is above the radius of the best one.
+    let free = model(|settings| {
+        settings.thresholds.inverse_condition = 0.0;
+        settings.thresholds.k_xy = 0.0;
+        settings.thresholds.k_z = 0.0;
+        settings.thresholds.k_phi_z = 0.0;
+    });
+    let design: Design = "3-RRR R=1 r=0.4 Lb=1.2 rj=0.03 rp=0.03".parse().expect("a design");
+    let best = free.evaluate(&design, GridChoice::Fine);
+    let proved = |phi_deg: f64| {
+        let options = CertifyOptions {
+            phi_deg,
+            ..CertifyOptions::default()
+        };
+        free.certify(&design, &options).expect("a certificate").lower
+    };
+    let best = proved(best.home_phi_deg.expect("a home"));
+    for phi_deg in [0.0, 65.0, 140.0] {
+        let bound = free.bound_of_homes(&design, proved(phi_deg)).expect("forms");
+        assert!(
+            bound.is_none_or(|bound| bound >= best),
+            "{phi_deg}°: {bound:?} below {best}"
+        );
+    }
 }
 
 /// A window without width has no upper bound, since no double lies in it; a wide one, thresholds of 0 and a negative home

@@ -1,4 +1,4 @@
-//! Forms of the clearance, g7 (docs/model.md, section 13.4).
+//! Forms of the clearance, g7 (docs/model.md, section 13.3).
 //!
 //! Two members are farther apart than `δ` in the plane if a direction `n` separates them: `n · (b − a) > δ |n|` for all points `a`
 //! of one axis and `b` of the other. The axes are straight, so that their ends suffice. The direction is that of the shortest line
@@ -254,7 +254,7 @@ enum Direction {
 /// Returns the direction of the shortest line between two axes, in plain doubles; `None` if they cross.
 fn direction(a: &AxisEnclosure, b: &AxisEnclosure) -> Option<Direction> {
     let [first, second] = [a, b].map(middle);
-    if crossing(&first, &second).is_some() {
+    if crossing(a, b).is_some() {
         return None;
     }
     let mut best: Option<(f64, Direction)> = None;
@@ -294,10 +294,10 @@ fn direction(a: &AxisEnclosure, b: &AxisEnclosure) -> Option<Direction> {
 /// Encloses the point of an axis that is nearest to another axis in the middle of a box; it lies on the axis in any case.
 fn nearest(of: &AxisEnclosure, to: &AxisEnclosure) -> PlanarModel {
     let (own, other) = (middle(of), middle(to));
-    let [first, last] = ends(&own, of.direction.map(|part| part.constant));
+    let [first, last] = ends(of);
     let way = minus(own[last], own[first]);
     let square = length_squared(way);
-    let fraction = crossing(&own, &other).unwrap_or_else(|| {
+    let fraction = crossing(of, to).unwrap_or_else(|| {
         let on_segment = |from: [f64; 2], way: [f64; 2], point: [f64; 2]| {
             let square = length_squared(way);
             if square > 0.0 {
@@ -306,7 +306,7 @@ fn nearest(of: &AxisEnclosure, to: &AxisEnclosure) -> PlanarModel {
                 0.0
             }
         };
-        let [start, end] = ends(&other, to.direction.map(|part| part.constant));
+        let [start, end] = ends(to);
         let other_way = minus(other[end], other[start]);
         // An end of one of the axes is nearest.
         let mut best = (f64::INFINITY, 0.0);
@@ -334,19 +334,14 @@ fn nearest(of: &AxisEnclosure, to: &AxisEnclosure) -> PlanarModel {
     sum(of.points[first], part)
 }
 
-/// Returns the fraction of the first axis at which it crosses the second, if it does.
-fn crossing(a: &[[f64; 2]; 3], b: &[[f64; 2]; 3]) -> Option<f64> {
-    let far = |points: &[[f64; 2]; 3]| {
-        let along = [minus(points[1], points[0]), minus(points[2], points[0])];
-        let along = if length_squared(along[0]) > length_squared(along[1]) {
-            along[0]
-        } else {
-            along[1]
-        };
-        let [first, last] = ends(points, along);
+/// Returns the fraction of the first axis, from its first end, at which it crosses the second in the middle of a box, if it does.
+fn crossing(a: &AxisEnclosure, b: &AxisEnclosure) -> Option<f64> {
+    let span = |axis: &AxisEnclosure| {
+        let points = middle(axis);
+        let [first, last] = ends(axis);
         (points[first], minus(points[last], points[first]))
     };
-    let ((from_a, way_a), (from_b, way_b)) = (far(a), far(b));
+    let ((from_a, way_a), (from_b, way_b)) = (span(a), span(b));
     let turn = way_a[0] * way_b[1] - way_a[1] * way_b[0];
     let between = minus(from_b, from_a);
     let on_a = (between[0] * way_b[1] - between[1] * way_b[0]) / turn;
@@ -360,8 +355,10 @@ fn middle(axis: &AxisEnclosure) -> [[f64; 2]; 3] {
     axis.points.map(|point| point.map(|part| part.constant))
 }
 
-/// Places of the first and the last point along a direction.
-fn ends(points: &[[f64; 2]; 3], along: [f64; 2]) -> [usize; 2] {
+/// Places of the first and the last point of an axis along its direction, in the middle of the box.
+fn ends(axis: &AxisEnclosure) -> [usize; 2] {
+    let along = axis.direction.map(|part| part.constant);
+    let points = middle(axis);
     let place = |k: usize| scalar(points[k], along);
     let order = |better: fn(&f64, &f64) -> bool| {
         (1..3).fold(0, |best, k| if better(&place(k), &place(best)) { k } else { best })

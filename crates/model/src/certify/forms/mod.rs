@@ -1,4 +1,4 @@
-//! The constraints as functions that are positive exactly where they hold strictly (docs/model.md, section 13.3).
+//! The constraints as functions that are positive, all those of one together, where it holds strictly (docs/model.md, section 13.3).
 //!
 //! They are cleared of roots and quotients where this keeps the enclosures narrow, and are written apart from those that the
 //! evaluation uses.
@@ -148,8 +148,8 @@ impl<'a, L: Leg> Forms<'a, L> {
         self
     }
 
-    /// Encloses the constraints over a box of poses, but for those that are proved there: each value is positive only where the
-    /// constraint holds.
+    /// Encloses the constraints over a box of poses, but for those that are proved there: a constraint holds where all its values are
+    /// positive.
     pub fn enclose(&self, pose: &PoseEnclosure, proved: ProvedForms) -> Enclosures {
         self.enclose_with(pose, proved, Separations::enclose)
     }
