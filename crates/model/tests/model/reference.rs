@@ -1,5 +1,6 @@
 //! Compares results with values from independent programs (tests/fixtures/README.md) and with the designs of the paper.
 
+use kinefront_model::certify::CertifyOptions;
 use kinefront_model::evaluation::{GridChoice, Model};
 use kinefront_model::mechanism::{Design, WorkingMode};
 use kinefront_model::spatial::Pose;
@@ -154,6 +155,33 @@ fn designs_agree_on_both_grids_and_both_definitions() {
             assert_eq!(number(&case["workspace_radius_reference_grid"]), 0.0);
         }
     }
+}
+
+/// A certificate encloses the radius of the reference up to the error of its grid, unless it finds a pose that the grid missed.
+#[test]
+fn certificates_agree_with_the_fine_grid_of_the_reference() {
+    let cases = fixture("cases.json");
+    let model = Model::default();
+    let mut agreeing = 0;
+    for case in cases["designs"].as_array().expect("designs") {
+        let (design, wanted) = (design(case), number(&case["workspace_radius_fine_grid"]));
+        let Some(claim) = CertifyOptions::of(&model.evaluate(&design, GridChoice::Fine)) else {
+            assert_eq!(wanted, 0.0, "{design}");
+            continue;
+        };
+        let found = model.certify(&design, &claim).expect("a certificate");
+        let upper = found.upper.expect("an infeasible pose");
+        println!("{design}: {wanted} in [{}, {upper}]", found.lower);
+        assert!(found.is_closed(claim.tolerance) && upper < 1.001 * wanted, "{design}");
+        if upper > 0.999 * wanted {
+            agreeing += 1;
+        } else {
+            let violation = found.violation.expect("an infeasible pose");
+            let margin = model.margin_at(&design, &violation.pose, violation.constraint);
+            assert!(margin < 0.0, "{design}: {margin}");
+        }
+    }
+    assert_eq!(agreeing, 12);
 }
 
 #[test]
