@@ -35,7 +35,7 @@ impl Canvas<'_> {
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.5), cells.len()))
             .with_fill_mode(FillMode::MajorWireframe);
         self.row(&format!("{root}/boxes"), &boxes)?;
-        if let Some(violation) = proof.violation() {
+        if let Some(violation) = proof.certificate.violation {
             let at = space.place(violation.pose.position, violation.pose.phi);
             self.mark(&format!("{root}/violation"), at, &words(proof), colors::LIMIT)?;
         }
@@ -71,7 +71,7 @@ impl Canvas<'_> {
             .with_colors(outlines.iter().map(|(part, _)| color(part.outcome, part.constraint)))
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.7), outlines.len()));
         self.row(&format!("{root}/boxes"), &strips)?;
-        if let Some(violation) = proof.violation() {
+        if let Some(violation) = proof.certificate.violation {
             let at: DVec3 = violation.pose.position.extend(z);
             self.mark(&format!("{root}/violation"), at, &words(proof), colors::LIMIT)?;
         }
@@ -80,7 +80,7 @@ impl Canvas<'_> {
 }
 
 fn words(proof: &WorkspaceProof) -> String {
-    proof.violation().map_or(String::new(), |violation| {
+    proof.certificate.violation.map_or(String::new(), |violation| {
         let degrees = (10.0 * violation.pose.phi.to_degrees()).round() / 10.0;
         format!("{} is violated here at φ = {degrees}°", violation.constraint.id())
     })

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use kinefront_model::certify::{BoxOutcome, Certificate, CertifyOptions, ExaminedBox, ProofObserver, Violation};
+use kinefront_model::certify::{BoxOutcome, Certificate, CertifyOptions, ExaminedBox, ProofObserver};
 use kinefront_model::evaluation::{Constraint, Evaluation, Model};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::unit;
@@ -42,8 +42,6 @@ pub struct ProofCell {
     pub outcome: BoxOutcome,
     /// The constraint that was proved last, or that is not proved.
     pub constraint: Constraint,
-    /// Number of divisions that led to it.
-    pub depth: u32,
 }
 
 struct Collector<'a> {
@@ -54,6 +52,10 @@ struct Collector<'a> {
 impl ProofObserver for Collector<'_> {
     fn goes_on(&mut self) -> bool {
         (self.goes_on)()
+    }
+
+    fn watches_boxes(&self) -> bool {
+        true
     }
 
     fn examined(&mut self, part: &ExaminedBox) {
@@ -84,11 +86,6 @@ pub fn workspace_proof(model: &Model, evaluation: &Evaluation, goes_on: &dyn Fn(
 }
 
 impl WorkspaceProof {
-    /// The infeasible pose nearest to the centre that was found.
-    pub fn violation(&self) -> Option<Violation> {
-        self.certificate.violation
-    }
-
     /// The boxes up to a distance from the centre, as cells; those beyond it are of no interest.
     pub fn cells(&self) -> impl Iterator<Item = ProofCell> {
         let limit = 1.05 * self.certificate.upper.unwrap_or(f64::INFINITY);
@@ -105,7 +102,6 @@ impl WorkspaceProof {
                 theta,
                 outcome: part.outcome,
                 constraint: part.constraint,
-                depth: part.depth,
             }
         })
     }

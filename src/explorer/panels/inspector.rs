@@ -1,6 +1,5 @@
 //! The inspector: all results of the selected design, and sliders that modify its dimensions.
 
-use crate::study::CertifiedRadius;
 use crate::text;
 use egui::{Color32, Grid, RichText, ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo, WidgetType};
 
@@ -202,8 +201,8 @@ fn proof(ui: &mut Ui, session: &mut Session) {
         }
         return;
     };
-    let certified = CertifiedRadius::new(&proof.certificate, proof.claim.tolerance);
-    let (color, verdict) = match proof.certificate.verdict {
+    let certificate = &proof.certificate;
+    let (color, verdict) = match certificate.verdict {
         // What the front reports is the proved radius, whatever the fine grid gave.
         _ if session.certified().is_some_and(|certified| certified.is_proved) => (theme::GOOD, "proved"),
         Verdict::Proved => (theme::GOOD, "proved"),
@@ -214,10 +213,10 @@ fn proof(ui: &mut Ui, session: &mut Session) {
     ui.horizontal_wrapped(|ui| {
         ui.label("R_w is");
         ui.colored_label(color, RichText::new(verdict).strong());
-        let upper = certified.upper.map_or("∞".to_owned(), |upper| format!("{upper:.5}"));
-        ui.label(format!("R* in [{:.5}, {upper}] m", certified.lower))
+        let upper = certificate.upper.map_or("∞".to_owned(), |upper| format!("{upper:.5}"));
+        ui.label(format!("R* in [{:.5}, {upper}] m", certificate.lower))
             .on_hover_text("every pose nearer than the first number is feasible; a pose at the second is not");
-        if let Some(violation) = proof.violation() {
+        if let Some(violation) = proof.certificate.violation {
             let hover = "moves the platform to the infeasible pose, and shows the boxes of the proof";
             let words = format!("pose that violates {}", violation.constraint.id());
             has_asked = ui.small_button(words).on_hover_text(hover).clicked();

@@ -58,7 +58,7 @@ impl Session {
 
     /// Moves the platform to the infeasible pose that ends the proof of the workspace, and shows the proof.
     pub fn show_violation(&mut self) {
-        if let Some(violation) = self.proof().and_then(|proof| proof.violation()) {
+        if let Some(violation) = self.proof().and_then(|proof| proof.certificate.violation) {
             self.staging.pose = Some(violation.pose);
             self.staging.heatmap_phi = Some(violation.pose.phi);
             self.staging.layers.proof = true;

@@ -5,7 +5,7 @@
 
 use super::CertifyError;
 use super::forms::{Forms, ProvedForms};
-use crate::enclosure::{Interval, PoseEnclosure, TaylorModel};
+use crate::enclosure::{Interval, PoseEnclosure};
 use crate::evaluation::{Constraint, Model};
 use crate::mechanism::{Design, Leg};
 
@@ -133,24 +133,18 @@ impl<L: Leg> Homes<'_, L> {
     }
 
     fn is_bad(&self, distance: f64, theta: f64, phi: f64) -> bool {
-        let (sine, cosine) = Interval::exactly(phi).sine_and_cosine();
         let (theta_sine, theta_cosine) = Interval::exactly(theta).sine_and_cosine();
         let centre = self.model.workspace.centre;
         let radius = Interval::exactly(distance);
-        let pose = PoseEnclosure {
-            position: [
-                TaylorModel::constant(radius * theta_cosine + Interval::exactly(centre.x)),
-                TaylorModel::constant(radius * theta_sine + Interval::exactly(centre.y)),
-            ],
-            cosine: TaylorModel::constant(cosine),
-            sine: TaylorModel::constant(sine),
-        };
+        let position = [
+            radius * theta_cosine + Interval::exactly(centre.x),
+            radius * theta_sine + Interval::exactly(centre.y),
+        ];
+        let pose = PoseEnclosure::point(position, Interval::exactly(phi));
         let found = self.forms.enclose_pose(&pose, ProvedForms::default());
         // The sign of det A that counts is that of each home orientation, not that of one of them.
-        let of_all_homes = found
-            .iter()
-            .filter(|(constraint, _)| *constraint != Constraint::DeterminantSign);
-        of_all_homes.into_iter().any(|(_, value)| value.range()[1] < 0.0)
+        let is_of_all_homes = |constraint| constraint != Constraint::DeterminantSign;
+        found.violated().any(is_of_all_homes)
     }
 
     /// Returns the least distance up to which infeasible poses leave no gap wider than a window, and the gap (by the places of its

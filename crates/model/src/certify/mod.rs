@@ -106,7 +106,7 @@ pub struct ExaminedBox {
     pub upper: [f64; VARIABLES],
     /// What became of it.
     pub outcome: BoxOutcome,
-    /// The constraint that was proved last, or that is not proved.
+    /// The constraint that was proved last, or that is not proved; where none is known, that which ends the proof.
     pub constraint: Constraint,
     /// Number of divisions that led to it.
     pub depth: u32,
@@ -128,6 +128,11 @@ pub trait ProofObserver {
     /// Whether the proof goes on; asked every few boxes.
     fn goes_on(&mut self) -> bool {
         true
+    }
+
+    /// Whether it takes boxes.
+    fn watches_boxes(&self) -> bool {
+        false
     }
 
     /// Takes a box that the proof has done with.
@@ -266,8 +271,9 @@ impl Model {
         with_leg!(design.architecture, L => homes::upper_bound::<L>(self, design, proved))
     }
 
-    /// Encloses the constraints of a design over a box of poses: a constraint holds strictly where all
-    /// its values are positive, and but for g7 only there. One that holds without a value to tell has none. Where a leg may not reach a pose of the box, only the values of g2 are returned.
+    /// Encloses the constraints of a design over a box of poses: a constraint holds strictly where all its values are positive, and
+    /// but for g7 only there. One that is proved without a value has none. Where a leg may not reach a pose of the box, only the
+    /// values of g2 are returned.
     ///
     /// # Errors
     /// [`CertifyError::Degenerate`]: bars without a usable stiffness.

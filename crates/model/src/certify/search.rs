@@ -135,17 +135,6 @@ impl<'a, L: Leg> Proof<'a, L> {
         self.forms.enclose(&pose, polar.proved)
     }
 
-    /// Encloses the constraints at one pose, but for those that are proved there.
-    fn enclose_pose(&self, pose: &Pose, proved: ProvedForms) -> Enclosures {
-        let (sine, cosine) = Interval::exactly(pose.phi).sine_and_cosine();
-        let pose = PoseEnclosure {
-            position: pose.position.to_array().map(TaylorModel::exactly),
-            cosine: TaylorModel::constant(cosine),
-            sine: TaylorModel::constant(sine),
-        };
-        self.forms.enclose_pose(&pose, proved)
-    }
-
     /// The pose at a point in polar coordinates, within the window.
     fn pose_at(&self, [r, theta, phi]: [f64; VARIABLES]) -> Pose {
         let centre = self.model.workspace.centre;
@@ -158,9 +147,9 @@ impl<'a, L: Leg> Proof<'a, L> {
 
     /// Returns a constraint that is proved to be violated at a pose, of those that are not proved there.
     fn violated_at(&self, pose: &Pose, proved: ProvedForms) -> Option<Constraint> {
-        let found = self.enclose_pose(pose, proved);
-        let violated = found.iter().find(|(_, value)| value.range()[1] < 0.0);
-        violated.map(|&(constraint, _)| constraint)
+        let position = pose.position.to_array().map(Interval::exactly);
+        let pose = PoseEnclosure::point(position, Interval::exactly(pose.phi));
+        self.forms.enclose_pose(&pose, proved).violated().next()
     }
 
     /// Lowers the upper bound if the pose at a point is bad; returns a constraint that it violates, of those that are not proved
@@ -327,7 +316,7 @@ impl<'a, L: Leg> Proof<'a, L> {
     fn examine(&mut self, mut polar: PolarBox) {
         for _ in 0..=CONTRACTIONS {
             if polar.lower[0] >= self.target() {
-                self.report(&polar, BoxOutcome::Beyond, None);
+                self.report(&polar, BoxOutcome::Beyond, || None);
                 return;
             }
             // The box is cut before it is enclosed: what is found refers to the box as enclosed.
@@ -336,7 +325,7 @@ impl<'a, L: Leg> Proof<'a, L> {
             let found = self.enclose_box(&polar);
             let open: Vec<&(Constraint, TaylorModel)> = found.open().collect();
             if found.is_complete && open.is_empty() {
-                self.report(&polar, BoxOutcome::Proved, weakest(found.iter()));
+                self.report(&polar, BoxOutcome::Proved, || weakest(found.iter()));
                 return;
             }
             polar.proved = polar.proved.with(&found);
@@ -355,7 +344,7 @@ impl<'a, L: Leg> Proof<'a, L> {
                 }
             }
             if polar.lower[0] >= self.target() {
-                self.report(&polar, BoxOutcome::Beyond, worst);
+                self.report(&polar, BoxOutcome::Beyond, || worst);
                 return;
             }
             if !found.is_complete {
@@ -364,11 +353,13 @@ impl<'a, L: Leg> Proof<'a, L> {
             let before = polar;
             let open: Vec<&TaylorModel> = open.iter().map(|(_, value)| value).collect();
             if !polar.contract(&open) {
-                self.report(&before, BoxOutcome::Proved, worst);
+                self.report(&before, BoxOutcome::Proved, || worst);
                 return;
             }
-            for part in before.cut_to(&polar) {
-                self.report(&part, BoxOutcome::Proved, worst);
+            if self.observer.watches_boxes() {
+                for part in before.cut_to(&polar) {
+                    self.report(&part, BoxOutcome::Proved, || worst);
+                }
             }
             if polar.volume() >= WORTHWHILE * before.volume() {
                 break;
@@ -377,13 +368,24 @@ impl<'a, L: Leg> Proof<'a, L> {
         self.halve(polar);
     }
 
-    /// Tells the observer what became of a box; `decisive` is the constraint that is nearest to its threshold on it.
-    fn report(&mut self, polar: &PolarBox, outcome: BoxOutcome, decisive: Option<&(Constraint, TaylorModel)>) {
+    /// Tells the observer, if it watches, what became of a box; `decisive` is the constraint that is nearest to its threshold on it.
+    fn report<'b>(
+        &mut self,
+        polar: &PolarBox,
+        outcome: BoxOutcome,
+        decisive: impl FnOnce() -> Option<&'b (Constraint, TaylorModel)>,
+    ) {
+        if !self.observer.watches_boxes() {
+            return;
+        }
+        let decisive = decisive().map(|&(constraint, _)| constraint);
         self.observer.examined(&ExaminedBox {
             lower: polar.lower,
             upper: polar.upper,
             outcome,
-            constraint: decisive.map_or(Constraint::Reach, |(constraint, _)| *constraint),
+            constraint: decisive
+                .or(self.violation.map(|violation| violation.constraint))
+                .unwrap_or(Constraint::Reach),
             depth: polar.depth,
         });
     }
@@ -397,9 +399,7 @@ impl<'a, L: Leg> Proof<'a, L> {
             } else {
                 BoxOutcome::Undecided
             };
-            let constraint = self.violation.map(|violation| violation.constraint);
-            let decisive = constraint.map(|constraint| (constraint, TaylorModel::exactly(0.0)));
-            self.report(&polar, outcome, decisive.as_ref());
+            self.report(&polar, outcome, || None);
         }
     }
 
@@ -412,7 +412,7 @@ impl<'a, L: Leg> Proof<'a, L> {
         let is_narrow = sides[widest] < NARROWEST * self.design.base_radius;
         if is_narrow || middle <= polar.lower[widest] || middle >= polar.upper[widest] {
             self.aside = self.aside.min(polar.lower[0]);
-            self.report(&polar, BoxOutcome::Undecided, None);
+            self.report(&polar, BoxOutcome::Undecided, || None);
             return;
         }
         let (mut lower, mut upper) = (polar.lower, polar.upper);

@@ -16,6 +16,18 @@ pub struct PoseEnclosure {
     pub sine: TaylorModel,
 }
 
+impl PoseEnclosure {
+    /// A box without width: position of `P` \[m\] and orientation \[rad\].
+    pub fn point(position: [Interval; 2], phi: Interval) -> Self {
+        let (sine, cosine) = phi.sine_and_cosine();
+        Self {
+            position: position.map(TaylorModel::constant),
+            cosine: TaylorModel::constant(cosine),
+            sine: TaylorModel::constant(sine),
+        }
+    }
+}
+
 /// What the constraints need of a leg, over a box of poses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LegEnclosure {

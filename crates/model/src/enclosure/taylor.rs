@@ -209,6 +209,16 @@ impl TaylorModel {
         [lower - slack, upper + slack]
     }
 
+    /// Whether every value is above 0. A comparison with NaN is false, so that nothing is proved from it.
+    pub fn is_positive(&self) -> bool {
+        self.range()[0] > 0.0
+    }
+
+    /// Whether every value is below 0; not so with NaN.
+    pub fn is_negative(&self) -> bool {
+        self.range()[1] < 0.0
+    }
+
     /// Returns a lower bound of the polynomial and the remainder without the terms of the variable `index` alone.
     pub fn least_without(&self, index: usize) -> f64 {
         let mut rest = *self;

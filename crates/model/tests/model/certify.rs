@@ -59,12 +59,23 @@ fn cases() -> Vec<Case> {
 
 /// The pose as a box without width.
 fn point(pose: &Pose) -> PoseEnclosure {
-    let (sine, cosine) = Interval::exactly(pose.phi).sine_and_cosine();
-    PoseEnclosure {
-        position: pose.position.to_array().map(TaylorModel::exactly),
-        cosine: TaylorModel::constant(cosine),
-        sine: TaylorModel::constant(sine),
-    }
+    PoseEnclosure::point(
+        pose.position.to_array().map(Interval::exactly),
+        Interval::exactly(pose.phi),
+    )
+}
+
+/// Random poses of a disc about O, over the window about a home orientation.
+fn random_poses(model: &Model, radius: f64, phi_deg: f64, count: usize) -> impl Iterator<Item = Pose> {
+    let half = 0.5 * model.workspace.rotation_range_deg.to_radians();
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let mut between =
+        move |low: f64, high: f64| low + (high - low) * f64::from(random.next_u32()) / f64::from(u32::MAX);
+    (0..count).map(move |_| {
+        let (radius, angle) = (radius * between(0.0, 1.0).sqrt(), between(0.0, std::f64::consts::TAU));
+        let phi = phi_deg.to_radians() + between(-half, half);
+        Pose::new(radius * angle.cos(), radius * angle.sin(), phi)
+    })
 }
 
 #[test]
@@ -142,19 +153,11 @@ fn a_blind_proof_stops_before_the_known_pose() {
 fn no_pose_of_a_proved_disc_is_infeasible() {
     const POSES: usize = 100_000;
     let model = Model::default();
-    let half = 0.5 * model.workspace.rotation_range_deg.to_radians();
     let infeasible: usize = cases()
         .par_iter()
         .map(|case| {
             let proved = certify(&case.design, case.phi_deg, case.fine_radius, 1e-4).lower;
-            let mut random = ChaCha8Rng::seed_from_u64(7);
-            let mut between =
-                |low: f64, high: f64| low + (high - low) * f64::from(random.next_u32()) / f64::from(u32::MAX);
-            let poses = (0..POSES).map(|_| {
-                let (radius, angle) = (proved * between(0.0, 1.0).sqrt(), between(0.0, std::f64::consts::TAU));
-                let phi = case.phi_deg.to_radians() + between(-half, half);
-                Pose::new(radius * angle.cos(), radius * angle.sin(), phi)
-            });
+            let poses = random_poses(&model, proved, case.phi_deg, POSES);
             poses.filter(|pose| !holds(&model, &case.design, pose, -1e-9)).count()
         })
         .sum();
@@ -390,17 +393,7 @@ fn other_definitions_are_certified() {
             );
             assert!(model.margin_at(&design, &violation.pose, violation.constraint) < 1e-12);
             assert!(upper < 1.01 * evaluation.workspace_radius);
-            let mut random = ChaCha8Rng::seed_from_u64(7);
-            let mut between =
-                |low: f64, high: f64| low + (high - low) * f64::from(random.next_u32()) / f64::from(u32::MAX);
-            let half = 0.5 * model.workspace.rotation_range_deg.to_radians();
-            for _ in 0..POSES {
-                let (radius, angle) = (
-                    found.lower * between(0.0, 1.0).sqrt(),
-                    between(0.0, std::f64::consts::TAU),
-                );
-                let phi = phi_deg.to_radians() + between(-half, half);
-                let pose = Pose::new(radius * angle.cos(), radius * angle.sin(), phi);
+            for pose in random_poses(&model, found.lower, phi_deg, POSES) {
                 assert!(holds(&model, &design, &pose, -1e-9), "{name}, {design}: {pose:?}");
             }
             let blind = CertifyOptions {

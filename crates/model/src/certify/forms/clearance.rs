@@ -206,9 +206,7 @@ impl Bounds {
 /// Pushes the forms of a pair that are not proved.
 fn separate(a: &AxisEnclosure, b: &AxisEnclosure, distance: f64, found: &mut Enclosures) {
     let mut push = |value: TaylorModel| {
-        // A comparison with NaN is false: nothing is proved then.
-        let is_proved = value.range()[0] > 0.0;
-        if !is_proved {
+        if !value.is_positive() {
             found.push(Constraint::Clearance, value);
         }
     };

@@ -11,7 +11,7 @@ use clearance::{MemberBoxes, Separations};
 use compliances::Compliances;
 
 use super::CertifyError;
-use crate::enclosure::{Interval, LegEnclosure, PoseEnclosure, TaylorModel, VARIABLES};
+use crate::enclosure::{Interval, LegEnclosure, PoseEnclosure, TaylorModel, VARIABLES, cross, dot};
 use crate::evaluation::{Constraint, Model};
 use crate::kinematics::CharacteristicLength;
 use crate::mechanism::{Design, Leg};
@@ -97,11 +97,13 @@ impl Enclosures {
 
     /// The constraints that are not proved, with their values.
     pub fn open(&self) -> impl Iterator<Item = &(Constraint, TaylorModel)> {
-        self.iter().filter(|(_, value)| {
-            // A comparison with NaN is false: nothing is proved then.
-            let is_proved = value.range()[0] > 0.0;
-            !is_proved
-        })
+        self.iter().filter(|(_, value)| !value.is_positive())
+    }
+
+    /// The constraints that are proved to be violated, of those at a pose.
+    pub fn violated(&self) -> impl Iterator<Item = Constraint> {
+        let violated = self.iter().filter(|(_, value)| value.is_negative());
+        violated.map(|&(constraint, _)| constraint)
     }
 
     /// The constraints with their values.
@@ -170,7 +172,7 @@ impl<'a, L: Leg> Forms<'a, L> {
         let legs: [LegEnclosure; LEGS] = [0, 1, 2].map(|index| L::enclose(self.design, &self.model.legs, index, pose));
         for reach in legs.iter().flat_map(|leg| leg.reach) {
             found.push(Constraint::Reach, reach);
-            found.is_complete &= reach.range()[0] > 0.0;
+            found.is_complete &= reach.is_positive();
         }
         if found.is_complete {
             if found.needs(self.dexterity()) {
@@ -206,9 +208,8 @@ impl<'a, L: Leg> Forms<'a, L> {
         let mut determinant = TaylorModel::exactly(0.0);
         let (mut forward, mut inverse) = (TaylorModel::exactly(0.0), TaylorModel::exactly(0.0));
         for i in 0..LEGS {
-            let (j, k) = ((i + 1) % LEGS, (i + 2) % LEGS);
-            let turn = crate::enclosure::cross(legs[j].u, legs[k].u);
-            let cosine = crate::enclosure::dot(legs[j].u, legs[k].u);
+            let [j, k] = others(i);
+            let (turn, cosine) = (turn(legs, i), dot(legs[j].u, legs[k].u));
             determinant = determinant + moments[i] * turn;
             let mixed = (moments[j] * moments[k] * cosine).times(2.0);
             let row = squares[j] + squares[k] - mixed + turn.squared();
@@ -226,6 +227,17 @@ impl<'a, L: Leg> Forms<'a, L> {
     }
 }
 
+/// The two legs after leg `i`, in turn.
+fn others(i: usize) -> [usize; 2] {
+    [(i + 1) % LEGS, (i + 2) % LEGS]
+}
+
+/// `w_i = u_j × u_k`.
+fn turn(legs: &[LegEnclosure; LEGS], i: usize) -> TaylorModel {
+    let [j, k] = others(i);
+    cross(legs[j].u, legs[k].u)
+}
+
 /// Encloses the characteristic length \[m\].
 ///
 /// The isotropic length is the largest of a finite set: the moments at the orientations of the reference grid with `P` at `O`. An
@@ -241,12 +253,8 @@ fn characteristic_length<L: Leg>(model: &Model, design: &Design) -> Interval {
             let (mut certain, mut possible) = (Interval::exactly(0.0), Interval::exactly(0.0));
             let mut is_certain = false;
             for k in 0..grid.orientations() {
-                let (sine, cosine) = Interval::radians(k as f64 * grid.phi_step_deg()).sine_and_cosine();
-                let pose = PoseEnclosure {
-                    position: [TaylorModel::exactly(0.0); 2],
-                    cosine: TaylorModel::constant(cosine),
-                    sine: TaylorModel::constant(sine),
-                };
+                let phi = Interval::radians(k as f64 * grid.phi_step_deg());
+                let pose = PoseEnclosure::point([Interval::exactly(0.0); 2], phi);
                 let legs = [0, 1, 2].map(|index| L::enclose(design, &model.legs, index, &pose));
                 let mut limits = legs.iter().flat_map(|leg| leg.reach).map(|limit| limit.range());
                 if limits.clone().any(|[_, upper]| upper < 0.0) {

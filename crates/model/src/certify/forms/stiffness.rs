@@ -1,7 +1,7 @@
 //! Forms of the constraints on stiffness, g4, g5 and g6 (docs/model.md, section 13.3).
 
-use super::{Enclosures, Forms};
-use crate::enclosure::{Interval, LegEnclosure, PlanarModel, TaylorModel, cross, dot};
+use super::{Enclosures, Forms, others, turn};
+use crate::enclosure::{Interval, LegEnclosure, PlanarModel, TaylorModel, dot};
 use crate::evaluation::Constraint;
 use crate::mechanism::Leg;
 use crate::spatial::LEGS;
@@ -100,7 +100,7 @@ impl<L: Leg> Forms<'_, L> {
     /// needed for one.
     fn enclose_vertical(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
         let first = self.vertical(&legs[0]);
-        if (first[0] - first[1].scaled(self.compliance.vertical)).range()[0] > 0.0 {
+        if (first[0] - first[1].scaled(self.compliance.vertical)).is_positive() {
             return;
         }
         let mut stiffness = TaylorModel::constant(-self.compliance.vertical);
@@ -303,17 +303,6 @@ fn cofactors(&[a, b, c, d, e, f]: &Symmetric) -> Symmetric {
 
 fn determinant(matrix: &Symmetric, cofactors: &Symmetric) -> TaylorModel {
     matrix[0] * cofactors[0] + matrix[1] * cofactors[1] + matrix[2] * cofactors[2]
-}
-
-/// The two legs after leg `i`, in turn.
-fn others(i: usize) -> [usize; 2] {
-    [(i + 1) % LEGS, (i + 2) % LEGS]
-}
-
-/// `w_i = u_j × u_k`.
-fn turn(legs: &[LegEnclosure; LEGS], i: usize) -> TaylorModel {
-    let [j, k] = others(i);
-    cross(legs[j].u, legs[k].u)
 }
 
 fn sum_of_legs(term: impl Fn(usize) -> TaylorModel) -> TaylorModel {
