@@ -22,7 +22,7 @@ use kinefront::study::{BUILTIN, DesignProblem, Study};
 use kinefront_model::evaluation::{BarRanges, Evaluation, GridChoice, Model, WorkspaceTarget};
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design};
 use kinefront_optimize::{
-    Archive, Evaluated, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Outcome, hypervolume, run, spread,
+    Archive, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Objectives, Outcome, hypervolume, run, spread,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -82,8 +82,7 @@ impl Front {
                 .unwrap_or(0) as f64,
         ];
         x.extend(design.values());
-        let outcome = DesignProblem::outcome(evaluation);
-        self.0.insert(0, &Evaluated { x, outcome });
+        self.0.insert(0, &x, &DesignProblem::outcome(evaluation));
     }
 
     fn take_all(&mut self, other: &Front) {
@@ -92,17 +91,11 @@ impl Front {
                 objectives: member.objectives,
                 violation: 0.0,
             };
-            self.0.insert(
-                0,
-                &Evaluated {
-                    x: member.x.clone(),
-                    outcome,
-                },
-            );
+            self.0.insert(0, &member.x, &outcome);
         }
     }
 
-    fn designs(&self, study: &Study) -> Vec<(Design, [f64; 2])> {
+    fn designs(&self, study: &Study) -> Vec<(Design, Objectives)> {
         self.0
             .iter()
             .map(|member| {
@@ -148,10 +141,10 @@ impl Front {
             .chain(DESIGN_VARIABLES.map(|variable| variable.key()));
         let objectives = ["mass_kg", "workspace_radius_m"];
         row(header.chain(objectives).map(str::to_owned).collect());
-        let objectives: Vec<[f64; 2]> = self.0.iter().map(|member| member.objectives).collect();
+        let objectives: Vec<Objectives> = self.0.iter().map(|member| member.objectives).collect();
         for place in spread(&objectives, KEPT) {
             let member = &self.0[place];
-            let [mass, negative_radius] = member.objectives;
+            let [mass, negative_radius] = [member.objectives[0], member.objectives[1]];
             let numbers = member.x[1..].iter().copied().chain([mass, -negative_radius]);
             let architecture = Architecture::ALL[member.x[0] as usize];
             row([architecture.to_string()]
@@ -198,6 +191,8 @@ impl Search {
             bars: BarRanges {
                 leg: ranges[3],
                 platform: ranges[4],
+                listed: [None, None],
+                is_exact: false,
             },
             architecture,
             study,
@@ -288,7 +283,7 @@ impl Search {
 
     /// Minimises the mass at one radius by differential evolution of the geometry; returns every evaluation on the
     /// fine grid.
-    fn step(&self, known: &[(Design, [f64; 2])], level: f64, seed: u64) -> Vec<Evaluation> {
+    fn step(&self, known: &[(Design, Objectives)], level: f64, seed: u64) -> Vec<Evaluation> {
         let mut random = ChaCha8Rng::seed_from_u64(1000 + seed);
         let mut near = known.to_vec();
         near.sort_by(|a, b| (a.1[1] + level).abs().total_cmp(&(b.1[1] + level).abs()));

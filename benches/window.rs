@@ -16,7 +16,7 @@ use kinefront::study::{
     Started, Study, Subscriber, TableRow,
 };
 use kinefront_model::evaluation::{Evaluation, GridChoice};
-use kinefront_optimize::{Archive, Evaluated, sobol};
+use kinefront_optimize::{Archive, sobol};
 
 const DESIGNS: usize = 1_000_000;
 const GENERATION: usize = 500;
@@ -79,11 +79,7 @@ impl Stream {
             let mut changed = false;
             for (offset, evaluation) in evaluations.iter().enumerate() {
                 let id = first_id + offset;
-                let candidate = Evaluated {
-                    x: Vec::new(),
-                    outcome: DesignProblem::outcome(evaluation),
-                };
-                if archive.insert(id, &candidate) {
+                if archive.insert(id, &[], &DesignProblem::outcome(evaluation)) {
                     changed = true;
                     members.push(FrontMember {
                         id,

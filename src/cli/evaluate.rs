@@ -31,8 +31,13 @@ pub struct EvaluateArguments {
 
 pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
     let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
+    let mut model = study.model().map_err(Failure::runtime)?;
+    if arguments.design.is_some() {
+        // One design is told in full; a stream has what its study names.
+        model = model.with_all_quantities();
+    }
     let server = Server {
-        model: study.model().map_err(Failure::runtime)?,
+        model,
         mode: study.working_mode,
         grid: arguments.grid.into(),
     };

@@ -9,6 +9,7 @@ mod export;
 mod optimize;
 mod pose;
 mod progress;
+mod question;
 mod report;
 mod show;
 mod signals;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use kinefront::study::{BUILTIN, Builtin, Study, write_whole};
 use miette::miette;
 
-use super::{Ending, Failure, builtin_names, exists_already, load_study};
+use super::{Ending, Failure, builtin_names, exists_already, load_study, question};
 
 #[derive(Debug, clap::Args)]
 pub struct StudyArguments {
@@ -32,6 +32,9 @@ enum StudyCommand {
         /// Built-in study to copy.
         #[arg(long, default_value = "paper")]
         from: String,
+        /// Ask for the study on the terminal instead of copying one.
+        #[arg(long, conflicts_with = "from")]
+        question: bool,
     },
     /// Check a study file and report its errors.
     Check {
@@ -54,14 +57,25 @@ pub fn run(arguments: &StudyArguments) -> Result<Ending, Failure> {
             }
         }
         StudyCommand::Show { name } => write!(out, "{}", builtin(name)?.text)?,
-        StudyCommand::New { file, from } => {
-            let text = builtin(from)?.text;
+        StudyCommand::New { file, from, question } => {
+            if file != Path::new("-") && file.exists() {
+                return Err(exists_already(file));
+            }
+            let text = if *question {
+                // With the study on standard output, the questions go to standard error.
+                let answers = &mut std::io::stdin().lock();
+                let asked = if file == Path::new("-") {
+                    question::ask(answers, &mut std::io::stderr().lock())
+                } else {
+                    question::ask(answers, &mut out)
+                };
+                asked.map_err(|error| Failure::Input(miette!("no study was written: {error}")))?
+            } else {
+                builtin(from)?.text.to_owned()
+            };
             if file == Path::new("-") {
                 write!(out, "{text}")?;
                 return Ok(Ending::Done);
-            }
-            if file.exists() {
-                return Err(exists_already(file));
             }
             write_whole(file, text.as_bytes()).map_err(Failure::runtime)?;
             writeln!(out, "wrote {}", file.display())?;

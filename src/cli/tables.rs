@@ -5,7 +5,7 @@ use comfy_table::{CellAlignment, Table};
 use kinefront::export::CertificateJson;
 use kinefront::study::{FrontMember, RunSummary};
 use kinefront::text::{self, number};
-use kinefront_model::evaluation::{Evaluation, Model, PoseEvaluation, Unreachable};
+use kinefront_model::evaluation::{Bound, Evaluation, Model, PoseEvaluation, Quantity, Unreachable};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 
@@ -57,6 +57,33 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         _ => {
             facts.add_row(["regular workspace", "none: the design is infeasible"]);
         }
+    }
+    for entry in Quantity::all().map(Quantity::entry) {
+        let is_told_elsewhere =
+            entry.constraint.is_some() || entry.unit == "kg" || entry.quantity == Quantity::WorkspaceRadius;
+        if let Some(value) = evaluation.quantities.get(entry.quantity).filter(|_| !is_told_elsewhere) {
+            facts.add_row([
+                entry.label.to_owned(),
+                format!("{} {}", text::number(value), entry.unit),
+            ]);
+        }
+    }
+    for result in &evaluation.limits {
+        let entry = result.limit.quantity.entry();
+        let sign = match result.limit.bound {
+            Bound::AtLeast(_) => "≥",
+            Bound::AtMost(_) => "≤",
+        };
+        let value = result.value.map_or_else(|| "none".to_owned(), text::number);
+        let kept = if result.margin >= 0.0 { "kept" } else { "missed" };
+        facts.add_row([
+            format!("limit of {}", entry.label),
+            format!(
+                "{value} {sign} {} {}: {kept}",
+                text::number(result.limit.threshold()),
+                entry.unit
+            ),
+        ]);
     }
     if let Some(nearest) = evaluation.nearest {
         let where_least = if evaluation.is_feasible() {

@@ -186,7 +186,9 @@ fn replace_values(text: &str, before: &Table, after: &Table) -> Option<String> {
     let mut document: DocumentMut = text.parse().ok()?;
     for setting in settings() {
         let value = setting.value(after);
-        if setting.value(before) == value {
+        // The region is a section of its own, whose settings follow.
+        let is_section = setting.path() == "workspace.region";
+        if is_section || setting.value(before) == value {
             continue;
         }
         let mut table = document.as_table_mut() as &mut dyn TableLike;
@@ -213,7 +215,7 @@ fn replace_values(text: &str, before: &Table, after: &Table) -> Option<String> {
     Some(document.to_string())
 }
 
-/// Converts a value for the text; `None` for what no setting is: dates and tables.
+/// Converts a value for the text; `None` for what no setting is: a date.
 fn edit_value(value: &Value) -> Option<toml_edit::Value> {
     Some(match value {
         Value::String(text) => text.as_str().into(),
@@ -224,7 +226,14 @@ fn edit_value(value: &Value) -> Option<toml_edit::Value> {
             let items: toml_edit::Array = items.iter().map(edit_value).collect::<Option<_>>()?;
             items.into()
         }
-        Value::Datetime(_) | Value::Table(_) => return None,
+        Value::Table(table) => {
+            let entries = table
+                .iter()
+                .map(|(key, value)| Some((key.as_str(), edit_value(value)?)));
+            let table: toml_edit::InlineTable = entries.collect::<Option<_>>()?;
+            table.into()
+        }
+        Value::Datetime(_) => return None,
     })
 }
 

@@ -134,10 +134,10 @@ impl Sheet {
             };
             match solid.shape {
                 // In plan view a pin is a circle.
-                SolidShape::Bar { from, to, radius } if from.truncate() == to.truncate() => {
+                SolidShape::Bar { from, to, radius, .. } if from.truncate() == to.truncate() => {
                     self.circle(layer, from.truncate(), radius);
                 }
-                SolidShape::Bar { from, to, radius } => {
+                SolidShape::Bar { from, to, radius, .. } => {
                     self.bar(layer, from, to, radius);
                     let axis = Line::new(point(from.truncate()), point(to.truncate()));
                     self.add("CENTRE_LINES", EntityType::Line(axis));
@@ -146,6 +146,7 @@ impl Sheet {
                     centre,
                     half_size,
                     angle,
+                    ..
                 } => {
                     let along = kinefront_model::spatial::unit(angle) * half_size.x;
                     let (from, to) = (centre - along.extend(0.0), centre + along.extend(0.0));

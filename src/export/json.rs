@@ -1,12 +1,14 @@
 //! The JSON output that other programs rely on. Keys are a contract: new ones may be added, none may be renamed.
 
+use std::collections::BTreeMap;
+
 use crate::AnyError;
 use serde::Serialize;
 
 use super::Prepared;
 use crate::scene::{Body, Frame, Linkage};
 use kinefront_model::certify::{Certificate, CertifyOptions, Verdict};
-use kinefront_model::evaluation::{Evaluation, Model, PoseEvaluation, Unreachable};
+use kinefront_model::evaluation::{Bound, Evaluation, LimitResult, Model, PoseEvaluation, Quantity, Unreachable};
 use kinefront_model::mechanism::{Actuator, Design};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::Material;
@@ -83,6 +85,36 @@ pub struct EvaluationJson {
     clearance_pair: Option<[String; 2]>,
     /// The constraints that the study requires.
     constraints: Vec<ConstraintJson>,
+    /// The quantities that were determined, by their keys.
+    quantities: BTreeMap<&'static str, f64>,
+    /// The limits of quantities over the whole region.
+    limits: Vec<LimitJson>,
+}
+
+/// A limit of a quantity.
+#[derive(Debug, Serialize)]
+struct LimitJson {
+    quantity: &'static str,
+    /// `at_least` or `at_most`.
+    bound: &'static str,
+    threshold: f64,
+    value: Option<f64>,
+    margin: f64,
+}
+
+impl From<&LimitResult> for LimitJson {
+    fn from(result: &LimitResult) -> Self {
+        Self {
+            quantity: result.limit.quantity.entry().key,
+            bound: match result.limit.bound {
+                Bound::AtLeast(_) => "at_least",
+                Bound::AtMost(_) => "at_most",
+            },
+            threshold: result.limit.threshold(),
+            value: result.value,
+            margin: result.margin,
+        }
+    }
 }
 
 impl EvaluationJson {
@@ -117,6 +149,10 @@ impl EvaluationJson {
                     pose: report.pose.map(|pose| PoseJson::new(&pose, pose.phi.to_degrees())),
                 })
                 .collect(),
+            quantities: Quantity::all()
+                .filter_map(|quantity| Some((quantity.entry().key, evaluation.quantities.get(quantity)?)))
+                .collect(),
+            limits: evaluation.limits.iter().map(LimitJson::from).collect(),
         }
     }
 }
@@ -325,6 +361,10 @@ struct BarJson {
     from_m: [f64; 2],
     to_m: [f64; 2],
     radius_m: f64,
+    /// Inner radius, or half of the inner width; 0 for a solid bar.
+    inner_radius_m: f64,
+    /// Shape of the cross-section: `round` or `square`.
+    section: &'static str,
     mass_kg: f64,
 }
 
@@ -380,6 +420,8 @@ impl<'a> BodyJson<'a> {
                     from_m: bar.from.to_array(),
                     to_m: bar.to.to_array(),
                     radius_m: bar.radius,
+                    inner_radius_m: bar.inner_radius,
+                    section: if bar.is_square { "square" } else { "round" },
                     mass_kg: bar.mass,
                 })
                 .collect(),

@@ -179,7 +179,7 @@ fn element(subject: &Prepared, body: &Body) -> Element {
 
 fn geom(solid: &Solid) -> Element {
     let geom = match solid.shape {
-        SolidShape::Bar { from, to, radius } => Element::new("geom")
+        SolidShape::Bar { from, to, radius, .. } => Element::new("geom")
             .with("type", "cylinder")
             .with_numbers("fromto", &[from.x, from.y, from.z, to.x, to.y, to.z])
             .with_numbers("size", &[radius]),
@@ -187,6 +187,7 @@ fn geom(solid: &Solid) -> Element {
             centre,
             half_size,
             angle,
+            ..
         } => Element::new("geom")
             .with("type", "box")
             .with_numbers("pos", &centre.to_array())

@@ -92,7 +92,7 @@ fn link(body: &Body) -> Element {
 
 fn visual(index: usize, solid: &Solid) -> Element {
     let shape = match solid.shape {
-        SolidShape::Bar { from, to, radius } => Element::new("cylinder")
+        SolidShape::Bar { from, to, radius, .. } => Element::new("cylinder")
             .leaf("radius", text(radius))
             .leaf("length", text(from.distance(to))),
         SolidShape::Block { half_size, .. } => Element::new("box").leaf("size", numbers(&(half_size * 2.0).to_array())),

@@ -142,7 +142,7 @@ fn link(body: &Body, shift: DVec2) -> Element {
 
 fn visual(solid: &Solid) -> Element {
     let shape = match solid.shape {
-        SolidShape::Bar { from, to, radius } => Element::new("cylinder")
+        SolidShape::Bar { from, to, radius, .. } => Element::new("cylinder")
             .with("radius", text(radius))
             .with("length", text(from.distance(to))),
         SolidShape::Block { half_size, .. } => Element::new("box").with_numbers("size", &(half_size * 2.0).to_array()),

@@ -132,12 +132,12 @@ fn run_limited(program: &Path, recording: &Path, folder: &Path) -> std::io::Resu
 /// [`RecordedRunError`].
 pub fn unpack(path: &Path, folder: &Path) -> Result<(), RecordedRunError> {
     let recorded = read_run(path)?;
-    let (_, rows) = rows(path, &recorded)?;
+    let (study, rows) = rows(path, &recorded)?;
     write_whole(&folder.join(STUDY), recorded.study.as_bytes())?;
     let cells = rows
         .iter()
-        .map(|entry| Column::of_designs().map(|column| column.cell(entry)).collect());
-    let table = table_bytes(Column::of_designs(), cells).map_err(|error| foreign(path, error))?;
+        .map(|entry| Column::of_designs(&study).map(|column| column.cell(entry)).collect());
+    let table = table_bytes(Column::of_designs(&study), cells).map_err(|error| foreign(path, error))?;
     write_whole(&folder.join(DESIGNS), &table)?;
     Ok(())
 }

@@ -36,8 +36,11 @@ fn sparse(name: &str, values: impl Iterator<Item = Option<f64>>) -> Result<Seria
 
 /// Returns the columns of consecutive designs, named as in `designs.csv`; the id and the generation are times of the
 /// recording.
-pub(super) fn designs(rows: &[TableRow]) -> Result<Vec<SerializedComponentColumn>, RecordingError> {
-    Column::of_designs()
+pub(super) fn designs(
+    study: &crate::study::Study,
+    rows: &[TableRow],
+) -> Result<Vec<SerializedComponentColumn>, RecordingError> {
+    Column::of_designs(study)
         .filter(|column| !matches!(column, Column::Id | Column::Generation))
         .map(|column| {
             let name = column.name();

@@ -129,7 +129,7 @@ impl<'a> Canvas<'a> {
         let bars: Vec<(DVec3, DVec3, f64, Part)> = solids
             .iter()
             .filter_map(|solid| match solid.shape {
-                SolidShape::Bar { from, to, radius } => Some((from, to, radius, solid.part)),
+                SolidShape::Bar { from, to, radius, .. } => Some((from, to, radius, solid.part)),
                 SolidShape::Block { .. } => None,
             })
             .collect();
@@ -151,6 +151,7 @@ impl<'a> Canvas<'a> {
                     centre,
                     half_size,
                     angle,
+                    ..
                 } => Some((centre, half_size, angle, solid.part)),
                 SolidShape::Bar { .. } => None,
             })

@@ -42,6 +42,7 @@ fn along_front(name: &str) -> String {
 
 /// The recording of one run.
 pub struct Recorder {
+    study: Study,
     writer: RecordingWriter,
     model: Model,
     architectures: Vec<Architecture>,
@@ -104,6 +105,7 @@ impl Recorder {
             writer,
             model,
             architectures: study.architectures.clone(),
+            study: study.clone(),
             frame,
             every: every.max(1),
             records: true,
@@ -327,7 +329,7 @@ impl Recorder {
         ];
         self.writer
             .stream()
-            .send_columns(paths::DESIGNS, times, columns::designs(pending)?)?;
+            .send_columns(paths::DESIGNS, times, columns::designs(&self.study, pending)?)?;
         self.pending.clear();
         self.writer.check()
     }

@@ -46,7 +46,7 @@ impl DrawnDesign<'_> {
                 .solids
                 .iter()
                 .map(|solid| match solid.shape {
-                    SolidShape::Bar { from, to, radius } => {
+                    SolidShape::Bar { from, to, radius, .. } => {
                         // A pin extends down to its lower face, a bar in the plane down by its radius.
                         if from.z == to.z {
                             from.z - radius

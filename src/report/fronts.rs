@@ -6,7 +6,7 @@ use super::Source;
 use crate::study::{DesignProblem, FrontMember, FrontProofs, FrontProver, Study};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{Architecture, Design};
-use kinefront_optimize::{Archive, Evaluated, Outcome, knee, spread};
+use kinefront_optimize::{Archive, Objectives, Outcome, knee, spread};
 
 /// A front: non-dominated evaluations on the fine grid in ascending order of mass, and hence of `R_w`.
 #[derive(Debug, Clone, Default)]
@@ -25,11 +25,10 @@ impl Front {
     pub fn new(evaluations: Vec<Evaluation>, most: usize) -> Self {
         let mut archive = Archive::default();
         for (id, evaluation) in evaluations.iter().enumerate().filter(|(_, found)| found.is_feasible()) {
-            let outcome = DesignProblem::outcome(evaluation);
-            archive.insert(id, &Evaluated { x: Vec::new(), outcome });
+            archive.insert(id, &[], &DesignProblem::outcome(evaluation));
         }
         let members: Vec<Evaluation> = archive.iter().map(|member| evaluations[member.id].clone()).collect();
-        let objectives: Vec<[f64; 2]> = archive.iter().map(|member| member.objectives).collect();
+        let objectives: Vec<Objectives> = archive.iter().map(|member| member.objectives).collect();
         let shown = spread(&objectives, most);
         Self {
             shown: shown.into_iter().map(|place| members[place].clone()).collect(),
@@ -42,9 +41,9 @@ impl Front {
     fn certify(&mut self, study: &Study, model: &Model) {
         let shown = self.shown.drain(..).enumerate();
         let shown: Vec<FrontMember> = shown.map(|(id, found)| FrontMember::of(id, found)).collect();
-        let mut prover = FrontProver::new(model, study.bounds.thickest_bars(), &|| true);
+        let mut prover = FrontProver::new(model, study.thickest_bars(), &|| true);
         prover.prove(&shown);
-        let (proved, proofs) = prover.conclude(shown.len(), study.hypervolume.reference());
+        let (proved, proofs) = prover.conclude(shown.len(), study.hypervolume_reference());
         self.shown = proved.into_iter().map(|member| member.evaluation).collect();
         self.proofs = Some(proofs);
     }
@@ -75,7 +74,7 @@ impl Front {
     pub fn marked(&self) -> Vec<(&'static str, &Evaluation)> {
         let mut marked = Vec::new();
         let last = self.shown.len().saturating_sub(1);
-        let objectives: Vec<[f64; 2]> = self
+        let objectives: Vec<Objectives> = self
             .shown()
             .map(|member| DesignProblem::outcome(member).objectives)
             .collect();
@@ -150,14 +149,14 @@ fn candidates(sources: &[Source], architecture: Architecture) -> Vec<Design> {
     let rows: Vec<_> = sources
         .iter()
         .flat_map(|source| &source.rows)
-        .filter(|row| row.design.architecture == architecture && row.radius > 0.0)
+        .filter(|row| row.design.architecture == architecture && row.is_feasible())
         .collect();
     for (id, row) in rows.iter().enumerate() {
         let outcome = Outcome {
-            objectives: row.objectives(),
+            objectives: row.objectives,
             violation: 0.0,
         };
-        archive.insert(id, &Evaluated { x: Vec::new(), outcome });
+        archive.insert(id, &[], &outcome);
     }
     archive.iter().map(|member| rows[member.id].design).collect()
 }

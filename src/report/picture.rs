@@ -148,7 +148,7 @@ struct RenderSolid {
 impl RenderSolid {
     fn new(shape: &SolidShape, color: DVec3) -> Self {
         let (shape, pose) = match *shape {
-            SolidShape::Bar { from, to, radius } => {
+            SolidShape::Bar { from, to, radius, .. } => {
                 let along = (to - from).normalize_or(DVec3::Y);
                 let turn = Rotation::from_rotation_arc(Vector::Y, vector(along));
                 let cylinder = Cylinder::new(0.5 * from.distance(to), radius);
@@ -159,6 +159,7 @@ impl RenderSolid {
                 centre,
                 half_size,
                 angle,
+                ..
             } => {
                 let turn = Rotation::from_rotation_z(angle);
                 let cuboid = Cuboid::new(vector(half_size));

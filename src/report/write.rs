@@ -37,7 +37,7 @@ impl Report {
         let members = || self.fronts.alone.iter().flat_map(|(_, front)| front.shown());
         let joint_front = Front::new(members().cloned().collect(), usize::MAX).members;
         let joint = |member: &Evaluation| joint_front.contains(member);
-        let columns = || Column::of_designs().chain([Column::OnJointFront]);
+        let columns = || Column::of_designs(&self.study).chain([Column::OnJointFront]);
         let rows = members().enumerate().map(|(id, member)| {
             let entry = TableRow {
                 id,

@@ -7,6 +7,7 @@ use super::manipulator::Sizes;
 use kinefront_model::evaluation::{Model, Unreachable};
 use kinefront_model::mechanism::{Actuator, Design, Leg, LegBody, LegJoint, LegPart, Manipulator, MemberKind};
 use kinefront_model::spatial::{LEGS, Pose, Rotation};
+use kinefront_model::stiffness::CrossSection;
 use kinefront_model::with_leg;
 
 /// A planar frame, given in the base frame or in the frame of another body.
@@ -39,8 +40,12 @@ pub struct MassBar {
     pub from: DVec2,
     /// The other end \[m\].
     pub to: DVec2,
-    /// Radius \[m\].
+    /// Radius, or half of the width of a square bar \[m\].
     pub radius: f64,
+    /// Inner radius, or half of the inner width \[m\]; 0 for a solid bar.
+    pub inner_radius: f64,
+    /// Whether the cross-section is square rather than round.
+    pub is_square: bool,
     /// Mass \[kg\].
     pub mass: f64,
 }
@@ -78,7 +83,7 @@ impl Body {
     }
 
     /// Computes the elements `xx, yy, zz, xy` of the inertia tensor about the centre of mass in the body's axes
-    /// \[kg·m²\], with the bars as solid cylinders; `xy` is `−∫xy dm`.
+    /// \[kg·m²\], with the bars as prisms of their cross-sections; `xy` is `−∫xy dm`.
     pub fn inertia(&self) -> [f64; 4] {
         let centre = self.centre_of_mass();
         let mut inertia = [0.0; 4];
@@ -86,8 +91,11 @@ impl Body {
             let way = bar.to - bar.from;
             let length = way.length();
             let axis = way.normalize_or(DVec2::X);
-            let along = 0.5 * bar.mass * bar.radius * bar.radius;
-            let across = bar.mass * (3.0 * bar.radius * bar.radius + length * length) / 12.0;
+            let squares = bar.radius * bar.radius + bar.inner_radius * bar.inner_radius;
+            // Twelve times the squared radius of gyration of the section about an axis in its plane.
+            let section = if bar.is_square { 4.0 } else { 3.0 } * squares;
+            let along = bar.mass * section / 6.0;
+            let across = bar.mass * (section + length * length) / 12.0;
             let offset = 0.5 * (bar.from + bar.to) - centre;
             let (cc, ss, cs) = (axis.x * axis.x, axis.y * axis.y, axis.x * axis.y);
             inertia[0] += along * cc + across * ss + bar.mass * offset.y * offset.y;
@@ -207,7 +215,10 @@ fn leg_body<L: Leg>(
         LegPart::Tube { from, to }
         | LegPart::Rod { from, to }
         | LegPart::Crank { from, to }
-        | LegPart::Link { from, to } => Some(mass_bar(model, &frame, [from, to], design.leg_bar_radius, 1.0)),
+        | LegPart::Link { from, to } => {
+            let bar = (&model.sections.legs, design.leg_bar_radius);
+            Some(mass_bar(model, &frame, [from, to], bar, 1.0))
+        }
         LegPart::Slider { .. } | LegPart::Joint { .. } => None,
     });
     Body {
@@ -230,13 +241,8 @@ fn platform_body(model: &Model, design: &Design, sizes: &Sizes, pose: &Pose, end
     // The study may count fewer platform bars than the three that exist (docs/model.md, section 11).
     let fraction = f64::from(model.platform_bars) / LEGS as f64;
     let bars = ends.map(|end| {
-        mass_bar(
-            model,
-            &frame,
-            [end, pose.position],
-            design.platform_bar_radius,
-            fraction,
-        )
+        let bar = (&model.sections.platform, design.platform_bar_radius);
+        mass_bar(model, &frame, [end, pose.position], bar, fraction)
     });
     let solid = |index: usize| {
         let bar = sizes.platform_bar(index, ends[index], pose.position);
@@ -253,12 +259,20 @@ fn platform_body(model: &Model, design: &Design, sizes: &Sizes, pose: &Pose, end
     }
 }
 
-fn mass_bar(model: &Model, frame: &Frame, [from, to]: [DVec2; 2], radius: f64, fraction: f64) -> MassBar {
+fn mass_bar(
+    model: &Model,
+    frame: &Frame,
+    [from, to]: [DVec2; 2],
+    (section, radius): (&CrossSection, f64),
+    fraction: f64,
+) -> MassBar {
     let back = Rotation::new(-frame.angle);
     MassBar {
         from: back.apply(from - frame.origin),
         to: back.apply(to - frame.origin),
         radius,
-        mass: fraction * model.bar_mass(radius, from.distance(to)),
+        inner_radius: section.inner_radius(radius),
+        is_square: section.is_square(),
+        mass: fraction * model.bar_mass(section, radius, from.distance(to)),
     }
 }

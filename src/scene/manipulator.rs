@@ -8,6 +8,7 @@ use kinefront_model::clearance::{Bodies, BodySettings, Clearance, Neighbour};
 use kinefront_model::evaluation::{Model, Unreachable};
 use kinefront_model::mechanism::{Design, Guide, Leg, LegPart, Manipulator, MemberKind};
 use kinefront_model::spatial::{ANCHOR_DIRECTIONS, Pose, unit};
+use kinefront_model::stiffness::CrossSections;
 use kinefront_model::with_leg;
 
 /// Distance from a member's axis to the end of a pin, as a multiple of the member's radius.
@@ -34,6 +35,7 @@ fn flat(point: DVec2) -> DVec3 {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sizes<'a> {
     bodies: &'a BodySettings,
+    sections: &'a CrossSections,
     design: &'a Design,
 }
 
@@ -41,6 +43,7 @@ impl<'a> Sizes<'a> {
     pub(super) fn new(model: &'a Model, design: &'a Design) -> Self {
         Self {
             bodies: &model.bodies,
+            sections: &model.sections,
             design,
         }
     }
@@ -51,11 +54,26 @@ impl<'a> Sizes<'a> {
     }
 
     fn bar(&self, kind: MemberKind, from: DVec2, to: DVec2, fraction: f64) -> SolidShape {
-        let z = self.height(kind);
+        let (z, outer) = (self.height(kind), self.bodies.radius(kind, self.design));
+        let section = match kind {
+            MemberKind::PlatformBar => &self.sections.platform,
+            _ => &self.sections.legs,
+        };
+        let [radius, inner] = [outer, section.inner_radius(outer)].map(|size| fraction * size);
+        if section.is_square() {
+            let way = to - from;
+            return SolidShape::Block {
+                centre: (0.5 * (from + to)).extend(z),
+                half_size: DVec3::new(0.5 * way.length(), radius, radius),
+                angle: libm::atan2(way.y, way.x),
+                inner,
+            };
+        }
         SolidShape::Bar {
             from: from.extend(z),
             to: to.extend(z),
-            radius: fraction * self.bodies.radius(kind, self.design),
+            radius,
+            inner,
         }
     }
 
@@ -75,6 +93,7 @@ impl<'a> Sizes<'a> {
             from: at.extend(ends[0][0].min(ends[1][0])),
             to: at.extend(ends[0][1].max(ends[1][1])),
             radius: radius.max(least),
+            inner: 0.0,
         }
     }
 
@@ -87,6 +106,7 @@ impl<'a> Sizes<'a> {
                     centre: at.extend(self.height(MemberKind::Slider)),
                     half_size: DVec3::new(self.bodies.slider_half_length(self.design), half_width, half_width),
                     angle: libm::atan2(axis.y, axis.x),
+                    inner: 0.0,
                 };
                 (Part::Slider, shape)
             }
@@ -154,7 +174,7 @@ fn draw<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Scene, Un
     let posture = manipulator
         .posture(pose)
         .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
-    let bodies = Bodies::new::<L>(design, &model.bodies);
+    let bodies = Bodies::new::<L>(design, &model.bodies, &model.sections);
     let clearance = bodies.nearest(&manipulator, pose.position, &posture);
     let mut scene = Scene {
         nearest: Some(nearest(model, design, &clearance)),

@@ -43,7 +43,7 @@ impl SolidShape {
     /// Returns whether the shape has a volume; a bar of radius 0 has none.
     pub fn has_volume(&self) -> bool {
         match *self {
-            SolidShape::Bar { radius, from, to } => radius > 0.0 && from != to,
+            SolidShape::Bar { radius, from, to, .. } => radius > 0.0 && from != to,
             SolidShape::Block { half_size, .. } => half_size.min_element() > 0.0,
         }
     }
@@ -51,12 +51,18 @@ impl SolidShape {
     /// Returns the surface as a mesh; a bar has 32 sides.
     pub fn mesh(&self) -> Mesh {
         match *self {
-            SolidShape::Bar { from, to, radius } => bar(from, to, radius),
+            SolidShape::Bar {
+                from,
+                to,
+                radius,
+                inner,
+            } => bar(from, to, radius, inner),
             SolidShape::Block {
                 centre,
                 half_size,
                 angle,
-            } => block(centre, half_size, angle),
+                inner,
+            } => block(centre, half_size, angle, inner),
         }
     }
 
@@ -65,19 +71,27 @@ impl SolidShape {
         let back = Rotation::new(-angle);
         let place = |point: DVec3| back.apply(point.truncate() - origin).extend(point.z);
         match *self {
-            SolidShape::Bar { from, to, radius } => SolidShape::Bar {
+            SolidShape::Bar {
+                from,
+                to,
+                radius,
+                inner,
+            } => SolidShape::Bar {
                 from: place(from),
                 to: place(to),
                 radius,
+                inner,
             },
             SolidShape::Block {
                 centre,
                 half_size,
                 angle: turned,
+                inner,
             } => SolidShape::Block {
                 centre: place(centre),
                 half_size,
                 angle: turned - angle,
+                inner,
             },
         }
     }
@@ -93,7 +107,7 @@ impl Solid {
     }
 }
 
-fn bar(from: DVec3, to: DVec3, radius: f64) -> Mesh {
+fn bar(from: DVec3, to: DVec3, radius: f64, inner: f64) -> Mesh {
     let axis = (to - from).normalize_or(DVec3::Z);
     let across = if axis.z.abs() < 0.9 { DVec3::Z } else { DVec3::X };
     let side = axis.cross(across).normalize_or(DVec3::X);
@@ -103,26 +117,68 @@ fn bar(from: DVec3, to: DVec3, radius: f64) -> Mesh {
         .map(|k| unit(2.0 * std::f64::consts::PI * k as f64 / SIDES as f64))
         .map(|turn| side * turn.x + other * turn.y)
         .collect();
-    let ring = |centre: DVec3| spokes.iter().map(move |spoke| centre + *spoke * radius);
+    let ring = |centre: DVec3, radius: f64| spokes.iter().map(move |spoke| centre + *spoke * radius);
     let mut mesh = Mesh::default();
-    mesh.positions.extend(ring(from).chain(ring(to)));
+    mesh.positions.extend(ring(from, radius).chain(ring(to, radius)));
     mesh.normals.extend(spokes.iter().chain(&spokes));
     for k in 0..SIDES {
         let next = (k + 1) % SIDES;
         let [a, b, c, d] = [k, next, SIDES + next, SIDES + k].map(|index| index as u32);
         mesh.triangles.extend([[a, b, c], [a, c, d]]);
     }
-    mesh.face(&ring(to).collect::<Vec<_>>(), axis);
-    mesh.face(&ring(from).rev().collect::<Vec<_>>(), -axis);
+    if inner <= 0.0 {
+        mesh.face(&ring(to, radius).collect::<Vec<_>>(), axis);
+        mesh.face(&ring(from, radius).rev().collect::<Vec<_>>(), -axis);
+        return mesh;
+    }
+    for k in 0..SIDES {
+        let next = (k + 1) % SIDES;
+        let at = |end: DVec3, k: usize, radius: f64| end + spokes[k] * radius;
+        let middle = (spokes[k] + spokes[next]).normalize_or(DVec3::X);
+        // Inner surface, then both end faces.
+        mesh.face(
+            &[
+                at(from, k, inner),
+                at(to, k, inner),
+                at(to, next, inner),
+                at(from, next, inner),
+            ],
+            -middle,
+        );
+        mesh.face(
+            &[
+                at(to, k, inner),
+                at(to, k, radius),
+                at(to, next, radius),
+                at(to, next, inner),
+            ],
+            axis,
+        );
+        mesh.face(
+            &[
+                at(from, k, inner),
+                at(from, next, inner),
+                at(from, next, radius),
+                at(from, k, radius),
+            ],
+            -axis,
+        );
+    }
     mesh
 }
 
-fn block(centre: DVec3, half: DVec3, angle: f64) -> Mesh {
+fn block(centre: DVec3, half: DVec3, angle: f64, inner: f64) -> Mesh {
     let along = unit(angle).extend(0.0);
     let axes = [along, DVec3::Z.cross(along), DVec3::Z];
     let half = half.to_array();
     let mut mesh = Mesh::default();
+    if inner > 0.0 {
+        open_ends(&mut mesh, centre, axes, half, inner);
+    }
     for k in 0..3 {
+        if k == 0 && inner > 0.0 {
+            continue;
+        }
         // The other two axes, in the order in which their cross product is this axis.
         let (a, b) = ((k + 1) % 3, (k + 2) % 3);
         for sign in [1.0, -1.0] {
@@ -133,4 +189,47 @@ fn block(centre: DVec3, half: DVec3, angle: f64) -> Mesh {
         }
     }
     mesh
+}
+
+/// Adds the end faces and the inner surface of a square tube along the first of three axes.
+fn open_ends(mesh: &mut Mesh, centre: DVec3, [along, across, up]: [DVec3; 3], half: [f64; 3], inner: f64) {
+    // The corners of a square, counter-clockwise as seen from the positive end.
+    let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
+    let at = |end: f64, corner: usize, y: f64, z: f64| {
+        let (s, t) = corners[corner % 4];
+        centre + along * (end * half[0]) + across * (s * y) + up * (t * z)
+    };
+    for corner in 0..4 {
+        let outer = |end: f64, corner: usize| at(end, corner, half[1], half[2]);
+        let hollow = |end: f64, corner: usize| at(end, corner, inner, inner);
+        let (first, second) = (corner, corner + 1);
+        mesh.face(
+            &[
+                outer(1.0, first),
+                outer(1.0, second),
+                hollow(1.0, second),
+                hollow(1.0, first),
+            ],
+            along,
+        );
+        mesh.face(
+            &[
+                outer(-1.0, first),
+                hollow(-1.0, first),
+                hollow(-1.0, second),
+                outer(-1.0, second),
+            ],
+            -along,
+        );
+        let inwards = (2.0 * centre - hollow(0.0, first) - hollow(0.0, second)).normalize_or(DVec3::Z);
+        mesh.face(
+            &[
+                hollow(-1.0, first),
+                hollow(1.0, first),
+                hollow(1.0, second),
+                hollow(-1.0, second),
+            ],
+            inwards,
+        );
+    }
 }

@@ -38,7 +38,7 @@ pub enum Part {
 /// Shape of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SolidShape {
-    /// Circular cylinder, given by the centres of its end faces.
+    /// Circular cylinder or tube, given by the centres of its end faces.
     Bar {
         /// Centre of one end.
         from: DVec3,
@@ -46,6 +46,8 @@ pub enum SolidShape {
         to: DVec3,
         /// Radius.
         radius: f64,
+        /// Radius of the bore of a tube; 0 for a solid cylinder.
+        inner: f64,
     },
     /// Box rotated about z.
     Block {
@@ -55,6 +57,8 @@ pub enum SolidShape {
         half_size: DVec3,
         /// Angle of its x axis to `Ox` \[rad\].
         angle: f64,
+        /// Half the width of the opening of a square tube along its x axis; 0 for a solid box.
+        inner: f64,
     },
 }
 
@@ -133,6 +137,7 @@ impl Scene {
                     from: ends[0],
                     to: ends[1],
                     radius: thickness * base_radius,
+                    inner: 0.0,
                 },
             })
         });

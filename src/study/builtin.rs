@@ -12,7 +12,7 @@ pub struct Builtin {
 }
 
 /// All built-in studies; the first is the default.
-pub const BUILTIN: [Builtin; 4] = [
+pub const BUILTIN: [Builtin; 7] = [
     Builtin {
         name: "paper",
         text: include_str!("../../assets/studies/paper.toml"),
@@ -28,6 +28,18 @@ pub const BUILTIN: [Builtin; 4] = [
     Builtin {
         name: "aluminium-pick-and-place",
         text: include_str!("../../assets/studies/aluminium-pick-and-place.toml"),
+    },
+    Builtin {
+        name: "lightest-for-a-rectangle",
+        text: include_str!("../../assets/studies/lightest-for-a-rectangle.toml"),
+    },
+    Builtin {
+        name: "tubes-from-a-catalogue",
+        text: include_str!("../../assets/studies/tubes-from-a-catalogue.toml"),
+    },
+    Builtin {
+        name: "three-objectives",
+        text: include_str!("../../assets/studies/three-objectives.toml"),
     },
 ];
 

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceSpan};
 use toml::de::{DeTable, DeValue};
 
-use super::{Fault, Study};
+use super::{CatalogueChoice, Fault, Study};
 
 /// Largest size of a study file \[bytes\].
 const LARGEST_STUDY: u64 = 1 << 18;
@@ -83,7 +83,8 @@ impl Study {
             path: path.to_owned(),
             cause,
         })?;
-        Self::parse(&text, &path.display().to_string())
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse_in(folder, &text, &path.display().to_string())
     }
 
     /// Parses a study from `text`; error messages refer to it by `name`.
@@ -91,6 +92,11 @@ impl Study {
     /// # Errors
     /// As [`Study::read`].
     pub fn parse(text: &str, name: &str) -> Result<Self, StudyError> {
+        Self::parse_in(Path::new(""), text, name)
+    }
+
+    /// Parses a study whose paths are relative to `folder`.
+    fn parse_in(folder: &Path, text: &str, name: &str) -> Result<Self, StudyError> {
         if let Some((line, text)) = (1..).zip(text.lines()).find(|(_, text)| text.len() > LONGEST_LINE) {
             return Err(StudyError::Line {
                 name: name.to_owned(),
@@ -99,13 +105,20 @@ impl Study {
             });
         }
         let source_code = || Arc::new(NamedSource::new(name, text.to_owned()).with_language("TOML"));
-        let study: Study = toml::from_str(text).map_err(|error| StudyError::Shape {
+        let mut study: Study = toml::from_str(text).map_err(|error| StudyError::Shape {
             message: error.message().to_owned(),
             key: error.span().and_then(|span| key_at(text, span.start)),
             source_code: source_code(),
             span: error.span().map(SourceSpan::from),
         })?;
-        let faults = study.faults();
+        let load = |(key, catalogue): (&'static str, &mut CatalogueChoice)| {
+            let message = catalogue.load(folder).err()?.to_string();
+            Some(Fault::new(key, message))
+        };
+        let mut faults: Vec<Fault> = study.sections.catalogues().filter_map(load).collect();
+        if faults.is_empty() {
+            faults = study.faults();
+        }
         if faults.is_empty() {
             return Ok(study);
         }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
 
 use super::{FrontMember, FrontProofs, Row, Study, TableRow};
-use kinefront_optimize::{knee, spread};
+use kinefront_optimize::{Objectives, knee, spread};
 
 /// Channel to a listener that receives events.
 pub type Subscriber = SyncSender<Arc<Event>>;
@@ -153,7 +153,7 @@ impl RunSummary {
             .map(|place| (place, &self.front[place]))
     }
 
-    fn objectives(&self) -> Vec<[f64; 2]> {
+    fn objectives(&self) -> Vec<Objectives> {
         self.front.iter().map(FrontMember::objectives).collect()
     }
 

@@ -7,15 +7,16 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::settings::{
-    ActuatorSection, AlgorithmName, Bounds, Grids, HypervolumeSection, LengthChoice, MaterialSection, ModelSection,
-    OptimizerSection, ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
+    ActuatorSection, AlgorithmName, Bounds, Grids, HypervolumeSection, LengthChoice, Limits, MaterialSection,
+    ModelSection, ObjectiveChoice, OptimizerSection, ReferenceDesign, RequirementSection, SectionsSection,
+    StiffnessChoice, TelescopicBar, Variables, WorkspaceSection,
 };
 use kinefront_model::clearance::BodySettings;
 use kinefront_model::evaluation::{Model, ModelSettings};
 use kinefront_model::kinematics::CharacteristicLength;
 use kinefront_model::mechanism::{Architecture, BarLength, LegSettings, WorkingMode};
 use kinefront_model::stiffness::{ActuatorStiffness, Material, StiffnessDefinition};
-use kinefront_model::workspace::{GridError, Thresholds, WorkspaceSpec};
+use kinefront_model::workspace::{FurtherLimits, GridError, Thresholds, WorkspaceSpec};
 
 /// A study: the requirements, the manipulators to search, and the settings of the search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -29,8 +30,18 @@ pub struct Study {
     pub architectures: Vec<Architecture>,
     /// Working mode of every design.
     pub working_mode: WorkingMode,
+    /// Objectives, one to three.
+    pub objectives: Vec<ObjectiveChoice>,
+    /// Quantities that are reported besides those that the study names otherwise.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub quantities: Vec<String>,
+    /// The section `[constraints]`: limits of quantities.
+    #[serde(skip_serializing_if = "Limits::is_empty")]
+    pub constraints: Limits,
     /// The section `[material]`.
     pub material: MaterialSection,
+    /// The section `[sections]`.
+    pub sections: SectionsSection,
     /// The section `[actuators]`.
     pub actuators: ActuatorSection,
     /// The section `[requirements]`.
@@ -43,6 +54,8 @@ pub struct Study {
     pub bodies: BodySettings,
     /// The section `[bounds]`.
     pub bounds: Bounds,
+    /// The section `[variables]`.
+    pub variables: Variables,
     /// The section `[grid]`.
     pub grid: Grids,
     /// The section `[optimizer]`.
@@ -61,13 +74,18 @@ impl Default for Study {
             description: String::new(),
             architectures: Architecture::ALL.to_vec(),
             working_mode: WorkingMode::ALL_PLUS,
+            objectives: ObjectiveChoice::of_paper(),
+            quantities: Vec::new(),
+            constraints: Limits::new(),
             material: MaterialSection::default(),
+            sections: SectionsSection::default(),
             actuators: ActuatorSection::default(),
             requirements: RequirementSection::default(),
             workspace: WorkspaceSection::default(),
             model: ModelSection::default(),
             bodies: BodySettings::default(),
             bounds: Bounds::default(),
+            variables: Variables::default(),
             grid: Grids::default(),
             optimizer: OptimizerSection::default(),
             hypervolume: HypervolumeSection::default(),
@@ -90,6 +108,7 @@ impl Study {
                 shear_modulus: self.material.shear_modulus_pa,
                 density: self.material.density_kg_per_m3,
             },
+            sections: self.sections.cross_sections(),
             actuators: ActuatorStiffness {
                 prismatic: self.actuators.prismatic_stiffness_n_per_m,
                 revolute: self.actuators.revolute_stiffness_nm_per_rad,
@@ -115,7 +134,11 @@ impl Study {
             },
             thresholds: self.thresholds(),
             in_plane_force: self.requirements.in_plane_force_n,
+            objectives: self.objectives(),
+            limits: self.limits_of_designs(),
+            quantities: self.asked_quantities(),
             workspace: WorkspaceSpec {
+                region: self.region(),
                 rotation_range_deg: self.workspace.rotation_range_deg,
                 centre: DVec2::from_array(self.workspace.centre_m),
                 home_phi_deg: self.workspace.home_phi_deg,
@@ -128,7 +151,7 @@ impl Study {
     /// Derives the thresholds of the constraints from the requirements.
     pub fn thresholds(&self) -> Thresholds {
         let requirements = &self.requirements;
-        Thresholds {
+        let mut thresholds = Thresholds {
             inverse_condition: requirements.inverse_condition_min,
             k_xy: requirements
                 .k_xy_min_n_per_m
@@ -140,7 +163,10 @@ impl Study {
                 .k_phi_z_min_nm_per_rad
                 .unwrap_or(requirements.torque_z_nm / requirements.rotation_z_deg.to_radians()),
             clearance: requirements.clearance_min_m,
-        }
+            further: FurtherLimits::default(),
+        };
+        self.bound_poses(&mut thresholds);
+        thresholds
     }
 
     /// Returns the number of candidates of a generation of the study's algorithm.
@@ -149,6 +175,7 @@ impl Study {
             AlgorithmName::FrontDe => self.optimizer.front_de.generation,
             AlgorithmName::Moga2 => self.optimizer.moga2.population,
             AlgorithmName::Nsga2 => self.optimizer.nsga2.population,
+            AlgorithmName::CmaEs => self.optimizer.cma_es.population,
         }
     }
 }

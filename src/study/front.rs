@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{DesignProblem, Row, TableRow};
 use kinefront_model::certify::{Certificate, Verdict};
-use kinefront_model::evaluation::Evaluation;
+use kinefront_model::evaluation::{Evaluation, Objective};
+use kinefront_optimize::Objectives;
 
 /// A design of the verified front.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,8 +92,8 @@ impl FrontMember {
         }
     }
 
-    /// Returns both objectives, which are minimised.
-    pub fn objectives(&self) -> [f64; 2] {
+    /// Returns the objectives, as they are minimised.
+    pub fn objectives(&self) -> Objectives {
         DesignProblem::outcome(&self.evaluation).objectives
     }
 
@@ -107,8 +108,8 @@ impl FrontMember {
     }
 
     /// Reports the proved radius as `R_w`.
-    pub(super) fn report(&mut self, certified: CertifiedRadius) {
-        self.evaluation.workspace_radius = certified.lower;
+    pub(super) fn report(&mut self, certified: CertifiedRadius, objectives: &[Objective]) {
+        self.evaluation.set_workspace_radius(certified.lower, objectives);
         self.certified = Some(certified);
     }
 

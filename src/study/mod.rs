@@ -32,11 +32,13 @@ pub use run_folder::{
 };
 pub use search::{SearchError, StudySearch};
 pub use settings::{
-    ActuatorSection, AlgorithmName, Bounds, Check, Fault, GridSection, Grids, HypervolumeSection, Initial,
-    LengthChoice, MaterialSection, ModelSection, OptimizerSection, ReferenceDesign, RequirementSection, Setting,
-    Stagnation, StiffnessChoice, TelescopicBar, WorkspaceSection, settings,
+    ActuatorSection, AlgorithmName, Bounds, BuiltinCatalogue, CATALOGUES, CatalogueChoice, CatalogueFault,
+    CatalogueRow, Check, Fault, GridSection, Grids, HypervolumeSection, Initial, LengthChoice, LimitChoice, Limits,
+    MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, ReferenceDesign, RegionKind, RegionSection,
+    RequirementSection, SectionChoice, SectionKind, SectionsSection, Setting, Stagnation, StiffnessChoice,
+    TelescopicBar, Tie, VariableChoice, Variables, WorkspaceSection, settings,
 };
 pub use table::{
-    Better, Cell, Column, ColumnType, Row, RowError, TableContents, TableError, TableFault, TableRow, read_designs,
+    Cell, Column, ColumnType, Row, RowError, TableContents, TableError, TableFault, TableRow, read_designs,
     read_run_table, read_table, table_bytes,
 };

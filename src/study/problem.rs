@@ -1,10 +1,18 @@
 //! A study as an optimization problem; `x` consists of the architecture and the five lengths.
+//!
+//! Variables that are listed or tied take their values when a candidate is completed: the nearest of the list, and what follows
+//! from the other variable.
 
-use super::Study;
-use kinefront_model::evaluation::{BarRanges, Evaluation, GridChoice, Model, WorkspaceTarget};
+use super::{Study, Tie};
+use kinefront_model::evaluation::{
+    BarRanges, Better, Bound, Evaluation, GridChoice, Model, Objective, Quantity, WorkspaceTarget,
+};
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, DesignError, DesignVariable, WorkingMode};
 use kinefront_model::workspace::GridError;
-use kinefront_optimize::{Candidate, Outcome, Problem, Target, Variable};
+use kinefront_optimize::{Candidate, Objectives, Outcome, Problem, Target, Variable};
+
+/// Variables that are sized.
+const BARS: [DesignVariable; 2] = [DesignVariable::LegBarRadius, DesignVariable::PlatformBarRadius];
 
 /// The optimization problem of a study, with designs encoded as vectors of values.
 ///
@@ -16,6 +24,10 @@ pub struct DesignProblem {
     architectures: Vec<Architecture>,
     working_mode: WorkingMode,
     ranges: [[f64; 2]; DESIGN_VARIABLES.len()],
+    /// Values that a variable may have, if they are listed.
+    listed: [Option<Vec<f64>>; DESIGN_VARIABLES.len()],
+    ties: [Option<Tie>; DESIGN_VARIABLES.len()],
+    is_prescribed: bool,
 }
 
 impl DesignProblem {
@@ -28,7 +40,10 @@ impl DesignProblem {
             model: study.model()?,
             architectures: study.architectures.clone(),
             working_mode: study.working_mode,
-            ranges: DESIGN_VARIABLES.map(|variable| study.bounds.range(variable)),
+            ranges: DESIGN_VARIABLES.map(|variable| study.range(variable)),
+            listed: DESIGN_VARIABLES.map(|variable| study.listed(variable)),
+            ties: DESIGN_VARIABLES.map(|variable| study.tie(variable)),
+            is_prescribed: study.workspace.region.is_prescribed(),
         })
     }
 
@@ -43,7 +58,49 @@ impl DesignProblem {
     /// [`DesignError`] if the bounds allow values that are not a valid design.
     pub fn design(&self, x: &[f64]) -> Result<Design, DesignError> {
         let architecture = self.architectures[(x[0] as usize).min(self.architectures.len() - 1)];
-        Design::new(architecture, self.working_mode, [x[1], x[2], x[3], x[4], x[5]])
+        Design::new(
+            architecture,
+            self.working_mode,
+            self.settled([x[1], x[2], x[3], x[4], x[5]]),
+        )
+    }
+
+    /// Returns the values of the variables with the listed ones at the nearest value of their list and the tied ones as they
+    /// follow.
+    fn settled(&self, mut values: [f64; DESIGN_VARIABLES.len()]) -> [f64; DESIGN_VARIABLES.len()] {
+        for (value, listed) in values.iter_mut().zip(&self.listed) {
+            let wanted = *value;
+            let distance = |other: f64| (other - wanted).abs();
+            let nearest = listed
+                .iter()
+                .flatten()
+                .copied()
+                .reduce(|best, next| if distance(next) < distance(best) { next } else { best });
+            *value = nearest.unwrap_or(wanted);
+        }
+        let sources = values;
+        for (value, tie) in values.iter_mut().zip(&self.ties) {
+            if let Some(tie) = tie {
+                *value = tie.factor * sources[tie.source as usize];
+            }
+        }
+        values
+    }
+
+    /// Raises the radius that a bar is tied to, if the bar needs more, so that the tie does not weaken sized bars.
+    fn with_ties_raised(&self, design: &Design) -> [f64; DESIGN_VARIABLES.len()] {
+        let mut values = design.values();
+        for (variable, tie) in DESIGN_VARIABLES.into_iter().zip(&self.ties) {
+            if let Some(tie) = tie
+                && variable.may_be_zero()
+                && tie.source.may_be_zero()
+            {
+                let needed = values[variable as usize] / tie.factor;
+                let source = &mut values[tie.source as usize];
+                *source = source.max(needed);
+            }
+        }
+        self.settled(values)
     }
 
     /// Evaluates the design that `x` encodes on the reference grid.
@@ -65,8 +122,11 @@ impl DesignProblem {
         let Ok(asked) = self.design(&candidate.x) else {
             return false;
         };
-        let bars = [DesignVariable::LegBarRadius, DesignVariable::PlatformBarRadius];
-        let free = |variable: DesignVariable| candidate.target.is_some() && bars.contains(&variable);
+        let bars = BARS;
+        let free = |variable: DesignVariable| {
+            let follows_bars = self.ties[variable as usize].is_some_and(|tie| bars.contains(&tie.source));
+            candidate.target.is_some() && (bars.contains(&variable) || follows_bars)
+        };
         let same = |variable: &DesignVariable| {
             let [asked, found] = [&asked, design].map(|design| design.values()[*variable as usize]);
             free(*variable) || asked.to_bits() == found.to_bits()
@@ -82,13 +142,70 @@ impl DesignProblem {
         architecture.into_iter().chain(design.values()).collect()
     }
 
-    /// Converts an evaluation into the outcome that the optimizer uses: mass and −`R_w`, both minimised, and the
+    /// Converts an evaluation into the outcome that the optimizer uses: the objectives, as they are minimised, and the
     /// violation.
     pub fn outcome(evaluation: &Evaluation) -> Outcome {
         Outcome {
-            objectives: [evaluation.mass, -evaluation.workspace_radius],
+            objectives: Objectives::new(evaluation.objectives.iter().copied()),
             violation: evaluation.violation,
         }
+    }
+
+    /// Whether the mass is an objective and no objective asks for thick bars, so that the lightest bars are best.
+    fn seeks_light_bars(&self) -> bool {
+        let asks_for_stiffness = |objective: &Objective| {
+            let stiff = [
+                Quantity::StiffnessXy,
+                Quantity::StiffnessZ,
+                Quantity::StiffnessPhiZ,
+                Quantity::DisplacementMax,
+            ];
+            stiff.contains(&objective.quantity)
+        };
+        let is_mass = |objective: &Objective| objective.quantity == Quantity::Mass && objective.goal == Better::Lower;
+        let objectives = &self.model.objectives;
+        objectives.iter().any(is_mass) && !objectives.iter().any(asks_for_stiffness)
+    }
+
+    fn bar_ranges(&self) -> BarRanges {
+        let [leg, platform] = BARS.map(|bar| self.ranges[bar as usize]);
+        BarRanges {
+            leg,
+            platform,
+            listed: BARS.map(|bar| self.listed[bar as usize].clone()),
+            is_exact: self.model.objectives.len() == 1,
+        }
+    }
+
+    /// Evaluates a design on the fine grid. Bars of a design for a prescribed region that do not carry there, because they were
+    /// sized for the poses of the reference grid, are sized again; the design is then another one.
+    pub fn verify(&self, design: &Design) -> Evaluation {
+        let evaluation = self.model.evaluate(design, GridChoice::Fine);
+        if evaluation.is_feasible() || !self.is_prescribed || !self.seeks_light_bars() {
+            return evaluation;
+        }
+        let target = WorkspaceTarget::Prescribed(GridChoice::Fine);
+        let resized = self.model.sized(design, &self.bar_ranges(), target).and_then(|sized| {
+            let values = self.with_ties_raised(&sized);
+            Design::new(design.architecture, design.working_mode, values).ok()
+        });
+        match resized.map(|design| self.model.evaluate(&design, GridChoice::Fine)) {
+            Some(resized) if resized.is_feasible() => resized,
+            _ => evaluation,
+        }
+    }
+
+    /// Returns the workspace radius that the study asks for at least \[m\].
+    fn least_radius(&self) -> Option<f64> {
+        self.model.limits.iter().find_map(|limit| match limit.bound {
+            Bound::AtLeast(radius) if limit.quantity == Quantity::WorkspaceRadius => Some(radius),
+            _ => None,
+        })
+    }
+
+    fn maximises_radius(&self) -> bool {
+        let is_radius = |objective: &Objective| objective.quantity == Quantity::WorkspaceRadius;
+        self.model.objectives.iter().any(is_radius)
     }
 
     /// Returns the variables of the problem.
@@ -110,27 +227,53 @@ impl Problem for DesignProblem {
         DesignProblem::variables(self)
     }
 
-    /// Sets the lightest bars for the geometry in `x` that provide the workspace radius of the target. For the target
-    /// [`Target::Best`], or for a radius that the geometry does not allow, the bars are sized for the largest radius that
-    /// it allows.
+    /// Returns the place of the workspace radius among the objectives; without it there are no levels to aim at.
+    fn leveled_objective(&self) -> usize {
+        let is_radius = |objective: &Objective| objective.quantity == Quantity::WorkspaceRadius;
+        let objectives = &self.model.objectives;
+        objectives.iter().position(is_radius).unwrap_or(objectives.len())
+    }
+
+    /// Sets the lightest bars for the geometry in `x` that provide the workspace radius of the target, or the region that the
+    /// study prescribes. For the target [`Target::Best`], or for a radius that the geometry does not allow, the bars are sized
+    /// for the largest radius that it allows, or for that which a limit asks for. Bars are not sized where thin ones are not
+    /// what the study seeks.
     fn complete(&self, x: &[f64], target: Target) -> Option<Vec<f64>> {
+        if !self.seeks_light_bars() {
+            return None;
+        }
         let design = self.design(x).ok()?;
-        let range = |variable: DesignVariable| self.ranges[variable as usize];
-        let ranges = BarRanges {
-            leg: range(DesignVariable::LegBarRadius),
-            platform: range(DesignVariable::PlatformBarRadius),
-        };
+        let ranges = self.bar_ranges();
         let sized = |target| self.model.sized(&design, &ranges, target);
         let sized = match target {
+            _ if self.is_prescribed => sized(WorkspaceTarget::Prescribed(GridChoice::Reference)),
+            Target::Best if self.least_radius().is_some() && !self.maximises_radius() => {
+                sized(WorkspaceTarget::Radius(self.least_radius()?))
+            }
             Target::Level(level) if level < 0.0 => {
                 sized(WorkspaceTarget::Radius(-level)).or_else(|| sized(WorkspaceTarget::Largest))
             }
             Target::Level(_) | Target::Best => sized(WorkspaceTarget::Largest),
         }?;
         let mut x = x.to_vec();
-        x[1 + DesignVariable::LegBarRadius as usize] = sized.leg_bar_radius;
-        x[1 + DesignVariable::PlatformBarRadius as usize] = sized.platform_bar_radius;
+        let values = self.with_ties_raised(&sized);
+        for bar in BARS {
+            x[1 + bar as usize] = values[bar as usize];
+        }
         Some(x)
+    }
+
+    fn completed(&self, candidate: Candidate) -> Vec<f64> {
+        let mut x = candidate
+            .target
+            .and_then(|target| self.complete(&candidate.x, target))
+            .unwrap_or(candidate.x);
+        if let [_, values @ ..] = x.as_mut_slice()
+            && let Ok(all) = <[f64; DESIGN_VARIABLES.len()]>::try_from(&*values)
+        {
+            values.copy_from_slice(&self.settled(all));
+        }
+        x
     }
 
     fn evaluate(&self, x: &[f64]) -> Outcome {
@@ -138,7 +281,7 @@ impl Problem for DesignProblem {
             Ok(evaluation) => Self::outcome(&evaluation),
             // Values that are not a valid design are worse than every valid design.
             Err(_) => Outcome {
-                objectives: [f64::MAX, 0.0],
+                objectives: Objectives::new(self.model.objectives.iter().map(|_| f64::MAX)),
                 violation: f64::MAX,
             },
         }

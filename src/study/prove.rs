@@ -8,7 +8,7 @@ use kinefront_model::certify::{Certificate, CertifyOptions, ProofObserver, Verdi
 use kinefront_model::evaluation::{Constraint, Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::{Design, DesignVariable};
 use kinefront_model::spatial::Pose;
-use kinefront_optimize::{Archive, Evaluated, hypervolume};
+use kinefront_optimize::{Archive, Objectives, hypervolume};
 
 /// Factors by which the bars of a refuted design are thickened, beyond 1; the first that restores its workspace is taken.
 const THICKENINGS: [f64; 5] = [1e-4, 2e-4, 3e-4, 5e-4, 1e-3];
@@ -111,9 +111,10 @@ impl<'a> FrontProver<'a> {
                 thickened: None,
             });
         }
-        proved
-            .member
-            .report(CertifiedRadius::new(&certificate, claim.tolerance));
+        proved.member.report(
+            CertifiedRadius::new(&certificate, claim.tolerance),
+            &self.model.objectives,
+        );
         proved
     }
 
@@ -183,13 +184,21 @@ impl<'a> FrontProver<'a> {
                 reference_radius: self.model.evaluate(&design, GridChoice::Reference).workspace_radius,
                 ..member.clone()
             };
-            instead.report(CertifiedRadius::new(&certificate, claim.tolerance));
+            instead.report(
+                CertifiedRadius::new(&certificate, claim.tolerance),
+                &self.model.objectives,
+            );
             Some((instead, increase))
         })
     }
 
     /// Returns a design with thicker bars, if the bounds allow it.
     fn thickened(&self, design: &Design, increase: f64) -> Option<Design> {
+        // A bar of a catalogue cannot be a little thicker.
+        let sections = &self.model.sections;
+        if sections.legs.catalogue().is_some() || sections.platform.catalogue().is_some() {
+            return None;
+        }
         let mut values = design.values();
         for (variable, most) in BARS.into_iter().zip(self.thickest) {
             let radius = &mut values[variable as usize];
@@ -203,7 +212,7 @@ impl<'a> FrontProver<'a> {
 
     /// Returns the front with the proved radii, sorted by mass, and what was found. Thickened designs get the ids from
     /// `next_id` on; `reference` is the reference point of the hypervolume.
-    pub fn conclude(self, mut next_id: usize, reference: [f64; 2]) -> (Vec<FrontMember>, FrontProofs) {
+    pub fn conclude(self, mut next_id: usize, reference: Objectives) -> (Vec<FrontMember>, FrontProofs) {
         let mut proofs = FrontProofs {
             tolerance: CertifyOptions::TOLERANCE,
             ..FrontProofs::default()
@@ -228,12 +237,8 @@ impl<'a> FrontProver<'a> {
         }
         let mut archive = Archive::default();
         for (place, member) in members.iter().enumerate() {
-            let candidate = Evaluated {
-                x: Vec::new(),
-                outcome: DesignProblem::outcome(&member.evaluation),
-            };
             if member.evaluation.workspace_radius > 0.0 {
-                archive.insert(place, &candidate);
+                archive.insert(place, &[], &DesignProblem::outcome(&member.evaluation));
             }
         }
         // On a front, the order by mass is also the order by R_w.

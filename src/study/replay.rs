@@ -117,9 +117,9 @@ impl StudySearch {
         let mut places: Vec<usize> = (0..SAMPLED_ROWS).map(|k| k * last / (SAMPLED_ROWS - 1)).collect();
         places.dedup();
         places.retain(|&place| place < rows.len());
-        let problem = &self.problem;
-        self.pool
-            .install(|| places.par_iter().try_for_each(|&place| problem.check_row(&rows[place])))
+        let (problem, study) = (&self.problem, self.study());
+        let check = |&place: &usize| problem.check_row(study, &rows[place]);
+        self.pool.install(|| places.par_iter().try_for_each(check))
     }
 }
 
@@ -128,14 +128,14 @@ impl DesignProblem {
     ///
     /// # Errors
     /// [`ReplayError::Value`] for the first value that differs.
-    pub fn check_row(&self, entry: &TableRow) -> Result<(), ReplayError> {
+    pub fn check_row(&self, study: &Study, entry: &TableRow) -> Result<(), ReplayError> {
         let evaluation = self.evaluate_design(&entry.row.design);
         let found = TableRow {
             row: Row::new(entry.row.generation as usize, &evaluation),
             ..*entry
         };
         let differs = |column: &Column| column.cell(entry) != column.cell(&found);
-        let Some(column) = Column::of_designs().find(differs) else {
+        let Some(column) = Column::of_designs(study).find(differs) else {
             return Ok(());
         };
         let text = |cell: Cell| match cell {

@@ -27,8 +27,8 @@ use super::{
     DesignProblem, EndReason, Event, FrontMember, FrontProofs, FrontProver, RunControl, RunSummary, Started, Study,
     StudySearch, Subscriber, TableRow,
 };
-use kinefront_model::evaluation::{Evaluation, GridChoice};
-use kinefront_optimize::{Archive, Evaluated, hypervolume, spread};
+use kinefront_model::evaluation::Evaluation;
+use kinefront_optimize::{Archive, Objectives, hypervolume, spread};
 
 /// Starts the run of a study on its own thread.
 ///
@@ -127,7 +127,7 @@ fn conclude(
     publisher: &mut Publisher,
 ) -> Option<RunSummary> {
     let verifying = Instant::now();
-    let front = search.found.front().to_vec();
+    let front = search.found.candidates();
     let verified = match outcome {
         EndReason::Interrupted => None,
         _ => verify(&front, &search, control, publisher),
@@ -138,7 +138,10 @@ fn conclude(
     search.times.certification_s = certifying.elapsed().as_secs_f64();
     search.times.publish_s = publisher.spent.as_secs_f64();
     match reported {
-        Some(reported) => Some(summary(search, outcome, front.len(), reported)),
+        Some(reported) => {
+            let found = search.found.front().len();
+            Some(summary(search, outcome, found, reported))
+        }
         None if control.is_interrupted() || outcome == EndReason::Interrupted => {
             Some(summary(search, EndReason::Interrupted, 0, Reported::default()))
         }
@@ -167,7 +170,7 @@ fn report(
     publisher: &mut Publisher,
 ) -> Option<Reported> {
     let (study, reference) = (search.study(), search.found.reference);
-    let objectives: Vec<[f64; 2]> = verified.iter().map(FrontMember::objectives).collect();
+    let objectives: Vec<Objectives> = verified.iter().map(FrontMember::objectives).collect();
     let shown = spread(&objectives, study.optimizer.front_designs);
     let front: Vec<FrontMember> = shown.into_iter().map(|place| verified[place].clone()).collect();
     let reported = Reported {
@@ -176,11 +179,11 @@ fn report(
         front,
         proofs: None,
     };
-    if !study.workspace.certify {
+    if !study.certifies() {
         return Some(reported);
     }
     let goes_on = || !control.is_abandoned();
-    let mut prover = FrontProver::new(search.problem.model(), study.bounds.thickest_bars(), &goes_on);
+    let mut prover = FrontProver::new(search.problem.model(), study.thickest_bars(), &goes_on);
     let (found, total) = (search.found.front().len(), reported.front.len());
     let mut done = 0;
     for part in reported.front.chunks(4 * search.threads()) {
@@ -213,7 +216,7 @@ fn summary(search: StudySearch, outcome: EndReason, found: usize, reported: Repo
         outcome,
         threads,
         history,
-        dropped: found - reported.verified,
+        dropped: found.saturating_sub(reported.verified),
         verified_hypervolume: reported.hypervolume,
         verified: reported.verified,
         front: reported.front,
@@ -231,12 +234,13 @@ fn verify(
     publisher: &mut Publisher,
 ) -> Option<Vec<FrontMember>> {
     let study = search.study();
-    let proofs = if study.workspace.certify {
+    let proofs = if study.certifies() {
         front.len().min(study.optimizer.front_designs)
     } else {
         0
     };
-    let (total, model) = (front.len() + proofs, search.problem.model());
+    let (total, problem) = (front.len() + proofs, &search.problem);
+    let mut next_id = search.found.evaluated;
     let mut archive = Archive::default();
     let mut verified: BTreeMap<usize, FrontMember> = BTreeMap::new();
     let mut done = 0;
@@ -246,19 +250,21 @@ fn verify(
             if control.is_abandoned() {
                 return None;
             }
-            Some(model.evaluate(&entry.row.design, GridChoice::Fine))
+            Some(problem.verify(&entry.row.design))
         };
         let evaluations: Option<Vec<Evaluation>> = search.pool.install(|| part.par_iter().map(evaluate).collect());
         for (entry, evaluation) in part.iter().zip(evaluations?) {
-            let candidate = Evaluated {
-                x: Vec::new(),
-                outcome: DesignProblem::outcome(&evaluation),
-            };
-            archive.insert(entry.id, &candidate);
+            let mut id = entry.id;
+            if evaluation.design != entry.row.design {
+                // A design whose bars were sized again is not one of the search.
+                id = next_id;
+                next_id += 1;
+            }
+            archive.insert(id, &[], &DesignProblem::outcome(&evaluation));
             verified.insert(
-                entry.id,
+                id,
                 FrontMember {
-                    id: entry.id,
+                    id,
                     generation: entry.row.generation as usize,
                     evaluation,
                     reference_radius: entry.row.radius,
@@ -268,7 +274,7 @@ fn verify(
         }
         done += part.len();
     }
-    // On a front, the order by mass is also the order by R_w.
+    // On a front of two objectives, the order by one is also the order by the other.
     let front = archive.iter().filter_map(|member| verified.remove(&member.id));
     Some(front.collect())
 }

@@ -13,7 +13,9 @@ use super::{
 };
 use kinefront_model::mechanism::DesignError;
 use kinefront_model::workspace::GridError;
-use kinefront_optimize::{Algorithm, Archive, Candidate, Evaluated, FrontDe, Moga2, Nsga2, Outcome, hypervolume};
+use kinefront_optimize::{
+    Algorithm, Archive, Candidate, CmaEs, Evaluated, FrontDe, Moga2, Nsga2, Objectives, Outcome, hypervolume,
+};
 
 /// Why a search fails; a study that was read without faults gives no cause but the threads.
 #[derive(Debug, thiserror::Error)]
@@ -195,17 +197,22 @@ struct Generation {
     rows: Vec<Row>,
 }
 
+/// Number of the best designs that are verified when there is one objective.
+const RUNNERS_UP: usize = 64;
+
 /// What a search has found so far; it follows from the rows alone.
 #[derive(Debug)]
 pub(super) struct Found {
     pub archive: Archive,
     /// The members of the archive, in its order.
     front: Vec<Arc<TableRow>>,
+    /// With one objective, the best designs, best first; otherwise empty.
+    runners_up: Vec<Arc<TableRow>>,
     pub history: Vec<GenerationSummary>,
     pub evaluated: usize,
     feasible: usize,
     /// Reference point of the hypervolume.
-    pub reference: [f64; 2],
+    pub reference: Objectives,
 }
 
 impl Found {
@@ -213,10 +220,11 @@ impl Found {
         Self {
             archive: Archive::default(),
             front: Vec::new(),
+            runners_up: Vec::new(),
             history: Vec::new(),
             evaluated: 0,
             feasible: 0,
-            reference: study.hypervolume.reference(),
+            reference: study.hypervolume_reference(),
         }
     }
 
@@ -226,15 +234,12 @@ impl Found {
         let mut front_changed = false;
         for (id, row) in (first_id..).zip(&rows) {
             self.feasible += usize::from(row.is_feasible());
-            let candidate = Evaluated {
-                x: Vec::new(),
-                outcome: outcome(row),
-            };
-            front_changed |= self.archive.insert(id, &candidate);
+            front_changed |= self.archive.insert(id, &[], &outcome(row));
         }
         if front_changed {
             self.update_front(first_id, &rows);
         }
+        self.keep_runners_up(first_id, &rows);
         self.evaluated += rows.len();
         send(Event::Evaluated(Batch {
             generation,
@@ -270,16 +275,49 @@ impl Found {
         self.front = self.archive.iter().map(|member| member.id).filter_map(entry).collect();
     }
 
-    /// The front so far, in the order of mass.
+    /// The front so far, in the order of the first objective.
     pub fn front(&self) -> &[Arc<TableRow>] {
         &self.front
+    }
+
+    /// The designs of which the verified front consists: those of the front, and with one objective the next best ones, because
+    /// the best one may not hold on the fine grid.
+    pub fn candidates(&self) -> Vec<Arc<TableRow>> {
+        let runners_up = self
+            .runners_up
+            .iter()
+            .filter(|entry| !self.front.iter().any(|best| best.id == entry.id));
+        self.front.iter().chain(runners_up).cloned().collect()
+    }
+
+    /// Keeps the best designs of a search with one objective.
+    fn keep_runners_up(&mut self, first_id: usize, rows: &[Row]) {
+        if self.reference.len() > 1 {
+            return;
+        }
+        let entries = (first_id..)
+            .zip(rows)
+            .filter(|(_, row)| row.is_feasible())
+            .map(|(id, row)| {
+                Arc::new(TableRow {
+                    id,
+                    row: *row,
+                    reference_radius: None,
+                    certified: None,
+                })
+            });
+        self.runners_up.extend(entries);
+        // The sort is stable: among equals the older design is kept.
+        self.runners_up
+            .sort_by(|a, b| a.row.objectives[0].total_cmp(&b.row.objectives[0]));
+        self.runners_up.truncate(RUNNERS_UP);
     }
 }
 
 /// The outcome that a row states.
 pub(super) fn outcome(row: &Row) -> Outcome {
     Outcome {
-        objectives: row.objectives(),
+        objectives: row.objectives,
         violation: row.violation,
     }
 }
@@ -287,7 +325,16 @@ pub(super) fn outcome(row: &Row) -> Outcome {
 fn algorithm(study: &Study, problem: &DesignProblem) -> Box<dyn Algorithm> {
     let (variables, seed) = (problem.variables(), study.optimizer.seed);
     match study.optimizer.algorithm {
-        AlgorithmName::FrontDe => Box::new(FrontDe::new(variables, study.optimizer.front_de, seed)),
+        // A front of one objective is a single design.
+        AlgorithmName::FrontDe if study.objectives.len() == 1 => {
+            Box::new(CmaEs::new(variables, study.optimizer.cma_es, seed))
+        }
+        AlgorithmName::FrontDe => {
+            let algorithm = FrontDe::new(variables, study.optimizer.front_de, seed);
+            let leveled = kinefront_optimize::Problem::leveled_objective(problem);
+            Box::new(algorithm.with_leveled_objective(leveled))
+        }
+        AlgorithmName::CmaEs => Box::new(CmaEs::new(variables, study.optimizer.cma_es, seed)),
         AlgorithmName::Moga2 => Box::new(Moga2::new(variables, study.optimizer.moga2, seed)),
         AlgorithmName::Nsga2 => Box::new(Nsga2::new(variables, study.optimizer.nsga2, seed)),
     }

@@ -352,7 +352,7 @@ fn documents_refer_to_what_is_there() {
 fn the_interfaces_list_every_column_in_order() {
     let text = fs::read_to_string(root().join("docs/interfaces.md")).expect("the interfaces");
     let mut rest = text.as_str();
-    for column in kinefront::study::Column::of_front() {
+    for column in kinefront::study::Column::of_front(&kinefront::study::Study::default()) {
         let name = format!("`{}`", column.name());
         let found = rest
             .find(&name)

@@ -134,5 +134,5 @@ fn rows_keep_what_is_active() {
         row.active_constraints().collect::<Vec<_>>(),
         evaluation.active().collect::<Vec<_>>()
     );
-    assert_eq!(row.objectives(), [evaluation.mass, -evaluation.workspace_radius]);
+    assert_eq!(*row.objectives, [evaluation.mass, -evaluation.workspace_radius]);
 }

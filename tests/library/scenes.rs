@@ -185,9 +185,9 @@ fn bodies_are_drawn_where_they_are_looked_for() {
                 (MemberKind::TelescopicLeg, Part::Tube, SolidShape::Bar { from, radius, .. }) => {
                     near(from, report.from) && radius == report.radius
                 }
-                (MemberKind::Link, Part::Link, SolidShape::Bar { from, to, radius })
-                | (MemberKind::Crank, Part::Crank, SolidShape::Bar { from, to, radius })
-                | (MemberKind::PlatformBar, Part::PlatformBar, SolidShape::Bar { from, to, radius }) => {
+                (MemberKind::Link, Part::Link, SolidShape::Bar { from, to, radius, .. })
+                | (MemberKind::Crank, Part::Crank, SolidShape::Bar { from, to, radius, .. })
+                | (MemberKind::PlatformBar, Part::PlatformBar, SolidShape::Bar { from, to, radius, .. }) => {
                     near(from, report.from) && near(to, report.to) && radius == report.radius
                 }
                 _ => false,
@@ -430,7 +430,7 @@ fn meshes_are_closed_and_as_large_as_their_solids() {
             }
             assert!(edges.values().all(|&count| count == 0), "{solid:?} is open");
             let wanted = match solid.shape {
-                SolidShape::Bar { from, to, radius } => {
+                SolidShape::Bar { from, to, radius, .. } => {
                     let turn = 2.0 * std::f64::consts::PI / 32.0;
                     16.0 * turn.sin() * radius * radius * from.distance(to)
                 }

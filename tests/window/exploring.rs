@@ -5,7 +5,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use kinefront::explorer::{Origin, Phase};
 use kinefront::study::{Column, EndReason};
-use kinefront_model::evaluation::MemberReport;
+use kinefront_model::evaluation::{MemberReport, QuantitySet};
 use kinefront_model::mechanism::{DesignVariable, MemberKind};
 
 use super::support::{click_at, idle_window, opened_window, set_slider, until, until_settled};
@@ -275,7 +275,7 @@ fn pointing_at_a_bar_tells_what_it_is() {
 #[test]
 fn any_two_quantities_stand_against_each_other() {
     let mut window = opened_window();
-    for (k, quantity) in Column::quantities().enumerate() {
+    for (k, quantity) in Column::quantities(QuantitySet::default()).enumerate() {
         let scatter = kinefront::explorer::axes(quantity, Column::Dimension(DesignVariable::BaseRadius), k % 2 == 0);
         window.state_mut().set_axes(scatter);
         window.run_steps(3);

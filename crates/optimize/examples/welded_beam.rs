@@ -30,7 +30,7 @@ impl Problem for WeldedBeam {
             + ((h - b) / 5.0).max(0.0)
             + (1.0 - buckling / 6000.0).max(0.0);
         Outcome {
-            objectives: [cost, deflection],
+            objectives: [cost, deflection].into(),
             violation,
         }
     }

@@ -11,7 +11,7 @@ pub enum Relation {
     Dominates,
     /// The second outcome is better.
     Dominated,
-    /// Neither is better: they are equal, or each is better in one objective.
+    /// Neither is better: they are equal, or each is better in some objective.
     Incomparable,
 }
 
@@ -30,10 +30,10 @@ pub fn compare(a: &Outcome, b: &Outcome) -> Relation {
     }
 }
 
-/// Compares two pairs of minimised objectives by Pareto dominance.
-pub fn pareto(a: &[f64; 2], b: &[f64; 2]) -> Relation {
-    let better = a[0] < b[0] || a[1] < b[1];
-    let worse = a[0] > b[0] || a[1] > b[1];
+/// Compares the minimised objectives of two candidates by Pareto dominance.
+pub fn pareto(a: &[f64], b: &[f64]) -> Relation {
+    let better = a.iter().zip(b).any(|(a, b)| a < b);
+    let worse = a.iter().zip(b).any(|(a, b)| a > b);
     match (better, worse) {
         (true, false) => Relation::Dominates,
         (false, true) => Relation::Dominated,
@@ -85,9 +85,10 @@ pub fn non_dominated_ranks(outcomes: &[Outcome]) -> Vec<usize> {
 
 /// Returns the crowding distance of each member of `front`: infinite at the ends, 0 for a member whose two neighbours
 /// coincide with it.
-pub fn crowding_distances(front: &[[f64; 2]]) -> Vec<f64> {
+pub fn crowding_distances(front: &[impl AsRef<[f64]>]) -> Vec<f64> {
+    let front: Vec<&[f64]> = front.iter().map(AsRef::as_ref).collect();
     let mut distances = vec![0.0; front.len()];
-    for objective in 0..2 {
+    for objective in 0..front.first().map_or(0, |first| first.len()) {
         let mut order: Vec<usize> = (0..front.len()).collect();
         order.sort_by(|&a, &b| front[a][objective].total_cmp(&front[b][objective]).then(a.cmp(&b)));
         let (Some(&first), Some(&last)) = (order.first(), order.last()) else {

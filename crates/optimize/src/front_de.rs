@@ -1,14 +1,14 @@
 //! The `front-de` algorithm: differential evolution along the front, which can exploit the structure of a problem.
 //!
 //! With two objectives the best candidates lie on a curve in objective space, and their variables lie on a piecewise
-//! curve as well. The population is therefore kept in the order of the front, and differences are taken between
-//! neighbours only (Storn and Price 1997): such differences point along the curve and shrink with the width of the
+//! curve as well; with three, both lie on surfaces. The population is therefore kept in the order of the front, and differences
+//! are taken between neighbours only (Storn and Price 1997): such differences point along the curve and shrink with the width of the
 //! population around it, whereas differences between the far ends do not. Survivors are selected by non-domination and
 //! crowding (Deb et al. 2002; the crowding distances are recomputed after each removal), as in GDE3 (Kukkonen and
-//! Lampinen 2005). The population starts small, to find the front, and grows to cover it.
+//! Lampinen 2005); with three objectives by the distance to the nearest member instead. The population starts small, to find the front, and grows to cover it.
 //!
-//! - **Structure**: each candidate has a target, which is either the best second objective that its other variables
-//!   allow or a level of the second objective, obtained from the levels of its parents by the same difference. A
+//! - **Structure**: each candidate has a target, which is either the best leveled objective (by default the second) that its
+//!   other variables allow or a level of it, obtained from the levels of its parents by the same difference. A
 //!   problem that can [complete](super::Problem::complete) candidates solves part of the search itself; other problems
 //!   ignore the target.
 //! - **Categories**: each combination of the categorical variables is a niche with its own population, because
@@ -20,8 +20,9 @@
 
 use super::population::{PopulationMember, best, ranked, tournament};
 use super::random::Random;
+use super::selection::scaled;
 use super::variation::{cross, mutate};
-use super::{Algorithm, Archive, Candidate, Evaluated, Target, Variable, doe};
+use super::{Algorithm, Archive, Candidate, Evaluated, Objectives, Target, Variable, doe};
 
 /// Parameters of [`FrontDe`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -87,6 +88,8 @@ pub struct FrontDe {
     pending: Vec<(usize, Option<usize>)>,
     archive: Archive,
     evaluated: usize,
+    /// Place of the objective to which levels apply.
+    leveled: usize,
 }
 
 /// Exponential moving average of the fraction of candidates that reached the common front.
@@ -108,6 +111,8 @@ struct Niche {
     categories: Vec<f64>,
     /// Members in the order of the front: feasible members by the first objective, then infeasible ones by violation.
     population: Vec<PopulationMember>,
+    /// With three objectives, the members that are nearest to each member, itself first; otherwise empty.
+    nearest: Vec<Vec<usize>>,
     evaluated: usize,
     success: Success,
 }
@@ -120,6 +125,7 @@ impl FrontDe {
             .map(|categories| Niche {
                 categories,
                 population: Vec::new(),
+                nearest: Vec::new(),
                 evaluated: 0,
                 success: Success::UNKNOWN,
             })
@@ -134,7 +140,18 @@ impl FrontDe {
             pending: Vec::new(),
             archive: Archive::default(),
             evaluated: 0,
+            leveled: 1,
         }
+    }
+
+    /// Sets the place of the objective to which levels apply ([`leveled_objective`](super::Problem::leveled_objective)).
+    pub fn with_leveled_objective(mut self, place: usize) -> Self {
+        self.leveled = place;
+        self
+    }
+
+    fn level_of(&self, member: &Evaluated) -> f64 {
+        member.outcome.objectives.get(self.leveled).copied().unwrap_or(0.0)
     }
 
     /// Returns the first sample: a Sobol sample whose candidates are assigned to the niches in turn.
@@ -211,12 +228,16 @@ impl FrontDe {
         }
     }
 
-    /// Draws a place near `place` along the front.
-    fn near(&mut self, size: usize, place: usize) -> usize {
+    /// Draws a place near `place` along the front; with three objectives, one of the members that are nearest in them.
+    fn near(&mut self, niche: usize, place: usize) -> usize {
+        let size = self.niches[niche].population.len();
         // A smaller reach would leave no two other members to take a difference of.
         let reach = self.settings.neighbours.max(1);
         if 2 * reach + 1 >= size {
             return self.random.below(size);
+        }
+        if let Some(nearest) = self.niches[niche].nearest.get(place) {
+            return nearest[self.random.below(2 * reach + 1)];
         }
         let first = place.saturating_sub(reach).min(size - 2 * reach - 1);
         first + self.random.below(2 * reach + 1)
@@ -226,18 +247,17 @@ impl FrontDe {
     /// new variables and the level of the second objective that the same difference leads to; the level is `None`
     /// unless all three members are feasible.
     fn difference(&mut self, niche: usize, place: usize) -> (Vec<f64>, Option<f64>) {
-        let size = self.niches[niche].population.len();
         let base = if self.random.chance(0.5) {
             place
         } else {
-            self.near(size, place)
+            self.near(niche, place)
         };
-        let (mut to, mut from) = (self.near(size, place), self.near(size, place));
+        let (mut to, mut from) = (self.near(niche, place), self.near(niche, place));
         while to == base {
-            to = self.near(size, place);
+            to = self.near(niche, place);
         }
         while from == base || from == to {
-            from = self.near(size, place);
+            from = self.near(niche, place);
         }
         let forced = self.random.below(self.variables.len());
         let population = &self.niches[niche].population;
@@ -258,7 +278,7 @@ impl FrontDe {
                 };
             }
         }
-        let level = |member: &Evaluated| member.outcome.objectives[1];
+        let level = |member: &Evaluated| self.level_of(member);
         let all_feasible = [base, to, from].iter().all(|member| member.outcome.is_feasible());
         let moved = level(base) + self.settings.scale * (level(to) - level(from));
         (x, all_feasible.then_some(moved))
@@ -269,7 +289,7 @@ impl FrontDe {
     fn crossed(&mut self, niche: usize) -> (Vec<f64>, Option<f64>) {
         let population = &self.niches[niche].population;
         let parents = [(); 2].map(|()| &population[tournament(&mut self.random, population)].candidate);
-        let outcome = parents[0].outcome;
+        let (outcome, level) = (parents[0].outcome, self.level_of(parents[0]));
         let mut pair = parents.map(|parent| parent.x.clone());
         if self.random.chance(CROSSED) {
             cross(&mut self.random, &self.variables, INDICES[0], &mut pair);
@@ -278,7 +298,7 @@ impl FrontDe {
         let probability = 1.0 / self.variables.len() as f64;
         mutate(&mut self.random, &self.variables, probability, INDICES[1], &mut x);
         set_categories(&self.variables, &mut x, &self.niches[niche].categories);
-        (x, outcome.is_feasible().then_some(outcome.objectives[1]))
+        (x, outcome.is_feasible().then_some(level))
     }
 }
 
@@ -294,7 +314,7 @@ impl Algorithm for FrontDe {
     fn tell(&mut self, evaluated: Vec<Evaluated>) {
         let mut offspring: Vec<Vec<Evaluated>> = vec![Vec::new(); self.niches.len()];
         for (candidate, &(niche, way)) in evaluated.into_iter().zip(&self.pending) {
-            let reached = self.archive.insert(self.evaluated, &candidate);
+            let reached = self.archive.insert(self.evaluated, &candidate.x, &candidate.outcome);
             self.evaluated += 1;
             self.niches[niche].evaluated += 1;
             self.niches[niche].success.learn(reached);
@@ -310,13 +330,33 @@ impl Algorithm for FrontDe {
                 let members = niche.population.drain(..).map(|member| member.candidate);
                 let pool = members.chain(offspring).collect();
                 niche.population = along_front(best(pool, size.min(settings.most.max(4))));
+                niche.nearest = nearest(&niche.population, 2 * settings.neighbours.max(1) + 1);
             }
         }
     }
 }
 
+/// Returns the `count` members that are nearest to each member in three objectives; nothing for fewer objectives.
+fn nearest(population: &[PopulationMember], count: usize) -> Vec<Vec<usize>> {
+    let objectives: Vec<Objectives> = population
+        .iter()
+        .map(|member| member.candidate.outcome.objectives)
+        .collect();
+    if objectives.first().is_none_or(|first| first.len() < 3) {
+        return Vec::new();
+    }
+    let points = scaled(&objectives);
+    let square = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum() };
+    let of = |point: &Vec<f64>| {
+        let mut order: Vec<(f64, usize)> = points.iter().map(|other| square(point, other)).zip(0..).collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        order.into_iter().take(count).map(|(_, place)| place).collect()
+    };
+    points.iter().map(of).collect()
+}
+
 /// Returns every combination of the values of the categorical variables.
-fn combinations(variables: &[Variable]) -> Vec<Vec<f64>> {
+pub(super) fn combinations(variables: &[Variable]) -> Vec<Vec<f64>> {
     variables.iter().fold(vec![Vec::new()], |combinations, variable| {
         let Variable::Categorical { choices } = *variable else {
             return combinations;
@@ -334,7 +374,7 @@ fn combinations(variables: &[Variable]) -> Vec<Vec<f64>> {
     })
 }
 
-fn set_categories(variables: &[Variable], x: &mut [f64], categories: &[f64]) {
+pub(super) fn set_categories(variables: &[Variable], x: &mut [f64], categories: &[f64]) {
     let places = x
         .iter_mut()
         .zip(variables)

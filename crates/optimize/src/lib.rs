@@ -1,10 +1,10 @@
 //! # Kinefront: the optimizers
 //!
-//! Constrained optimization of two objectives over real and categorical variables, independent of the manipulators.
+//! Constrained optimization of one to three objectives over real and categorical variables, independent of the manipulators.
 //!
 //! A [`Problem`] consists of its variables and an evaluation. An [`Algorithm`] has an ask-and-tell interface: it is asked for
 //! candidates and told their outcomes. Its caller thus decides where candidates are evaluated, and can pause, stop or step
-//! between generations. Both objectives are minimised; the constraints are combined into a single violation, which is 0
+//! between generations. All objectives are minimised; the constraints are combined into a single violation, which is 0
 //! for a feasible candidate. [`run`] drives an algorithm in the calling thread.
 //!
 //! ## A problem of one's own
@@ -18,7 +18,7 @@
 //!         vec![Variable::Real { lower: -10.0, upper: 10.0 }]
 //!     }
 //!     fn evaluate(&self, x: &[f64]) -> Outcome {
-//!         Outcome { objectives: [x[0] * x[0], (x[0] - 2.0) * (x[0] - 2.0)], violation: 0.0 }
+//!         Outcome { objectives: [x[0] * x[0], (x[0] - 2.0) * (x[0] - 2.0)].into(), violation: 0.0 }
 //!     }
 //! }
 //!
@@ -52,7 +52,7 @@
 //! #         vec![Variable::Real { lower: -10.0, upper: 10.0 }]
 //! #     }
 //! #     fn evaluate(&self, x: &[f64]) -> Outcome {
-//! #         Outcome { objectives: [x[0] * x[0], (x[0] - 2.0) * (x[0] - 2.0)], violation: 0.0 }
+//! #         Outcome { objectives: [x[0] * x[0], (x[0] - 2.0) * (x[0] - 2.0)].into(), violation: 0.0 }
 //! #     }
 //! # }
 //!
@@ -65,12 +65,13 @@
 //!
 //! | item | purpose |
 //! |---|---|
-//! | [`Problem`], [`Variable`], [`Outcome`], [`Target`] | what is optimized |
-//! | [`Algorithm`], [`FrontDe`], [`Nsga2`], [`Moga2`] | how it is optimized |
+//! | [`Problem`], [`Variable`], [`Objectives`], [`Outcome`], [`Target`] | what is optimized |
+//! | [`Algorithm`], [`FrontDe`], [`CmaEs`], [`Nsga2`], [`Moga2`] | how it is optimized |
 //! | [`Archive`], [`hypervolume()`], [`compare`] | what was found, and how good it is |
 //! | [`knee`], [`spread`], [`ranking`], [`groups`] | choosing from a front |
 
 mod archive;
+mod cma_es;
 mod doe;
 mod dominance;
 mod front_de;
@@ -84,11 +85,12 @@ mod selection;
 mod variation;
 
 pub use archive::{Archive, ArchiveMember};
+pub use cma_es::{CmaEs, CmaEsSettings};
 pub use doe::sobol;
 pub use dominance::{Relation, compare, crowding_distances, non_dominated_ranks};
 pub use front_de::{FrontDe, FrontDeSettings};
 pub use hypervolume::hypervolume;
 pub use moga2::{Moga2, Moga2Settings};
 pub use nsga2::{Nsga2, Nsga2Settings};
-pub use problem::{Algorithm, Candidate, Evaluated, Outcome, Problem, Target, Variable, run};
+pub use problem::{Algorithm, Candidate, Evaluated, Objectives, Outcome, Problem, Target, Variable, run};
 pub use selection::{groups, knee, ranking, spread};

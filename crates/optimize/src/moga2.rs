@@ -33,7 +33,7 @@
 
 use super::dominance::{Relation, pareto};
 use super::random::Random;
-use super::{Algorithm, Candidate, Evaluated, Variable, doe};
+use super::{Algorithm, Candidate, Evaluated, Objectives, Variable, doe};
 
 /// Number of bits that encode a real variable.
 const REAL_BITS: u32 = 16;
@@ -87,7 +87,7 @@ pub struct Moga2 {
 struct Individual {
     x: Vec<f64>,
     /// Objectives with the penalty added.
-    objectives: [f64; 2],
+    objectives: Objectives,
 }
 
 impl Moga2 {
@@ -291,10 +291,13 @@ impl Algorithm for Moga2 {
         let offspring: Vec<Individual> = evaluated
             .into_iter()
             .map(|candidate| Individual {
-                objectives: candidate
-                    .outcome
-                    .objectives
-                    .map(|objective| objective + penalty * candidate.outcome.violation),
+                objectives: Objectives::new(
+                    candidate
+                        .outcome
+                        .objectives
+                        .iter()
+                        .map(|objective| objective + penalty * candidate.outcome.violation),
+                ),
                 x: candidate.x,
             })
             .collect();

@@ -1,5 +1,7 @@
 //! The interfaces between a problem, an algorithm and the caller that runs the algorithm on the problem.
 
+use std::ops::Deref;
+
 use super::Archive;
 
 /// One variable of a problem.
@@ -19,11 +21,65 @@ pub enum Variable {
     },
 }
 
+/// The values of one to three objectives, which are minimised and finite. They dereference to a slice.
+///
+/// ```
+/// use kinefront_optimize::Objectives;
+///
+/// let objectives = Objectives::from([3.0, -1.0]);
+/// assert_eq!(objectives.len(), 2);
+/// assert_eq!(objectives[1], -1.0);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Objectives {
+    values: [f64; Self::MOST],
+    count: usize,
+}
+
+impl Objectives {
+    /// Largest number of objectives.
+    pub const MOST: usize = 3;
+
+    /// Takes up to [`Objectives::MOST`] values; further ones are ignored.
+    pub fn new(values: impl IntoIterator<Item = f64>) -> Self {
+        let mut objectives = Self {
+            values: [0.0; Self::MOST],
+            count: 0,
+        };
+        for (place, value) in objectives.values.iter_mut().zip(values) {
+            *place = value;
+            objectives.count += 1;
+        }
+        objectives
+    }
+}
+
+impl<const N: usize> From<[f64; N]> for Objectives {
+    fn from(values: [f64; N]) -> Self {
+        const { assert!(N >= 1 && N <= Self::MOST) };
+        Self::new(values)
+    }
+}
+
+impl Deref for Objectives {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+}
+
+impl AsRef<[f64]> for Objectives {
+    fn as_ref(&self) -> &[f64] {
+        self
+    }
+}
+
 /// Result of an evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
-    /// Both objectives, which are minimised and finite.
-    pub objectives: [f64; 2],
+    /// The objectives, which are minimised and finite.
+    pub objectives: Objectives,
     /// Constraint violation: 0 for a feasible candidate, otherwise positive and finite.
     pub violation: f64,
 }
@@ -38,9 +94,9 @@ impl Outcome {
 /// Target that a candidate is completed for before it is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Target {
-    /// The smallest first objective for which the second objective is at most this level.
+    /// The best first objective for which the [leveled](Problem::leveled_objective) one is at most this level.
     Level(f64),
-    /// The smallest first objective for which the second objective is the best attainable.
+    /// The best first objective for which the leveled one is the best attainable.
     Best,
 }
 
@@ -75,6 +131,11 @@ pub trait Problem: Sync {
 
     /// Evaluates one candidate.
     fn evaluate(&self, x: &[f64]) -> Outcome;
+
+    /// Returns the place of the objective to which the level of a [`Target`] applies; by default the second one.
+    fn leveled_objective(&self) -> usize {
+        1
+    }
 
     /// Sets those variables of a candidate that follow from the other variables and from the target. Returns `None` if
     /// there are no such variables, or if the other variables do not allow the target.
@@ -123,7 +184,7 @@ pub fn run(problem: &impl Problem, algorithm: &mut (impl Algorithm + ?Sized), ev
             })
             .collect();
         for (offset, candidate) in evaluated.iter().enumerate() {
-            archive.insert(done + offset, candidate);
+            archive.insert(done + offset, &candidate.x, &candidate.outcome);
         }
         done += evaluated.len();
         algorithm.tell(evaluated);

@@ -2,8 +2,8 @@
 
 use kinefront_optimize::{
     Algorithm, Archive, Candidate, Evaluated, FrontDe, FrontDeSettings, Moga2, Moga2Settings, Nsga2, Nsga2Settings,
-    Outcome, Problem, Relation, Target, Variable, compare, crowding_distances, hypervolume, non_dominated_ranks, run,
-    sobol,
+    Objectives, Outcome, Problem, Relation, Target, Variable, compare, crowding_distances, hypervolume,
+    non_dominated_ranks, run, sobol,
 };
 use proptest::prelude::*;
 
@@ -21,7 +21,7 @@ impl Problem for Mixed {
     fn evaluate(&self, x: &[f64]) -> Outcome {
         let off = x[1] - (x[0] + 0.5);
         Outcome {
-            objectives: [x[1], 3.0 - x[1] + 4.0 * off * off],
+            objectives: [x[1], 3.0 - x[1] + 4.0 * off * off].into(),
             violation: 0.0,
         }
     }
@@ -65,7 +65,7 @@ impl Problem for Structured {
     fn evaluate(&self, x: &[f64]) -> Outcome {
         let off = (x[1] - 0.1 * x[0]).abs();
         Outcome {
-            objectives: [x[0] + off, 1.0 - x[0] * x[0] + off],
+            objectives: [x[0] + off, 1.0 - x[0] * x[0] + off].into(),
             violation: 0.0,
         }
     }
@@ -155,7 +155,7 @@ fn a_sobol_sample_gives_each_choice_its_share() {
 
 #[test]
 fn hypervolume_of_known_fronts() {
-    assert_eq!(hypervolume([], [1.0, 1.0]), 0.0);
+    assert_eq!(hypervolume([[0.0; 2]; 0], [1.0, 1.0]), 0.0);
     assert_eq!(hypervolume([[0.0, 0.0]], [2.0, 3.0]), 6.0);
     assert_eq!(
         hypervolume([[1.0, 2.0], [2.0, 1.0], [2.0, 2.0], [1.0, 2.0]], [3.0, 3.0]),
@@ -167,7 +167,7 @@ fn hypervolume_of_known_fronts() {
 fn outcome() -> impl Strategy<Value = Outcome> {
     // A coarse lattice, so that ties and duplicates occur.
     (0..8i32, 0..8i32, 0..3i32).prop_map(|(first, second, violation)| Outcome {
-        objectives: [f64::from(first), f64::from(second)],
+        objectives: [f64::from(first), f64::from(second)].into(),
         violation: f64::from(violation.max(1) - 1),
     })
 }
@@ -177,16 +177,16 @@ proptest! {
     fn the_archive_is_the_non_dominated_feasible_set(outcomes in prop::collection::vec(outcome(), 0..60)) {
         let mut archive = Archive::default();
         for (id, &outcome) in outcomes.iter().enumerate() {
-            archive.insert(id, &Evaluated { x: vec![id as f64], outcome });
+            archive.insert(id, &[id as f64], &outcome);
         }
-        let mut wanted: Vec<[f64; 2]> = outcomes
+        let mut wanted: Vec<Objectives> = outcomes
             .iter()
             .filter(|a| a.is_feasible() && outcomes.iter().all(|b| compare(b, a) != Relation::Dominates))
             .map(|a| a.objectives)
             .collect();
         wanted.sort_by(|a, b| a[0].total_cmp(&b[0]));
         wanted.dedup();
-        let found: Vec<[f64; 2]> = archive.iter().map(|member| member.objectives).collect();
+        let found: Vec<Objectives> = archive.iter().map(|member| member.objectives).collect();
         prop_assert_eq!(found, wanted);
     }
 

@@ -28,7 +28,7 @@ impl Problem for Formula {
 
     fn evaluate(&self, x: &[f64]) -> Outcome {
         Outcome {
-            objectives: (self.objectives)(x),
+            objectives: (self.objectives)(x).into(),
             violation: (self.constraints)(x).into_iter().map(|value| value.max(0.0)).sum(),
         }
     }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 use super::{FrontEntry, Store};
+use kinefront_model::evaluation::QuantitySet;
 use kinefront_model::mechanism::Architecture;
 
 /// Criteria for designs; those that do not pass the filter are dimmed.
@@ -113,7 +114,7 @@ pub enum FilterError {
 }
 
 fn quantity_names() -> String {
-    let names: Vec<_> = Column::quantities().map(Column::name).collect();
+    let names: Vec<_> = Column::quantities(QuantitySet::all()).map(Column::name).collect();
     names.join(", ")
 }
 
@@ -140,7 +141,7 @@ impl PreparedFilter<'_> {
             && self
                 .ranges
                 .iter()
-                .all(|(_, values, [low, high])| (*low..=*high).contains(&values[id]))
+                .all(|(_, values, [low, high])| values.get(id).is_some_and(|value| (*low..=*high).contains(value)))
     }
 }
 

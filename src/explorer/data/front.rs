@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::study::Row;
-use crate::study::{CertifiedRadius, Column, FrontMember, TableRow};
+use crate::study::{CertifiedRadius, FrontMember, TableRow};
 use kinefront_model::evaluation::Evaluation;
-use kinefront_optimize::{Archive, Evaluated, Outcome};
+use kinefront_optimize::{Archive, Objectives, Outcome};
 
 /// A non-dominated design.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,25 +49,21 @@ impl FrontEntry {
         }
     }
 
-    /// Returns both objectives, as they are minimised.
-    pub fn objectives(&self) -> [f64; 2] {
-        self.row.objectives()
+    /// Returns the objectives, as they are minimised.
+    pub fn objectives(&self) -> Objectives {
+        self.row.objectives
     }
 }
 
-/// Returns the non-dominated designs of a store, sorted by mass, with the values in the store.
+/// Returns the non-dominated designs of a store, sorted by the first objective, with the values in the store.
 pub fn front_of(store: &super::Store) -> Vec<FrontEntry> {
     let mut archive = Archive::default();
     for id in (0..store.len()).filter(|&id| store.is_feasible(id)) {
-        let objectives = [
-            store.column(Column::Mass)[id],
-            -store.column(Column::WorkspaceRadius)[id],
-        ];
         let outcome = Outcome {
-            objectives,
+            objectives: store.objectives(id),
             violation: 0.0,
         };
-        archive.insert(id, &Evaluated { x: Vec::new(), outcome });
+        archive.insert(id, &[], &outcome);
     }
     let members = archive.iter().filter_map(|member| {
         let row = store.row(member.id)?;

@@ -1,8 +1,11 @@
 //! All evaluated designs of a run, stored in columns: about 200 bytes per design, so that a million fit in memory.
 
+use std::collections::BTreeMap;
+
 use crate::study::{Column, Row};
-use kinefront_model::evaluation::Constraint;
+use kinefront_model::evaluation::{Constraint, Quantity, QuantitySet};
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, WorkingMode};
+use kinefront_optimize::Objectives;
 
 /// Evaluated designs in the order of their ids, which are consecutive from 0.
 #[derive(Debug, Clone, Default)]
@@ -23,6 +26,10 @@ pub struct Store {
     clearance: Vec<f64>,
     /// One bit per constraint, set if the constraint is active.
     active: Vec<u8>,
+    /// The objectives of the study, as they are minimised.
+    objectives: Vec<Objectives>,
+    /// Quantities that the study names and that have no other column; NaN where a design has none.
+    quantities: BTreeMap<Quantity, Vec<f64>>,
 }
 
 impl Store {
@@ -57,6 +64,32 @@ impl Store {
         }
         self.clearance.push(row.clearance().unwrap_or(f64::NAN));
         self.active.push(row.active);
+        self.objectives.push(row.objectives);
+        for quantity in Quantity::all() {
+            if let Some(value) = row.quantities.get(quantity) {
+                let column = self.quantities.entry(quantity).or_default();
+                column.resize(self.active.len() - 1, f64::NAN);
+                column.push(value);
+            }
+        }
+        self.fill_quantities();
+    }
+
+    /// Fills in the values of quantities that the last designs do not have.
+    fn fill_quantities(&mut self) {
+        for column in self.quantities.values_mut() {
+            column.resize(self.active.len(), f64::NAN);
+        }
+    }
+
+    /// Returns the objectives of design `id`, which must exist, as they are minimised.
+    pub fn objectives(&self, id: usize) -> Objectives {
+        self.objectives[id]
+    }
+
+    /// Returns the quantities that some design has and that have no column in every study.
+    pub fn further_quantities(&self) -> QuantitySet {
+        self.quantities.keys().copied().collect()
     }
 
     /// Moves the designs of `other` to the end of this store.
@@ -75,7 +108,15 @@ impl Store {
             column.append(more);
         }
         self.clearance.append(&mut other.clearance);
+        let before = self.active.len();
         self.active.append(&mut other.active);
+        self.objectives.append(&mut other.objectives);
+        for (quantity, mut more) in std::mem::take(&mut other.quantities) {
+            let column = self.quantities.entry(quantity).or_default();
+            column.resize(before, f64::NAN);
+            column.append(&mut more);
+        }
+        self.fill_quantities();
     }
 
     /// Returns all values of design `id`, if it exists.
@@ -94,6 +135,12 @@ impl Store {
             violation: self.violation[id],
             margins: std::array::from_fn(|k| Some(self.margins[k][id]).filter(|margin| margin.is_finite())),
             active: self.active[id],
+            quantities: self
+                .quantities
+                .iter()
+                .map(|(quantity, values)| (*quantity, Some(values[id])))
+                .collect(),
+            objectives: self.objectives[id],
         })
     }
 
@@ -113,7 +160,7 @@ impl Store {
 
     /// Returns whether design `id`, which must exist, is feasible.
     pub fn is_feasible(&self, id: usize) -> bool {
-        self.radius[id] > 0.0
+        self.violation[id] <= 0.0
     }
 
     /// Returns all values of one of the [quantities](Column::quantities), in the order of the ids; none for any other column.
@@ -126,13 +173,15 @@ impl Store {
             Column::Violation => &self.violation,
             Column::Value(Constraint::Clearance) => &self.clearance,
             Column::Margin(constraint) => &self.margins[constraint as usize],
+            Column::Quantity(quantity) => self.quantities.get(&quantity).map_or(&[], Vec::as_slice),
             _ => &[],
         }
     }
 
     /// Returns the memory in use \[bytes\].
     pub fn bytes(&self) -> usize {
-        let per_row = 1 + size_of::<WorkingMode>() + 4 + 1 + 8 * (DESIGN_VARIABLES.len() + 5 + Constraint::ALL.len());
+        let numbers = DESIGN_VARIABLES.len() + 5 + Constraint::ALL.len() + self.quantities.len();
+        let per_row = 1 + size_of::<WorkingMode>() + 4 + 1 + 8 * numbers + size_of::<Objectives>();
         self.mass.capacity() * per_row
     }
 }

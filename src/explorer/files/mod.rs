@@ -190,7 +190,7 @@ fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
         return None;
     };
     let writing = session.writing();
-    let model = *session.model();
+    let model = session.model().clone();
     let shown = session
         .known()
         .map(|known| known.evaluation.clone())
@@ -211,7 +211,7 @@ fn export_design(session: &mut Session, format: Format, path: PathBuf) -> Option
         session.notify_error("no design is selected".to_owned());
         return None;
     };
-    let (study, model) = (session.study().clone(), *session.model());
+    let (study, model) = (session.study().clone(), session.model().clone());
     let pose = session.staging.pose;
     Some(Box::new(move || {
         // The export contains the values from the fine grid.

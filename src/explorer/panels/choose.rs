@@ -1,15 +1,16 @@
 //! The choose panel: knee and extreme designs, weighted ranking, representatives of the front, filter, kept designs.
 
-use crate::study::Column;
+use crate::study::{Column, Row};
 use egui::{DragValue, ScrollArea, Slider, Ui};
 
 use crate::explorer::{Filter, Session, theme};
-use kinefront_optimize::{groups, ranking};
+use kinefront_model::evaluation::{Better, Quantity};
+use kinefront_optimize::{Objectives, groups, ranking};
 
 /// The panel that supports the choice of a design.
 pub struct ChoosePanel {
-    /// Weight of the mass in the ranking, in \[0, 1\].
-    weight: f64,
+    /// Weights of the objectives in the ranking, in \[0, 1\]. With two objectives, that of the second is the rest of the first.
+    weights: [f64; Objectives::MOST],
     groups: usize,
     /// Number of the front, number of groups, and ids of the groups' representatives, as last computed.
     middles: Option<(u64, usize, Vec<usize>)>,
@@ -18,7 +19,7 @@ pub struct ChoosePanel {
 impl Default for ChoosePanel {
     fn default() -> Self {
         Self {
-            weight: 0.5,
+            weights: [0.5; Objectives::MOST],
             groups: 5,
             middles: None,
         }
@@ -41,24 +42,13 @@ impl ChoosePanel {
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             ui.strong("Knee and extreme designs");
             ui.horizontal_wrapped(|ui| {
-                let front = session.front();
-                let ends = front
-                    .first()
-                    .map(|entry| entry.id)
-                    .zip(front.last().map(|entry| entry.id));
-                if ui
-                    .button("Knee")
-                    .on_hover_text("the design beyond which a larger R_w costs much more mass (K)")
-                    .clicked()
-                {
+                let hover = "the design beyond which more of one objective costs much of the others (K)";
+                if ui.button("Knee").on_hover_text(hover).clicked() {
                     session.select_knee();
                 }
-                if let Some((lightest, largest)) = ends {
-                    if ui.button("Lightest").clicked() {
-                        session.select(lightest);
-                    }
-                    if ui.button("Largest R_w").clicked() {
-                        session.select(largest);
+                for (name, id) in bests(session) {
+                    if ui.button(name).clicked() {
+                        session.select(id);
                     }
                 }
             });
@@ -76,14 +66,27 @@ impl ChoosePanel {
 
     fn weighted(&mut self, ui: &mut Ui, session: &mut Session) {
         ui.strong("Weighted ranking");
-        let slider = ui.add(
-            Slider::new(&mut self.weight, 0.0..=1.0)
-                .custom_formatter(|weight, _| format!("{:.0} % mass", 100.0 * weight)),
-        );
-        ui.ctx()
-            .accesskit_node_builder(slider.id, |node| node.set_label("Weight of the mass"));
-        let objectives: Vec<[f64; 2]> = session.front().iter().map(|entry| entry.objectives()).collect();
-        let best: Vec<usize> = ranking(&objectives, self.weight)
+        let names: Vec<&str> = session
+            .study()
+            .objectives()
+            .iter()
+            .map(|objective| short_name(objective.quantity))
+            .collect();
+        // The weight of the last of two objectives follows from that of the first.
+        let sliders = if names.len() > 2 { names.len() } else { names.len() - 1 };
+        for (weight, name) in self.weights.iter_mut().zip(&names).take(sliders) {
+            let slider = ui.add(
+                Slider::new(weight, 0.0..=1.0).custom_formatter(|weight, _| format!("{:.0} % {name}", 100.0 * weight)),
+            );
+            ui.ctx()
+                .accesskit_node_builder(slider.id, |node| node.set_label(format!("Weight of the {name}")));
+        }
+        let weights = match names.len() {
+            2 => vec![self.weights[0], 1.0 - self.weights[0]],
+            _ => self.weights.to_vec(),
+        };
+        let objectives: Vec<Objectives> = session.front().iter().map(|entry| entry.objectives()).collect();
+        let best: Vec<usize> = ranking(&objectives, &weights)
             .into_iter()
             .take(5)
             .map(|place| session.front()[place].id)
@@ -112,12 +115,7 @@ fn designs(ui: &mut Ui, session: &mut Session, ids: &[usize]) {
             continue;
         };
         let color = theme::architecture(row.design.architecture, ui.visuals().dark_mode);
-        let text = format!(
-            "#{id} {}  {} kg  R_w {} m",
-            row.design.architecture,
-            theme::number(row.mass),
-            theme::number(row.radius)
-        );
+        let text = format!("#{id} {}  {}", row.design.architecture, values(session, &row));
         if ui.link(egui::RichText::new(text).color(color)).clicked() {
             session.select(id);
         }
@@ -154,7 +152,7 @@ fn filter(ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
     egui::ComboBox::from_id_salt("add range")
         .selected_text("add a range")
         .show_ui(ui, |ui| {
-            for quantity in Column::quantities() {
+            for quantity in Column::quantities(session.store().further_quantities()) {
                 if !edited.ranges.contains_key(&*quantity.name())
                     && ui.selectable_label(false, quantity.title()).clicked()
                 {
@@ -204,9 +202,52 @@ fn kept(ui: &mut Ui, session: &mut Session) {
 
 /// Divides the front into `count` groups of similar designs and returns the id of the middle design of each.
 fn representatives(session: &Session, count: usize) -> Vec<usize> {
-    let objectives: Vec<[f64; 2]> = session.front().iter().map(|entry| entry.objectives()).collect();
+    let objectives: Vec<Objectives> = session.front().iter().map(|entry| entry.objectives()).collect();
     groups(&objectives, count)
         .into_iter()
-        .map(|group| session.front()[usize::midpoint(group.start, group.end - 1)].id)
+        .map(|group| session.front()[group[(group.len() - 1) / 2]].id)
+        .collect()
+}
+
+/// Returns the name of a quantity in a row of text.
+fn short_name(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Mass => "mass",
+        quantity => quantity.entry().label,
+    }
+}
+
+/// Returns mass and workspace radius of a design, and the values of the other objectives.
+fn values(session: &Session, row: &Row) -> String {
+    let mut text = format!("{} kg  R_w {} m", theme::number(row.mass), theme::number(row.radius));
+    for (objective, minimised) in session.study().objectives().into_iter().zip(row.objectives.iter()) {
+        let entry = objective.quantity.entry();
+        if !matches!(objective.quantity, Quantity::Mass | Quantity::WorkspaceRadius) {
+            let value = theme::number(objective.value(*minimised));
+            text += &format!("  {} {value} {}", entry.label, entry.unit);
+        }
+    }
+    text
+}
+
+/// Returns the best design of the front in each objective, with the name of its button.
+fn bests(session: &Session) -> Vec<(String, usize)> {
+    let best = |place: usize| {
+        let entries = session.front().iter();
+        entries
+            .min_by(|a, b| a.row.objectives[place].total_cmp(&b.row.objectives[place]))
+            .map(|entry| entry.id)
+    };
+    let objectives = session.study().objectives().into_iter().enumerate();
+    objectives
+        .filter_map(|(place, objective)| {
+            let name = match (objective.quantity, objective.goal) {
+                (Quantity::Mass, Better::Lower) => "Lightest".to_owned(),
+                (Quantity::WorkspaceRadius, Better::Higher) => "Largest R_w".to_owned(),
+                (quantity, Better::Lower) => format!("Least {}", quantity.entry().label),
+                (quantity, Better::Higher) => format!("Most {}", quantity.entry().label),
+            };
+            Some((name, best(place)?))
+        })
         .collect()
 }

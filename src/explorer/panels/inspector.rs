@@ -5,7 +5,7 @@ use egui::{Color32, Grid, RichText, ScrollArea, Sense, Slider, Ui, Vec2, WidgetI
 
 use crate::explorer::{Known, Session, theme};
 use kinefront_model::certify::Verdict;
-use kinefront_model::evaluation::ConstraintResult;
+use kinefront_model::evaluation::{ConstraintResult, Quantity};
 use kinefront_model::mechanism::DESIGN_VARIABLES;
 
 /// The inspector panel.
@@ -102,9 +102,9 @@ fn heading(ui: &mut Ui, session: &mut Session) {
 }
 
 fn sliders(ui: &mut Ui, session: &mut Session, values: &[f64; 5]) {
-    let bounds = session.study().bounds.clone();
+    let study = session.study().clone();
     for (index, variable) in DESIGN_VARIABLES.into_iter().enumerate() {
-        let [low, high] = bounds.range(variable);
+        let [low, high] = study.range(variable);
         let mut value = values[index];
         // A design that does not come from the run may lie outside the study's bounds.
         let range = low.min(value)..=high.max(value);
@@ -138,6 +138,14 @@ fn sliders(ui: &mut Ui, session: &mut Session, values: &[f64; 5]) {
     }
 }
 
+/// Quantities that the inspector shows elsewhere.
+const HAVE_ROWS: [Quantity; 4] = [
+    Quantity::Mass,
+    Quantity::WorkspaceRadius,
+    Quantity::LegsMass,
+    Quantity::PlatformMass,
+];
+
 fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
     let evaluation = &known.evaluation;
     let model = session.model();
@@ -152,11 +160,15 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
         ui.label("R_w");
         ui.horizontal(|ui| {
             let certified = session.certified().filter(|_| known.verified);
-            if evaluation.is_feasible() {
+            if evaluation.home.is_some() {
                 let radius = certified.map_or(evaluation.workspace_radius, |certified| certified.lower);
                 ui.strong(format!("{} m", theme::number(radius)));
             } else {
                 ui.colored_label(theme::BAD, "infeasible: no regular workspace");
+            }
+            if let Some(limit) = evaluation.limits.iter().find(|limit| limit.margin < 0.0) {
+                let entry = limit.limit.quantity.entry();
+                ui.colored_label(theme::BAD, format!("infeasible: {} beyond its limit", entry.label));
             }
             ui.weak(match (certified, known.verified) {
                 (Some(certified), _) => certified.state(),
@@ -165,6 +177,18 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
             });
         });
         ui.end_row();
+        for quantity in Quantity::all().filter(|quantity| !HAVE_ROWS.contains(quantity)) {
+            let entry = quantity.entry();
+            let known = evaluation
+                .quantities
+                .get(quantity)
+                .filter(|_| entry.constraint.is_none());
+            if let Some(value) = known {
+                ui.label(entry.label).on_hover_text(entry.meaning);
+                ui.label(format!("{} {}", theme::number(value), entry.unit));
+                ui.end_row();
+            }
+        }
         if let Some(phi) = evaluation.home_phi_deg {
             ui.label("home orientation φ_c");
             ui.label(format!("{phi}° ± {}°", 0.5 * model.workspace.rotation_range_deg));
@@ -192,7 +216,7 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
 
 /// Shows what is proved about the workspace, and leads to the infeasible pose that ends it.
 fn proof(ui: &mut Ui, session: &mut Session) {
-    if !session.study().workspace.certify {
+    if !session.study().certifies() {
         return;
     }
     let Some(proof) = session.proof().cloned() else {

@@ -1,6 +1,7 @@
 //! Parallel coordinates of variables, objectives and margins, with a brush on every axis.
 
-use crate::study::{Better, Column};
+use crate::study::Column;
+use kinefront_model::evaluation::Better;
 use std::sync::Arc;
 
 use egui::{
@@ -257,7 +258,7 @@ fn range_of(axis: Column, session: &Session, sample: &[usize]) -> [f64; 2] {
             [low.min(value), high.max(value)]
         });
     let range = match axis {
-        Column::Dimension(variable) => session.study().bounds.range(variable),
+        Column::Dimension(variable) => session.study().range(variable),
         // Margins have no upper bound, and those near 0 matter most.
         Column::Margin(_) => [found[0].min(0.0), found[1].clamp(0.1, 10.0)],
         _ => found,

@@ -83,7 +83,7 @@ pub(super) fn paint(ui: &Ui, painter: &egui::Painter, plan: &Plan, scene: &Scene
             SolidShape::Bar { from, radius, .. } if matches!(solid.part, Part::ActuatedJoint | Part::PassiveJoint) => {
                 painter.circle_filled(place(from), ((radius * plan.scale) as f32).max(2.5), color);
             }
-            SolidShape::Bar { from, to, radius } => {
+            SolidShape::Bar { from, to, radius, .. } => {
                 let width = ((2.0 * radius * plan.scale) as f32).max(2.0);
                 painter.line_segment([place(from), place(to)], Stroke::new(width, color));
             }
@@ -91,6 +91,7 @@ pub(super) fn paint(ui: &Ui, painter: &egui::Painter, plan: &Plan, scene: &Scene
                 centre,
                 half_size,
                 angle,
+                ..
             } => {
                 let axis = DVec2::from_angle(angle);
                 let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(a, b): (f64, f64)| {
@@ -122,7 +123,7 @@ pub(super) fn paint(ui: &Ui, painter: &egui::Painter, plan: &Plan, scene: &Scene
 /// Returns the height of a solid's top \[m\].
 fn top(shape: &SolidShape) -> f64 {
     match *shape {
-        SolidShape::Bar { from, to, radius } if from.z == to.z => from.z + radius,
+        SolidShape::Bar { from, to, radius, .. } if from.z == to.z => from.z + radius,
         SolidShape::Bar { from, to, .. } => from.z.max(to.z),
         SolidShape::Block { centre, half_size, .. } => centre.z + half_size.z,
     }

@@ -16,7 +16,7 @@ use crate::recording::FrontPoint;
 use crate::study::{Resumption, RunControl, Study, Subscriber, spawn};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Design;
-use kinefront_optimize::knee;
+use kinefront_optimize::{Objectives, knee};
 
 impl Session {
     /// Starts a run of the study in the editor; a run in progress is abandoned.
@@ -268,7 +268,7 @@ impl Session {
     }
 
     pub(super) fn knee(&self) -> Option<usize> {
-        let objectives: Vec<[f64; 2]> = self.front.iter().map(FrontEntry::objectives).collect();
+        let objectives: Vec<Objectives> = self.front.iter().map(FrontEntry::objectives).collect();
         knee(&objectives)
     }
 

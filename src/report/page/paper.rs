@@ -153,7 +153,7 @@ pub(super) fn claim(trend: &Trend) -> Markup {
 fn volume(report: &Report, front: &Front) -> f64 {
     let members = front.members.iter();
     let objectives = members.map(|member| [member.mass, -member.workspace_radius]);
-    hypervolume(objectives, report.study.hypervolume.reference())
+    hypervolume(objectives, report.study.hypervolume_reference())
 }
 
 /// Finds the variation under which the `R_w` of a reference design is nearest, by ratio, to the stated one; returns it

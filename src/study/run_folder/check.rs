@@ -97,7 +97,7 @@ impl Inspection {
             return;
         };
         if summary.verified_front() {
-            self.check_front(&summary);
+            self.check_front(&study, &summary);
         }
         for (key, stated, found) in differences(&report, &RunReport::new(&study, &summary)) {
             let message = format!("`{key}` is {stated}, but {found} follows from the study and the designs");
@@ -105,12 +105,12 @@ impl Inspection {
         }
     }
 
-    fn check_front(&mut self, summary: &RunSummary) {
+    fn check_front(&mut self, study: &crate::study::Study, summary: &RunSummary) {
         let path = self.folder.front_path();
         let message = match self.folder.front() {
             Ok(None) => "it is missing".to_owned(),
             Err(error) => error.fault.to_string(),
-            Ok(Some(_)) => match (front_table(summary), std::fs::read(&path)) {
+            Ok(Some(_)) => match (front_table(study, summary), std::fs::read(&path)) {
                 (Ok(expected), Ok(found)) if found != expected => {
                     "it is not the front that follows from the designs".to_owned()
                 }

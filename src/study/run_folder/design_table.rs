@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use super::sum::checksum;
 use super::{DESIGNS, FileSum, WriteError};
-use crate::study::Batch;
 use crate::study::table::{Column, append_row, table_bytes};
+use crate::study::{Batch, Study};
 
 /// `ENOLCK` of Linux: a network file system without a lock service.
 const NO_LOCKS: i32 = 37;
@@ -52,6 +52,7 @@ pub(super) fn open_locked(folder: &Path, create: bool) -> Result<File, WriteErro
 pub(super) struct DesignTable {
     file: File,
     path: PathBuf,
+    columns: Vec<Column>,
     /// Sum of the rows that were written.
     pub sum: FileSum,
     checksum: crc32fast::Hasher,
@@ -59,10 +60,11 @@ pub(super) struct DesignTable {
 
 impl DesignTable {
     /// Takes the table of a folder that is open and locked; it counts as empty.
-    pub(super) fn over(file: File, folder: &Path) -> Self {
+    pub(super) fn over(file: File, folder: &Path, study: &Study) -> Self {
         Self {
             file,
             path: folder.join(DESIGNS),
+            columns: Column::of_designs(study).collect(),
             sum: FileSum {
                 rows: Some(0),
                 bytes: 0,
@@ -74,7 +76,7 @@ impl DesignTable {
 
     /// Whether the file has nothing but a header, or a part of one, left by a start that was killed.
     pub(super) fn is_begun_at_most(&self) -> Result<bool, WriteError> {
-        let header = table_bytes(Column::of_designs(), []).map_err(WriteError::at(&self.path))?;
+        let header = table_bytes(self.columns.iter().copied(), []).map_err(WriteError::at(&self.path))?;
         let length = self.file.metadata().map_err(WriteError::at(&self.path))?.len();
         if length > header.len() as u64 {
             return Ok(false);
@@ -85,7 +87,7 @@ impl DesignTable {
 
     /// Empties the table and writes its header.
     pub(super) fn begin(&mut self) -> Result<(), WriteError> {
-        let header = table_bytes(Column::of_designs(), []).map_err(WriteError::at(&self.path))?;
+        let header = table_bytes(self.columns.iter().copied(), []).map_err(WriteError::at(&self.path))?;
         self.file.set_len(0).map_err(WriteError::at(&self.path))?;
         self.append_bytes(&header, 0)
     }
@@ -109,7 +111,7 @@ impl DesignTable {
         let text = || -> io::Result<Vec<u8>> {
             let mut table = csv::Writer::from_writer(Vec::new());
             for entry in batch.entries() {
-                append_row(&mut table, Column::of_designs().map(|column| column.cell(&entry)))?;
+                append_row(&mut table, self.columns.iter().map(|column| column.cell(&entry)))?;
             }
             table.into_inner().map_err(|error| error.into_error())
         };

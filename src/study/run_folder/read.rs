@@ -164,7 +164,7 @@ impl RunFolder {
                 result => result?,
             }
         }
-        let header = header();
+        let header = header(&self.study);
         let found = File::open(&path).and_then(|file| {
             let mut found = Vec::new();
             file.take(header.len() as u64).read_to_end(&mut found)?;
@@ -298,8 +298,8 @@ fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, RunFolderErr
 }
 
 /// The header of `designs.csv`.
-fn header() -> Vec<u8> {
-    table_bytes(Column::of_designs(), []).unwrap_or_default()
+fn header(study: &Study) -> Vec<u8> {
+    table_bytes(Column::of_designs(study), []).unwrap_or_default()
 }
 
 fn check(path: &Path, sum: &FileSum, may_grow: bool) -> Result<(), RunFolderError> {

@@ -3,7 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::FileSum;
-use crate::study::{AlgorithmName, EndReason, FrontProofs, GenerationSummary, RunSummary, RunTimes, Study};
+use crate::study::{
+    AlgorithmName, EndReason, FrontProofs, GenerationSummary, ObjectiveChoice, RunSummary, RunTimes, Study,
+};
+use kinefront_model::evaluation::Objective;
 use kinefront_model::mechanism::Architecture;
 
 /// Contents of `run.json`.
@@ -55,6 +58,19 @@ pub struct RunReport {
     /// What the proofs of the workspaces of the front found; `None` if the study asks for none.
     #[serde(default)]
     pub proofs: Option<FrontProofs>,
+    /// Objectives of the study, and their values at the reference point; absent for those of the paper.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub objectives: Vec<ReportedObjective>,
+}
+
+/// An objective in `run.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReportedObjective {
+    /// Whether the quantity is minimised or maximised, and its key.
+    #[serde(flatten)]
+    pub objective: ObjectiveChoice,
+    /// Its value at the reference point of the hypervolume.
+    pub reference: f64,
 }
 
 /// Sums of the files of a run.
@@ -109,6 +125,26 @@ impl RunReport {
             record_every: None,
             files: None,
             proofs: summary.proofs.clone(),
+            objectives: if study.asks_as_the_paper() {
+                Vec::new()
+            } else {
+                reported_objectives(study)
+            },
         }
     }
+}
+
+fn reported_objectives(study: &Study) -> Vec<ReportedObjective> {
+    let reference = study.hypervolume_reference();
+    let of = |((choice, objective), minimised): ((&ObjectiveChoice, Objective), &f64)| ReportedObjective {
+        objective: choice.clone(),
+        reference: objective.value(*minimised),
+    };
+    study
+        .objectives
+        .iter()
+        .zip(study.objectives())
+        .zip(reference.iter())
+        .map(of)
+        .collect()
 }

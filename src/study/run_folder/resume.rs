@@ -96,7 +96,7 @@ impl Resumption {
             });
         }
         let mut notes = Vec::new();
-        let table = DesignTable::over(file, path);
+        let table = DesignTable::over(file, path, folder.study());
         let contents = folder.designs_to_resume(&mut notes)?;
         let evaluated = contents.rows.len();
         let mut study = folder.study().clone();

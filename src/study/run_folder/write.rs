@@ -108,7 +108,7 @@ impl RunWriter {
         // The lock decides between two processes that start at once.
         let file = open_locked(path, true)?;
         occupied()?;
-        let mut table = DesignTable::over(file, path);
+        let mut table = DesignTable::over(file, path, study);
         if !table.is_begun_at_most()? {
             return Err(WriteError::Occupied {
                 path: path.to_owned(),
@@ -185,7 +185,7 @@ impl RunWriter {
         self.checkpoint()?;
         let front_sum = if summary.verified_front() {
             let front_path = self.path.join(FRONT);
-            let front = front_table(summary).map_err(WriteError::at(&front_path))?;
+            let front = front_table(&self.study, summary).map_err(WriteError::at(&front_path))?;
             write_whole(&front_path, &front)?;
             Some(FileSum {
                 rows: Some(summary.front.len()),
@@ -240,14 +240,14 @@ impl RunWriter {
 }
 
 /// Returns the verified front as a table.
-pub(super) fn front_table(summary: &RunSummary) -> io::Result<Vec<u8>> {
+pub(super) fn front_table(study: &Study, summary: &RunSummary) -> io::Result<Vec<u8>> {
     let rows = summary.front.iter().zip(summary.marks()).map(|(member, mark)| {
         let entry = member.row();
         let cell = |column| match column {
             Column::Mark => Cell::Text(mark.into()),
             column => column.cell(&entry),
         };
-        Column::of_front().map(cell).collect()
+        Column::of_front(study).map(cell).collect()
     });
-    table_bytes(Column::of_front(), rows)
+    table_bytes(Column::of_front(study), rows)
 }

@@ -1,7 +1,9 @@
 //! Invalid values of a study.
 
-use super::{Bounds, LengthChoice, settings};
-use crate::study::Study;
+use super::question::unknown_quantity;
+use super::{Bounds, LengthChoice, LimitChoice, ObjectiveChoice, SectionChoice, settings, variables};
+use crate::study::{AlgorithmName, Study};
+use kinefront_model::evaluation::{Quantity, Scope};
 use kinefront_model::mechanism::Design;
 use kinefront_model::workspace::{Grid, GridError};
 
@@ -15,7 +17,7 @@ pub struct Fault {
 }
 
 impl Fault {
-    fn new(key: impl Into<String>, message: impl Into<String>) -> Self {
+    pub(in crate::study) fn new(key: impl Into<String>, message: impl Into<String>) -> Self {
         Self {
             key: key.into(),
             message: message.into(),
@@ -24,7 +26,7 @@ impl Fault {
 }
 
 /// Rules about several settings at once, each of which adds what it finds.
-const RULES: [fn(&Study, &mut Vec<Fault>); 7] = [
+const RULES: [fn(&Study, &mut Vec<Fault>); 12] = [
     check_characteristic_length,
     check_slider,
     check_bounds,
@@ -32,6 +34,11 @@ const RULES: [fn(&Study, &mut Vec<Fault>); 7] = [
     check_grids,
     check_moga2,
     check_references,
+    check_sections,
+    check_variables,
+    check_region,
+    check_objectives,
+    check_constraints,
 ];
 
 impl Study {
@@ -170,4 +177,143 @@ fn check_references(study: &Study, faults: &mut Vec<Fault>) {
             }
         }
     }
+}
+
+fn check_sections(study: &Study, faults: &mut Vec<Fault>) {
+    let of = |name: &str, choice: &SectionChoice| {
+        let (key, message) = choice.cross_section().err()?;
+        Some(Fault::new(format!("sections.{name}.{key}"), message))
+    };
+    faults.extend(of("legs", &study.sections.legs));
+    faults.extend(of("platform", &study.sections.platform));
+}
+
+fn check_variables(study: &Study, faults: &mut Vec<Fault>) {
+    if faults
+        .iter()
+        .any(|fault| fault.key.starts_with("sections.") || fault.key.starts_with("bounds."))
+    {
+        return;
+    }
+    let found = variables::faults(study).into_iter();
+    faults.extend(found.map(|(key, message)| Fault::new(key, message)));
+}
+
+fn check_region(study: &Study, faults: &mut Vec<Fault>) {
+    let key = |key: &str| format!("workspace.region.{key}");
+    match study.workspace.region.region() {
+        Err((at, message)) => faults.push(Fault::new(key(at), message)),
+        Ok(_) if faults.is_empty() => {
+            let unreachable = study.unreachable_region();
+            faults.extend(unreachable.map(|message| Fault::new(key("kind"), message)));
+        }
+        Ok(_) => {}
+    }
+}
+
+fn check_objectives(study: &Study, faults: &mut Vec<Fault>) {
+    let mut fault = |message: String| faults.push(Fault::new("objectives", message));
+    let choices = &study.objectives;
+    if choices.is_empty() || choices.len() > 3 {
+        fault(format!(
+            "has {} entries; a study has one to three objectives",
+            choices.len()
+        ));
+    }
+    for (place, choice) in choices.iter().enumerate() {
+        let key = choice.key();
+        let Some(quantity) = Quantity::find(key) else {
+            fault(format!("`{key}` {}", unknown_quantity(key)));
+            continue;
+        };
+        if choices[..place].iter().any(|other| other.key() == key) {
+            fault(format!("`{key}` is named twice; each objective is another quantity"));
+        }
+        if quantity == Quantity::WorkspaceRadius && study.workspace.region.is_prescribed() {
+            fault(format!(
+                "`{key}` is the same for every design, because the region is prescribed; name another quantity, or omit \
+                 [workspace.region]"
+            ));
+        }
+    }
+    if choices.len() > 1 && study.optimizer.algorithm == AlgorithmName::CmaEs {
+        let names: Vec<&str> = choices.iter().map(ObjectiveChoice::key).collect();
+        faults.push(Fault::new(
+            "optimizer.algorithm",
+            format!(
+                "is \"cma-es\", which has one objective, but the study has {}: {}; use \"front-de\"",
+                choices.len(),
+                names.join(", ")
+            ),
+        ));
+    }
+    for key in &study.quantities {
+        if Quantity::find(key).is_none() {
+            faults.push(Fault::new("quantities", format!("`{key}` {}", unknown_quantity(key))));
+        }
+    }
+}
+
+fn check_constraints(study: &Study, faults: &mut Vec<Fault>) {
+    for (key, limits) in &study.constraints {
+        if let Some(message) = limit_fault(study, key, limits) {
+            faults.push(Fault::new(format!("constraints.{key}"), message));
+        }
+    }
+}
+
+fn limit_fault(study: &Study, key: &str, limits: &LimitChoice) -> Option<String> {
+    let Some(quantity) = Quantity::find(key) else {
+        return Some(unknown_quantity(key));
+    };
+    let stated = [limits.at_least, limits.at_most];
+    let entry = quantity.entry();
+    match stated {
+        [None, None] => return Some("states no limit; write { at_least = … }, { at_most = … } or both".to_owned()),
+        [Some(least), Some(most)] if least > most => {
+            return Some(format!(
+                "contradicts itself: no value is at least {least} and at most {most} {}",
+                entry.unit
+            ));
+        }
+        _ => {}
+    }
+    if let Some(limit) = stated
+        .into_iter()
+        .flatten()
+        .find(|limit| !limit.is_finite() || limit.abs() > 1e15)
+    {
+        return Some(format!("has the limit {limit}; it must be a number of at most 1e15"));
+    }
+    let is_of_poses = entry.scope == Scope::Poses && quantity != Quantity::Determinant;
+    if is_of_poses && stated.into_iter().flatten().any(|limit| limit < 0.0) {
+        return Some("has a limit below 0; this quantity is at least 0 at every feasible pose".to_owned());
+    }
+    let positive = [Quantity::TransmissionMin, Quantity::DisplacementMax, Quantity::Reach];
+    if positive.contains(&quantity) && stated.contains(&Some(0.0)) {
+        return Some("has a limit of 0; it must be above 0".to_owned());
+    }
+    let at_most_one = [Quantity::Dexterity, Quantity::DexterityMean, Quantity::TransmissionMin];
+    if let Some(least) = limits
+        .at_least
+        .filter(|least| at_most_one.contains(&quantity) && *least >= 1.0)
+    {
+        return Some(format!("asks for at least {least}, but this quantity is at most 1"));
+    }
+    if quantity == Quantity::WorkspaceRadius && study.workspace.region.is_prescribed() {
+        return Some("has no effect, because the region is prescribed; omit it, or omit [workspace.region]".to_owned());
+    }
+    let requirement = match quantity {
+        Quantity::StiffnessXy => study.requirements.k_xy_min_n_per_m.map(|_| "k_xy_min_n_per_m"),
+        Quantity::StiffnessZ => study.requirements.k_z_min_n_per_m.map(|_| "k_z_min_n_per_m"),
+        Quantity::StiffnessPhiZ => study
+            .requirements
+            .k_phi_z_min_nm_per_rad
+            .map(|_| "k_phi_z_min_nm_per_rad"),
+        Quantity::Clearance => study.requirements.clearance_min_m.map(|_| "clearance_min_m"),
+        _ => None,
+    };
+    requirement.filter(|_| limits.at_least.is_some()).map(|requirement| {
+        format!("is stated beside requirements.{requirement}, which says the same; omit one of both")
+    })
 }

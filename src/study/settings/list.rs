@@ -4,8 +4,8 @@ use kinefront_model::mechanism::Architecture;
 
 use super::declare::{Check, Initial, Setting, settings};
 use super::{
-    ActuatorSection, AlgorithmName, Bounds, HypervolumeSection, MaterialSection, ModelSection, RequirementSection,
-    WorkspaceSection,
+    ActuatorSection, AlgorithmName, Bounds, HypervolumeSection, MaterialSection, ModelSection, RegionKind,
+    RequirementSection, Variables, WorkspaceSection,
 };
 
 const MOST: i64 = 100_000_000;
@@ -13,18 +13,40 @@ const PROBABILITY: Check = Check::Within(0.0, 1.0, "");
 const LAYER: Check = Check::Within(-1e3, 1e3, " diameters of the thicker bar");
 const PHI_STEP: Check = Check::Within(0.01, 120.0, "");
 
-const SECTIONS: [&[Setting]; 17] = [
+const SECTIONS: [&[Setting]; 22] = [
     settings!("" {
         name: Check::Name, "Short name, which appears in run folders and recordings.";
         description: Check::Any, "Description of the study in one or two sentences.";
         architectures: Check::Selection(architectures),
             "Architectures to search; with more than one, the architecture is a variable.";
         working_mode: Check::Any, "Working mode of every design: the sign of the inverse kinematics solution of each leg.";
+        objectives: Check::Any, "Objectives, one to three: the quantities that are minimised or maximised.";
+        quantities: Check::Any, "Quantities that are reported besides those that the study names otherwise.";
+        constraints: Check::Any, "Limits of quantities: the least or the largest value allowed.";
     }),
     MaterialSection::SETTINGS,
+    settings!("sections.legs" {
+        kind: Check::Choice(&["round", "tube", "square_tube"]), "Cross-section of the bars of the legs.";
+        wall_ratio: Check::Any, "Thickness of the wall as a fraction of the outer radius; 1 is a solid bar.";
+        wall_m: Check::Any, "Thickness of the wall.";
+        catalogue: Check::Any, "Catalogue that the bars are selected from: a built-in name, or the path of a CSV file.";
+    }),
+    settings!("sections.platform" {
+        kind: Check::Choice(&["round", "tube", "square_tube"]), "Cross-section of the bars of the platform.";
+        wall_ratio: Check::Any, "Thickness of the wall as a fraction of the outer radius; 1 is a solid bar.";
+        wall_m: Check::Any, "Thickness of the wall.";
+        catalogue: Check::Any, "Catalogue that the bars are selected from: a built-in name, or the path of a CSV file.";
+    }),
     ActuatorSection::SETTINGS,
     RequirementSection::SETTINGS,
     WorkspaceSection::SETTINGS,
+    settings!("workspace.region" {
+        kind: Check::Choice(RegionKind::NAMES), "Region of positions: the largest disc, or a prescribed one.";
+        radius_m: Check::Any, "Radius of a disc.";
+        width_m: Check::Any, "Width of a rectangle along `Ox`.";
+        height_m: Check::Any, "Height of a rectangle along `Oy`.";
+        corners_m: Check::Any, "Corners of a polygon, relative to the centre of the workspace.";
+    }),
     ModelSection::SETTINGS,
     settings!("bodies" {
         slider_length: Check::Positive,
@@ -40,6 +62,7 @@ const SECTIONS: [&[Setting]; 17] = [
         slider: LAYER, "Layer of the sliders.";
     }),
     Bounds::SETTINGS,
+    Variables::SETTINGS,
     settings!("grid.reference" {
         phi_step_deg: PHI_STEP, "Spacing of the orientations of the grid used in the search.";
         directions: Check::Count(3, 3600), "Number of directions over the full turn.";
@@ -155,6 +178,11 @@ const SECTIONS: [&[Setting]; 17] = [
             initial: None,
         },
     ],
+    settings!("optimizer.cma_es" {
+        sample: Check::Count(4, 65_536), "Number of candidates of the first sample for each architecture.";
+        population: Check::Count(4, 65_536), "Number of candidates of a generation.";
+        step: Check::Within(1e-6, 1.0, ""), "Initial step as a fraction of the range of a variable.";
+    }),
     HypervolumeSection::SETTINGS,
 ];
 

@@ -1,18 +1,29 @@
 //! The settings of a study: each is declared once, and the study file, its faults, the fields of the window and the comparison
 //! of studies follow.
 
+mod bars;
 mod compare;
 mod declare;
 mod faults;
 mod list;
 mod optimizer;
+mod question;
+mod region;
 mod sections;
+mod variables;
 
+pub use bars::{
+    BuiltinCatalogue, CATALOGUES, CatalogueChoice, CatalogueFault, CatalogueRow, SectionChoice, SectionKind,
+    SectionsSection,
+};
 pub use declare::{Check, Initial, Setting};
 pub use faults::Fault;
 pub use list::settings;
 pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnation};
+pub use question::{LimitChoice, Limits, ObjectiveChoice};
+pub use region::{RegionKind, RegionSection};
 pub use sections::{
     ActuatorSection, Bounds, GridSection, Grids, LengthChoice, MaterialSection, ModelSection, ReferenceDesign,
     RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
 };
+pub use variables::{Tie, VariableChoice, Variables};

@@ -2,9 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::declare::{Check, section};
+use super::declare::{Check, Initial, section};
+use crate::study::Study;
+use kinefront_model::evaluation::{Better, Objective, Quantity};
+use kinefront_model::mechanism::DesignVariable;
 
-use kinefront_optimize::{FrontDeSettings, Moga2Settings, Nsga2Settings};
+use kinefront_optimize::{CmaEsSettings, FrontDeSettings, Moga2Settings, Nsga2Settings, Objectives};
 
 /// Name of an algorithm.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -17,23 +20,36 @@ pub enum AlgorithmName {
     Moga2,
     /// NSGA-II with constraint domination.
     Nsga2,
+    /// CMA-ES, for one objective.
+    CmaEs,
 }
 
 impl AlgorithmName {
     /// All algorithms.
-    pub const ALL: [AlgorithmName; 3] = [AlgorithmName::FrontDe, AlgorithmName::Moga2, AlgorithmName::Nsga2];
+    pub const ALL: [AlgorithmName; 4] = [
+        AlgorithmName::FrontDe,
+        AlgorithmName::Moga2,
+        AlgorithmName::Nsga2,
+        AlgorithmName::CmaEs,
+    ];
 
     /// Names of all algorithms.
-    pub const NAMES: [&'static str; 3] = [Self::ALL[0].name(), Self::ALL[1].name(), Self::ALL[2].name()];
+    pub const NAMES: [&'static str; 4] = [
+        Self::ALL[0].name(),
+        Self::ALL[1].name(),
+        Self::ALL[2].name(),
+        Self::ALL[3].name(),
+    ];
 
     /// Describes the algorithm in one sentence.
     pub fn description(self) -> &'static str {
         match self {
             AlgorithmName::FrontDe => {
-                "Differential evolution along the front, with the lightest bars for each geometry"
+                "Differential evolution along the front, with the lightest bars for each geometry; CMA-ES for one objective"
             }
             AlgorithmName::Moga2 => "MOGA-II (reimplementation), the paper's optimizer",
             AlgorithmName::Nsga2 => "NSGA-II with constraint domination",
+            AlgorithmName::CmaEs => "CMA-ES with restarts, for one objective",
         }
     }
 
@@ -48,6 +64,7 @@ impl AlgorithmName {
             AlgorithmName::FrontDe => "front-de",
             AlgorithmName::Moga2 => "moga2",
             AlgorithmName::Nsga2 => "nsga2",
+            AlgorithmName::CmaEs => "cma-es",
         }
     }
 }
@@ -86,6 +103,8 @@ pub struct OptimizerSection {
     pub moga2: Moga2Settings,
     /// The section `[optimizer.nsga2]`.
     pub nsga2: Nsga2Settings,
+    /// The section `[optimizer.cma_es]`.
+    pub cma_es: CmaEsSettings,
 }
 
 impl Default for OptimizerSection {
@@ -101,6 +120,7 @@ impl Default for OptimizerSection {
             front_de: FrontDeSettings::default(),
             moga2: Moga2Settings::default(),
             nsga2: Nsga2Settings::default(),
+            cma_es: CmaEsSettings::default(),
         }
     }
 }
@@ -117,16 +137,43 @@ pub struct Stagnation {
 }
 
 section! {
-    /// Reference point of the hypervolume: this mass and `R_w` = 0.
+    /// Reference point of the hypervolume: for each objective, a value that every design of interest improves on.
     pub struct HypervolumeSection in "hypervolume" {
         /// Mass of the reference point; heavier designs contribute nothing.
         reference_mass_kg: f64 = 2000.0, Check::Positive;
+        optional {
+            /// Values of the objectives at the reference point, in their order; if omitted, the reference mass for masses, 0 for
+            /// quantities that are maximised, and for others a value that few designs exceed.
+            reference: Vec<f64>, Check::Finite, Initial::Number(0.0);
+        }
     }
 }
 
-impl HypervolumeSection {
-    /// Returns the reference point: its mass \[kg\], and 0 for the negative of `R_w`.
-    pub fn reference(&self) -> [f64; 2] {
-        [self.reference_mass_kg, 0.0]
+impl Study {
+    /// Returns the reference point of the hypervolume, as it is minimised: the reference mass \[kg\] and 0 for the paper's
+    /// objectives.
+    pub fn hypervolume_reference(&self) -> Objectives {
+        let of_objective = |(place, objective): (usize, Objective)| {
+            let stated = self
+                .hypervolume
+                .reference
+                .as_ref()
+                .and_then(|values| values.get(place).copied());
+            let value = stated.unwrap_or(match (objective.goal, objective.quantity) {
+                (Better::Higher, _) => return 0.0,
+                (_, Quantity::Mass | Quantity::LegsMass | Quantity::PlatformMass) => self.hypervolume.reference_mass_kg,
+                (_, Quantity::Footprint) => 2.0 * self.range(DesignVariable::BaseRadius)[1],
+                (_, Quantity::DisplacementMax) => 2.0 * self.requirements.in_plane_displacement_m,
+                (_, Quantity::Height) => 20.0 * self.thickest_bars().into_iter().fold(0.0, f64::max),
+                (_, Quantity::WorkspaceRadius) => self.range(DesignVariable::LinkLength)[1],
+                (_, Quantity::Dexterity | Quantity::DexterityMean | Quantity::TransmissionMin) => 1.0,
+                (_, Quantity::StiffnessXy) => 100.0 * self.thresholds().k_xy,
+                (_, Quantity::StiffnessZ) => 100.0 * self.thresholds().k_z,
+                (_, Quantity::StiffnessPhiZ) => 100.0 * self.thresholds().k_phi_z,
+                (_, Quantity::Clearance | Quantity::Reach | Quantity::Determinant) => 1.0,
+            });
+            objective.minimised(Some(value))
+        };
+        Objectives::new(self.objectives().into_iter().enumerate().map(of_objective))
     }
 }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::RegionSection;
 use super::declare::{Check, Initial, section};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignVariable, TextError, WorkingMode};
 use kinefront_model::stiffness::Material;
@@ -69,6 +70,8 @@ section! {
         centre_m: [f64; 2] = [0.0, 0.0], Check::Finite;
         /// Whether the workspaces of the front are proved, so that the reported radii hold for every pose.
         certify: bool = true, Check::Any;
+        /// Region of positions.
+        region: RegionSection = RegionSection::default(), Check::Any;
         optional {
             /// Home orientation; if omitted, the best one is determined for each design.
             home_phi_deg: f64, Check::Within(-360.0, 360.0, ""), Initial::Number(0.0);
@@ -156,11 +159,6 @@ impl Bounds {
             DesignVariable::LegBarRadius => self.rj_m,
             DesignVariable::PlatformBarRadius => self.rp_m,
         }
-    }
-
-    /// Returns the largest radii of the leg bars and of the platform bars \[m\].
-    pub fn thickest_bars(&self) -> [f64; 2] {
-        [self.rj_m[1], self.rp_m[1]]
     }
 
     /// Iterates over the variables, each with the key of its range.

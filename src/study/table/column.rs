@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use kinefront_model::evaluation::Constraint;
+use crate::study::Study;
+use kinefront_model::evaluation::{Better, Constraint, Quantity, QuantitySet};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable};
 
 use super::TableRow;
@@ -11,9 +12,9 @@ use super::TableRow;
 /// A column of a table of designs.
 ///
 /// ```
-/// use kinefront::study::{Column, ColumnType};
+/// use kinefront::study::{Column, ColumnType, Study};
 ///
-/// let names: Vec<_> = Column::of_designs().map(Column::name).collect();
+/// let names: Vec<_> = Column::of_designs(&Study::default()).map(Column::name).collect();
 /// assert_eq!(names[..5], ["id", "generation", "architecture", "working_mode", "R"]);
 /// assert_eq!(Column::find("mass_kg"), Some(Column::Mass));
 /// assert_eq!(Column::Mass.kind(), ColumnType::Number);
@@ -46,6 +47,8 @@ pub enum Column {
     Active,
     /// Constraint violation; 0 for a feasible design.
     Violation,
+    /// A quantity that has no column of its own above, of a study that names it.
+    Quantity(Quantity),
     /// Workspace radius on the reference grid \[m\], in a verified front.
     ReferenceRadius,
     /// What the design stands out by on its front: `lightest`, `knee` or `largest`.
@@ -77,15 +80,6 @@ pub enum ColumnType {
     Flag,
     /// Texts.
     Text,
-}
-
-/// Direction in which the values of a column are better.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Better {
-    /// Smaller values are better.
-    Lower,
-    /// Larger values are better.
-    Higher,
 }
 
 /// One value of a row.
@@ -130,38 +124,70 @@ impl Column {
             .chain([Self::Mass, Self::WorkspaceRadius, Self::HomePhi, Self::Feasible])
     }
 
-    /// The columns of `designs.csv`, in their order.
-    pub fn of_designs() -> impl Iterator<Item = Column> {
+    /// The columns of `designs.csv` of every study, in their order.
+    fn of_every_study() -> impl Iterator<Item = Column> {
         Self::common()
             .chain(Constraint::ALL.map(Self::Margin))
             .chain(Constraint::ALL.map(Self::Value))
             .chain([Self::Active, Self::Violation])
     }
 
+    /// The columns of `designs.csv`, in their order.
+    pub fn of_designs(study: &Study) -> impl Iterator<Item = Column> + use<> {
+        Self::of_every_study().chain(Self::further(study.asked_quantities()))
+    }
+
     /// The columns of `front.csv`, in their order.
-    pub fn of_front() -> impl Iterator<Item = Column> {
-        Self::of_designs().chain([
-            Self::ReferenceRadius,
-            Self::Mark,
-            Self::CertifiedLower,
-            Self::CertifiedUpper,
-            Self::Certificate,
-        ])
+    pub fn of_front(study: &Study) -> impl Iterator<Item = Column> + use<> {
+        Self::of_every_study()
+            .chain(Self::OF_FRONT)
+            .chain(Self::further(study.asked_quantities()))
+    }
+
+    /// The columns that `front.csv` has besides those of `designs.csv`.
+    const OF_FRONT: [Self; 5] = [
+        Self::ReferenceRadius,
+        Self::Mark,
+        Self::CertifiedLower,
+        Self::CertifiedUpper,
+        Self::Certificate,
+    ];
+
+    /// The columns of those quantities that have no other column.
+    fn further(quantities: QuantitySet) -> impl Iterator<Item = Column> {
+        let columns = quantities.iter().map(Self::of_quantity).collect::<Vec<_>>();
+        columns.into_iter().filter(|column| matches!(column, Self::Quantity(_)))
+    }
+
+    /// The column of a quantity.
+    pub fn of_quantity(quantity: Quantity) -> Column {
+        match quantity {
+            Quantity::Mass => Self::Mass,
+            Quantity::WorkspaceRadius => Self::WorkspaceRadius,
+            quantity => quantity
+                .entry()
+                .constraint
+                .map_or(Self::Quantity(quantity), Self::Value),
+        }
     }
 
     /// Every column that a table may have.
     fn all() -> impl Iterator<Item = Column> {
-        Self::of_front().chain([Self::OnJointFront, Self::Verified, Self::Starred, Self::Note])
+        Self::of_every_study()
+            .chain(Self::OF_FRONT)
+            .chain(Self::further(QuantitySet::all()))
+            .chain([Self::OnJointFront, Self::Verified, Self::Starred, Self::Note])
     }
 
-    /// The numerical columns that an axis, a filter or a column of the window can show: objectives, dimensions, margins, then
-    /// the others.
-    pub fn quantities() -> impl Iterator<Item = Column> {
+    /// The numerical columns that an axis, a filter or a column of the window can show: mass and workspace radius, dimensions,
+    /// margins, values of constraints, the quantities among `further`, then the others.
+    pub fn quantities(further: QuantitySet) -> impl Iterator<Item = Column> {
         [Self::Mass, Self::WorkspaceRadius]
             .into_iter()
             .chain(DESIGN_VARIABLES.map(Self::Dimension))
             .chain(Constraint::ALL.map(Self::Margin))
             .chain([Self::Value(Constraint::Clearance), Self::HomePhi, Self::Violation])
+            .chain(Self::further(further))
     }
 
     /// The column of a name.
@@ -171,7 +197,7 @@ impl Column {
 
     /// The numerical column of a name that an axis, a filter or a column of the window can show.
     pub fn find_quantity(name: &str) -> Option<Column> {
-        Self::quantities().find(|column| column.name() == name)
+        Self::quantities(QuantitySet::all()).find(|column| column.name() == name)
     }
 
     /// Name in CSV, Parquet, recordings and filters.
@@ -190,6 +216,7 @@ impl Column {
             Self::Value(constraint) => return Cow::Owned(format!("value_{}", constraint.id())),
             Self::Active => "active",
             Self::Violation => "violation",
+            Self::Quantity(quantity) => quantity.entry().key,
             Self::ReferenceRadius => "workspace_radius_reference_m",
             Self::Mark => "mark",
             Self::CertifiedLower => "certified_lower_m",
@@ -217,6 +244,7 @@ impl Column {
             | Self::Margin(_)
             | Self::Value(_)
             | Self::Violation
+            | Self::Quantity(_)
             | Self::ReferenceRadius
             | Self::CertifiedLower
             | Self::CertifiedUpper => ColumnType::Number,
@@ -234,6 +262,7 @@ impl Column {
             Self::Mass => "kg",
             Self::HomePhi => "°",
             Self::Value(constraint) => constraint.unit(),
+            Self::Quantity(quantity) => quantity.entry().unit,
             _ => "",
         }
     }
@@ -242,7 +271,12 @@ impl Column {
     pub fn is_optional(self) -> bool {
         matches!(
             self,
-            Self::HomePhi | Self::Margin(_) | Self::Value(_) | Self::CertifiedLower | Self::CertifiedUpper
+            Self::HomePhi
+                | Self::Margin(_)
+                | Self::Value(_)
+                | Self::Quantity(_)
+                | Self::CertifiedLower
+                | Self::CertifiedUpper
         )
     }
 
@@ -256,6 +290,7 @@ impl Column {
             Self::Margin(constraint) => format!("margin {}", constraint.id()).into(),
             Self::Value(Constraint::Clearance) => "clearance".into(),
             Self::Value(constraint) => format!("value {}", constraint.id()).into(),
+            Self::Quantity(quantity) => quantity.entry().label.into(),
             _ => self.name(),
         }
     }
@@ -283,13 +318,19 @@ impl Column {
         match self {
             Self::Mass | Self::Violation => Some(Better::Lower),
             Self::WorkspaceRadius | Self::Margin(_) | Self::Value(_) => Some(Better::Higher),
+            Self::Quantity(quantity) => Some(quantity.entry().better),
             _ => None,
         }
     }
 
     /// Whether the values differ by orders of magnitude, so that a logarithmic axis suits them.
     pub fn is_logarithmic(self) -> bool {
-        matches!(self, Self::Mass | Self::Violation)
+        matches!(
+            self,
+            Self::Mass
+                | Self::Violation
+                | Self::Quantity(Quantity::LegsMass | Quantity::PlatformMass | Quantity::DisplacementMax)
+        )
     }
 
     /// The value of an entry. Missing for the columns that only some tables have: whoever writes such a table adds the

@@ -5,7 +5,7 @@ mod read;
 mod row;
 mod write;
 
-pub use column::{Better, Cell, Column, ColumnType};
+pub use column::{Cell, Column, ColumnType};
 pub use read::{TableContents, TableError, TableFault, read_designs, read_run_table, read_table};
 pub use row::{Row, RowError, TableRow};
 pub(super) use write::append_row;

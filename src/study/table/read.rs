@@ -157,7 +157,7 @@ pub fn read_designs(path: &Path, study: &Study) -> Result<Vec<(usize, Design)>, 
     let read = || -> Result<Vec<(usize, Design)>, TableFault> {
         let mut reader = TableReader::open(path)?;
         reader.require(
-            Column::of_designs()
+            Column::of_designs(study)
                 .filter(|column| matches!(column, Column::Id | Column::Architecture | Column::Dimension(_))),
         )?;
         let mut rows = Vec::new();

@@ -4,8 +4,9 @@ use std::fmt;
 
 use super::Column;
 use crate::study::{CertifiedRadius, Study};
-use kinefront_model::evaluation::{Constraint, Evaluation};
+use kinefront_model::evaluation::{Constraint, Evaluation, Quantity, QuantityValues};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignError, TextError};
+use kinefront_optimize::Objectives;
 
 /// Stored values of one design.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +29,10 @@ pub struct Row {
     pub values: [Option<f64>; Constraint::ALL.len()],
     /// Bit set of the active constraints; the lowest bit is that of the first constraint.
     pub active: u8,
+    /// Quantities that the study names and that have no other column.
+    pub quantities: QuantityValues,
+    /// The objectives of the study, as they are minimised.
+    pub objectives: Objectives,
 }
 
 /// Why texts and numbers are not a row.
@@ -70,6 +75,8 @@ impl Row {
             margins: evaluation.constraints.map(|result| result.required_margin()),
             values: evaluation.constraints.map(|result| result.value),
             active: bits(evaluation.active()),
+            quantities: evaluation.quantities.without_columns(),
+            objectives: Objectives::new(evaluation.objectives.iter().copied()),
         }
     }
 
@@ -94,6 +101,11 @@ impl Row {
         }
         let active = text(Column::Active).unwrap_or_default();
         let named = |constraint: &Constraint| active.split('+').any(|id| id == constraint.id());
+        let objectives = study.objectives().into_iter().map(|objective| {
+            let column = Column::of_quantity(objective.quantity);
+            objective.minimised(number(column))
+        });
+        let further = Quantity::all().filter(|quantity| matches!(Column::of_quantity(*quantity), Column::Quantity(_)));
         Ok(Self {
             generation: generation.try_into().unwrap_or(u32::MAX),
             design,
@@ -104,12 +116,16 @@ impl Row {
             margins,
             values: Constraint::ALL.map(|constraint| number(Column::Value(constraint))),
             active: bits(Constraint::ALL.into_iter().filter(named)),
+            quantities: further
+                .map(|quantity| (quantity, number(Column::Quantity(quantity))))
+                .collect(),
+            objectives: Objectives::new(objectives),
         })
     }
 
-    /// Whether the design has a regular workspace.
+    /// Whether the design has a workspace and keeps all limits.
     pub fn is_feasible(&self) -> bool {
-        self.radius > 0.0
+        self.violation <= 0.0
     }
 
     /// Smallest clearance of members that are not joined \[m\], whether or not the study requires a clearance; `None` if
@@ -128,13 +144,9 @@ impl Row {
             Column::Margin(constraint) => self.margins[constraint as usize],
             Column::Value(constraint) => self.values[constraint as usize],
             Column::Violation => Some(self.violation),
+            Column::Quantity(quantity) => self.quantities.get(quantity),
             _ => None,
         }
-    }
-
-    /// Both objectives, as they are minimised.
-    pub fn objectives(&self) -> [f64; 2] {
-        [self.mass, -self.radius]
     }
 
     /// Returns the active constraints.

@@ -9,6 +9,7 @@ use super::layers::BodySettings;
 use crate::lanes::{Planar, Real};
 use crate::mechanism::{Design, Leg, Manipulator, MemberAxis, MemberKind, Members, Posture};
 use crate::spatial::{LEGS, nearest_on_segment};
+use crate::stiffness::CrossSections;
 
 /// Number of rows of members: the proximal members of the legs, the distal members of the legs, and the platform bars.
 pub(crate) const ROWS: usize = 3;
@@ -48,6 +49,8 @@ struct Pair {
     radii: f64,
     /// Squared distance between their layers \[m²\].
     layers_squared: f64,
+    /// Whether one of them is a square tube, so that both are treated as prisms.
+    is_prism: bool,
     /// Lower bound of their clearance, set by the distance between their layers alone \[m\].
     least: f64,
 }
@@ -71,8 +74,9 @@ type Axes<V> = [MemberAxis<V>; ROWS * LEGS];
 
 impl Bodies {
     /// Prepares the members of `design`, whose legs are of type `L`.
-    pub fn new<L: Leg>(design: &Design, settings: &BodySettings) -> Self {
+    pub fn new<L: Leg>(design: &Design, settings: &BodySettings, sections: &CrossSections) -> Self {
         let kinds = kinds::<L>();
+        let (legs, platform) = (sections.legs.is_square(), sections.platform.is_square());
         // The limit keeps squares and sums finite, whatever radii a design has.
         let radii = kinds.map(|kind| kind.map_or(0.0, |kind| settings.radius(kind, design).min(NUMBER_LIMIT)));
         let height = |kind| settings.height(kind, design).clamp(-NUMBER_LIMIT, NUMBER_LIMIT);
@@ -82,6 +86,7 @@ impl Bodies {
             places: [0; 2],
             radii: 0.0,
             layers_squared: 0.0,
+            is_prism: false,
             least: f64::INFINITY,
         };
         let mut bodies = Self {
@@ -93,12 +98,12 @@ impl Bodies {
             pairs: [none; MAX_PAIRS],
             count: 0,
         };
-        bodies.pair_up();
+        bodies.pair_up([legs, legs, platform]);
         bodies
     }
 
-    /// Fills in the pairs of members that are not joined.
-    fn pair_up(&mut self) {
+    /// Fills in the pairs of members that are not joined; `are_square` tells which rows consist of square tubes.
+    fn pair_up(&mut self, are_square: [bool; ROWS]) {
         for places in pairs_not_joined(self.kinds) {
             let rows = places.map(|place| place / LEGS);
             let gap = (self.heights[rows[0]] - self.heights[rows[1]]).abs();
@@ -107,6 +112,7 @@ impl Bodies {
                 places,
                 radii,
                 layers_squared: gap * gap,
+                is_prism: rows.iter().any(|&row| are_square[row]),
                 least: gap - radii,
             };
             self.count += 1;
@@ -159,6 +165,16 @@ impl Bodies {
     #[inline(always)]
     fn gap<V: Real>(pair: &Pair, axes: &Axes<V>) -> V {
         let distance = squared(&axes[pair.places[0]], &axes[pair.places[1]]);
+        if pair.is_prism {
+            // Prisms with upright sides, as wide as they are high and rounded about their joints: where they overlap in plan or
+            // in height, the distance is that in the other direction.
+            let zero = distance.splat(0.0);
+            let across = distance.sqrt() - distance.splat(pair.radii);
+            let along_z = distance.splat(pair.least);
+            let (outside_x, outside_z) = (across.larger(zero), along_z.larger(zero));
+            let outside = (outside_x * outside_x + outside_z * outside_z).sqrt();
+            return outside + across.larger(along_z).smaller(zero);
+        }
         (distance + distance.splat(pair.layers_squared)).sqrt() - distance.splat(pair.radii)
     }
 
@@ -202,6 +218,41 @@ impl Bodies {
             }
         }
         least
+    }
+
+    /// Returns the distance from `O` of the farthest point of any member at several poses at once \[m\]; meaningless where a leg
+    /// does not reach the pose.
+    #[inline(always)]
+    pub(crate) fn outermost<V: Real, L: Leg>(
+        &self,
+        legs: &[L; LEGS],
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
+        directions: &[Planar<V>; LEGS],
+    ) -> V {
+        let members = members(legs, position, arms, directions);
+        let axes = self.axes::<V, L>(&members, position, arms);
+        let mut farthest = position.x.splat(0.0);
+        for (place, axis) in axes.iter().enumerate() {
+            let row = place / LEGS;
+            if self.kinds[row].is_none() {
+                continue;
+            }
+            let (from, to) = (axis.from, axis.to());
+            let squared = from.dot(from).larger(to.dot(to));
+            farthest = (squared.sqrt() + squared.splat(self.radii[row])).larger(farthest);
+        }
+        farthest
+    }
+
+    /// Returns the height of the stack of members: from the lowest to the highest point of any of them \[m\].
+    pub(crate) fn height(&self) -> f64 {
+        let rows = (0..ROWS).filter(|&row| self.kinds[row].is_some());
+        let [low, high] = rows.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| {
+            let (middle, radius) = (self.heights[row], self.radii[row]);
+            [low.min(middle - radius), high.max(middle + radius)]
+        });
+        high - low
     }
 
     /// Returns the nearest pair at a posture with `P` at `position`.

@@ -1,34 +1,85 @@
-//! Two bar radii of smallest mass under constraints that an increase of either radius relaxes. The mass is a weighted
-//! sum of the squared radii; the method is sequential linearisation in logarithms.
+//! Two bar radii of smallest mass under constraints that an increase of either radius relaxes. The mass of the bars of each
+//! radius grows with it; the method is sequential linearisation in logarithms.
 //!
-//! Stiffness is close to a power law of the radii, and the mass of the bars of each radius follows one exactly. In
-//! logarithms of the radii the constraints are nearly linear and the mass is convex, so that a few linearisations
-//! suffice.
+//! Stiffness is close to a power law of the radii, and the mass of the bars of each radius follows one, exactly for solid
+//! bars and constant wall ratios. In logarithms of the radii the constraints are nearly linear and the mass is convex, so
+//! that a few linearisations suffice.
+
+use crate::stiffness::CrossSection;
 
 /// Sizing problem to be solved.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct SizingProblem {
     /// Radii at which the solution starts \[m\].
     pub start: [f64; 2],
     /// Ranges of the radii \[m\].
     pub ranges: [[f64; 2]; 2],
-    /// Mass per squared radius \[kg/m²\].
-    pub mass: [f64; 2],
+    /// Masses of the bars of each radius.
+    pub mass: [BarMass; 2],
+    /// How exact the result is to be.
+    pub accuracy: SizingAccuracy,
 }
 
-/// Ratios of the stiffness to the required stiffness at a set of poses, one column for each kind of stiffness.
+/// How exact the bars are to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SizingAccuracy {
+    /// The linearisations end when the logarithms change by less than this: near the optimum the mass changes with the
+    /// square of that change.
+    pub settled: f64,
+    /// Bars whose smallest ratio exceeds 1 by no more than this are left unchanged.
+    pub spare: f64,
+    /// Largest numbers of rounds that select poses, of linearisations on the selected poses in each round, and of final scalings.
+    pub steps: [usize; 3],
+}
+
+impl SizingAccuracy {
+    /// For candidates of a search for a front, of which the next is a little better.
+    pub const COARSE: SizingAccuracy = SizingAccuracy {
+        settled: 2e-3,
+        spare: 5e-4,
+        steps: [3, 4, 6],
+    };
+    /// For the lightest bars of a prescribed region.
+    pub const EXACT: SizingAccuracy = SizingAccuracy {
+        settled: 1e-6,
+        spare: 1e-9,
+        steps: [6, 12, 30],
+    };
+}
+
+/// Mass of the bars of one radius.
+#[derive(Debug, Clone)]
+pub(super) enum BarMass {
+    /// In proportion to the squared radius \[kg/m²\].
+    Squared(f64),
+    /// Of a section, density \[kg/m³\] and total length \[m\].
+    Of(CrossSection, f64, f64),
+}
+
+impl BarMass {
+    /// Returns the mass \[kg\] at the logarithm of a radius.
+    pub fn at(&self, logarithm: f64) -> f64 {
+        match self {
+            BarMass::Squared(mass) => mass * libm::exp(2.0 * logarithm),
+            BarMass::Of(section, density, length) => section.mass_per_length(*density, libm::exp(logarithm)) * length,
+        }
+    }
+}
+
+/// Ratios of `k_xy`, `k_z`, `k_φz` to what is required, and of the displacement allowed to the displacement, which is empty if the
+/// study does not bound it; one column for each, one number for each pose.
+pub(super) type Ratios = [Vec<f64>; 4];
+
+/// Ratios of the stiffness to the required stiffness at a set of poses.
 pub(super) trait StiffnessRatios {
     /// Returns the ratios at all poses for bars of the given radii.
-    fn ratios_at_all(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3];
+    fn ratios_at_all(&mut self, bars: [f64; 2]) -> Ratios;
     /// Selects some of the poses. It may refine the sampling about the `weakest`; poses that it adds to the set are
     /// selected too.
     fn choose(&mut self, poses: &[usize], weakest: &[usize]);
     /// Returns the ratios at the selected poses for bars of the given radii.
-    fn ratios_at_selected(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3];
+    fn ratios_at_selected(&mut self, bars: [f64; 2]) -> Ratios;
 }
-
-/// Number of rounds that select poses, and number of linearisations on the selected poses in each round.
-const ROUNDS: [usize; 2] = [3, 4];
 
 /// Number of poses that a round selects for each kind of stiffness: those with the smallest ratios.
 const CHOSEN: usize = 10;
@@ -38,10 +89,6 @@ const REFINED: usize = 3;
 
 /// Largest change of a logarithm in a linearisation.
 const TRUST: f64 = 0.5;
-
-/// The linearisations end when the logarithms change by less than this: near the optimum the mass changes with the
-/// square of that change.
-const SETTLED: f64 = 2e-3;
 
 /// Ratios above this value do not act as constraints.
 const FAR: f64 = 1e6;
@@ -55,9 +102,6 @@ const POWER: f64 = 3.5;
 
 /// Fraction of the upper bound that replaces a lower bound of 0.
 const THINNEST: f64 = 1e-5;
-
-/// Bars whose smallest ratio exceeds 1 by no more than this are left unchanged.
-const SPARE: f64 = 5e-4;
 
 /// Linearised constraint `ratio + slopes · change ≥ 0`, with all quantities in logarithms.
 struct LinearConstraint {
@@ -75,17 +119,18 @@ pub(super) fn lightest(problem: &SizingProblem, ratios: &mut impl StiffnessRatio
     }
     let mut at = inside([0, 1].map(|k| libm::log(problem.start[k].max(THINNEST * problem.ranges[k][1]))));
     let mut chosen: Vec<usize> = Vec::new();
-    for round in 0..ROUNDS[0] {
+    let SizingAccuracy { settled, spare, steps } = problem.accuracy;
+    for round in 0..steps[0] {
         let mut all = ratios.ratios_at_all(at.map(libm::exp));
         if round == 0 {
             // Both radii are first scaled alike to come close to the constraints.
             at = scaled(at, weakest(&all), &inside);
             all = ratios.ratios_at_all(at.map(libm::exp));
-        } else if weakest(&all) > 1.0 - SPARE {
+        } else if weakest(&all) > 1.0 - spare {
             break;
         }
         let mut weak = Vec::new();
-        for column in &all {
+        for column in all.iter().filter(|column| !column.is_empty()) {
             let mut order: Vec<usize> = (0..column.len()).collect();
             let count = CHOSEN.min(order.len());
             let by_ratio = |a: &usize, b: &usize| column[*a].total_cmp(&column[*b]).then(a.cmp(b));
@@ -98,7 +143,7 @@ pub(super) fn lightest(problem: &SizingProblem, ratios: &mut impl StiffnessRatio
         chosen.dedup();
         ratios.choose(&chosen, &weak);
         let mut trust = TRUST;
-        for _ in 0..ROUNDS[1] {
+        for _ in 0..steps[1] {
             let base = ratios.ratios_at_selected(at.map(libm::exp));
             let stepped =
                 [[at[0] + STEP, at[1]], [at[0], at[1] + STEP]].map(|at| ratios.ratios_at_selected(at.map(libm::exp)));
@@ -106,7 +151,7 @@ pub(super) fn lightest(problem: &SizingProblem, ratios: &mut impl StiffnessRatio
             let next = inside(change(at, &lines, problem, trust));
             let moved = (next[0] - at[0]).abs().max((next[1] - at[1]).abs());
             at = next;
-            if moved < SETTLED {
+            if moved < settled {
                 break;
             }
             trust *= 0.7;
@@ -116,17 +161,17 @@ pub(super) fn lightest(problem: &SizingProblem, ratios: &mut impl StiffnessRatio
     // all constraints hold.
     let mut held = upper;
     let mut short: Option<[f64; 2]> = None;
-    for _ in 0..6 {
+    for _ in 0..steps[2] {
         let weakest = weakest(&ratios.ratios_at_all(at.map(libm::exp)));
         if weakest >= 1.0 {
             held = at;
-            if weakest < 1.0 + SPARE {
+            if weakest < 1.0 + spare {
                 break;
             }
         } else {
             short = Some(at);
         }
-        let next = scaled(at, weakest / (1.0 + 0.5 * SPARE), &inside);
+        let next = scaled(at, weakest / (1.0 + 0.5 * spare), &inside);
         at = match short {
             // The next radii stay between those that violate a constraint and those that satisfy all, and pass neither.
             Some(short) if held != upper && !between(next, short, held) => {
@@ -140,7 +185,7 @@ pub(super) fn lightest(problem: &SizingProblem, ratios: &mut impl StiffnessRatio
     Some([0, 1].map(|k| libm::exp(held[k]).clamp(low[k], high[k])))
 }
 
-fn weakest(columns: &[Vec<f64>; 3]) -> f64 {
+fn weakest(columns: &Ratios) -> f64 {
     columns
         .iter()
         .flatten()
@@ -148,9 +193,9 @@ fn weakest(columns: &[Vec<f64>; 3]) -> f64 {
 }
 
 /// Returns the constraints, linearised by difference quotients.
-fn lines(base: &[Vec<f64>; 3], stepped: &[[Vec<f64>; 3]; 2]) -> Vec<LinearConstraint> {
+fn lines(base: &Ratios, stepped: &[Ratios; 2]) -> Vec<LinearConstraint> {
     let mut lines = Vec::with_capacity(3 * base[0].len());
-    for kind in 0..3 {
+    for kind in 0..base.len() {
         for (index, &ratio) in base[kind].iter().enumerate() {
             if ratio > 0.0 && ratio < FAR {
                 lines.push(LinearConstraint {
@@ -204,14 +249,14 @@ fn change(at: [f64; 2], lines: &[LinearConstraint], problem: &SizingProblem, tru
         if second > trust {
             return f64::INFINITY;
         }
-        problem.mass[0] * libm::exp(2.0 * (at[0] + first)) + problem.mass[1] * libm::exp(2.0 * (at[1] + second))
+        problem.mass[0].at(at[0] + first) + problem.mass[1].at(at[1] + second)
     };
     // A golden-section search is used: the mass is convex in the first change, and infinite below some value of it.
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let mut left = high - GOLDEN * (high - low);
     let mut right = low + GOLDEN * (high - low);
     let (mut at_left, mut at_right) = (mass(left), mass(right));
-    while high - low > 0.5 * SETTLED {
+    while high - low > 0.5 * problem.accuracy.settled {
         if at_left <= at_right && at_left.is_finite() {
             high = right;
             (right, at_right) = (left, at_left);

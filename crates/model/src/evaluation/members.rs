@@ -47,11 +47,12 @@ impl Model {
         let posture = manipulator
             .posture(pose)
             .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
-        let contributions = StiffnessModel::new::<L>(design, &self.material, &self.actuators)
+        let contributions = StiffnessModel::new::<L>(design, &self.material, &self.sections, &self.actuators)
             .and_then(|stiffness| stiffness.contributions(&manipulator, &posture, &Jacobian::new(&posture)));
         let of_leg = self.legs_mass(design) / (LEGS * L::BARS) as f64;
         let of_platform = self.platform_mass(design) / LEGS as f64;
-        let capsules = Bodies::new::<L>(design, &self.bodies).capsules(&manipulator, pose.position, &posture);
+        let capsules =
+            Bodies::new::<L>(design, &self.bodies, &self.sections).capsules(&manipulator, pose.position, &posture);
         let members = capsules.into_iter().map(|capsule| {
             let kind = capsule.member.kind;
             let leg = capsule.member.leg;
@@ -99,6 +100,7 @@ impl Model {
 mod tests {
     use super::*;
     use crate::evaluation::GridChoice;
+    use crate::stiffness::CrossSection;
 
     #[test]
     fn members_have_the_dimensions_and_masses_of_the_design() {
@@ -123,7 +125,7 @@ mod tests {
                 assert_eq!(report.radius, radius, "{text}: {report:?}");
                 let of_bar = length.unwrap_or(design.link_length);
                 assert!(
-                    (report.mass - model.bar_mass(radius, of_bar)).abs() < 1e-9 * total,
+                    (report.mass - model.bar_mass(&CrossSection::Round, radius, of_bar)).abs() < 1e-9 * total,
                     "{text}: {report:?}"
                 );
                 assert!(

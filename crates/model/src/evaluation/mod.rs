@@ -12,11 +12,15 @@
 
 mod constraint;
 mod lightest;
+mod listed;
 mod members;
 mod model;
 mod pose;
 mod pose_columns;
+mod quantities;
+mod quantity;
 mod sizing;
+mod sizing_prescribed;
 mod worst;
 
 pub use crate::stiffness::Contribution;
@@ -24,6 +28,9 @@ pub use constraint::{Constraint, ConstraintResult};
 pub use members::MemberReport;
 pub use model::{GridChoice, Model, ModelSettings};
 pub use pose::{PoseEvaluation, Unreachable};
+pub use quantity::{
+    Better, Bound, LimitResult, Objective, Quantity, QuantityEntry, QuantityLimit, QuantitySet, QuantityValues, Scope,
+};
 pub use sizing::{BarRanges, WorkspaceTarget};
 
 use crate::clearance::Clearance;
@@ -37,26 +44,45 @@ pub struct Evaluation {
     pub design: Design,
     /// `f1`: mass in motion \[kg\].
     pub mass: f64,
-    /// `f2`: regular workspace radius `R_w` \[m\]; 0 for an infeasible design.
+    /// `f2`: regular workspace radius `R_w` \[m\]; 0 for a design without a workspace. For a prescribed region, the radius of
+    /// the largest disc about the centre within it.
     pub workspace_radius: f64,
-    /// Centre and home orientation of the regular workspace; `None` for an infeasible design.
+    /// Centre and home orientation of the workspace; `None` for a design without one.
     pub home: Option<Pose>,
-    /// Home orientation `φ_c` exactly as on the grid \[deg\], in \[0, 360); `None` for an infeasible design.
+    /// Home orientation `φ_c` exactly as on the grid \[deg\], in \[0, 360); `None` for a design without a workspace.
     pub home_phi_deg: Option<f64>,
     /// The nearest pair of members that are not joined, at the pose of the smallest clearance; `None` if no pose has one.
     pub nearest: Option<Clearance>,
     /// Reports of the constraints, in the order of [`Constraint::ALL`].
     pub constraints: [ConstraintResult; Constraint::ALL.len()],
+    /// Quantities: those that an evaluation always determines, and those that the study asks for.
+    pub quantities: QuantityValues,
+    /// The objectives of the study, as they are minimised.
+    pub objectives: Vec<f64>,
+    /// The limits of quantities that the study states.
+    pub limits: Vec<LimitResult>,
     /// Dimensionless measure, for optimizers, of how far the design is from having a workspace: 0 for a feasible
     /// design, otherwise the smallest mean over a window of the summed relative shortfalls at the centre. A window with
-    /// both signs of `det A` counts 1 more, and the relative shortfall of g1 is added.
+    /// both signs of `det A` counts 1 more, and the relative shortfall of g1 is added. For a prescribed region, the shortfall of
+    /// the worst margin takes the place of the mean. The relative shortfalls of the limits are added.
     pub violation: f64,
 }
 
 impl Evaluation {
-    /// Returns whether the design has a regular workspace.
+    /// Returns whether the design has a workspace and keeps all limits.
     pub fn is_feasible(&self) -> bool {
-        self.workspace_radius > 0.0
+        self.violation <= 0.0
+    }
+
+    /// Replaces the workspace radius by another one, for example one that is proved, in every value that depends on it alone.
+    pub fn set_workspace_radius(&mut self, radius: f64, objectives: &[Objective]) {
+        self.workspace_radius = radius;
+        self.quantities.set(Quantity::WorkspaceRadius, Some(radius));
+        for (value, objective) in self.objectives.iter_mut().zip(objectives) {
+            if objective.quantity == Quantity::WorkspaceRadius {
+                *value = objective.minimised(Some(radius));
+            }
+        }
     }
 
     /// Returns the report of one constraint.

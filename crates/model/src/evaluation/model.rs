@@ -2,22 +2,26 @@
 
 use glam::DVec2;
 
-use super::{Evaluation, worst};
+use super::{Better, Evaluation, Objective, Quantity, QuantityLimit, QuantitySet, worst};
 use crate::clearance::{Bodies, BodySettings};
 use crate::kinematics::{CharacteristicLength, Jacobian};
 use crate::lanes::InstructionSet;
 use crate::mechanism::{Design, Leg, LegSettings, Manipulator};
 use crate::spatial::{Pose, Rotation};
 use crate::stiffness::planar::ActuatorStiffness;
-use crate::stiffness::{Material, StiffnessDefinition, StiffnessModel};
-use crate::workspace::{Grid, GridError, PoseChecker, Thresholds, WorkspaceSampling, WorkspaceSpec};
+use crate::stiffness::{CrossSection, CrossSections, Material, StiffnessDefinition, StiffnessModel};
+use crate::workspace::{
+    FurtherLimits, Grid, GridError, PoseChecker, Region, Thresholds, WorkspaceSampling, WorkspaceSpec,
+};
 
 /// All inputs of an evaluation other than the design. The default is the model of the paper, with the choices of this
 /// program where the paper leaves something open (docs/model.md, section 11).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ModelSettings {
     /// Material of every bar.
     pub material: Material,
+    /// Cross-sections of the bars.
+    pub sections: CrossSections,
     /// Actuator stiffness.
     pub actuators: ActuatorStiffness,
     /// Settings of the legs.
@@ -34,8 +38,14 @@ pub struct ModelSettings {
     pub thresholds: Thresholds,
     /// In-plane force of the study's requirement \[N\], used for displacements; the thresholds already account for it.
     pub in_plane_force: f64,
-    /// Centre, home orientation and rotation range of the regular workspace.
+    /// Region, centre, home orientation and rotation range of the workspace.
     pub workspace: WorkspaceSpec,
+    /// Objectives of the study.
+    pub objectives: Vec<Objective>,
+    /// Limits of quantities of a design that no pose violates by itself; those of poses are `thresholds`.
+    pub limits: Vec<QuantityLimit>,
+    /// Quantities that an evaluation determines besides those that it always does.
+    pub quantities: QuantitySet,
     /// Grid on which designs are evaluated during a search.
     pub reference_grid: Grid,
     /// Grid on which reported designs are verified.
@@ -67,7 +77,7 @@ pub enum GridChoice {
 /// assert!(matches!(Model::new(settings), Err(GridError::WindowNotWhole { .. })));
 /// # Ok::<(), GridError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     settings: ModelSettings,
     reference: WorkspaceSampling,
@@ -93,6 +103,7 @@ impl Default for ModelSettings {
     fn default() -> Self {
         Self {
             material: Material::STEEL,
+            sections: CrossSections::default(),
             actuators: ActuatorStiffness {
                 prismatic: 1e7,
                 revolute: 1e7,
@@ -108,13 +119,27 @@ impl Default for ModelSettings {
                 k_z: 1e5,
                 k_phi_z: 10.0 / 1f64.to_radians(),
                 clearance: None,
+                further: FurtherLimits::default(),
             },
             in_plane_force: 100.0,
             workspace: WorkspaceSpec {
+                region: Region::Largest,
                 rotation_range_deg: 20.0,
                 centre: DVec2::ZERO,
                 home_phi_deg: None,
             },
+            objectives: vec![
+                Objective {
+                    quantity: Quantity::Mass,
+                    goal: Better::Lower,
+                },
+                Objective {
+                    quantity: Quantity::WorkspaceRadius,
+                    goal: Better::Higher,
+                },
+            ],
+            limits: Vec::new(),
+            quantities: QuantitySet::default(),
             reference_grid: Grid::REFERENCE,
             fine_grid: Grid::FINE,
         }
@@ -127,11 +152,18 @@ impl Model {
     /// # Errors
     /// [`GridError::WindowNotWhole`] when a grid does not fit the rotation range.
     pub fn new(settings: ModelSettings) -> Result<Self, GridError> {
+        let on = |grid| WorkspaceSampling::new(settings.workspace.clone(), grid);
         Ok(Self {
+            reference: on(settings.reference_grid)?,
+            fine: on(settings.fine_grid)?,
             settings,
-            reference: WorkspaceSampling::new(settings.workspace, settings.reference_grid)?,
-            fine: WorkspaceSampling::new(settings.workspace, settings.fine_grid)?,
         })
+    }
+
+    /// Returns the model with every quantity asked for.
+    pub fn with_all_quantities(mut self) -> Self {
+        self.settings.quantities = QuantitySet::all();
+        self
     }
 
     /// The workspace to be found, sampled on the chosen grid.
@@ -142,8 +174,8 @@ impl Model {
         }
     }
 
-    /// Returns the objective `f1`, the mass in motion \[kg\]: `ν·π·(n·r_j²·L_b + 3·r_p²·r)`, where 3 is the default
-    /// number of platform bars.
+    /// Returns the objective `f1`, the mass in motion \[kg\]: `ν·π·(n·r_j²·L_b + 3·r_p²·r)` for solid round bars, where 3 is the
+    /// default number of platform bars.
     pub fn mass(&self, design: &Design) -> f64 {
         self.legs_mass(design) + self.platform_mass(design)
     }
@@ -151,17 +183,22 @@ impl Model {
     /// Returns the mass of the bars of all legs \[kg\].
     pub fn legs_mass(&self, design: &Design) -> f64 {
         let bars = (3 * design.architecture.bars_per_leg()) as f64;
-        bars * self.bar_mass(design.leg_bar_radius, design.link_length)
+        bars * self.bar_mass(&self.sections.legs, design.leg_bar_radius, design.link_length)
     }
 
     /// Returns the mass of the platform bars \[kg\].
     pub fn platform_mass(&self, design: &Design) -> f64 {
-        f64::from(self.platform_bars) * self.bar_mass(design.platform_bar_radius, design.platform_radius)
+        let bar = self.bar_mass(
+            &self.sections.platform,
+            design.platform_bar_radius,
+            design.platform_radius,
+        );
+        f64::from(self.platform_bars) * bar
     }
 
     /// Returns the mass of one bar \[kg\].
-    pub fn bar_mass(&self, radius: f64, length: f64) -> f64 {
-        self.material.density * std::f64::consts::PI * radius * radius * length
+    pub fn bar_mass(&self, section: &CrossSection, radius: f64, length: f64) -> f64 {
+        section.mass_per_length(self.material.density, radius) * length
     }
 
     /// Evaluates a design on one of the grids.
@@ -183,10 +220,13 @@ impl Model {
         let manipulator = Manipulator::new(design, &self.legs);
         PoseChecker {
             manipulator,
-            stiffness: StiffnessModel::new::<L>(design, &self.material, &self.actuators),
+            stiffness: StiffnessModel::new::<L>(design, &self.material, &self.sections, &self.actuators),
             definition: self.stiffness_definition,
             length: self.length(design, &manipulator),
-            bodies: Bodies::new::<L>(design, &self.bodies),
+            bodies: Bodies::new::<L>(design, &self.bodies, &self.sections),
+            base_radius: design.base_radius,
+            link_length: design.link_length,
+            in_plane_force: self.in_plane_force,
             thresholds: self.thresholds,
             instructions: InstructionSet::best(),
         }

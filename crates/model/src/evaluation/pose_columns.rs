@@ -1,18 +1,19 @@
-//! Poses of a disc, stored in columns, and their places in the disc.
+//! Poses of a region, stored in columns, and their places in the region.
 
 use glam::DVec2;
 
+use super::lightest::Ratios;
 use crate::mechanism::Leg;
 use crate::spatial::LEGS;
 use crate::workspace::{ArmColumns, PoseChecker, Positions, ValueColumns};
 
-/// Place of a pose in the disc.
+/// Place of a pose in the region.
 #[derive(Clone, Copy)]
-pub(super) struct DiscPose {
+pub(super) struct PlacedPose {
     pub orientation: usize,
-    pub radius: f64,
-    pub angle: f64,
-    /// Distances to the neighbours with which it was laid out: along the radius \[m\] and in angle \[rad\].
+    /// Distance from the centre \[m\] and direction \[rad\] in a disc; position relative to the centre \[m\] in a polygon.
+    pub place: [f64; 2],
+    /// Distances to the neighbours with which it was laid out, in the units of the place.
     pub spacing: [f64; 2],
     pub refined: bool,
 }
@@ -73,9 +74,11 @@ impl PoseColumns {
         checker.at_poses(&self.positions, &self.arms, values);
     }
 
-    /// Returns the ratios of the stiffness at the poses to the thresholds: `k_xy`, `k_z`, `k_φz`.
-    pub fn ratios<L: Leg>(&self, checker: &PoseChecker<L>, values: &mut ValueColumns) -> [Vec<f64>; 3] {
+    /// Returns the ratios of the stiffness at the poses to the thresholds.
+    pub fn ratios<L: Leg>(&self, checker: &PoseChecker<L>, values: &mut ValueColumns) -> Ratios {
         self.values(checker, values);
-        values.stiffness_ratios(&checker.thresholds, self.count)
+        let [k_xy, k_z, k_phi_z] = values.stiffness_ratios(&checker.thresholds, self.count);
+        let displacement = values.displacement_ratios(&checker.thresholds, self.count);
+        [k_xy, k_z, k_phi_z, displacement]
     }
 }

@@ -10,8 +10,9 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::lightest::{SizingProblem, StiffnessRatios, lightest};
-use super::pose_columns::{DiscPose, PoseColumns};
+use super::lightest::{BarMass, Ratios, SizingAccuracy, SizingProblem, StiffnessRatios};
+use super::listed::lightest_listed;
+use super::pose_columns::{PlacedPose, PoseColumns};
 use super::{GridChoice, Model};
 use crate::mechanism::{Design, Leg};
 use crate::spatial::{LEGS, Rotation, unit};
@@ -28,12 +29,16 @@ const RINGS: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 const HALVINGS: usize = 10;
 
 /// Ranges of the bar radii \[m\].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct BarRanges {
     /// Range of `r_j`.
     pub leg: [f64; 2],
     /// Range of `r_p`.
     pub platform: [f64; 2],
+    /// Values of `r_j` and `r_p` within their ranges, if they are listed.
+    pub listed: [Option<Vec<f64>>; 2],
+    /// Whether bars for a prescribed region are sized to the last digits, not to 1/1000 of their mass.
+    pub is_exact: bool,
 }
 
 /// Workspace radius for which bars are sized.
@@ -43,6 +48,8 @@ pub enum WorkspaceTarget {
     Radius(f64),
     /// Largest radius that the geometry allows with the thickest bars.
     Largest,
+    /// The region that the study prescribes, as it is examined on one of the grids.
+    Prescribed(GridChoice),
 }
 
 impl Model {
@@ -57,31 +64,44 @@ impl Model {
         if design.link_length + design.platform_radius < 0.5 * design.base_radius {
             return None;
         }
-        with_leg!(design.architecture, L => Sizer::<L>::new(self, design, ranges).sized(target))
+        let grid = match target {
+            WorkspaceTarget::Prescribed(grid) => grid,
+            WorkspaceTarget::Radius(_) | WorkspaceTarget::Largest => GridChoice::Reference,
+        };
+        with_leg!(design.architecture, L => Sizer::<L>::new(self, design, ranges, grid).sized(target))
     }
 }
 
-struct Sizer<'a, L> {
-    model: &'a Model,
-    design: Design,
-    ranges: &'a BarRanges,
+/// How the poses of the region are laid out.
+#[derive(Clone, Copy)]
+pub(super) enum Shape {
+    /// On rings of a disc of this radius \[m\].
+    Disc(f64),
+    /// As the evaluation of a prescribed region examines them.
+    Sampled,
+}
+
+pub(super) struct Sizer<'a, L> {
+    pub(super) model: &'a Model,
+    pub(super) design: Design,
+    pub(super) ranges: &'a BarRanges,
     /// Checker of the design, with the thickest bars until a radius is determined.
     checker: PoseChecker<L>,
     /// Arms in every orientation, as on the reference grid.
-    arms: Vec<[DVec2; LEGS]>,
-    orientation_grid: OrientationGrid,
-    sectors: usize,
-    laid: PoseColumns,
-    places: Vec<DiscPose>,
-    disc_radius: f64,
+    pub(super) arms: Vec<[DVec2; LEGS]>,
+    pub(super) orientation_grid: OrientationGrid,
+    pub(super) sectors: usize,
+    pub(super) laid: PoseColumns,
+    places: Vec<PlacedPose>,
+    pub(super) shape: Shape,
     /// Poses of `laid` that are selected for sizing.
     chosen: PoseColumns,
     values: ValueColumns,
 }
 
 impl<'a, L: Leg> Sizer<'a, L> {
-    fn new(model: &'a Model, design: &Design, ranges: &'a BarRanges) -> Self {
-        let orientation_grid = *model.sampling(GridChoice::Reference).orientation_grid();
+    fn new(model: &'a Model, design: &Design, ranges: &'a BarRanges, grid: GridChoice) -> Self {
+        let orientation_grid = *model.sampling(grid).orientation_grid();
         let checker = model.checker::<L>(design);
         let arms = (0..orientation_grid.count)
             .map(|k| {
@@ -100,7 +120,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
             sectors: if model.is_symmetric(design) { 1 } else { LEGS },
             laid: PoseColumns::default(),
             places: Vec::new(),
-            disc_radius: 0.0,
+            shape: Shape::Disc(0.0),
             chosen: PoseColumns::default(),
             values: ValueColumns::default(),
         }
@@ -108,6 +128,9 @@ impl<'a, L: Leg> Sizer<'a, L> {
 
     fn sized(mut self, target: WorkspaceTarget) -> Option<Design> {
         self.set_bars([self.ranges.leg[1], self.ranges.platform[1]]);
+        if let WorkspaceTarget::Prescribed(grid) = target {
+            return self.sized_prescribed(grid);
+        }
         // The candidates are the orientations with a feasible centre that belong to a whole window of such
         // orientations.
         let all: Vec<usize> = (0..self.arms.len()).collect();
@@ -118,22 +141,45 @@ impl<'a, L: Leg> Sizer<'a, L> {
         }
         let radius = match target {
             WorkspaceTarget::Radius(radius) => radius,
-            WorkspaceTarget::Largest => self.largest(&candidates)?,
+            WorkspaceTarget::Largest | WorkspaceTarget::Prescribed(_) => self.largest(&candidates)?,
         };
         let home = self.home(radius, &candidates)?;
         let window: Vec<usize> = self.orientation_grid.window(home).collect();
         self.lay_disc(radius, &window);
-        let bar_mass = self.with_bars([1.0, 1.0]);
-        let problem = SizingProblem {
-            start: [self.design.leg_bar_radius, self.design.platform_bar_radius],
-            ranges: [self.ranges.leg, self.ranges.platform],
-            mass: [self.model.legs_mass(&bar_mass), self.model.platform_mass(&bar_mass)],
-        };
-        let bars = lightest(&problem, &mut self)?;
+        let bars = self.lightest_bars(SizingAccuracy::COARSE)?;
         Some(self.with_bars(bars))
     }
 
-    fn with_bars(&self, [leg, platform]: [f64; 2]) -> Design {
+    /// Returns the radii of the lightest bars for the poses that are laid out.
+    pub(super) fn lightest_bars(&mut self, accuracy: SizingAccuracy) -> Option<[f64; 2]> {
+        let problem = SizingProblem {
+            start: [self.design.leg_bar_radius, self.design.platform_bar_radius],
+            ranges: [self.ranges.leg, self.ranges.platform],
+            mass: self.bar_masses(),
+            accuracy,
+        };
+        let listed = self.ranges.listed.each_ref().map(Option::as_deref);
+        lightest_listed(&problem, listed, self)
+    }
+
+    fn bar_masses(&self) -> [BarMass; 2] {
+        let unit = self.with_bars([1.0, 1.0]);
+        let sections = &self.model.sections;
+        let squared = [self.model.legs_mass(&unit), self.model.platform_mass(&unit)];
+        let legs = (LEGS * L::BARS) as f64 * self.design.link_length;
+        let platform = f64::from(self.model.platform_bars) * self.design.platform_radius;
+        let lengths = [legs, platform];
+        [0, 1].map(|k| {
+            let section = [&sections.legs, &sections.platform][k];
+            if section.is_scaled_by_its_radius() {
+                BarMass::Squared(squared[k])
+            } else {
+                BarMass::Of(section.clone(), self.model.material.density, lengths[k])
+            }
+        })
+    }
+
+    pub(super) fn with_bars(&self, [leg, platform]: [f64; 2]) -> Design {
         Design {
             leg_bar_radius: leg,
             platform_bar_radius: platform,
@@ -149,9 +195,14 @@ impl<'a, L: Leg> Sizer<'a, L> {
         found
     }
 
-    fn set_bars(&mut self, bars: [f64; 2]) {
+    pub(super) fn set_bars(&mut self, bars: [f64; 2]) {
         let design = self.with_bars(bars);
-        self.checker.stiffness = StiffnessModel::new::<L>(&design, &self.model.material, &self.model.actuators);
+        self.checker.stiffness = StiffnessModel::new::<L>(
+            &design,
+            &self.model.material,
+            &self.model.sections,
+            &self.model.actuators,
+        );
     }
 
     /// Lays out the ring of a radius in the given orientations, and returns the number of poses in each orientation.
@@ -172,22 +223,20 @@ impl<'a, L: Leg> Sizer<'a, L> {
     fn lay_disc(&mut self, radius: f64, orientations: &[usize]) {
         let step = TAU / (LEGS * DIRECTIONS) as f64;
         let spacing = [radius / RINGS.len() as f64, step];
-        self.disc_radius = radius;
+        self.shape = Shape::Disc(radius);
         self.places.clear();
         for &orientation in orientations {
-            self.places.push(DiscPose {
+            self.places.push(PlacedPose {
                 orientation,
-                radius: 0.0,
-                angle: 0.0,
+                place: [0.0, 0.0],
                 spacing,
                 refined: false,
             });
             for (ring, fraction) in RINGS.iter().enumerate() {
                 let offset = if ring % 2 == 0 { 0.0 } else { 0.5 };
-                self.places.extend((0..DIRECTIONS * self.sectors).map(|k| DiscPose {
+                self.places.extend((0..DIRECTIONS * self.sectors).map(|k| PlacedPose {
                     orientation,
-                    radius: fraction * radius,
-                    angle: (k as f64 + offset) * step,
+                    place: [fraction * radius, (k as f64 + offset) * step],
                     spacing,
                     refined: false,
                 }));
@@ -197,7 +246,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
         let of_one = 1 + RINGS.len() * DIRECTIONS * self.sectors;
         let disc: Vec<DVec2> = self.places[..of_one]
             .iter()
-            .map(|place| self.position(place.radius, place.angle))
+            .map(|pose| self.position_of(pose.place))
             .collect();
         for &orientation in orientations {
             self.laid.extend(&disc, &self.arms[orientation]);
@@ -209,23 +258,35 @@ impl<'a, L: Leg> Sizer<'a, L> {
         self.model.workspace.centre + unit(angle) * radius
     }
 
-    /// Adds the neighbours of a pose at half its spacing, unless they have already been added.
+    /// Returns the position of a place in the region.
+    fn position_of(&self, [first, second]: [f64; 2]) -> DVec2 {
+        match self.shape {
+            Shape::Disc(_) => self.position(first, second),
+            Shape::Sampled => self.model.workspace.centre + DVec2::new(first, second),
+        }
+    }
+
+    /// Adds the neighbours of a pose at half its spacing, unless they have already been added. A region that is sampled as the
+    /// evaluation does is not refined.
     fn refine(&mut self, pose: usize) {
-        let place = self.places[pose];
-        if place.refined {
+        let Shape::Disc(disc_radius) = self.shape else {
+            return;
+        };
+        let PlacedPose { place, refined, .. } = self.places[pose];
+        if refined {
             return;
         }
         self.places[pose].refined = true;
-        let spacing = place.spacing.map(|spacing| 0.5 * spacing);
+        let spacing = self.places[pose].spacing.map(|spacing| 0.5 * spacing);
         for [out, round] in [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]] {
-            let radius = place.radius + out * spacing[0];
-            if radius > 0.0 && radius <= self.disc_radius {
-                let angle = place.angle + round * spacing[1];
-                self.places.push(DiscPose {
-                    radius,
-                    angle,
+            let radius = place[0] + out * spacing[0];
+            if radius > 0.0 && radius <= disc_radius {
+                let angle = place[1] + round * spacing[1];
+                self.places.push(PlacedPose {
+                    place: [radius, angle],
                     spacing,
-                    ..place
+                    refined: false,
+                    ..self.places[pose]
                 });
             }
         }
@@ -235,6 +296,23 @@ impl<'a, L: Leg> Sizer<'a, L> {
     /// ones or any pose of the ring is infeasible.
     fn ring(&mut self, radius: f64, orientations: &[usize]) -> Vec<Option<f64>> {
         let count = self.lay_ring(radius, orientations);
+        self.signs_of_laid(count, orientations)
+    }
+
+    /// Lays out positions relative to the centre in the given orientations.
+    pub(super) fn lay_positions(&mut self, positions: &[DVec2], orientations: &[usize]) {
+        let centre = self.model.workspace.centre;
+        let positions: Vec<DVec2> = positions.iter().map(|position| *position + centre).collect();
+        self.laid.clear();
+        for &orientation in orientations {
+            self.laid.extend(&positions, &self.arms[orientation]);
+        }
+        self.laid.pad();
+    }
+
+    /// Returns the sign of `det A` for each orientation that is laid out with `count` poses; `None` if any of them is
+    /// infeasible, and for every other orientation.
+    pub(super) fn signs_of_laid(&mut self, count: usize, orientations: &[usize]) -> Vec<Option<f64>> {
         self.laid.values(&self.checker, &mut self.values);
         let mut signs = vec![None; self.arms.len()];
         for (&orientation, first) in orientations.iter().zip((0..).step_by(count)) {
@@ -253,12 +331,12 @@ impl<'a, L: Leg> Sizer<'a, L> {
     }
 
     /// Returns the home orientations whose window has one sign throughout.
-    fn homes(&self, signs: &[Option<f64>]) -> Vec<usize> {
+    pub(super) fn homes(&self, signs: &[Option<f64>]) -> Vec<usize> {
         self.orientation_grid.homes_of_one_sign(|place| signs[place]).collect()
     }
 
     /// Returns the orientations in the windows of all home orientations.
-    fn windows(&self, signs: &[Option<f64>]) -> Vec<usize> {
+    pub(super) fn windows(&self, signs: &[Option<f64>]) -> Vec<usize> {
         let mut inside = vec![false; self.arms.len()];
         for home in self.homes(signs) {
             for k in self.orientation_grid.window(home) {
@@ -307,6 +385,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
             for index in first..first + count {
                 weakest[orientation] = ratios
                     .iter()
+                    .filter(|column| !column.is_empty())
                     .fold(weakest[orientation], |least, column| least.min(column[index]));
             }
         }
@@ -324,7 +403,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
 }
 
 impl<L: Leg> StiffnessRatios for Sizer<'_, L> {
-    fn ratios_at_all(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3] {
+    fn ratios_at_all(&mut self, bars: [f64; 2]) -> Ratios {
         self.set_bars(bars);
         self.without_clearance(|sizer| sizer.laid.ratios(&sizer.checker, &mut sizer.values))
     }
@@ -334,15 +413,12 @@ impl<L: Leg> StiffnessRatios for Sizer<'_, L> {
         for &pose in weakest {
             self.refine(pose);
         }
-        self.laid.unpad();
+        if before < self.places.len() {
+            self.laid.unpad();
+        }
         for place in before..self.places.len() {
-            let DiscPose {
-                orientation,
-                radius,
-                angle,
-                ..
-            } = self.places[place];
-            let position = self.position(radius, angle);
+            let PlacedPose { orientation, place, .. } = self.places[place];
+            let position = self.position_of(place);
             self.laid.push(position, &self.arms[orientation]);
         }
         let poses: Vec<usize> = poses.iter().copied().chain(before..self.places.len()).collect();
@@ -350,7 +426,7 @@ impl<L: Leg> StiffnessRatios for Sizer<'_, L> {
         self.chosen = self.laid.chosen(&poses);
     }
 
-    fn ratios_at_selected(&mut self, bars: [f64; 2]) -> [Vec<f64>; 3] {
+    fn ratios_at_selected(&mut self, bars: [f64; 2]) -> Ratios {
         self.set_bars(bars);
         self.without_clearance(|sizer| sizer.chosen.ratios(&sizer.checker, &mut sizer.values))
     }

@@ -3,13 +3,13 @@
 
 use glam::DVec2;
 
-use super::{Constraint, ConstraintResult, Evaluation, Model};
+use super::{Constraint, ConstraintResult, Evaluation, LimitResult, Model, quantities};
 use crate::clearance::Clearance;
 use crate::mechanism::{Design, Leg};
 use crate::spatial::Pose;
 use crate::workspace::{
-    Grid, OrientationLanes, PoseChecker, PoseValues, Positions, RegularWorkspace, ValueColumns, WorkspaceSampling,
-    search,
+    Grid, OrientationLanes, PoseChecker, PoseValues, Positions, Region, RegularWorkspace, ValueColumns,
+    WorkspaceSampling, search, search_prescribed,
 };
 
 /// Largest number of rings of a disc, besides its centre, on which values are evaluated; smooth fields need no more.
@@ -18,6 +18,9 @@ const MAX_RINGS: f64 = 24.0;
 /// Smallest violation of an infeasible design: 0 is reserved for feasible designs.
 const SMALLEST_VIOLATION: f64 = 1e-9;
 
+/// Margins that differ from the worst one by no more than this are active over a prescribed region.
+const ACTIVE: f64 = 1e-3;
+
 /// Evaluates the design that is prepared in `checker`.
 pub(super) fn evaluate<L: Leg>(
     model: &Model,
@@ -25,7 +28,14 @@ pub(super) fn evaluate<L: Leg>(
     design: &Design,
     sampling: &WorkspaceSampling,
 ) -> Evaluation {
-    let found = search(checker, sampling, design.base_radius, model.is_symmetric(design));
+    let symmetric = model.is_symmetric(design);
+    let (found, worst) = match sampling.spec().region {
+        Region::Largest => (search(checker, sampling, design.base_radius, symmetric), None),
+        _ => {
+            let (found, worst) = search_prescribed(checker, sampling, design.base_radius, symmetric);
+            (found, Some(worst))
+        }
+    };
     let assembled = design.link_length + design.platform_radius >= 0.5 * design.base_radius;
     let reporter = ConstraintSearch {
         model,
@@ -33,25 +43,50 @@ pub(super) fn evaluate<L: Leg>(
         design,
         found: &found,
     };
-    let (constraints, violation, home) = match found.home.filter(|_| assembled) {
-        Some(home) => (reporter.over_workspace(home, sampling.grid()), 0.0, Some(home)),
-        None => {
+    let grid = sampling.grid();
+    let (constraints, mut violation, home) = match (found.home, worst) {
+        (Some(home), None) if assembled => (reporter.over_workspace(home, grid), 0.0, Some(home)),
+        (Some(home), Some(worst)) => {
+            let (constraints, violation) = reporter.over_region(home, worst);
+            (constraints, violation, Some(home).filter(|_| violation == 0.0))
+        }
+        _ => {
             let (constraints, violation) = reporter.at_best_centre();
             (constraints, violation, None)
         }
     };
+    let workspace_radius = if home.is_some() { found.radius } else { 0.0 };
+    let height = checker.bodies.height();
+    let mut quantities = quantities::known(model, height, design, workspace_radius, &constraints);
+    if let Some(home) = home {
+        let positions = reporter.positions(grid);
+        quantities::add_of_region(&mut quantities, model, checker, &found, home, &positions, grid);
+    }
+    let limits: Vec<LimitResult> = model
+        .limits
+        .iter()
+        .map(|limit| limit.result(quantities.get(limit.quantity)))
+        .collect();
+    violation += limits.iter().map(|limit| (-limit.margin).max(0.0)).sum::<f64>();
     let home_phi_deg = home.map(|home| found.orientations[home].phi_deg);
     let centre = model.workspace.centre;
     Evaluation {
         design: *design,
         mass: model.mass(design),
-        workspace_radius: if home.is_some() { found.radius } else { 0.0 },
+        workspace_radius,
         home: home_phi_deg.map(|phi_deg| Pose::new(centre.x, centre.y, phi_deg.to_radians())),
         home_phi_deg,
         nearest: constraints[Constraint::Clearance as usize]
             .pose
             .and_then(|pose| reporter.nearest(pose)),
         constraints,
+        objectives: model
+            .objectives
+            .iter()
+            .map(|objective| objective.minimised(quantities.get(objective.quantity)))
+            .collect(),
+        quantities,
+        limits,
         violation,
     }
 }
@@ -144,15 +179,18 @@ impl<L: Leg> ConstraintSearch<'_, L> {
         }
     }
 
-    /// Returns the smallest values over the regular workspace. The constraints that fail just beyond it are active.
-    fn over_workspace(&self, home: usize, grid: &Grid) -> ConstraintResults {
+    /// Returns the positions over which the smallest values are determined, padded.
+    fn positions(&self, grid: &Grid) -> Positions {
         let found = self.found;
+        let mut disc = Positions::default();
+        if !found.samples.is_empty() {
+            disc.extend(&found.samples);
+            disc.pad();
+            return disc;
+        }
         let centre = self.model.workspace.centre;
-        let sign = found.orientations[home].centre_sign.unwrap_or(1.0);
-        let mut reports = self.blank();
         let spacing = self.design.base_radius / grid.ray_steps() as f64;
         let rings = (found.radius / spacing).ceil().clamp(1.0, MAX_RINGS) as usize;
-        let mut disc = Positions::default();
         disc.push(centre);
         for direction in &found.directions {
             for ring in 1..=rings {
@@ -166,6 +204,40 @@ impl<L: Leg> ConstraintSearch<'_, L> {
             }
         }
         disc.pad();
+        disc
+    }
+
+    /// Returns the smallest values over the regular workspace. The constraints that fail just beyond it are active.
+    fn over_workspace(&self, home: usize, grid: &Grid) -> ConstraintResults {
+        let mut reports = self.smallest_over(home, &self.positions(grid));
+        self.mark_beyond(&mut reports, self.found.home_sign);
+        reports
+    }
+
+    /// Returns the smallest values over a prescribed region whose worst margin is `worst`, and the violation. The constraints
+    /// with the worst margin are active.
+    fn over_region(&self, home: usize, worst: f64) -> (ConstraintResults, f64) {
+        let mut positions = Positions::default();
+        positions.extend(&self.found.samples);
+        positions.pad();
+        let mut reports = self.smallest_over(home, &positions);
+        let near = worst + ACTIVE;
+        for report in &mut reports {
+            report.active |= report.required && report.pose.is_some() && report.margin <= near;
+        }
+        let assembly = (-reports[Constraint::Assembly as usize].margin).max(0.0);
+        let violation = if worst >= 0.0 {
+            0.0
+        } else {
+            (-worst).max(SMALLEST_VIOLATION)
+        };
+        (reports, violation + assembly)
+    }
+
+    fn smallest_over(&self, home: usize, disc: &Positions) -> ConstraintResults {
+        let found = self.found;
+        let sign = found.home_sign;
+        let mut reports = self.blank();
         let indices: Vec<f64> = (0..disc.xs.len()).map(|index| index as f64).collect();
         for index in found.orientation_grid.window(home) {
             let orientation = &found.orientations[index];
@@ -183,7 +255,6 @@ impl<L: Leg> ConstraintSearch<'_, L> {
                 }
             }
         }
-        self.mark_beyond(&mut reports, sign);
         reports
     }
 
@@ -310,6 +381,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
             Constraint::Clearance,
         ];
         let thresholds = &self.checker.thresholds;
+        let further = thresholds.further.required();
         let required = || AT_POSES.iter().filter(|constraint| constraint.is_required(thresholds));
         match values {
             Ok(values) => {
@@ -320,9 +392,23 @@ impl<L: Leg> ConstraintSearch<'_, L> {
                         // The shortfall is at most that of a constraint missed entirely, as at an unreachable pose.
                         Some((-constraint.margin(value, threshold, self.design)).clamp(0.0, 1.0))
                     })
-                    .sum();
+                    .sum::<f64>();
+                let of_further = further.zip(values.further).map_or(0.0, |(limits, further)| {
+                    let missed =
+                        |limit: Option<f64>, excess: f64| limit.map_or(0.0, |limit| (-excess / limit).clamp(0.0, 1.0));
+                    let reach = limits.limit_margin.unwrap_or(0.0) - values.limit_margin;
+                    (reach / self.design.base_radius).clamp(0.0, 1.0)
+                        + missed(
+                            limits.transmission,
+                            further.transmission - limits.transmission.unwrap_or(0.0),
+                        )
+                        + missed(
+                            limits.displacement,
+                            limits.displacement.unwrap_or(0.0) - further.displacement,
+                        )
+                });
                 (
-                    sum,
+                    sum + of_further,
                     if values.determinant == 0.0 {
                         0.0
                     } else {

@@ -4,7 +4,7 @@
 use nalgebra::Matrix3;
 
 use crate::lanes::Real;
-use crate::mechanism::Posture;
+use crate::mechanism::{LegLanes, Posture};
 use crate::spatial::{LEGS, cross};
 
 /// Definition of the characteristic length `ℓ`, which makes the rotational part of the Jacobian comparable with the
@@ -53,6 +53,17 @@ impl Jacobian {
 }
 
 impl<V: Real> Jacobian<V> {
+    /// Computes the Jacobians from the legs.
+    #[inline(always)]
+    pub(crate) fn of_lanes(legs: &[LegLanes<V>; LEGS]) -> Self {
+        Self {
+            ux: [legs[0].u.x, legs[1].u.x, legs[2].u.x],
+            uy: [legs[0].u.y, legs[1].u.y, legs[2].u.y],
+            moment: [legs[0].moment, legs[1].moment, legs[2].moment],
+            transmission: [legs[0].transmission, legs[1].transmission, legs[2].transmission],
+        }
+    }
+
     /// Computes `det A` \[m\], which is 0 at a parallel singularity.
     #[inline(always)]
     pub fn determinant(&self) -> V {

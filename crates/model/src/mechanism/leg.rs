@@ -318,6 +318,10 @@ pub trait Leg: Copy + Send + Sync {
     /// reach \[m\].
     fn reach_box(&self) -> [DVec2; 2];
 
+    /// Returns a distance from `O` beyond which no point `P` can be reached by all legs of any design with a base radius of at least
+    /// `base`, and with platform radii and link lengths of at most those given \[m\].
+    fn farthest_reach(base: f64, platform: f64, link: f64) -> f64;
+
     /// Returns the proximal bar, which is clamped to the actuator, for leg types that have one.
     fn proximal_bar(&self, posture: &LegPosture) -> Option<Segment>;
 }
@@ -407,4 +411,10 @@ pub(super) fn leg_vector(design: &Design, frame: &TurnedFrame, pose: &PoseEnclos
         y + pose.sine.scaled(radius),
     ];
     leg.map(|part| part.scaled(to_unit))
+}
+
+/// Returns the largest distance `|OP|` at which the farthest of the three base joints, which is at least
+/// `√(|OP|² + R² + |OP|·R)` away, is no farther than `reach` \[m\].
+pub(super) fn beyond_farthest_anchor(base: f64, reach: f64) -> f64 {
+    (libm::sqrt((4.0 * reach * reach - 3.0 * base * base).max(0.0)) - base).max(0.0) * 0.5
 }

@@ -78,6 +78,11 @@ impl Architecture {
         with_leg!(self, L => L::BARS)
     }
 
+    /// Returns a distance from `O` beyond which no point can be reached ([`Leg::farthest_reach`]).
+    pub fn farthest_reach(self, base: f64, platform: f64, link: f64) -> f64 {
+        with_leg!(self, L => L::farthest_reach(base, platform, link))
+    }
+
     /// Returns the kind of the actuated joint.
     pub fn actuator(self) -> Actuator {
         with_leg!(self, L => L::ACTUATOR)

@@ -237,6 +237,11 @@ impl Leg for PrrLeg {
         self.link
     }
 
+    fn farthest_reach(base: f64, platform: f64, link: f64) -> f64 {
+        // The rails are the sides of the base triangle; that farthest from `P` is at least (base + |OP|)/2 away.
+        (2.0 * (link + platform) - base).max(0.0)
+    }
+
     #[inline]
     fn proximal_bar(&self, _: &LegPosture) -> Option<Segment> {
         None

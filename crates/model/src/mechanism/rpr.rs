@@ -267,6 +267,10 @@ impl Leg for RprLeg {
         }
     }
 
+    fn farthest_reach(base: f64, platform: f64, link: f64) -> f64 {
+        super::leg::beyond_farthest_anchor(base, link + platform)
+    }
+
     #[inline]
     fn proximal_bar(&self, _: &LegPosture) -> Option<Segment> {
         None

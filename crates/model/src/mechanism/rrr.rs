@@ -210,6 +210,10 @@ impl Leg for RrrLeg {
         self.link
     }
 
+    fn farthest_reach(base: f64, platform: f64, link: f64) -> f64 {
+        super::leg::beyond_farthest_anchor(base, 2.0 * link + platform)
+    }
+
     #[inline]
     fn proximal_bar(&self, posture: &LegPosture) -> Option<Segment> {
         Some(Segment {

@@ -1,6 +1,8 @@
-//! Compliance of a cantilever bar with a circular cross-section (docs/model.md, section 4.1).
+//! Compliance of a cantilever bar (docs/model.md, sections 4.1 and 4.7).
 
 use nalgebra::Matrix6;
+
+use super::CrossSection;
 
 /// Isotropic material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,27 +24,26 @@ impl Material {
     };
 }
 
-/// Compliance constants of the cross-section of a bar; together with a length they determine the bar's compliance.
+/// Compliance constants of a bar of some cross-section; together with a length they determine the bar's compliance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BarCompliance {
     /// Axial compliance per length, `1/(EA)` \[1/N\].
     pub axial: f64,
-    /// Bending compliance per length, `1/(E I_y)` = `1/(E I_z)` with `I_y = I_z = πρ⁴/4` \[1/(N·m²)\].
+    /// Bending compliance per length, `1/(E I_y)` = `1/(E I_z)`; for a solid round bar `I_y = I_z = πρ⁴/4` \[1/(N·m²)\].
     pub bending: f64,
-    /// Torsional compliance per length, `1/(G I_x)` with `I_x = I_y + I_z` \[1/(N·m²)\].
+    /// Torsional compliance per length, `1/(G I_x)` with the torsion constant `I_x`, for a round bar `I_y + I_z` \[1/(N·m²)\].
     pub torsion: f64,
 }
 
 impl BarCompliance {
-    /// Computes the constants for a bar of `radius` \[m\]. Returns `None` if the bar is too thin (its radius is 0, its
+    /// Computes the constants for a bar of the outer radius `radius` \[m\]. Returns `None` if the bar is too thin (its radius is 0, its
     /// second moment of area underflows, or a constant exceeds 1e60) or too thick (a constant is below 1e-60).
-    pub fn new(material: &Material, radius: f64) -> Option<Self> {
-        let area = std::f64::consts::PI * radius * radius;
-        let inertia = 0.25 * area * radius * radius;
+    pub fn new(material: &Material, section: &CrossSection, radius: f64) -> Option<Self> {
+        let (area, inertia) = (section.area(radius), section.inertia(radius));
         let compliance = Self {
             axial: 1.0 / (material.youngs_modulus * area),
             bending: 1.0 / (material.youngs_modulus * inertia),
-            torsion: 1.0 / (material.shear_modulus * (2.0 * inertia)),
+            torsion: 1.0 / (material.shear_modulus * section.torsion_constant(radius)),
         };
         // Later computations form squares and products of these values, which must not overflow or underflow.
         let usable = |value: f64| value > 1e-60 && value < 1e60;

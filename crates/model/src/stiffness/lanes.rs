@@ -187,6 +187,22 @@ impl StiffnessModel {
         }
     }
 
+    /// Computes `k_xy` by compliance, whatever definition the study uses: the reciprocal of the largest displacement per unit of
+    /// force in the plane \[N/m\].
+    #[inline(always)]
+    pub(crate) fn compliant_k_xy_lanes<V: Real>(&self, legs: &[LegLanes<V>; LEGS], jacobian: &Jacobian<V>) -> V {
+        let like = jacobian.ux[0];
+        let reduced = &self.reduced;
+        let along = |compliance: V| like.splat(1.0 / reduced.along_unit) / compliance;
+        let stiffness = [
+            along(reduced.along_line(&legs[0])),
+            along(reduced.along_line(&legs[1])),
+            along(reduced.along_line(&legs[2])),
+        ];
+        let in_plane = in_plane_block(jacobian, &stiffness);
+        Self::in_plane_stiffness_values(&in_plane, StiffnessDefinition::Compliance).0
+    }
+
     /// Computes the upper triangle of the out-of-plane compliance of one leg at `P` in base axes.
     #[inline(always)]
     fn bending_lanes<V: Real>(&self, leg: &LegLanes<V>, arm: Planar<V>) -> [V; 6] {

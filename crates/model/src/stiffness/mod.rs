@@ -10,10 +10,12 @@ mod contributions;
 pub mod joint_model;
 mod lanes;
 pub mod planar;
+mod section;
 
 pub use bar::{BarCompliance, Material};
 pub use contributions::{Contribution, LegContributions};
 pub use planar::{ActuatorStiffness, PlanarStiffness, StiffnessModel};
+pub use section::{Catalogue, CatalogueEntry, CatalogueError, CrossSection, CrossSections, Wall};
 
 /// Definition of the stiffness along and about an axis (docs/model.md, section 4.5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

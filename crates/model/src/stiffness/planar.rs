@@ -9,7 +9,7 @@ use glam::DVec2;
 use nalgebra::{Matrix3, Matrix6};
 
 use super::lanes::Reduced;
-use super::{BarCompliance, Material, StiffnessDefinition, StiffnessValues};
+use super::{BarCompliance, CrossSections, Material, StiffnessDefinition, StiffnessValues};
 use crate::kinematics::Jacobian;
 use crate::lanes::{Planar, Real};
 use crate::mechanism::{Actuator, Design, Leg, LegPosture, Manipulator, Posture};
@@ -76,9 +76,14 @@ impl Bar<'_> {
 impl StiffnessModel {
     /// Creates the model of `design`. Returns `None` if a bar is infinitely compliant ([`BarCompliance::new`] returns
     /// `None`), which makes every stiffness 0.
-    pub fn new<L: Leg>(design: &Design, material: &Material, actuators: &ActuatorStiffness) -> Option<Self> {
-        let leg_bar = BarCompliance::new(material, design.leg_bar_radius)?;
-        let platform_bar = BarCompliance::new(material, design.platform_bar_radius)?;
+    pub fn new<L: Leg>(
+        design: &Design,
+        material: &Material,
+        sections: &CrossSections,
+        actuators: &ActuatorStiffness,
+    ) -> Option<Self> {
+        let leg_bar = BarCompliance::new(material, &sections.legs, design.leg_bar_radius)?;
+        let platform_bar = BarCompliance::new(material, &sections.platform, design.platform_bar_radius)?;
         let actuator = 1.0 / actuators.of(L::ACTUATOR);
         Some(Self {
             leg_bar,

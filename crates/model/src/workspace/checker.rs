@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::further::{FurtherLanes, FurtherLimits, FurtherValues};
 use crate::clearance::{Bodies, Clearance, NUMBER_LIMIT};
 use crate::kinematics::Jacobian;
 use crate::lanes::{InstructionSet, Planar, Real};
@@ -22,6 +23,8 @@ pub struct Thresholds {
     pub k_phi_z: f64,
     /// Smallest clearance allowed \[m\] (g7); `None` if members may collide.
     pub clearance: Option<f64>,
+    /// Limits of further values.
+    pub further: FurtherLimits,
 }
 
 impl Thresholds {
@@ -34,6 +37,10 @@ impl Thresholds {
             && self
                 .clearance
                 .is_none_or(|least| values.clearance.is_some_and(|clearance| clearance >= least))
+            && self.further.required().is_none_or(|limits| {
+                let of_values = |further| limits.are_met_by(values.limit_margin, further);
+                values.further.as_ref().is_some_and(of_values)
+            })
     }
 }
 
@@ -50,6 +57,8 @@ pub struct PoseValues {
     pub stiffness_values: StiffnessValues,
     /// Smallest clearance between members that are not joined \[m\]; `None` if it is not required.
     pub clearance: Option<f64>,
+    /// Further values; `None` if no limit of them is required.
+    pub further: Option<FurtherValues>,
 }
 
 impl PoseValues {
@@ -71,6 +80,13 @@ impl PoseValues {
         self.clearance = self
             .clearance
             .map(|clearance| clearance.clamp(-NUMBER_LIMIT, NUMBER_LIMIT));
+        self.further = self.further.map(|further| {
+            let finite = |value: f64, instead: f64| if value.is_finite() { value } else { instead };
+            FurtherValues {
+                transmission: finite(further.transmission, 0.0),
+                displacement: finite(further.displacement, NUMBER_LIMIT).min(NUMBER_LIMIT),
+            }
+        });
         self
     }
 }
@@ -95,6 +111,8 @@ pub struct PoseLanes<V: Real> {
     pub k_phi_z: V,
     /// Smallest clearance between members that are not joined \[m\]; `None` if it is not required.
     pub clearance: Option<V>,
+    /// Further values; `None` if no limit of them is required.
+    pub further: Option<FurtherLanes<V>>,
 }
 
 impl PoseLanes<f64> {
@@ -110,6 +128,10 @@ impl PoseLanes<f64> {
                 k_phi_z: self.k_phi_z,
             },
             clearance: self.clearance,
+            further: self.further.map(|further| FurtherValues {
+                transmission: further.transmission,
+                displacement: further.displacement,
+            }),
         };
         self.reachable.then(|| values.finite())
     }
@@ -128,6 +150,12 @@ pub struct PoseChecker<L> {
     pub length: f64,
     /// Members that may collide.
     pub bodies: Bodies,
+    /// `R` \[m\].
+    pub base_radius: f64,
+    /// `L_b` \[m\].
+    pub link_length: f64,
+    /// In-plane force under which the displacement is computed \[N\].
+    pub in_plane_force: f64,
     /// Smallest values allowed at a feasible pose.
     pub thresholds: Thresholds,
     /// Instruction set by which several poses are evaluated at a time. It changes no bit of a result.
@@ -153,7 +181,12 @@ impl<L: Leg> PoseChecker<L> {
         }
         let k_z = self.vertical_stiffness(&posture, &jacobian);
         let clear = |least: f64| self.nearest(position, &posture).distance >= least;
-        (k_z >= self.thresholds.k_z && self.thresholds.clearance.is_none_or(clear)).then(|| determinant.signum())
+        let further = &self.thresholds.further;
+        let within = |limits: &FurtherLimits| limits.are_met_by(posture.limit_margin, &self.further_at(position, arms));
+        (k_z >= self.thresholds.k_z
+            && self.thresholds.clearance.is_none_or(clear)
+            && further.required().is_none_or(within))
+        .then(|| determinant.signum())
     }
 
     /// Returns all values at several poses at once, with `arms` as in [`Manipulator::arms`]. The clearance is computed
@@ -164,6 +197,9 @@ impl<L: Leg> PoseChecker<L> {
         if self.thresholds.clearance.is_some() {
             let limit = position.x.splat(f64::INFINITY);
             values.clearance = Some(self.compute_clearance_up_to(position, arms, &directions, limit));
+        }
+        if self.thresholds.further.required().is_some() {
+            values.further = Some(self.further_lanes(position, arms));
         }
         values
     }
@@ -191,18 +227,8 @@ impl<L: Leg> PoseChecker<L> {
         arms: &[Planar<V>; LEGS],
     ) -> (PoseLanes<V>, [Planar<V>; LEGS]) {
         let like = position.x;
-        let legs = &self.manipulator.legs;
-        let legs = [
-            legs[0].lanes(position, arms[0]),
-            legs[1].lanes(position, arms[1]),
-            legs[2].lanes(position, arms[2]),
-        ];
-        let jacobian = Jacobian {
-            ux: [legs[0].u.x, legs[1].u.x, legs[2].u.x],
-            uy: [legs[0].u.y, legs[1].u.y, legs[2].u.y],
-            moment: [legs[0].moment, legs[1].moment, legs[2].moment],
-            transmission: [legs[0].transmission, legs[1].transmission, legs[2].transmission],
-        };
+        let legs = self.leg_lanes(position, arms);
+        let jacobian = Jacobian::of_lanes(&legs);
         let [k_xy, k_z, k_phi_z] = match &self.stiffness {
             Some(model) => model.stiffness_value_lanes(self.definition, &legs, arms, &jacobian),
             None => [like.splat(0.0); 3],
@@ -218,6 +244,7 @@ impl<L: Leg> PoseChecker<L> {
             k_z,
             k_phi_z,
             clearance: None,
+            further: None,
         };
         (values, [legs[0].u, legs[1].u, legs[2].u])
     }
@@ -233,6 +260,10 @@ impl<L: Leg> PoseChecker<L> {
             & values.k_xy.at_least(sign.splat(least.k_xy))
             & values.k_phi_z.at_least(sign.splat(least.k_phi_z))
             & values.k_z.at_least(sign.splat(least.k_z));
+        let good = match least.further.required() {
+            Some(limits) if V::any(good) => good & self.within_further_lanes(limits, &values, position, arms),
+            _ => good,
+        };
         match least.clearance {
             // Where the pose is already infeasible the limit is −∞, so that no clearance is below it and no pair is
             // examined.
@@ -265,7 +296,27 @@ impl<L: Leg> PoseChecker<L> {
                 k_phi_z,
             },
             clearance: None,
+            further: None,
         }
+    }
+
+    /// Returns the mask of the poses that satisfy the limits of further values.
+    #[inline(always)]
+    fn within_further_lanes<V: Real>(
+        &self,
+        limits: &FurtherLimits,
+        values: &PoseLanes<V>,
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
+    ) -> V::Mask {
+        let like = position.x;
+        let found = self.further_lanes(position, arms);
+        let least = |limit: Option<f64>| like.splat(limit.unwrap_or(f64::NEG_INFINITY));
+        values.limit_margin.at_least(least(limits.limit_margin))
+            & found.transmission.at_least(least(limits.transmission))
+            & like
+                .splat(limits.displacement.unwrap_or(f64::INFINITY))
+                .at_least(found.displacement)
     }
 
     /// Returns the in-plane block of `K`, as [`PlanarStiffness::in_plane`] stores it; zero for an infinitely compliant

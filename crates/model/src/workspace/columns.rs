@@ -4,6 +4,7 @@ use glam::DVec2;
 use pulp::{Simd, WithSimd};
 
 use super::batch::OrientationLanes;
+use super::further::FurtherValues;
 use super::{PoseChecker, PoseLanes, PoseValues, Thresholds};
 use crate::clearance::NUMBER_LIMIT;
 use crate::lanes::{Lanes, MAX_LANES, Planar, Real, padded_length};
@@ -68,11 +69,17 @@ pub struct ValueColumns {
     k_phi_z: Vec<f64>,
     /// Empty if no clearance is required.
     clearance: Vec<f64>,
+    /// Transmission and displacement; empty if no limit of further values is required.
+    further: [Vec<f64>; 2],
 }
 
 impl ValueColumns {
-    fn resize(&mut self, length: usize, clearance: bool) {
-        self.clearance.resize(if clearance { length } else { 0 }, 0.0);
+    fn resize(&mut self, length: usize, thresholds: &Thresholds) {
+        let length_if = |required: bool| if required { length } else { 0 };
+        self.clearance.resize(length_if(thresholds.clearance.is_some()), 0.0);
+        for column in &mut self.further {
+            column.resize(length_if(thresholds.further.required().is_some()), 0.0);
+        }
         for column in [
             &mut self.reachable,
             &mut self.limit_margin,
@@ -110,6 +117,10 @@ impl ValueColumns {
                 k_phi_z: self.k_phi_z[index],
             },
             clearance: self.clearance.get(index).copied(),
+            further: self.further[0].get(index).map(|&transmission| FurtherValues {
+                transmission,
+                displacement: self.further[1][index],
+            }),
         }
         .finite())
     }
@@ -141,8 +152,35 @@ impl ValueColumns {
         })
     }
 
+    /// Returns the inverse condition numbers; meaningless where a leg does not reach the pose.
+    pub(crate) fn inverse_conditions(&self) -> &[f64] {
+        &self.inverse_condition
+    }
+
+    /// Returns the ratios of the displacement allowed to that at the first `count` poses, as [`Self::stiffness_ratios`] does
+    /// for the stiffness; none if the study does not bound the displacement.
+    pub(crate) fn displacement_ratios(&self, thresholds: &Thresholds, count: usize) -> Vec<f64> {
+        let Some(limit) = thresholds.further.displacement else {
+            return Vec::new();
+        };
+        let ratio = |(displacement, reachable): (&f64, &f64)| {
+            if *reachable > 0.0 {
+                (limit / displacement).min(f64::MAX)
+            } else {
+                f64::MAX
+            }
+        };
+        self.further[1]
+            .iter()
+            .zip(&self.reachable)
+            .take(count)
+            .map(ratio)
+            .collect()
+    }
+
     #[inline(always)]
     fn writer<S: Simd>(&mut self) -> ColumnWriter<'_, S> {
+        let [transmission, displacement] = &mut self.further;
         ColumnWriter {
             reachable: Lanes::<S>::column_mut(&mut self.reachable),
             limit_margin: Lanes::<S>::column_mut(&mut self.limit_margin),
@@ -152,6 +190,7 @@ impl ValueColumns {
             k_z: Lanes::<S>::column_mut(&mut self.k_z),
             k_phi_z: Lanes::<S>::column_mut(&mut self.k_phi_z),
             clearance: Lanes::<S>::column_mut(&mut self.clearance),
+            further: [transmission, displacement].map(|column| Lanes::<S>::column_mut(column)),
         }
     }
 }
@@ -168,6 +207,7 @@ struct ColumnWriter<'a, S: Simd> {
     k_z: &'a mut [Group<S>],
     k_phi_z: &'a mut [Group<S>],
     clearance: &'a mut [Group<S>],
+    further: [&'a mut [Group<S>]; 2],
 }
 
 impl<S: Simd> ColumnWriter<'_, S> {
@@ -183,6 +223,10 @@ impl<S: Simd> ColumnWriter<'_, S> {
         values.k_phi_z.store(&mut self.k_phi_z[group]);
         if let Some(clearance) = values.clearance {
             clearance.store(&mut self.clearance[group]);
+        }
+        if let Some(further) = values.further {
+            further.transmission.store(&mut self.further[0][group]);
+            further.displacement.store(&mut self.further[1][group]);
         }
     }
 }
@@ -306,7 +350,7 @@ impl<L: Leg> PoseChecker<L> {
     /// [`MAX_LANES`].
     pub fn at_positions(&self, arms: &[DVec2; LEGS], xs: &[f64], ys: &[f64], values: &mut ValueColumns) {
         assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MAX_LANES));
-        values.resize(xs.len(), self.thresholds.clearance.is_some());
+        values.resize(xs.len(), &self.thresholds);
         self.instructions.run(AtPositions {
             checker: self,
             oriented: OrientationLanes { arms, sign: 1.0 },
@@ -319,7 +363,7 @@ impl<L: Leg> PoseChecker<L> {
     /// Computes the values at many poses, one for each entry of `positions` and `arms`, both padded.
     pub(crate) fn at_poses(&self, positions: &Positions, arms: &ArmColumns, values: &mut ValueColumns) {
         assert!(arms.0.iter().all(|column| column.len() == positions.xs.len()));
-        values.resize(positions.xs.len(), self.thresholds.clearance.is_some());
+        values.resize(positions.xs.len(), &self.thresholds);
         self.instructions.run(AtPoses {
             checker: self,
             xs: &positions.xs,

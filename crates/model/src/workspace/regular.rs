@@ -11,17 +11,20 @@
 use glam::DVec2;
 
 use super::batch::OrientationLanes;
+use super::region::directions;
 use super::rings::{Reach, Rings};
-use super::{ArmColumns, Grid, OrientationGrid, PoseChecker, ValueColumns, WorkspaceSampling};
+use super::{ArmColumns, Grid, OrientationGrid, PoseChecker, Region, ValueColumns, WorkspaceSampling};
 use crate::mechanism::Leg;
-use crate::spatial::{LEGS, Rotation, unit};
+use crate::spatial::{LEGS, Rotation};
 
 /// Centre, rotation range and home orientation of the regular workspace (docs/model.md, sections 7.1 and 11).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct WorkspaceSpec {
+    /// Region of positions about the centre.
+    pub region: Region,
     /// Rotation range `Δφ` \[deg\].
     pub rotation_range_deg: f64,
-    /// Centre of the disc in the base frame \[m\].
+    /// Centre of the region in the base frame \[m\].
     pub centre: DVec2,
     /// Home orientation `φ_c` \[deg\] if it is prescribed; `None` selects the best one.
     pub home_phi_deg: Option<f64>,
@@ -57,12 +60,16 @@ pub struct RegularWorkspace {
     pub centres: ValueColumns,
     /// Directions in which rays are marched.
     pub directions: Vec<DVec2>,
+    /// Sign of `det A` in the home orientation.
+    pub home_sign: f64,
+    /// Positions at which a prescribed region was examined; empty for the largest disc.
+    pub samples: Vec<DVec2>,
 }
 
 /// Returns the orientations that the search examines, and the values at their centre poses.
-fn orientations<L: Leg>(
+pub(super) fn orientations<L: Leg>(
     checker: &PoseChecker<L>,
-    spec: &WorkspaceSpec,
+    centre: DVec2,
     orientation_grid: &OrientationGrid,
 ) -> (Vec<Orientation>, ValueColumns) {
     let mut orientations: Vec<Orientation> = (0..orientation_grid.count)
@@ -76,7 +83,7 @@ fn orientations<L: Leg>(
         })
         .collect();
     let arms = ArmColumns::new(orientations.iter().map(|orientation| orientation.arms));
-    let centres = checker.in_orientations(spec.centre, &arms);
+    let centres = checker.in_orientations(centre, &arms);
     for (index, orientation) in orientations.iter_mut().enumerate() {
         orientation.centre_sign = centres
             .get(index)
@@ -98,15 +105,8 @@ pub fn search<L: Leg>(
     symmetric: bool,
 ) -> RegularWorkspace {
     let (spec, grid, orientation_grid) = (sampling.spec(), sampling.grid(), *sampling.orientation_grid());
-    let (orientations, centres) = orientations(checker, spec, &orientation_grid);
-    let sector = if symmetric && grid.directions().is_multiple_of(LEGS) {
-        grid.directions() / LEGS
-    } else {
-        grid.directions()
-    };
-    let directions = (0..sector)
-        .map(|k| unit((k as f64 * 360.0 / grid.directions() as f64).to_radians()))
-        .collect();
+    let (orientations, centres) = orientations(checker, spec.centre, &orientation_grid);
+    let directions = directions(grid, symmetric);
     let mut result = RegularWorkspace {
         radius: 0.0,
         home: None,
@@ -115,6 +115,8 @@ pub fn search<L: Leg>(
         limits: Vec::new(),
         centres,
         directions: Vec::new(),
+        home_sign: 1.0,
+        samples: Vec::new(),
     };
     let step = step_base / grid.ray_steps() as f64;
     let mut search = Search {
@@ -128,6 +130,10 @@ pub fn search<L: Leg>(
     };
     search.run();
     result.directions = search.rings.directions;
+    result.home_sign = result
+        .home
+        .and_then(|home| result.orientations[home].centre_sign)
+        .unwrap_or(1.0);
     result
 }
 

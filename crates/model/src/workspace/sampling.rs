@@ -3,7 +3,7 @@
 use super::{Grid, GridError, OrientationGrid, WorkspaceSpec};
 
 /// A [`WorkspaceSpec`] and a [`Grid`] that fit each other.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct WorkspaceSampling {
     spec: WorkspaceSpec,
     grid: Grid,

@@ -365,7 +365,7 @@ fn other_definitions_are_certified() {
     let designs = cases();
     let tasks: Vec<_> = other_models()
         .into_iter()
-        .flat_map(|(name, model)| designs.iter().map(move |case| (name, model, case.design)))
+        .flat_map(|(name, model)| designs.iter().map(move |case| (name, model.clone(), case.design)))
         .collect();
     let closed: Vec<bool> = tasks
         .into_par_iter()

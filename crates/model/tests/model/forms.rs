@@ -4,7 +4,7 @@ use kinefront_model::kinematics::Jacobian;
 use kinefront_model::mechanism::{Design, Leg, LegSettings, Manipulator};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::{
-    ActuatorStiffness, Material, PlanarStiffness, StiffnessDefinition, StiffnessModel, joint_model,
+    ActuatorStiffness, CrossSections, Material, PlanarStiffness, StiffnessDefinition, StiffnessModel, joint_model,
 };
 use kinefront_model::with_leg;
 use nalgebra::{Matrix2, Matrix6};
@@ -22,7 +22,7 @@ const ACTUATORS: ActuatorStiffness = ActuatorStiffness {
 fn both<L: Leg>(design: &Design, settings: &LegSettings, pose: &Pose) -> Option<(PlanarStiffness, Matrix6<f64>)> {
     let manipulator = Manipulator::<L>::new(design, settings);
     let posture = manipulator.posture(pose).ok()?;
-    let model = StiffnessModel::new::<L>(design, &Material::STEEL, &ACTUATORS)?;
+    let model = StiffnessModel::new::<L>(design, &Material::STEEL, &CrossSections::default(), &ACTUATORS)?;
     let closed = model.stiffness(&manipulator, &posture, &Jacobian::new(&posture));
     Some((closed, joint_model::stiffness(&model, &manipulator, &posture)?))
 }

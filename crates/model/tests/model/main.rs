@@ -1,4 +1,4 @@
-//! The model against identities and independent values: joints, Jacobians, stiffness, clearance, workspace, sizing.
+//! The model against identities and independent values: joints, Jacobians, stiffness, cross-sections, clearance, workspace, sizing.
 
 mod certify;
 mod clearance;
@@ -7,7 +7,10 @@ mod forms;
 mod joints;
 mod lanes;
 mod oracle;
+mod quantities;
 mod reference;
+mod regions;
 mod search;
+mod sections;
 mod sizing;
 mod strategies;

@@ -10,16 +10,16 @@ use serde_json::Value;
 
 use super::search::plain_search;
 
-fn fixture(name: &str) -> Value {
+pub fn fixture(name: &str) -> Value {
     let path = format!("{}/tests/fixtures/{name}", env!("CARGO_MANIFEST_DIR"));
     serde_json::from_str(&std::fs::read_to_string(path).expect("the fixture")).expect("JSON")
 }
 
-fn number(value: &Value) -> f64 {
+pub fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
 }
 
-fn design(case: &Value) -> Design {
+pub fn design(case: &Value) -> Design {
     let plus = case["working_mode"].as_i64().unwrap_or(1) > 0;
     let values = ["R", "r", "Lb", "rj", "rp"].map(|key| number(&case["design"][key]));
     let architecture = case["architecture"]
@@ -30,7 +30,7 @@ fn design(case: &Value) -> Design {
     Design::new(architecture, WorkingMode::new([plus; 3]), values).expect("a valid design")
 }
 
-fn pose(case: &Value) -> Pose {
+pub fn pose(case: &Value) -> Pose {
     let pose = &case["pose"];
     Pose::new(
         number(&pose["x"]),
@@ -39,7 +39,7 @@ fn pose(case: &Value) -> Pose {
     )
 }
 
-fn matrix(value: &Value) -> Matrix6<f64> {
+pub fn matrix(value: &Value) -> Matrix6<f64> {
     Matrix6::from_fn(|i, j| number(&value[i][j]))
 }
 
@@ -55,7 +55,7 @@ pub fn difference(a: &Matrix6<f64>, b: &Matrix6<f64>) -> f64 {
     largest
 }
 
-fn close(value: f64, wanted: f64, tolerance: f64, what: &str) {
+pub fn close(value: f64, wanted: f64, tolerance: f64, what: &str) {
     let scale = wanted.abs().max(1.0);
     assert!(
         (value - wanted).abs() <= tolerance * scale,

@@ -302,7 +302,7 @@ fn sizes_beyond_measure_stay_finite() {
             (Model::default(), "R=2 r=1 Lb=2 rj=2e74 rp=2e74"),
             (Model::default(), "R=2 r=1 Lb=2 rj=1e120 rp=1e-200"),
             (Model::default(), "R=1 r=1 Lb=1 rj=0.05 rp=0.05"),
-            (far, "R=2 r=1 Lb=2 rj=0.05 rp=0.05"),
+            (far.clone(), "R=2 r=1 Lb=2 rj=0.05 rp=0.05"),
         ] {
             let design: Design = format!("{architecture} {lengths}").parse().expect("a design");
             let found = model.evaluate(&design, GridChoice::Reference);

@@ -9,6 +9,8 @@ use crate::strategies::{applicable_cases, design};
 const RANGES: BarRanges = BarRanges {
     leg: [0.0, 0.1],
     platform: [0.0, 0.1],
+    listed: [None, None],
+    is_exact: false,
 };
 
 fn sized(model: &Model, design: &Design, target: WorkspaceTarget) -> Option<Design> {
@@ -81,6 +83,8 @@ fn what_cannot_be_had_is_none() {
     let thin = BarRanges {
         leg: [0.0, 0.01],
         platform: [0.0, 0.01],
+        listed: [None, None],
+        is_exact: false,
     };
     let found = model.sized(&design, &thin, WorkspaceTarget::Radius(1.0));
     assert_eq!(found, None, "the ranges of the bars do not allow the radius");

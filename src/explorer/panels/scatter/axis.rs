@@ -1,7 +1,8 @@
 //! An axis of the scatter: its quantity, range and ticks.
 
-use crate::study::{Better, Column};
+use crate::study::Column;
 use egui_plot::{GridInput, GridMark, PlotBounds};
+use kinefront_model::evaluation::Better;
 
 use crate::explorer::Store;
 

@@ -7,7 +7,7 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points, Tex
 use super::Scatter;
 use crate::explorer::{Row, Session, theme};
 use kinefront_model::mechanism::Architecture;
-use kinefront_optimize::knee;
+use kinefront_optimize::{Objectives, knee};
 
 /// A mark with the text beside it.
 type LabelledPoints<'a> = (Points<'a>, Option<Text>);
@@ -120,7 +120,7 @@ impl Scatter {
 
     fn knee<'a>(&self, session: &Session, colors: Colors) -> Option<LabelledPoints<'a>> {
         let front = session.front();
-        let objectives: Vec<[f64; 2]> = front.iter().map(|entry| entry.objectives()).collect();
+        let objectives: Vec<Objectives> = front.iter().map(|entry| entry.objectives()).collect();
         let at = self.place(&front[knee(&objectives)?].row);
         let text = Text::new("", PlotPoint::new(at[0], at[1]), "knee\u{a0}\u{a0}\u{a0}");
         let text = text.color(colors.ink).anchor(Align2::RIGHT_BOTTOM);

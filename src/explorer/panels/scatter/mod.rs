@@ -4,7 +4,8 @@ mod axis;
 mod cloud;
 mod marks;
 
-use crate::study::{Better, Column};
+use crate::study::Column;
+use kinefront_model::evaluation::Better;
 use std::time::Duration;
 
 use egui::{Align2, Color32, ComboBox, Pos2, Response, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
@@ -168,7 +169,7 @@ impl Scatter {
                     .selected_text(axis.quantity.title())
                     .width(130.0)
                     .show_ui(ui, |ui| {
-                        for quantity in Column::quantities() {
+                        for quantity in Column::quantities(session.store().further_quantities()) {
                             if ui
                                 .selectable_label(axis.quantity == quantity, quantity.title())
                                 .clicked()

@@ -6,7 +6,7 @@
 //! constraint holds, and for small boxes almost everywhere there.
 
 use super::Enclosures;
-use crate::clearance::{BodySettings, DISTAL, PLATFORM, PROXIMAL, ROWS, kinds, pairs_not_joined};
+use crate::clearance::{DISTAL, PLATFORM, PROXIMAL, ROWS, kinds, pairs_not_joined};
 use crate::enclosure::{
     AxisEnclosure, Interval, LegEnclosure, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, TurnedFrame,
     difference, dot, sum,
@@ -70,7 +70,7 @@ impl Separations {
                 upper: half_axis.upper.max(0.0),
             } * to_unit,
             from_rail_end: half_length + clearance,
-            pairs: pairs::<L>(bodies, design, clearance),
+            pairs: pairs::<L>(model, design, clearance),
         })
     }
 
@@ -144,7 +144,10 @@ impl Separations {
 }
 
 /// The pairs that their layers alone do not keep apart.
-fn pairs<L: Leg>(bodies: &BodySettings, design: &Design, clearance: Interval) -> Vec<SeparatedPair> {
+fn pairs<L: Leg>(model: &Model, design: &Design, clearance: Interval) -> Vec<SeparatedPair> {
+    let bodies = &model.bodies;
+    let (legs, platform) = (model.sections.legs.is_square(), model.sections.platform.is_square());
+    let are_square = [legs, legs, platform];
     let exactly = Interval::exactly;
     let to_unit = exactly(1.0) / exactly(design.link_length);
     let thicker = exactly(2.0) * exactly(design.leg_bar_radius.max(design.platform_bar_radius));
@@ -157,9 +160,15 @@ fn pairs<L: Leg>(bodies: &BodySettings, design: &Design, clearance: Interval) ->
         let [Some(first), Some(second)] = places.map(|place| kinds[place / LEGS]) else {
             return None;
         };
-        let distance = radius(first) + radius(second) + clearance;
+        let radii = radius(first) + radius(second);
+        let distance = radii + clearance;
         let layers = (exactly(bodies.layers.of(first)) - exactly(bodies.layers.of(second))) * thicker;
-        let square = (distance.square() - layers.square()) * to_unit.square();
+        let square = if places.iter().any(|place| are_square[place / LEGS]) {
+            between_prisms(radii, layers, clearance)?
+        } else {
+            distance.square() - layers.square()
+        };
+        let square = square * to_unit.square();
         (distance.upper > 0.0 && square.upper > 0.0).then(|| SeparatedPair {
             places,
             square,
@@ -167,6 +176,25 @@ fn pairs<L: Leg>(bodies: &BodySettings, design: &Design, clearance: Interval) ->
         })
     };
     pairs_not_joined(kinds).filter_map(keep).collect()
+}
+
+/// The square of the distance that the axes of two prisms must keep in the plane; `None` if their layers alone keep the clearance.
+fn between_prisms(radii: Interval, layers: Interval, clearance: Interval) -> Option<Interval> {
+    let apart = layers.square().sqrt() - radii;
+    if apart.lower >= clearance.upper {
+        return None;
+    }
+    // Where the layers overlap, nothing of the clearance is kept by them.
+    let kept = Interval {
+        lower: apart.lower.max(0.0),
+        upper: apart.upper.max(0.0),
+    };
+    let left = clearance.square() - kept.square();
+    let left = Interval {
+        lower: left.lower.max(0.0),
+        upper: left.upper.max(0.0),
+    };
+    Some((radii + left.sqrt()).square())
 }
 
 /// A rectangle that contains an axis.

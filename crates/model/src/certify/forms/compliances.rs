@@ -4,6 +4,7 @@ use crate::certify::CertifyError;
 use crate::enclosure::Interval;
 use crate::evaluation::Model;
 use crate::mechanism::{Actuator, Design, Leg};
+use crate::stiffness::{CrossSection, Material};
 
 /// Compliances of a design, as multiples of two units.
 pub(super) struct Compliances {
@@ -33,18 +34,9 @@ impl Compliances {
         let one = exactly(1.0);
         let material = &model.material;
         let (radius, link) = (exactly(design.platform_radius), exactly(design.link_length));
-        let section = |bar: f64| {
-            let area = Interval::PI * exactly(bar).square();
-            let inertia = area * exactly(bar).square() / exactly(4.0);
-            let [e, g] = [material.youngs_modulus, material.shear_modulus].map(exactly);
-            // Axial, bending and torsional compliance per length.
-            [
-                one / (e * area),
-                one / (e * inertia),
-                one / (g * exactly(2.0) * inertia),
-            ]
-        };
-        let [leg, platform] = [design.leg_bar_radius, design.platform_bar_radius].map(section);
+        let sections = &model.sections;
+        let leg = per_length(material, &sections.legs, design.leg_bar_radius);
+        let platform = per_length(material, &sections.platform, design.platform_bar_radius);
         let actuator = one / exactly(model.actuators.of(L::ACTUATOR));
         // The transmission of a revolute actuator is a lever.
         let actuator = match L::ACTUATOR {
@@ -74,4 +66,29 @@ impl Compliances {
             radius: radius / link,
         })
     }
+}
+
+/// Returns the axial, bending and torsional compliance per length of a bar, with the wall ratio as the double that the model uses.
+fn per_length(material: &Material, section: &CrossSection, radius: f64) -> [Interval; 3] {
+    let exactly = Interval::exactly;
+    let (one, squared) = (exactly(1.0), exactly(radius).square());
+    let [e, g] = [material.youngs_modulus, material.shear_modulus].map(exactly);
+    let wall = exactly(section.wall_ratio(radius));
+    let inner = one - wall;
+    let filled = wall * (one + inner);
+    let (outline, gyration, torsion) = if section.is_square() {
+        let middle = one + inner;
+        let torsion = wall * middle * middle.square() * squared.square();
+        (exactly(4.0), exactly(3.0), Some(torsion))
+    } else {
+        (Interval::PI, exactly(4.0), None)
+    };
+    let (mut area, mut inertia) = (outline * squared, outline * squared * squared / gyration);
+    // Each operation rounds outwards, so that a solid bar does without those that do not change it.
+    if section.wall_ratio(radius) < 1.0 {
+        area = area * filled;
+        inertia = inertia * filled * (one + inner.square());
+    }
+    let torsion = torsion.unwrap_or(exactly(2.0) * inertia);
+    [one / (e * area), one / (e * inertia), one / (g * torsion)]
 }

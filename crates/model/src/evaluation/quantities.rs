@@ -1,0 +1,127 @@
+//! The values of the quantities of a design (docs/model.md, section 6.3).
+
+use glam::DVec2;
+
+use super::{Constraint, ConstraintResult, Model, Quantity, QuantityValues};
+use crate::mechanism::{Design, Leg};
+use crate::workspace::{
+    FurtherColumns, Grid, OrientationLanes, PoseChecker, Positions, RegularWorkspace, ValueColumns,
+};
+
+/// Returns the quantities of a design that its constraints and dimensions determine.
+pub(super) fn known(
+    model: &Model,
+    height: f64,
+    design: &Design,
+    workspace_radius: f64,
+    constraints: &[ConstraintResult; Constraint::ALL.len()],
+) -> QuantityValues {
+    let mut values = QuantityValues::default();
+    for quantity in Quantity::all() {
+        let value = match quantity {
+            Quantity::Mass => Some(model.mass(design)),
+            Quantity::LegsMass => Some(model.legs_mass(design)),
+            Quantity::PlatformMass => Some(model.platform_mass(design)),
+            Quantity::Height => Some(height),
+            Quantity::WorkspaceRadius => Some(workspace_radius),
+            _ => quantity
+                .entry()
+                .constraint
+                .and_then(|constraint| constraints[constraint as usize].value),
+        };
+        values.set(quantity, value);
+    }
+    values
+}
+
+/// Adds those quantities over the region of a design that the study asks for.
+pub(super) fn add_of_region<L: Leg>(
+    values: &mut QuantityValues,
+    model: &Model,
+    checker: &PoseChecker<L>,
+    found: &RegularWorkspace,
+    home: usize,
+    positions: &Positions,
+    grid: &Grid,
+) {
+    let asked = |quantity: Quantity| model.quantities.contains(quantity);
+    if asked(Quantity::DexterityMean) {
+        let mean = dexterity_mean(model, checker, found, home, grid);
+        values.set(Quantity::DexterityMean, Some(mean));
+    }
+    let of_poses = [
+        Quantity::TransmissionMin,
+        Quantity::DisplacementMax,
+        Quantity::Footprint,
+    ];
+    if !of_poses.into_iter().any(asked) {
+        return;
+    }
+    let mut columns = FurtherColumns::default();
+    let (mut transmission, mut displacement, mut outermost) = (f64::INFINITY, 0.0f64, checker.base_radius);
+    for index in found.orientation_grid.window(home) {
+        let oriented = OrientationLanes {
+            arms: &found.orientations[index].arms,
+            sign: found.home_sign,
+        };
+        checker.further(oriented, positions, &mut columns);
+        // The padding repeats the first position.
+        let least = |least: f64, value: &f64| least.min(*value);
+        let most = |most: f64, value: &f64| most.max(*value);
+        transmission = columns.transmission.iter().fold(transmission, least);
+        displacement = columns.displacement.iter().fold(displacement, most);
+        outermost = columns.outermost.iter().fold(outermost, most);
+    }
+    for (quantity, value) in of_poses.into_iter().zip([transmission, displacement, outermost]) {
+        if asked(quantity) {
+            values.set(quantity, Some(value));
+        }
+    }
+}
+
+/// Returns the mean inverse condition number over the region and the window: each position is weighted by its area, and each
+/// orientation by its step, of which the ends of the window have half.
+fn dexterity_mean<L: Leg>(
+    model: &Model,
+    checker: &PoseChecker<L>,
+    found: &RegularWorkspace,
+    home: usize,
+    grid: &Grid,
+) -> f64 {
+    let spec = &model.workspace;
+    let spacing = checker.base_radius / grid.ray_steps() as f64;
+    let rings = (found.radius / spacing).ceil().clamp(1.0, MEAN_RINGS) as usize;
+    let rings = if found.samples.is_empty() {
+        rings
+    } else {
+        MEAN_RINGS as usize
+    };
+    let weighted = spec
+        .region
+        .quadrature(spec.centre, found.radius, rings, &found.directions);
+    let places: Vec<DVec2> = weighted.iter().map(|(place, _)| *place).collect();
+    let mut positions = Positions::default();
+    positions.extend(&places);
+    positions.pad();
+    let mut columns = ValueColumns::default();
+    let window: Vec<usize> = found.orientation_grid.window(home).collect();
+    let (mut sum, mut total) = (0.0, 0.0);
+    for (place, &index) in window.iter().enumerate() {
+        let arms = &found.orientations[index].arms;
+        checker.at_positions(arms, &positions.xs, &positions.ys, &mut columns);
+        let mean: f64 = columns
+            .inverse_conditions()
+            .iter()
+            .zip(&weighted)
+            .map(|(value, (_, weight))| weight * value)
+            .sum();
+        let is_end = window.len() > 1 && (place == 0 || place + 1 == window.len());
+        let weight = if is_end { 0.5 } else { 1.0 };
+        sum += weight * mean;
+        total += weight;
+    }
+    sum / total
+}
+
+/// Largest number of rings, or half the number of lattice cells along a side, over which the mean is taken.
+const MEAN_RINGS: f64 = 24.0;

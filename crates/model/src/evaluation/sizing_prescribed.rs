@@ -1,0 +1,179 @@
+//! Sizing of the bars for a prescribed region: exact on the poses that the evaluation examines (docs/model.md, section 9.4).
+
+use glam::DVec2;
+
+use super::GridChoice;
+use super::lightest::{Ratios, SizingAccuracy, StiffnessRatios};
+use super::sizing::{Shape, Sizer};
+use crate::mechanism::{Design, Leg};
+use crate::workspace::{RegionPositions, directions, search_prescribed};
+
+/// Poses whose ratio is larger than this multiple of the smallest of its kind do not determine the bars, unless the result shows
+/// that they do.
+const NEAR: f64 = 1.7;
+
+/// Number of home orientations that are tried.
+const HOMES: usize = 4;
+
+/// Number of better home orientations in which bars are sized again, if they are to be exact.
+const EXACT_HOMES: usize = 12;
+
+/// Largest number of times that poses are added and the bars sized again.
+const REPEATS: usize = 5;
+
+impl<L: Leg> Sizer<'_, L> {
+    /// Returns the design with the lightest bars for the region that the study prescribes.
+    pub(super) fn sized_prescribed(mut self, grid_choice: GridChoice) -> Option<Design> {
+        let model = self.model;
+        let spec = &model.workspace;
+        let grid = *model.sampling(grid_choice).grid();
+        let step = self.design.base_radius / grid.ray_steps() as f64;
+        let symmetric = self.sectors == 1 && matches!(spec.region, crate::workspace::Region::Disc(_));
+        let samples = spec
+            .region
+            .positions(DVec2::ZERO, &grid, step, &directions(&grid, symmetric));
+        self.shape = Shape::Sampled;
+        let all: Vec<usize> = (0..self.arms.len()).collect();
+        let signs = self.feasible_signs(&samples.all[..samples.first], &all);
+        let candidates = self.windows(&signs);
+        if candidates.is_empty() {
+            return None;
+        }
+        let homes = self.stiffest_homes(&signs, &samples, &candidates);
+        let mut sized = homes.into_iter().take(HOMES).find_map(|home| {
+            let sized = self.sized_at(home, &samples)?;
+            Some((home, sized))
+        })?;
+        // With thinner bars another home orientation may be better, in which still lighter bars carry.
+        for _ in 0..if self.ranges.is_exact { EXACT_HOMES } else { 0 } {
+            let (best, _) = self.best_home(&sized.1, grid_choice);
+            let lighter = Some(best).filter(|best| *best != sized.0).and_then(|home| {
+                let design = self.sized_at(home, &samples)?;
+                (model.mass(&design) < model.mass(&sized.1)).then_some((home, design))
+            });
+            match lighter {
+                Some(lighter) => sized = lighter,
+                None => break,
+            }
+        }
+        Some(self.lighter_listed(sized.1, grid_choice))
+    }
+
+    /// Returns the lightest pair of two lists that is feasible in any home orientation: `design`, or a lighter one that the home
+    /// orientations examined so far do not show.
+    fn lighter_listed(&self, design: Design, grid: GridChoice) -> Design {
+        let (model, [Some(legs), Some(platform)]) = (self.model, &self.ranges.listed) else {
+            return design;
+        };
+        if !self.ranges.is_exact {
+            return design;
+        }
+        let pairs = legs.iter().flat_map(|&leg| platform.iter().map(move |&bar| [leg, bar]));
+        let mut lighter: Vec<(f64, Design)> = pairs
+            .map(|bars| self.with_bars(bars))
+            .map(|pair| (model.mass(&pair), pair))
+            .filter(|(mass, _)| *mass < model.mass(&design))
+            .collect();
+        lighter.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let carries = |pair: &Design| self.best_home(pair, grid).1 >= 0.0;
+        lighter
+            .into_iter()
+            .map(|(_, pair)| pair)
+            .find(carries)
+            .unwrap_or(design)
+    }
+
+    /// Returns the home orientation of a design, which may differ from that in which its bars were sized, and its worst margin.
+    fn best_home(&self, design: &Design, grid: GridChoice) -> (usize, f64) {
+        let sampling = self.model.sampling(grid);
+        let checker = self.model.checker::<L>(design);
+        let (found, margin) = search_prescribed(&checker, sampling, design.base_radius, self.sectors == 1);
+        (found.home.unwrap_or(0), margin)
+    }
+
+    /// Sizes the bars for one home orientation.
+    fn sized_at(&mut self, home: usize, samples: &RegionPositions) -> Option<Design> {
+        let window: Vec<usize> = self.orientation_grid.window(home).collect();
+        self.set_bars([self.ranges.leg[1], self.ranges.platform[1]]);
+        let signs = self.feasible_signs(&samples.all, &window);
+        let first = signs[window[0]]?;
+        if window.iter().any(|&k| signs[k] != Some(first)) {
+            return None;
+        }
+        self.lay_positions(&samples.all, &window);
+        let own = [self.design.leg_bar_radius, self.design.platform_bar_radius];
+        let mut near = near_weakest(&self.ratios_at_all(own), NEAR);
+        let everything = std::mem::take(&mut self.laid);
+        for _ in 0..REPEATS {
+            self.laid = everything.chosen(&near);
+            let accuracy = if self.ranges.is_exact {
+                SizingAccuracy::EXACT
+            } else {
+                SizingAccuracy::COARSE
+            };
+            let bars = self.lightest_bars(accuracy)?;
+            self.laid = everything.chosen(&(0..everything.count).collect::<Vec<_>>());
+            let missed = below_one(&self.ratios_at_all(bars));
+            if missed.is_empty() {
+                return Some(self.with_bars(bars));
+            }
+            near.extend(missed);
+            near.sort_unstable();
+            near.dedup();
+        }
+        None
+    }
+
+    /// Returns the sign of `det A` over the positions for each orientation; `None` if the orientation is not among the given
+    /// ones or any pose is infeasible.
+    fn feasible_signs(&mut self, positions: &[DVec2], orientations: &[usize]) -> Vec<Option<f64>> {
+        self.lay_positions(positions, orientations);
+        self.signs_of_laid(positions.len(), orientations)
+    }
+
+    /// Returns the home orientations whose window has one sign, the one that is stiffest on the boundary first.
+    fn stiffest_homes(
+        &mut self,
+        signs: &[Option<f64>],
+        samples: &RegionPositions,
+        orientations: &[usize],
+    ) -> Vec<usize> {
+        let mut homes = self.homes(signs);
+        let first = samples.first;
+        self.lay_positions(&samples.all[..first], orientations);
+        let ratios = self.ratios_at_all([self.design.leg_bar_radius, self.design.platform_bar_radius]);
+        let mut weakest = vec![f64::INFINITY; self.arms.len()];
+        for (&orientation, start) in orientations.iter().zip((0..).step_by(first)) {
+            for column in ratios.iter().filter(|column| !column.is_empty()) {
+                for ratio in &column[start..start + first] {
+                    weakest[orientation] = weakest[orientation].min(*ratio);
+                }
+            }
+        }
+        let grid = self.orientation_grid;
+        let of_window = |home: usize| grid.window(home).fold(f64::INFINITY, |least, k| least.min(weakest[k]));
+        homes.sort_by(|&a, &b| of_window(b).total_cmp(&of_window(a)).then(a.cmp(&b)));
+        homes
+    }
+}
+
+/// Returns the poses whose ratio is near the smallest of its kind.
+fn near_weakest(ratios: &Ratios, near: f64) -> Vec<usize> {
+    let mut poses = Vec::new();
+    for column in ratios {
+        let least = column.iter().copied().fold(f64::INFINITY, f64::min);
+        poses.extend((0..column.len()).filter(|&pose| column[pose] <= near * least));
+    }
+    poses.sort_unstable();
+    poses.dedup();
+    poses
+}
+
+/// Returns the poses at which some stiffness is not sufficient.
+fn below_one(ratios: &Ratios) -> Vec<usize> {
+    let below = |column: &Vec<f64>| {
+        let column = column.clone();
+        (0..column.len()).filter(move |&pose| column[pose] < 1.0)
+    };
+    ratios.iter().flat_map(below).collect()
+}

@@ -1,0 +1,293 @@
+//! Quantities of designs, each against a direct computation from joints, matrices and poses, one pose at a time.
+
+use kinefront_model::evaluation::{
+    Bound, Constraint, Evaluation, GridChoice, Model, Quantity, QuantityLimit, QuantitySet, Scope,
+};
+use kinefront_model::mechanism::{Actuator, Architecture, Design, MemberKind};
+use kinefront_model::spatial::{Pose, unit};
+use kinefront_model::workspace::Region;
+use nalgebra::Matrix2;
+
+use super::strategies;
+
+const DESIGNS: [&str; 4] = [
+    "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
+    "3-RPR R=1.5636 r=0.4006 Lb=2.2135 rj=0.027 rp=0.031",
+    "3-RRR R=1.2 r=0.5 Lb=1.0 rj=0.04 rp=0.05",
+    "3-RRR R=1.2 r=0.5 Lb=1.0 rj=0.04 rp=0.05 mode=++-",
+];
+
+fn model() -> Model {
+    strategies::model(|settings| settings.quantities = QuantitySet::all())
+}
+
+/// The poses over which quantities are taken: 24 rings at most, in the directions and orientations of the reference grid.
+fn poses(evaluation: &Evaluation) -> Vec<Pose> {
+    let (radius, home) = (evaluation.workspace_radius, evaluation.home_phi_deg.expect("a home"));
+    let rings = (50.0 * radius / evaluation.design.base_radius).ceil().clamp(1.0, 24.0) as u32;
+    let mut poses = Vec::new();
+    for k in -4..=4 {
+        let phi = (home + 2.5 * f64::from(k)).to_radians();
+        poses.push(Pose::new(0.0, 0.0, phi));
+        for direction in 0..36 {
+            let way = unit((10.0 * f64::from(direction)).to_radians());
+            for ring in 1..=rings {
+                let position = way * (radius * f64::from(ring) / f64::from(rings));
+                poses.push(Pose::new(position.x, position.y, phi));
+            }
+        }
+    }
+    poses
+}
+
+/// Compares a quantity of all designs with a direct computation.
+fn check(quantity: Quantity, tolerance: f64, direct: impl Fn(&Model, &Evaluation) -> f64) {
+    let model = model();
+    for text in DESIGNS {
+        let design: Design = text.parse().expect("a design");
+        let evaluation = model.evaluate(&design, GridChoice::Reference);
+        let (found, wanted) = (
+            evaluation.quantities.get(quantity).expect("a value"),
+            direct(&model, &evaluation),
+        );
+        assert!(
+            (found - wanted).abs() <= tolerance * wanted.abs().max(1e-9),
+            "{text}: {} is {found} instead of {wanted}",
+            quantity.entry().key
+        );
+    }
+}
+
+fn least(model: &Model, evaluation: &Evaluation, value: impl Fn(&Model, &Design, &Pose) -> f64) -> f64 {
+    let values = poses(evaluation)
+        .into_iter()
+        .map(|pose| value(model, &evaluation.design, &pose));
+    values.fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn masses_and_height_follow_from_the_bars() {
+    let mass = |design: &Design, radius: f64, length: f64, count: f64| {
+        let _ = design;
+        count * 7850.0 * std::f64::consts::PI * radius * radius * length
+    };
+    let legs = |design: &Design| {
+        let count = 3.0
+            * if design.architecture == Architecture::ALL[2] {
+                2.0
+            } else {
+                1.0
+            };
+        mass(design, design.leg_bar_radius, design.link_length, count)
+    };
+    let platform = |design: &Design| mass(design, design.platform_bar_radius, design.platform_radius, 3.0);
+    check(Quantity::LegsMass, 1e-12, |_, found| legs(&found.design));
+    check(Quantity::PlatformMass, 1e-12, |_, found| platform(&found.design));
+    check(Quantity::Mass, 1e-12, |_, found| {
+        legs(&found.design) + platform(&found.design)
+    });
+    check(Quantity::Height, 1e-12, |model, found| {
+        let home = found.home.expect("a home");
+        let members = model.members(&found.design, &home).expect("reachable");
+        let top = members
+            .iter()
+            .map(|member| member.from.z + member.radius)
+            .fold(f64::MIN, f64::max);
+        let bottom = members
+            .iter()
+            .map(|member| member.from.z - member.radius)
+            .fold(f64::MAX, f64::min);
+        top - bottom
+    });
+}
+
+#[test]
+fn least_values_are_those_of_single_poses() {
+    let at = |value: fn(&kinefront_model::evaluation::PoseEvaluation) -> f64| {
+        move |model: &Model, evaluation: &Evaluation| {
+            least(model, evaluation, |model, design, pose| {
+                value(&model.pose(design, pose).expect("reachable"))
+            })
+        }
+    };
+    check(Quantity::Dexterity, 1e-9, at(|found| found.inverse_condition));
+    check(Quantity::StiffnessXy, 1e-9, at(|found| found.stiffness_values.k_xy));
+    check(Quantity::StiffnessZ, 1e-9, at(|found| found.stiffness_values.k_z));
+    check(
+        Quantity::StiffnessPhiZ,
+        1e-9,
+        at(|found| found.stiffness_values.k_phi_z),
+    );
+    check(Quantity::Clearance, 1e-9, at(|found| found.clearance.distance));
+    check(Quantity::Reach, 1e-6, at(|found| found.limit_margin));
+    check(Quantity::Determinant, 1e-9, at(|found| found.determinant.abs()));
+    check(Quantity::WorkspaceRadius, 0.0, |_, found| found.workspace_radius);
+}
+
+/// The displacement under a force in the most compliant direction, from the inverse of the whole stiffness matrix.
+#[test]
+fn the_displacement_is_that_of_the_inverse_stiffness() {
+    check(Quantity::DisplacementMax, 1e-8, |model, evaluation| {
+        let of_pose = |model: &Model, design: &Design, pose: &Pose| {
+            let stiffness = model.pose(design, pose).expect("reachable").stiffness;
+            let compliance = stiffness.try_inverse().expect("regular");
+            let block: Matrix2<f64> = compliance.fixed_view::<2, 2>(0, 0).into_owned();
+            -100.0 * block.symmetric_eigenvalues().max()
+        };
+        -least(model, evaluation, of_pose)
+    });
+}
+
+/// The transmission of a leg, from the joints: the component along the last link of the way that the driven point takes.
+#[test]
+fn the_transmission_is_that_of_the_joints() {
+    check(Quantity::TransmissionMin, 1e-9, |model, evaluation| {
+        least(model, evaluation, |model, design, pose| {
+            let found = model.pose(design, pose).expect("reachable");
+            let anchor = |leg: usize| {
+                let angle = [210f64, 330.0, 90.0][leg % 3].to_radians();
+                [design.base_radius * angle.cos(), design.base_radius * angle.sin()]
+            };
+            (0..3)
+                .map(|leg| {
+                    let (a, b, c) = (anchor(leg), found.b[leg], found.c[leg]);
+                    let [link, crank] = [[c, b], [b, a]].map(|[to, from]| [to[0] - from[0], to[1] - from[1]]);
+                    let unit = |[x, y]: [f64; 2]| [x / x.hypot(y), y / x.hypot(y)];
+                    let u = unit(link);
+                    let next = anchor(leg + 1);
+                    let way = match (
+                        design.architecture.actuator(),
+                        design.architecture == Architecture::ALL[0],
+                    ) {
+                        (Actuator::Revolute, _) => {
+                            let [x, y] = unit(crank);
+                            [-y, x]
+                        }
+                        (_, true) => unit([next[0] - a[0], next[1] - a[1]]),
+                        _ => u,
+                    };
+                    (u[0] * way[0] + u[1] * way[1]).abs()
+                })
+                .fold(f64::INFINITY, f64::min)
+        })
+    });
+}
+
+#[test]
+fn the_footprint_holds_the_base_and_all_members() {
+    check(Quantity::Footprint, 1e-9, |model, evaluation| {
+        let farthest = poses(evaluation).into_iter().flat_map(|pose| {
+            let members = model.members(&evaluation.design, &pose).expect("reachable");
+            members.into_iter().map(|member| {
+                // The capsule of a slider ends in half spheres within the block.
+                let axis_end = |end: glam::DVec3, other: glam::DVec3| match member.member.kind {
+                    MemberKind::Slider => end + (other - end).normalize() * member.radius,
+                    _ => end,
+                };
+                let ends = [axis_end(member.from, member.to), axis_end(member.to, member.from)];
+                ends.map(|end| end.truncate().length()).into_iter().fold(0.0, f64::max) + member.radius
+            })
+        });
+        farthest.fold(evaluation.design.base_radius, f64::max)
+    });
+}
+
+/// The mean dexterity over a disc, by a fine quadrature in polar coordinates, pose by pose.
+#[test]
+fn the_mean_dexterity_is_the_integral_over_the_region() {
+    check(Quantity::DexterityMean, 2e-3, |model, evaluation| {
+        let (design, radius) = (&evaluation.design, evaluation.workspace_radius);
+        let home = evaluation.home_phi_deg.expect("a home");
+        let (rings, directions, turns) = (40, 72, 16);
+        let (mut sum, mut total) = (0.0, 0.0);
+        for turn in 0..turns {
+            let phi = home - 10.0 + 20.0 * (f64::from(turn) + 0.5) / f64::from(turns);
+            for ring in 0..rings {
+                let distance = radius * (f64::from(ring) + 0.5) / f64::from(rings);
+                for direction in 0..directions {
+                    let at = unit((360.0 * f64::from(direction) / f64::from(directions)).to_radians()) * distance;
+                    let found = model.pose(design, &Pose::new(at.x, at.y, phi.to_radians()));
+                    sum += distance * found.expect("reachable").inverse_condition;
+                    total += distance;
+                }
+            }
+        }
+        sum / total
+    });
+}
+
+/// Quantities that are not asked for cost nothing and have no value; asking changes nothing else.
+#[test]
+fn asking_for_quantities_changes_no_other_value() {
+    for text in DESIGNS {
+        let design: Design = text.parse().expect("a design");
+        let asked = model().evaluate(&design, GridChoice::Reference);
+        let plain = Model::default().evaluate(&design, GridChoice::Reference);
+        for quantity in Quantity::all() {
+            let (a, b) = (asked.quantities.get(quantity), plain.quantities.get(quantity));
+            assert!(a.is_some(), "{}", quantity.entry().key);
+            assert_eq!(b.is_some(), quantity.is_always_known());
+            assert!(b.is_none() || a == b);
+        }
+        let quantities = plain.quantities;
+        assert_eq!(Evaluation { quantities, ..asked }, plain);
+    }
+}
+
+/// A limit of a pose bounds the largest disc: beyond it the value is missed, within it the value is kept.
+#[test]
+fn limits_of_poses_bound_the_workspace() {
+    let design: Design = DESIGNS[0].parse().expect("a design");
+    let free = model().evaluate(&design, GridChoice::Reference);
+    let bounded = |change: fn(&mut kinefront_model::evaluation::ModelSettings)| {
+        strategies::model(|settings| {
+            settings.quantities = QuantitySet::all();
+            change(settings);
+        })
+        .evaluate(&design, GridChoice::Reference)
+    };
+    let stiff = bounded(|settings| settings.thresholds.further.displacement = Some(6e-5));
+    assert!(stiff.quantities.get(Quantity::DisplacementMax).expect("a value") <= 6e-5);
+    assert!(stiff.workspace_radius > 0.0 && stiff.workspace_radius < free.workspace_radius);
+    let driven = bounded(|settings| settings.thresholds.further.transmission = Some(0.5));
+    assert!(driven.quantities.get(Quantity::TransmissionMin).expect("a value") >= 0.5);
+    assert!(driven.workspace_radius > 0.0 && driven.workspace_radius < free.workspace_radius);
+    let inside = bounded(|settings| settings.thresholds.further.limit_margin = Some(0.3));
+    assert!(inside.constraint(Constraint::Reach).value.expect("a value") >= 0.3);
+    // The same limits of a prescribed disc.
+    let radius = driven.workspace_radius;
+    for (share, holds) in [(0.999, true), (1.001, false)] {
+        let model = strategies::model(|settings| {
+            settings.thresholds.further.transmission = Some(0.5);
+            settings.workspace.region = Region::Disc(share * radius);
+        });
+        assert_eq!(
+            model.evaluate(&design, GridChoice::Reference).is_feasible(),
+            holds,
+            "{share}"
+        );
+    }
+}
+
+#[test]
+fn limits_of_designs_make_them_infeasible_by_their_relative_shortfall() {
+    let design: Design = DESIGNS[0].parse().expect("a design");
+    let with = |quantity, bound| {
+        strategies::model(|settings| {
+            settings.quantities = QuantitySet::all();
+            settings.limits = vec![QuantityLimit { quantity, bound }];
+        })
+        .evaluate(&design, GridChoice::Reference)
+    };
+    let mass = Model::default().mass(&design);
+    assert!(with(Quantity::Mass, Bound::AtMost(mass)).is_feasible());
+    let heavy = with(Quantity::Mass, Bound::AtMost(0.8 * mass));
+    assert!((heavy.violation - 0.25).abs() < 1e-12 && heavy.workspace_radius > 0.0);
+    let wide = with(Quantity::Footprint, Bound::AtMost(1.0));
+    let footprint = wide.quantities.get(Quantity::Footprint).expect("a value");
+    assert!((wide.violation - (footprint - 1.0)).abs() < 1e-12);
+    assert!(with(Quantity::DexterityMean, Bound::AtLeast(0.1)).is_feasible());
+    for entry in Quantity::all().map(Quantity::entry) {
+        assert!(entry.scope != Scope::Design || entry.constraint.is_none());
+    }
+}

@@ -1,0 +1,273 @@
+//! Prescribed regions: against the largest disc, against every pose one by one, and the bars that are sized for them.
+
+use glam::DVec2;
+use kinefront_model::evaluation::{BarRanges, Constraint, GridChoice, Model, WorkspaceTarget};
+use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
+use kinefront_model::spatial::{Pose, unit};
+use kinefront_model::workspace::{Polygon, PolygonError, Region};
+use proptest::prelude::*;
+use rayon::prelude::*;
+
+use super::strategies::{self, applicable_cases};
+
+fn prescribed(region: Region) -> Model {
+    strategies::model(|settings| settings.workspace.region = region)
+}
+
+fn rectangle(width: f64, height: f64) -> Region {
+    Region::Polygon(Polygon::rectangle(width, height).expect("a rectangle"))
+}
+
+/// Designs with a workspace, spread over the design space.
+fn designs(count: usize) -> Vec<(Design, f64)> {
+    let model = Model::default();
+    let mut found = Vec::new();
+    for k in 0.. {
+        // A Weyl sequence over the five dimensions.
+        let fraction = |prime: f64| (f64::from(k) * prime.sqrt()).fract();
+        let values = [
+            0.6 + 3.0 * fraction(2.0),
+            0.1 + 1.4 * fraction(3.0),
+            0.5 + 3.0 * fraction(5.0),
+            0.01 + 0.09 * fraction(7.0),
+            0.01 + 0.09 * fraction(11.0),
+        ];
+        let architecture = Architecture::ALL[k as usize % 3];
+        let mode = WorkingMode::new([true, k % 4 != 1, true]);
+        let design = Design::new(architecture, mode, values).expect("a design");
+        let radius = model.evaluate(&design, GridChoice::Reference).workspace_radius;
+        if radius > 0.0 {
+            found.push((design, radius));
+        }
+        if found.len() == count {
+            return found;
+        }
+    }
+    unreachable!("the loop returns")
+}
+
+#[test]
+fn the_disc_of_the_workspace_radius_is_feasible_and_a_larger_one_is_not() {
+    let designs = designs(300);
+    let results: Vec<(bool, bool, String)> = designs
+        .par_iter()
+        .map(|(design, radius)| {
+            let feasible = |share: f64| {
+                let model = prescribed(Region::Disc(share * radius));
+                model.evaluate(design, GridChoice::Reference).is_feasible()
+            };
+            (feasible(0.9999), feasible(1.0001), design.to_string())
+        })
+        .collect();
+    for (inside, beyond, design) in results {
+        assert!(inside && !beyond, "{design}: {inside}, {beyond}");
+    }
+}
+
+/// Every pose of the region that an evaluation calls feasible holds every constraint; the reports are their least values.
+fn examine(model: &Model, design: &Design, positions: &[DVec2]) {
+    let found = model.evaluate(design, GridChoice::Reference);
+    let home = found.home_phi_deg.expect("a home");
+    assert_eq!(found.violation, 0.0);
+    for phi_deg in (-4..=4).map(|k| home + 2.5 * f64::from(k)) {
+        for &position in positions {
+            let pose = Pose {
+                position,
+                phi: phi_deg.to_radians(),
+            };
+            for report in &found.constraints {
+                let margin = model.margin_at(design, &pose, report.constraint);
+                assert!(
+                    margin >= report.margin - 1e-6 * report.margin.abs() - 1e-9,
+                    "{design}: {:?} {margin} below {} at {pose:?}",
+                    report.constraint,
+                    report.margin
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn reports_over_a_rectangle_are_the_least_of_its_poses() {
+    let model = prescribed(rectangle(0.6, 0.4));
+    let corners = [[-0.3, -0.2], [0.3, -0.2], [0.3, 0.2], [-0.3, 0.2]].map(DVec2::from_array);
+    for text in [
+        "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03",
+        "3-RRR R=1.2 r=0.4 Lb=1.1 rj=0.05 rp=0.05",
+    ] {
+        examine(&model, &text.parse().expect("a design"), &corners);
+    }
+}
+
+#[test]
+fn the_home_is_the_orientation_with_the_best_worst_margin() {
+    let design: Design = "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03".parse().expect("a design");
+    let free = prescribed(rectangle(0.5, 0.3));
+    let found = free.evaluate(&design, GridChoice::Reference);
+    let worst = |evaluation: &kinefront_model::evaluation::Evaluation| {
+        evaluation
+            .constraints
+            .iter()
+            .filter(|report| report.required && report.constraint != Constraint::Assembly)
+            .map(|report| report.margin)
+            .fold(f64::INFINITY, f64::min)
+    };
+    let best = worst(&found);
+    for k in 0..144 {
+        let fixed = strategies::model(|settings| {
+            settings.workspace.region = rectangle(0.5, 0.3);
+            settings.workspace.home_phi_deg = Some(2.5 * f64::from(k));
+        });
+        let other = worst(&fixed.evaluate(&design, GridChoice::Reference));
+        assert!(other <= best + 1e-12, "{}°: {other} > {best}", 2.5 * f64::from(k));
+        if 2.5 * f64::from(k) == found.home_phi_deg.expect("a home") {
+            assert!((other - best).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_polygon_may_lie_beside_the_centre() {
+    let corners = [[0.1, 0.1], [0.4, 0.1], [0.25, 0.3]].map(DVec2::from_array);
+    let polygon = Polygon::new(corners.to_vec()).expect("a triangle");
+    assert_eq!(polygon.inscribed_radius(), 0.0);
+    let model = prescribed(Region::Polygon(polygon));
+    let design: Design = "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03".parse().expect("a design");
+    examine(&model, &design, &corners);
+}
+
+#[test]
+fn a_region_out_of_reach_is_infeasible_by_more_than_one_that_is_too_soft() {
+    let design: Design = "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.006 rp=0.006".parse().expect("a design");
+    let violation = |region: Region| prescribed(region).evaluate(&design, GridChoice::Reference).violation;
+    let (near, far) = (violation(Region::Disc(0.2)), violation(Region::Disc(5.0)));
+    assert!(near > 0.0 && near < 1.0 && far > 1.0, "{near}, {far}");
+    assert!(violation(Region::Disc(6.0)) >= far);
+}
+
+#[test]
+fn corners_that_are_no_polygon_are_refused() {
+    let polygon = |corners: &[[f64; 2]]| Polygon::new(corners.iter().copied().map(DVec2::from_array).collect());
+    assert_eq!(polygon(&[[0.0, 0.0], [1.0, 0.0]]), Err(PolygonError::TooFew(2)));
+    assert_eq!(
+        polygon(&[[0.0, 0.0], [1.0, f64::NAN], [1.0, 1.0]]),
+        Err(PolygonError::NotFinite(2))
+    );
+    let bow = polygon(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]);
+    assert_eq!(bow, Err(PolygonError::Crossing(1, 3)));
+    assert!(polygon(&[[0.0, 0.0], [1.0, 0.0], [0.5, 0.0]]).is_err());
+    assert!(Polygon::rectangle(0.0, 1.0).is_err());
+    let concave = polygon(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.5], [0.0, 2.0]]).expect("a polygon");
+    assert!(concave.contains(DVec2::new(1.0, 0.4)) && !concave.contains(DVec2::new(1.0, 0.6)));
+}
+
+const RANGES: BarRanges = BarRanges {
+    leg: [0.0, 0.1],
+    platform: [0.0, 0.1],
+    listed: [None, None],
+    is_exact: true,
+};
+
+#[test]
+fn bars_for_a_region_hold_on_its_grid_and_not_with_less() {
+    let model = prescribed(rectangle(0.5, 0.3));
+    for text in [
+        "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03",
+        "3-RRR R=1.2 r=0.4 Lb=1.1 rj=0.05 rp=0.05",
+        "3-RPR R=1.4 r=0.3 Lb=1.9 rj=0.03 rp=0.03",
+    ] {
+        let design: Design = text.parse().expect("a design");
+        let target = WorkspaceTarget::Prescribed(GridChoice::Reference);
+        let sized = model.sized(&design, &RANGES, target).expect("bars");
+        let found = model.evaluate(&sized, GridChoice::Reference);
+        assert!(found.is_feasible(), "{sized}: {}", found.violation);
+        let thinner = |leg: f64, platform: f64| {
+            let [base, radius, link, rj, rp] = sized.values();
+            let values = [base, radius, link, rj * leg, rp * platform];
+            Design::new(sized.architecture, sized.working_mode, values).expect("a design")
+        };
+        let less = thinner(1.0 - 1e-7, 1.0 - 1e-7);
+        assert!(!model.evaluate(&less, GridChoice::Reference).is_feasible(), "{sized}");
+        // No pair of radii about it is lighter and holds.
+        for k in 1..=40 {
+            let leg = 1.0 + 0.01 * f64::from(k - 20);
+            let mass_left = found.mass * (1.0 - 1e-6) - model.legs_mass(&thinner(leg, 1.0));
+            let share = mass_left / model.platform_mass(&sized);
+            if share > 0.0 {
+                let other = thinner(leg, share.sqrt());
+                let evaluation = model.evaluate(&other, GridChoice::Reference);
+                assert!(!evaluation.is_feasible(), "{other} is lighter than {sized}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_lightest_pair_of_two_lists_is_the_one_found_by_trying_all() {
+    let model = prescribed(Region::Disc(0.25));
+    let radii: Vec<f64> = (1..=8).map(|k| 0.006 * f64::from(k)).collect();
+    let ranges = BarRanges {
+        leg: [radii[0], radii[7]],
+        platform: [radii[0], radii[7]],
+        listed: [Some(radii.clone()), Some(radii.clone())],
+        is_exact: true,
+    };
+    for text in [
+        "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03",
+        "3-RRR R=1.2 r=0.4 Lb=1.1 rj=0.05 rp=0.05",
+    ] {
+        let design: Design = text.parse().expect("a design");
+        let target = WorkspaceTarget::Prescribed(GridChoice::Reference);
+        let sized = model.sized(&design, &ranges, target).expect("bars");
+        let [base, platform, link, ..] = design.values();
+        let mut lightest = f64::INFINITY;
+        for &leg in &radii {
+            for &bar in &radii {
+                let pair = Design::new(
+                    design.architecture,
+                    design.working_mode,
+                    [base, platform, link, leg, bar],
+                );
+                let found = model.evaluate(&pair.expect("a design"), GridChoice::Reference);
+                if found.is_feasible() {
+                    lightest = lightest.min(found.mass);
+                }
+            }
+        }
+        assert_eq!(model.mass(&sized), lightest, "{sized}");
+    }
+}
+
+proptest! {
+    #![proptest_config(applicable_cases(60))]
+
+    /// A prescribed region that holds has a worst margin of at least 0, and one that does not has a pose that shows it.
+    #[test]
+    fn feasibility_is_that_of_the_worst_pose(design in strategies::design(0.005), width in 0.1..0.8, height in 0.1..0.8) {
+        let model = prescribed(rectangle(width, height));
+        let found = model.evaluate(&design, GridChoice::Reference);
+        let worst = found.constraints.iter().filter(|report| report.required).map(|report| report.margin);
+        let worst = worst.fold(f64::INFINITY, f64::min);
+        prop_assert_eq!(found.is_feasible(), worst >= 0.0 && found.violation == 0.0);
+        prop_assert_eq!(found.home.is_some(), found.is_feasible());
+        if !found.is_feasible() {
+            prop_assert!(worst < 0.0 || found.constraint(Constraint::DeterminantSign).margin <= 0.0, "{found:?}");
+        }
+    }
+}
+
+#[test]
+fn directions_of_the_unit_circle_are_used_for_discs() {
+    // A disc about a centre off O has no threefold symmetry; all its poses are examined.
+    let centre = DVec2::new(0.1, -0.05);
+    let model = strategies::model(|settings| {
+        settings.workspace.region = Region::Disc(0.15);
+        settings.workspace.centre = centre;
+    });
+    let design: Design = "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03".parse().expect("a design");
+    let rim: Vec<DVec2> = (0..36)
+        .map(|k| centre + unit(f64::from(k) * 10f64.to_radians()) * 0.15)
+        .collect();
+    examine(&model, &design, &rim);
+}
