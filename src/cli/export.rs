@@ -131,7 +131,7 @@ pub fn run(arguments: &ExportArguments) -> Result<Ending, Failure> {
 
 fn design(arguments: &ExportArguments, format: Format) -> Result<Vec<u8>, Failure> {
     let (study, design, _) = arguments.subject.read().map_err(Failure::Input)?;
-    let model = study.model().map_err(Failure::runtime)?;
+    let model = study.model().map_err(Failure::runtime)?.with_all_quantities();
     let evaluation = model.evaluate(&design, GridChoice::Fine);
     let subject = ExportSubject {
         study: &study,

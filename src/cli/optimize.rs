@@ -286,14 +286,14 @@ fn tell(
             )?;
             return Ok(());
         }
-        writeln!(out, "{}", tables::front(summary))?;
+        writeln!(out, "{}", tables::front(study, summary))?;
         if let Some(proofs) = &summary.proofs {
             writeln!(out, "{proofs}")?;
         }
         writeln!(
             out,
             "{} evaluations ({} feasible) in {:.1} s{}, verified in {:.1} s; front: {} of {} verified designs kept, \
-             {} dropped by verification; hypervolume {:.1} kg m",
+             {} dropped by verification; hypervolume {:.1}{}",
             last.map_or(0, |last| last.evaluations),
             last.map_or(0, |last| last.feasible),
             summary.times.search_s,
@@ -307,6 +307,8 @@ fn tell(
             summary.verified,
             summary.dropped,
             summary.verified_hypervolume,
+            // Other objectives have other units.
+            if study.asks_as_the_paper() { " kg m" } else { "" },
         )?;
         if is_written {
             writeln!(out, "wrote {}", path.display())?;

@@ -3,15 +3,17 @@
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{CellAlignment, Table};
 use kinefront::export::CertificateJson;
-use kinefront::study::{FrontMember, RunSummary};
+use kinefront::study::{FrontMember, RunSummary, Study};
 use kinefront::text::{self, number};
 use kinefront_model::evaluation::{Bound, Evaluation, Model, PoseEvaluation, Quantity, Unreachable};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 
-fn table<const N: usize>(header: [&str; N], right: &[usize]) -> Table {
+fn table(header: impl IntoIterator<Item = impl Into<comfy_table::Cell>>, right: &[usize]) -> Table {
     let mut table = Table::new();
-    table.load_style(UTF8_FULL_CONDENSED).set_header(header);
+    table
+        .load_style(UTF8_FULL_CONDENSED)
+        .set_header(header.into_iter().map(Into::into).collect::<Vec<comfy_table::Cell>>());
     for &column in right {
         if let Some(column) = table.column_mut(column) {
             column.set_cell_alignment(CellAlignment::Right);
@@ -171,37 +173,37 @@ pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseEvaluation, Unrea
 }
 
 /// Formats the verified front of a run, thinned to the number of rows that fit a screen.
-pub fn front(summary: &RunSummary) -> String {
+pub fn front(study: &Study, summary: &RunSummary) -> String {
     const MOST_ROWS: usize = 20;
-    let mut table = table(
-        [
-            "#",
-            "architecture",
-            "mass kg",
-            "R_w m",
-            "φ_c °",
-            "R",
-            "r",
-            "Lb",
-            "rj",
-            "rp",
-            "clear. mm",
-            "active",
-            "",
-        ],
-        &[0, 2, 3, 4, 5, 6, 7, 8, 9, 10],
-    );
+    // Mass and workspace radius have columns in any case.
+    let others: Vec<Quantity> = study
+        .objectives()
+        .into_iter()
+        .map(|objective| objective.quantity)
+        .filter(|quantity| !matches!(quantity, Quantity::Mass | Quantity::WorkspaceRadius))
+        .collect();
+    let titles = others.iter().map(|quantity| quantity.entry());
+    let titles = titles.map(|entry| format!("{} {}", entry.label, entry.unit).trim().to_owned());
+    let headings = ["#", "architecture", "mass kg", "R_w m"].map(str::to_owned).into_iter();
+    let headings = headings.chain(titles);
+    let rest = ["φ_c °", "R", "r", "Lb", "rj", "rp", "clear. mm", "active", ""].map(str::to_owned);
+    let numbers: Vec<usize> = std::iter::once(0).chain(2..11 + others.len()).collect();
+    let mut table = table(headings.chain(rest), &numbers);
     let count = summary.front.len();
     let rows = count.min(MOST_ROWS);
-    let marks = summary.marks();
+    let marks = summary.marks(study);
     for (place, FrontMember { id, evaluation, .. }) in summary.spread(MOST_ROWS) {
         let mut row = vec![
             id.to_string(),
             evaluation.design.architecture.to_string(),
             format!("{:.2}", evaluation.mass),
             format!("{:.4}", evaluation.workspace_radius),
-            evaluation.home_phi_deg.map(|phi| phi.to_string()).unwrap_or_default(),
         ];
+        row.extend(others.iter().map(|&quantity| {
+            let value = evaluation.quantities.get(quantity);
+            value.map(text::number).unwrap_or_default()
+        }));
+        row.push(evaluation.home_phi_deg.map(|phi| phi.to_string()).unwrap_or_default());
         row.extend(evaluation.design.values().iter().enumerate().map(|(index, value)| {
             let digits = if index < 3 { 3 } else { 4 };
             format!("{value:.digits$}")
@@ -214,7 +216,7 @@ pub fn front(summary: &RunSummary) -> String {
         );
         let active: Vec<&str> = evaluation.active().map(|constraint| constraint.id()).collect();
         row.push(active.join(" "));
-        row.push(marks[place].to_owned());
+        row.push(marks[place].clone());
         table.add_row(row);
     }
     let left_out = if rows < count {

@@ -186,9 +186,7 @@ fn replace_values(text: &str, before: &Table, after: &Table) -> Option<String> {
     let mut document: DocumentMut = text.parse().ok()?;
     for setting in settings() {
         let value = setting.value(after);
-        // The region is a section of its own, whose settings follow.
-        let is_section = setting.path() == "workspace.region";
-        if is_section || setting.value(before) == value {
+        if setting.value(before) == value {
             continue;
         }
         let mut table = document.as_table_mut() as &mut dyn TableLike;

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
 
+use kinefront_model::evaluation::Quantity;
+
 use super::{FrontMember, FrontProofs, Row, Study, TableRow};
 use kinefront_optimize::{Objectives, knee, spread};
 
@@ -162,17 +164,24 @@ impl RunSummary {
         knee(&self.objectives())
     }
 
-    /// Returns the mark of each member of the front: `lightest`, `knee`, `largest`, or empty for all others.
-    pub fn marks(&self) -> Vec<&'static str> {
-        let mut marks = vec![""; self.front.len()];
-        if let Some(last) = marks.last_mut() {
-            *last = "largest";
+    /// Returns the mark of each member of the front: `lightest`, `knee`, `largest`, or empty for all others; the best design in
+    /// another objective has the mark `best_` with its key.
+    pub fn marks(&self, study: &Study) -> Vec<String> {
+        let mut marks = vec![String::new(); self.front.len()];
+        let objectives = self.objectives();
+        for (place, objective) in study.objectives().into_iter().enumerate().rev() {
+            let value = |member: &usize| objectives[*member][place];
+            let best = (0..marks.len()).min_by(|a, b| value(a).total_cmp(&value(b)));
+            if let Some(best) = best {
+                marks[best] = match objective.quantity {
+                    Quantity::Mass if study.asks_as_the_paper() => "lightest".to_owned(),
+                    Quantity::WorkspaceRadius if study.asks_as_the_paper() => "largest".to_owned(),
+                    quantity => format!("best_{}", quantity.entry().key),
+                };
+            }
         }
-        if let Some(first) = marks.first_mut() {
-            *first = "lightest";
-        }
-        if let Some(knee) = self.knee() {
-            marks[knee] = "knee";
+        if let Some(knee) = self.knee().filter(|_| objectives[0].len() > 1) {
+            marks[knee] = "knee".to_owned();
         }
         marks
     }

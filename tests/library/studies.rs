@@ -91,19 +91,28 @@ fn complete_study() -> Study {
     });
     let mut table = toml::Table::try_from(&study).expect("TOML");
     for setting in settings() {
-        if let Some(initial) = setting.initial {
-            insert(&mut table, setting, value_of(initial));
+        if let Some(value) = setting.initial.and_then(value_of).filter(|_| !is_alternative(setting)) {
+            insert(&mut table, setting, value);
         }
     }
     insert_text(&mut table, "model", "characteristic_length", "fixed");
     table.try_into().expect("a study")
 }
 
-fn value_of(initial: Initial) -> toml::Value {
+fn value_of(initial: Initial) -> Option<toml::Value> {
     match initial {
-        Initial::Number(number) => number.into(),
-        Initial::Count(count) => count.into(),
+        Initial::Number(number) => Some(number.into()),
+        Initial::Count(count) => Some(count.into()),
+        Initial::AsText => None,
     }
+}
+
+/// Settings that stand in the place of others, or that only some studies have.
+fn is_alternative(setting: &Setting) -> bool {
+    let of_sections = setting.section.starts_with("sections.") && setting.key != "kind";
+    let of_region = setting.section == "workspace.region" && setting.key != "kind";
+    let paths = ["quantities", "constraints", "hypervolume.reference"];
+    of_sections || of_region || setting.section == "variables" || paths.contains(&setting.path().as_str())
 }
 
 fn insert(table: &mut toml::Table, setting: &Setting, value: toml::Value) {
@@ -125,7 +134,8 @@ fn every_value_of_a_study_is_declared_once_and_stands_in_the_template() {
     assert_eq!(complete.faults(), []);
     let mut found = Vec::new();
     keys(&toml::Table::try_from(&complete).expect("TOML"), "", &mut found);
-    let mut declared: Vec<String> = settings().map(Setting::path).collect();
+    let always = settings().filter(|setting| !is_alternative(setting));
+    let mut declared: Vec<String> = always.map(Setting::path).collect();
     found.sort();
     declared.sort();
     assert_eq!(found, declared);
@@ -225,7 +235,9 @@ fn every_setting_has_an_effect() {
         complete.model().expect("a model"),
         DesignProblem::new(&complete).expect("a problem"),
     );
-    for setting in settings() {
+    // Kinds and objectives need other settings beside them; the test of alternatives has them.
+    let is_kind = |setting: &Setting| setting.key == "kind" || setting.key == "objectives";
+    for setting in settings().filter(|setting| !is_alternative(setting) && !is_kind(setting)) {
         let mut table = toml::Table::try_from(&complete).expect("TOML");
         let value = setting.value(&table).expect("a value").clone();
         let value = if setting.key == "seed" {
@@ -278,6 +290,178 @@ fn every_setting_has_an_effect() {
             "optimizer" => assert_ne!(changed.optimizer, complete.optimizer, "{path}"),
             _ => assert_ne!(changed, complete, "{path}"),
         }
+    }
+}
+
+/// Each alternative changes what it is declared for.
+#[test]
+fn every_alternative_has_an_effect() {
+    let paper = Study::default();
+    let variables = DesignProblem::new(&paper).expect("a problem").variables();
+    let cases = [
+        (
+            "sections.legs.wall_ratio",
+            "[sections]\nlegs = { kind = \"tube\", wall_ratio = 0.2 }",
+        ),
+        (
+            "sections.legs.wall_m",
+            "[sections]\nlegs = { kind = \"square_tube\", wall_m = 0.002 }",
+        ),
+        (
+            "sections.legs.catalogue",
+            "[sections]\nlegs = { kind = \"tube\", catalogue = \"en-10255-medium\" }",
+        ),
+        (
+            "sections.platform.wall_ratio",
+            "[sections.platform]\nkind = \"tube\"\nwall_ratio = 0.2",
+        ),
+        (
+            "sections.platform.wall_m",
+            "[sections.platform]\nkind = \"tube\"\nwall_m = 0.002",
+        ),
+        (
+            "sections.platform.catalogue",
+            "[sections.platform]\nkind = \"tube\"\n\
+             catalogue = [{ name = \"40 x 2\", outer_mm = 40.0, wall_mm = 2.0 }]",
+        ),
+        (
+            "workspace.region.radius_m",
+            "objectives = [{ minimize = \"mass_kg\" }]\nworkspace.region = { kind = \"disc\", radius_m = 0.3 }",
+        ),
+        (
+            "workspace.region.width_m",
+            "objectives = [{ minimize = \"mass_kg\" }]\n\
+             workspace.region = { kind = \"rectangle\", width_m = 0.3, height_m = 0.2 }",
+        ),
+        (
+            "workspace.region.corners_m",
+            "objectives = [{ minimize = \"mass_kg\" }]\n\
+             workspace.region = { kind = \"polygon\", corners_m = [[0, 0], [0.2, 0], [0, 0.2]] }",
+        ),
+        ("quantities", "quantities = [\"dexterity_mean\"]"),
+        ("constraints", "[constraints]\nmass_kg = { at_most = 10 }"),
+        ("constraints", "[constraints]\nk_xy_n_per_m = { at_least = 2e6 }"),
+        ("constraints", "[constraints]\ntransmission_min = { at_least = 0.3 }"),
+        ("variables.R_m", "[variables]\nR_m = 1.5"),
+        ("variables.r_m", "[variables]\nr_m = [0.2, 0.3]"),
+        ("variables.rp_m", "[variables]\nrp_m = \"0.5 rj\""),
+    ];
+    for (path, text) in cases {
+        let study = Study::parse(text, path).unwrap_or_else(|error| panic!("{path}: {error}"));
+        let table = toml::Table::try_from(&study).expect("TOML");
+        let setting = settings().find(|setting| setting.path() == path).expect("a setting");
+        assert!(setting.value(&table).is_some(), "{path}");
+        let reread = Study::parse(&toml::to_string(&study).expect("TOML"), path).expect("a valid study");
+        assert_eq!(reread, study, "{path}");
+        assert!(paper.differing_key(&study).is_some(), "{path}");
+        if path.starts_with("variables") {
+            let found = DesignProblem::new(&study).expect("a problem").variables();
+            assert_ne!(found, variables, "{path} does not reach the problem");
+        } else {
+            assert_ne!(study.model(), paper.model(), "{path} does not reach the model");
+        }
+    }
+}
+
+/// Variables that are fixed, listed, tied or of a catalogue take their values before a candidate is evaluated.
+#[test]
+fn candidates_take_the_values_that_variables_may_have() {
+    use kinefront_optimize::{Candidate, Problem, Target};
+    let text = r#"
+        architectures = ["3-PRR"]
+        [sections]
+        legs = { kind = "tube", catalogue = "en-10255-medium" }
+        [variables]
+        R_m = 1.5
+        r_m = [0.3, 0.5, 0.4]
+        rp_m = "2 rj"
+    "#;
+    let problem = DesignProblem::new(&Study::parse(text, "variables").expect("a study")).expect("a problem");
+    for target in [None, Some(Target::Best), Some(Target::Level(-0.2))] {
+        let candidate = Candidate {
+            x: vec![0.0, 2.0, 0.44, 1.1, 0.02, 0.09],
+            target,
+        };
+        let x = problem.completed(candidate.clone());
+        assert_eq!(x[1..4], [1.5, 0.4, 1.1], "{target:?}");
+        let tubes = [
+            10.2, 13.5, 17.2, 21.3, 26.9, 33.7, 42.4, 48.3, 60.3, 76.1, 88.9, 114.3, 139.7, 165.1,
+        ];
+        assert!(tubes.iter().any(|tube| 0.0005 * tube == x[4]), "{target:?}: {x:?}");
+        assert_eq!(x[5], 2.0 * x[4], "{target:?}");
+        let design = problem.design(&x).expect("a design");
+        assert_eq!(design.values()[..], x[1..]);
+        assert!(problem.follows(&candidate, &design), "{target:?}");
+    }
+}
+
+#[test]
+fn questions_that_cannot_be_asked_are_refused_with_the_reason_and_what_would_be_right() {
+    let disc = "workspace.region = { kind = \"disc\", radius_m = 0.3 }";
+    let cases: [(String, &[&str]); 17] = [
+        (
+            "objectives = [{ minimize = \"weight_kg\" }]".into(),
+            &["objectives", "weight_kg", "mass_kg"],
+        ),
+        (
+            "objectives = [{ minimize = \"mass_g\" }]".into(),
+            &["stated in kg", "`mass_kg`"],
+        ),
+        (
+            "objectives = [{ minimize = \"mass_kg\" }, { maximize = \"mass_kg\" }]".into(),
+            &["`mass_kg` is named twice"],
+        ),
+        ("objectives = []".into(), &["0 entries", "one to three"]),
+        (
+            format!("{disc}\nobjectives = [{{ maximize = \"workspace_radius_m\" }}]"),
+            &["the region is prescribed"],
+        ),
+        (
+            "constraints.mas_kg = { at_most = 3 }".into(),
+            &["constraints.mas_kg", "did you mean `mass_kg`"],
+        ),
+        (
+            "constraints.footprint_mm = { at_most = 3000 }".into(),
+            &["stated in m", "`footprint_m`"],
+        ),
+        (
+            "constraints.mass_kg = { at_least = 3, at_most = 2 }".into(),
+            &["contradicts itself", "at least 3 and at most 2 kg"],
+        ),
+        ("constraints.mass_kg = {}".into(), &["states no limit", "at_least"]),
+        ("constraints.dexterity_mean = { at_least = 1.5 }".into(), &["at most 1"]),
+        (
+            "constraints.k_xy_n_per_m = { at_least = 1 }\nrequirements.k_xy_min_n_per_m = 2".into(),
+            &["requirements.k_xy_min_n_per_m", "omit one"],
+        ),
+        (
+            "sections.legs = { kind = \"tube\", catalogue = [] }".into(),
+            &["sections.legs.catalogue", "no entry"],
+        ),
+        (
+            "sections.legs = { kind = \"tube\", catalogue = \"no.csv\" }".into(),
+            &["cannot be read", "en-10255-medium"],
+        ),
+        (
+            "sections.legs = { kind = \"tube\" }".into(),
+            &["sections.legs.kind", "wall_ratio"],
+        ),
+        (
+            "sections.legs = { kind = \"tube\", wall_ratio = 1.2 }".into(),
+            &["1.2", "(0, 1]"],
+        ),
+        (
+            "objectives = [{ minimize = \"mass_kg\" }]\nworkspace.region = { kind = \"disc\", radius_m = 30 }".into(),
+            &["30.000 m from O", "no design within the bounds"],
+        ),
+        ("variables.rp_m = \"rq\"".into(), &["variables.rp_m", "rq", "0.5 rj"]),
+    ];
+    for (text, parts) in cases {
+        let report = printed(&text).split_whitespace().collect::<Vec<_>>().join(" ");
+        for part in parts {
+            assert!(report.contains(part), "{part}: {report}");
+        }
+        assert!(report.contains("mine.toml:"), "{report}");
     }
 }
 

@@ -1,7 +1,8 @@
 //! `CMA-ES` for one objective: evolution strategies with covariance matrix adaptation (Hansen 2016), in the form with a Cholesky
 //! factor (Krause, Arbonès and Igel 2016), one for each combination of the categorical variables.
 //!
-//! - **Constraints** rank candidates: feasible ones by the objective, then infeasible ones by violation.
+//! - **Constraints**: a small violation costs a penalty, whose weight follows the share of feasible candidates, so that a strategy
+//!   sees both sides of a constraint; candidates with a larger one rank behind, by violation. What counts as the best is feasible.
 //! - **Structure**: every candidate asks to be [completed](super::Problem::complete). Variables that the problem sets itself are
 //!   recognised by comparing what was asked with what was told, and the strategy adapts only the others.
 //! - **Bounds**: steps beyond a bound are reflected.
@@ -61,6 +62,9 @@ pub struct CmaEs {
     pending: Vec<(usize, Vec<f64>)>,
 }
 
+/// Largest violation that costs a penalty.
+const SLIGHT: f64 = 0.2;
+
 /// One combination of the categorical variables.
 #[derive(Debug, Clone)]
 struct StrategyNiche {
@@ -88,6 +92,8 @@ struct Strategy {
     step_path: Vec<f64>,
     path: Vec<f64>,
     population: usize,
+    /// Relative growth of the objective that a violation of 1 costs.
+    penalty: f64,
     /// Standard normal vectors of the candidates of the current generation.
     normals: Vec<Vec<f64>>,
 }
@@ -197,6 +203,7 @@ impl CmaEs {
             step_path: vec![0.0; count],
             path: vec![0.0; count],
             population,
+            penalty: 10.0,
             normals: Vec::new(),
             free,
         }
@@ -299,8 +306,7 @@ impl Strategy {
             return;
         }
         let n = count as f64;
-        let mut ranked: Vec<usize> = (0..evaluated.len()).collect();
-        ranked.sort_by(|&a, &b| order(&evaluated[a].outcome, &evaluated[b].outcome));
+        let ranked = self.rank(evaluated);
         let parents = (evaluated.len() / 2).max(1);
         let raw = |place: usize| libm::log(parents as f64 + 0.5) - libm::log(place as f64 + 1.0);
         let total: f64 = (0..parents).map(raw).sum();
@@ -369,6 +375,38 @@ impl Strategy {
             self.factor = factor;
         }
         self.step *= libm::exp((step_rate / damping * (length / expected - 1.0)).min(1.0));
+    }
+
+    /// Ranks candidates by the objective with its penalty, then those with a larger violation, and adapts the penalty so that a
+    /// part of the better half is feasible.
+    fn rank(&mut self, evaluated: &[Evaluated]) -> Vec<usize> {
+        let penalty = self.penalty;
+        let key = |outcome: &Outcome| {
+            let violation = outcome.violation.max(0.0);
+            let objective = outcome.objectives[0];
+            if violation <= SLIGHT {
+                (0.0, objective + penalty * violation * libm::fabs(objective))
+            } else {
+                (violation, objective)
+            }
+        };
+        let mut ranked: Vec<usize> = (0..evaluated.len()).collect();
+        ranked.sort_by(|&a, &b| {
+            let ((tier_a, value_a), (tier_b, value_b)) = (key(&evaluated[a].outcome), key(&evaluated[b].outcome));
+            tier_a.total_cmp(&tier_b).then(value_a.total_cmp(&value_b))
+        });
+        let better = &ranked[..ranked.len().div_ceil(2)];
+        let feasible = better
+            .iter()
+            .filter(|&&place| evaluated[place].outcome.is_feasible())
+            .count();
+        let share = feasible as f64 / better.len() as f64;
+        if share < 0.3 {
+            self.penalty = (1.5 * self.penalty).min(1e9);
+        } else if share > 0.8 {
+            self.penalty = (self.penalty / 1.2).max(1e-3);
+        }
+        ranked
     }
 
     fn has_converged(&self) -> bool {

@@ -68,6 +68,9 @@ const MIN_PROBABILITY: f64 = 0.03;
 /// Weight of one candidate in the exponential moving averages of the success of its niche and of its operator.
 const MEMORY: f64 = 0.02;
 
+/// Factor of the initial size of a population with three objectives.
+const SURFACE: usize = 3;
+
 /// Probability that two parents are crossed before mutation.
 const CROSSED: f64 = 0.9;
 
@@ -190,8 +193,7 @@ impl FrontDe {
             self.pending.push((niche, None));
             return self.random_candidate(niche);
         }
-        let ways = self.ways;
-        let way = self.draw(&ways);
+        let way = self.draw(&self.operator_weights(niche));
         self.pending.push((niche, Some(way)));
         let size = self.niches[niche].population.len();
         let place = self.random.below(size);
@@ -208,6 +210,16 @@ impl FrontDe {
         Candidate {
             x,
             target: Some(target),
+        }
+    }
+
+    /// Returns the weights with which the operators are drawn. On a surface both succeed often, so that their success is
+    /// sharpened.
+    fn operator_weights(&self, niche: usize) -> [Success; 2] {
+        if self.niches[niche].nearest.is_empty() {
+            self.ways
+        } else {
+            self.ways.map(|Success(share)| Success(share * share * share))
         }
     }
 
@@ -313,25 +325,44 @@ impl Algorithm for FrontDe {
 
     fn tell(&mut self, evaluated: Vec<Evaluated>) {
         let mut offspring: Vec<Vec<Evaluated>> = vec![Vec::new(); self.niches.len()];
+        let mut on_surface: Vec<(usize, usize, Vec<f64>)> = Vec::new();
         for (candidate, &(niche, way)) in evaluated.into_iter().zip(&self.pending) {
             let reached = self.archive.insert(self.evaluated, &candidate.x, &candidate.outcome);
             self.evaluated += 1;
             self.niches[niche].evaluated += 1;
             self.niches[niche].success.learn(reached);
-            if let Some(way) = way {
-                self.ways[way].learn(reached);
+            match way {
+                // Almost every candidate is non-dominated on a surface: what counts is whether it stays.
+                Some(way) if candidate.outcome.objectives.len() > 2 => {
+                    on_surface.push((niche, way, candidate.x.clone()))
+                }
+                Some(way) => self.ways[way].learn(reached),
+                None => {}
             }
             offspring[niche].push(candidate);
         }
         let settings = &self.settings;
         for (niche, offspring) in self.niches.iter_mut().zip(offspring) {
             if !offspring.is_empty() {
-                let size = settings.population.max(4) + niche.evaluated / settings.growth.max(1);
+                let is_surface = offspring[0].outcome.objectives.len() > 2;
+                let start = if is_surface {
+                    SURFACE * settings.population
+                } else {
+                    settings.population
+                };
+                let size = start.max(4) + niche.evaluated / settings.growth.max(1);
                 let members = niche.population.drain(..).map(|member| member.candidate);
                 let pool = members.chain(offspring).collect();
                 niche.population = along_front(best(pool, size.min(settings.most.max(4))));
                 niche.nearest = nearest(&niche.population, 2 * settings.neighbours.max(1) + 1);
             }
+        }
+        for (niche, way, x) in on_surface {
+            let stays = self.niches[niche]
+                .population
+                .iter()
+                .any(|member| member.candidate.x == x);
+            self.ways[way].learn(stays);
         }
     }
 }

@@ -5,7 +5,7 @@
 //! generation. A child that equals a member of the population or another child is not evaluated; a further pair of
 //! parents is drawn instead.
 
-use super::population::{PopulationMember, ranked, tournament};
+use super::population::{PopulationMember, best, ranked, tournament};
 use super::random::Random;
 use super::variation::{cross, mutate};
 use super::{Algorithm, Candidate, Evaluated, Variable, doe};
@@ -121,8 +121,12 @@ impl Algorithm for Nsga2 {
     }
 }
 
-/// Keeps the best `size` candidates of `pool` by rank and, within the last rank kept, by crowding distance.
+/// Keeps the best `size` candidates of `pool` by rank and, within the last rank kept, by crowding distance; with three objectives
+/// by the distance to the nearest member, because the crowding distance says little then.
 fn survive(pool: Vec<Evaluated>, size: usize) -> Vec<PopulationMember> {
+    if pool.first().is_some_and(|first| first.outcome.objectives.len() > 2) {
+        return ranked(best(pool, size));
+    }
     let mut members = ranked(pool);
     // The sort is stable: among equals the older member is kept.
     members.sort_by(|a, b| a.rank.cmp(&b.rank).then(b.crowding.total_cmp(&a.crowding)));

@@ -15,7 +15,7 @@ pub(super) fn layout() -> Tree<Panel> {
         tiles.insert_tab_tile(panes)
     };
     let run = tabs(&[Panel::Run, Panel::Study]);
-    let scatter = tabs(&[Panel::Scatter]);
+    let scatter = tabs(&[Panel::Scatter, Panel::Space]);
     let scene = tabs(&[Panel::Scene]);
     let below = tabs(&[Panel::Front, Panel::Parallel, Panel::Compare]);
     let design = tabs(&[Panel::Inspector, Panel::Choose]);

@@ -8,8 +8,10 @@ mod layers;
 mod parallel;
 mod plan;
 mod pose;
+mod question;
 mod run;
 pub mod scatter;
+mod space;
 mod study;
 
 use egui::Ui;
@@ -24,6 +26,7 @@ use self::parallel::ParallelPanel;
 use self::pose::PosePanel;
 use self::run::RunPanel;
 use self::scatter::Scatter;
+use self::space::SpacePanel;
 use self::study::StudyPanel;
 use super::Session;
 use super::files::Purpose;
@@ -37,6 +40,8 @@ pub enum Panel {
     Study,
     /// The scatter plot.
     Scatter,
+    /// The designs in three quantities.
+    Space,
     /// The embedded 3-D viewer.
     Scene,
     /// The inspector of the selected design.
@@ -59,10 +64,11 @@ pub enum Panel {
 
 impl Panel {
     /// All panels.
-    pub const ALL: [Panel; 11] = [
+    pub const ALL: [Panel; 12] = [
         Panel::Run,
         Panel::Study,
         Panel::Scatter,
+        Panel::Space,
         Panel::Scene,
         Panel::Inspector,
         Panel::Pose,
@@ -79,6 +85,7 @@ impl Panel {
             Panel::Run => "Run",
             Panel::Study => "Study",
             Panel::Scatter => "Scatter",
+            Panel::Space => "Space",
             Panel::Scene => "3-D",
             Panel::Inspector => "Inspector",
             Panel::Pose => "Pose",
@@ -98,6 +105,7 @@ pub struct Panels {
     study: StudyPanel,
     /// The scatter panel.
     pub scatter: Scatter,
+    space: SpacePanel,
     inspector: Inspector,
     pose: PosePanel,
     layers: LayersPanel,
@@ -114,6 +122,7 @@ impl Panels {
             Panel::Run => self.run.ui(ui, session),
             Panel::Study => return self.study.ui(ui, session).then_some(Purpose::SaveStudy),
             Panel::Scatter => self.scatter.ui(ui, session),
+            Panel::Space => self.space.ui(ui, session),
             Panel::Inspector => self.inspector.ui(ui, session),
             Panel::Pose => self.pose.ui(ui, session),
             Panel::Layers => self.layers.ui(ui, session),

@@ -3,6 +3,7 @@
 use egui::{CollapsingHeader, DragValue, ScrollArea, TextEdit, Ui};
 use toml::{Table, Value};
 
+use super::question;
 use crate::explorer::{Session, theme};
 use crate::study::{Check, Fault, Initial, Setting, Study, settings};
 
@@ -50,6 +51,11 @@ impl StudyPanel {
                     self.typed = Some(text);
                 }
             } else {
+                CollapsingHeader::new("question").default_open(true).show(ui, |ui| {
+                    let mut study = session.editor.study().clone();
+                    question::ui(ui, &mut study);
+                    session.editor.change(|edited| *edited = study);
+                });
                 fields(ui, session, &faults);
             }
         });
@@ -66,6 +72,8 @@ fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault]) {
     let mut table = before.clone();
     section(ui, "", &mut table, faults);
     follow_characteristic_length(&mut table);
+    follow_sections(&mut table);
+    follow_region(&mut table);
     if table != before {
         match table.try_into::<Study>() {
             Ok(study) => session.editor.change(|edited| *edited = study),
@@ -89,14 +97,58 @@ fn follow_characteristic_length(table: &mut Table) {
             .find(|setting| setting.key == key)
             .and_then(|setting| setting.initial)
     {
-        model.insert(key.to_owned(), initial_value(initial));
+        model.extend(initial_value(initial).map(|value| (key.to_owned(), value)));
     }
 }
 
-fn initial_value(initial: Initial) -> Value {
+/// A hollow bar needs its wall, and a solid one must not have one.
+fn follow_sections(table: &mut Table) {
+    const WALLS: [&str; 3] = ["wall_ratio", "wall_m", "catalogue"];
+    let Some(sections) = table.get_mut("sections").and_then(Value::as_table_mut) else {
+        return;
+    };
+    for (_, section) in sections.iter_mut() {
+        let Some(section) = section.as_table_mut() else {
+            continue;
+        };
+        let is_hollow = section.get("kind").and_then(Value::as_str) != Some("round");
+        let has_wall = WALLS.iter().any(|key| section.contains_key(*key));
+        if is_hollow && !has_wall {
+            section.insert(WALLS[0].to_owned(), Value::Float(0.2));
+        } else if !is_hollow {
+            section.retain(|key, _| !WALLS.iter().any(|wall| *wall == key));
+        }
+    }
+}
+
+/// A prescribed region needs its sizes, and must not have those of another one.
+fn follow_region(table: &mut Table) {
+    let region = table
+        .get_mut("workspace")
+        .and_then(|workspace| workspace.get_mut("region"));
+    let Some(region) = region.and_then(Value::as_table_mut) else {
+        return;
+    };
+    let corner = |x: f64, y: f64| Value::Array(vec![Value::Float(x), Value::Float(y)]);
+    let triangle = || Value::Array(vec![corner(-0.2, -0.1), corner(0.2, -0.1), corner(0.0, 0.2)]);
+    let sizes: Vec<(&str, Value)> = match region.get("kind").and_then(Value::as_str) {
+        Some("disc") => vec![("radius_m", Value::Float(0.3))],
+        Some("rectangle") => vec![("width_m", Value::Float(0.4)), ("height_m", Value::Float(0.3))],
+        Some("polygon") => vec![("corners_m", triangle())],
+        _ => Vec::new(),
+    };
+    region.retain(|key, _| key == "kind" || sizes.iter().any(|(size, _)| *size == key));
+    for (key, value) in sizes {
+        region.entry(key).or_insert(value);
+    }
+}
+
+/// Returns the value that an optional setting starts from; `None` for one that is edited as text.
+fn initial_value(initial: Initial) -> Option<Value> {
     match initial {
-        Initial::Number(number) => Value::Float(number),
-        Initial::Count(count) => Value::Integer(count),
+        Initial::Number(number) => Some(Value::Float(number)),
+        Initial::Count(count) => Some(Value::Integer(count)),
+        Initial::AsText => None,
     }
 }
 
@@ -106,12 +158,14 @@ fn optional_settings(ui: &mut Ui, path: &str, table: &mut Table) {
     let follows = |setting: &&Setting| setting.key == "characteristic_length_m";
     let settings = settings().filter(|setting| setting.section == path);
     for setting in settings.filter(|setting| !follows(setting)) {
-        let Some(initial) = setting.initial else { continue };
+        let Some(initial) = setting.initial.and_then(initial_value) else {
+            continue;
+        };
         let mut stated = table.contains_key(setting.key);
         let tick = ui.checkbox(&mut stated, format!("set {}", setting.key));
         if tick.on_hover_text(setting.description.trim()).changed() {
             if stated {
-                table.insert(setting.key.to_owned(), initial_value(initial));
+                table.insert(setting.key.to_owned(), initial);
             } else {
                 table.remove(setting.key);
             }
@@ -140,6 +194,10 @@ fn selection(ui: &mut Ui, names: &mut Vec<Value>, all: &[&str]) {
 fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
     optional_settings(ui, path, table);
     for (key, value) in table.iter_mut() {
+        // The question has fields of its own.
+        if path.is_empty() && ["objectives", "constraints", "quantities"].contains(&&**key) {
+            continue;
+        }
         let path = if path.is_empty() {
             key.clone()
         } else {

@@ -241,10 +241,10 @@ impl RunWriter {
 
 /// Returns the verified front as a table.
 pub(super) fn front_table(study: &Study, summary: &RunSummary) -> io::Result<Vec<u8>> {
-    let rows = summary.front.iter().zip(summary.marks()).map(|(member, mark)| {
+    let rows = summary.front.iter().zip(summary.marks(study)).map(|(member, mark)| {
         let entry = member.row();
         let cell = |column| match column {
-            Column::Mark => Cell::Text(mark.into()),
+            Column::Mark => Cell::Text(mark.clone().into()),
             column => column.cell(&entry),
         };
         Column::of_front(study).map(cell).collect()

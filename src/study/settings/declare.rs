@@ -26,6 +26,8 @@ pub enum Initial {
     Number(f64),
     /// A whole number.
     Count(i64),
+    /// None: the setting is edited as text.
+    AsText,
 }
 
 /// Which values of a setting are valid. Each value of an array is checked.
@@ -127,7 +129,8 @@ fn selection_fault(names: &[Value]) -> Option<String> {
 
 /// Declares a section of the study file: a structure with its defaults, and the [`Setting`] of each key.
 ///
-/// A field is declared as `key: type = default, check;`, an optional one as `key: Option<type>, check, initial value;`.
+/// A field is declared as `key: type = default, check;`, an optional one as `key: Option<type>, check, initial value;`, and a section
+/// within the section, whose settings are declared with it, as `key: type;`.
 macro_rules! section {
     (
         $(#[$attribute:meta])*
@@ -142,6 +145,12 @@ macro_rules! section {
                     $optional_key:ident: $optional_type:ty, $optional_check:expr, $initial:expr;
                 )*
             })?
+            $(nested {
+                $(
+                    $(#[doc = $nested_doc:literal])+
+                    $nested_key:ident: $nested_type:ty;
+                )*
+            })?
         }
     ) => {
         $(#[$attribute])*
@@ -154,11 +163,19 @@ macro_rules! section {
                 #[serde(skip_serializing_if = "Option::is_none")]
                 pub $optional_key: Option<$optional_type>,
             )*)?
+            $($(
+                $(#[doc = $nested_doc])+
+                pub $nested_key: $nested_type,
+            )*)?
         }
 
         impl Default for $name {
             fn default() -> Self {
-                Self { $($key: $default,)* $($($optional_key: None,)*)? }
+                Self {
+                    $($key: $default,)*
+                    $($($optional_key: None,)*)?
+                    $($($nested_key: <$nested_type>::default(),)*)?
+                }
             }
         }
 

@@ -144,7 +144,7 @@ section! {
         optional {
             /// Values of the objectives at the reference point, in their order; if omitted, the reference mass for masses, 0 for
             /// quantities that are maximised, and for others a value that few designs exceed.
-            reference: Vec<f64>, Check::Finite, Initial::Number(0.0);
+            reference: Vec<f64>, Check::Finite, Initial::AsText;
         }
     }
 }

@@ -93,8 +93,14 @@ impl Study {
         })
     }
 
-    /// Returns the quantities that an evaluation has to determine: those that the study names.
+    /// Returns the quantities that an evaluation has to determine besides those that it always does.
     pub fn asked_quantities(&self) -> QuantitySet {
+        let named = self.named_quantities();
+        named.iter().filter(|quantity| !quantity.is_always_known()).collect()
+    }
+
+    /// Returns the quantities that the study names: in its objectives, its limits, and those to be reported.
+    pub fn named_quantities(&self) -> QuantitySet {
         let of_objectives = self.objectives().into_iter().map(|objective| objective.quantity);
         let of_limits = self.limits().map(|limit| limit.quantity);
         let reported = self.quantities.iter().filter_map(|key| Quantity::find(key));

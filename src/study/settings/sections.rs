@@ -70,11 +70,13 @@ section! {
         centre_m: [f64; 2] = [0.0, 0.0], Check::Finite;
         /// Whether the workspaces of the front are proved, so that the reported radii hold for every pose.
         certify: bool = true, Check::Any;
-        /// Region of positions.
-        region: RegionSection = RegionSection::default(), Check::Any;
         optional {
             /// Home orientation; if omitted, the best one is determined for each design.
             home_phi_deg: f64, Check::Within(-360.0, 360.0, ""), Initial::Number(0.0);
+        }
+        nested {
+            /// Region of positions.
+            region: RegionSection;
         }
     }
 }

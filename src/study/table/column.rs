@@ -134,14 +134,14 @@ impl Column {
 
     /// The columns of `designs.csv`, in their order.
     pub fn of_designs(study: &Study) -> impl Iterator<Item = Column> + use<> {
-        Self::of_every_study().chain(Self::further(study.asked_quantities()))
+        Self::of_every_study().chain(Self::further(study.named_quantities()))
     }
 
     /// The columns of `front.csv`, in their order.
     pub fn of_front(study: &Study) -> impl Iterator<Item = Column> + use<> {
         Self::of_every_study()
             .chain(Self::OF_FRONT)
-            .chain(Self::further(study.asked_quantities()))
+            .chain(Self::further(study.named_quantities()))
     }
 
     /// The columns that `front.csv` has besides those of `designs.csv`.

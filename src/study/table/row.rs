@@ -75,7 +75,7 @@ impl Row {
             margins: evaluation.constraints.map(|result| result.required_margin()),
             values: evaluation.constraints.map(|result| result.value),
             active: bits(evaluation.active()),
-            quantities: evaluation.quantities.without_columns(),
+            quantities: evaluation.quantities.asked_for(),
             objectives: Objectives::new(evaluation.objectives.iter().copied()),
         }
     }

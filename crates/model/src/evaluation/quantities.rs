@@ -1,4 +1,4 @@
-//! The values of the quantities of a design (docs/model.md, section 6.3).
+//! The values of the quantities of a design (docs/model.md, section 6.5).
 
 use glam::DVec2;
 
@@ -16,13 +16,14 @@ pub(super) fn known(
     workspace_radius: f64,
     constraints: &[ConstraintResult; Constraint::ALL.len()],
 ) -> QuantityValues {
+    let asked = |quantity: Quantity| model.quantities.contains(quantity);
     let mut values = QuantityValues::default();
     for quantity in Quantity::all() {
         let value = match quantity {
             Quantity::Mass => Some(model.mass(design)),
-            Quantity::LegsMass => Some(model.legs_mass(design)),
-            Quantity::PlatformMass => Some(model.platform_mass(design)),
-            Quantity::Height => Some(height),
+            Quantity::LegsMass => Some(model.legs_mass(design)).filter(|_| asked(quantity)),
+            Quantity::PlatformMass => Some(model.platform_mass(design)).filter(|_| asked(quantity)),
+            Quantity::Height => Some(height).filter(|_| asked(quantity)),
             Quantity::WorkspaceRadius => Some(workspace_radius),
             _ => quantity
                 .entry()

@@ -1,4 +1,4 @@
-//! The quantities of a design: what it is worth (docs/model.md, section 6.3).
+//! The quantities of a design: what it is worth (docs/model.md, section 6.5).
 //!
 //! Objectives, limits, columns of tables, axes, filters and fields follow from [`Quantity::entry`]. A further quantity is an
 //! entry of the table and a value in [`quantities`](super::quantities).
@@ -160,15 +160,7 @@ impl Quantity {
 
     /// Returns whether every evaluation determines the quantity; all others are computed only if they are asked for.
     pub fn is_always_known(self) -> bool {
-        self.entry().constraint.is_some()
-            || matches!(
-                self,
-                Quantity::Mass
-                    | Quantity::WorkspaceRadius
-                    | Quantity::LegsMass
-                    | Quantity::PlatformMass
-                    | Quantity::Height
-            )
+        self.entry().constraint.is_some() || matches!(self, Quantity::Mass | Quantity::WorkspaceRadius)
     }
 }
 
@@ -212,12 +204,9 @@ impl QuantityValues {
         self.0[quantity as usize]
     }
 
-    /// Returns those quantities that are computed only if they are asked for, and those of the masses and the height.
-    pub fn without_columns(&self) -> Self {
-        let has_column = |quantity: Quantity| {
-            quantity.entry().constraint.is_some() || matches!(quantity, Quantity::Mass | Quantity::WorkspaceRadius)
-        };
-        let rest = Quantity::all().filter(|quantity| !has_column(*quantity));
+    /// Returns those quantities that are computed only if they are asked for.
+    pub fn asked_for(&self) -> Self {
+        let rest = Quantity::all().filter(|quantity| !quantity.is_always_known());
         rest.map(|quantity| (quantity, self.get(quantity))).collect()
     }
 

@@ -1,4 +1,4 @@
-//! Sizing of the bars for a prescribed region: exact on the poses that the evaluation examines (docs/model.md, section 9.4).
+//! Sizing of the bars for a prescribed region: exact on the poses that the evaluation examines (docs/model.md, section 9).
 
 use glam::DVec2;
 
@@ -11,6 +11,9 @@ use crate::workspace::{RegionPositions, directions, search_prescribed};
 /// Poses whose ratio is larger than this multiple of the smallest of its kind do not determine the bars, unless the result shows
 /// that they do.
 const NEAR: f64 = 1.7;
+
+/// Worst margin that a geometry may miss to be sized all the same.
+const NEARLY: f64 = 0.15;
 
 /// Number of home orientations that are tried.
 const HOMES: usize = 4;
@@ -36,19 +39,19 @@ impl<L: Leg> Sizer<'_, L> {
         let all: Vec<usize> = (0..self.arms.len()).collect();
         let signs = self.feasible_signs(&samples.all[..samples.first], &all);
         let candidates = self.windows(&signs);
-        if candidates.is_empty() {
-            return None;
-        }
         let homes = self.stiffest_homes(&signs, &samples, &candidates);
-        let mut sized = homes.into_iter().take(HOMES).find_map(|home| {
-            let sized = self.sized_at(home, &samples)?;
+        let sized = homes.into_iter().take(HOMES).find_map(|home| {
+            let sized = self.sized_at(home, &samples, true)?;
             Some((home, sized))
-        })?;
+        });
+        let Some(mut sized) = sized else {
+            return self.sized_nearly(&samples, grid_choice);
+        };
         // With thinner bars another home orientation may be better, in which still lighter bars carry.
         for _ in 0..if self.ranges.is_exact { EXACT_HOMES } else { 0 } {
             let (best, _) = self.best_home(&sized.1, grid_choice);
             let lighter = Some(best).filter(|best| *best != sized.0).and_then(|home| {
-                let design = self.sized_at(home, &samples)?;
+                let design = self.sized_at(home, &samples, true)?;
                 (model.mass(&design) < model.mass(&sized.1)).then_some((home, design))
             });
             match lighter {
@@ -57,6 +60,20 @@ impl<L: Leg> Sizer<'_, L> {
             }
         }
         Some(self.lighter_listed(sized.1, grid_choice))
+    }
+
+    /// Sizes the bars of a geometry that misses the region by little, as if it did not: a search that approaches a geometric
+    /// constraint then sees how the mass goes on beyond it.
+    fn sized_nearly(&mut self, samples: &RegionPositions, grid: GridChoice) -> Option<Design> {
+        if !self.ranges.is_exact {
+            return None;
+        }
+        let thickest = self.with_bars([self.ranges.leg[1], self.ranges.platform[1]]);
+        let (home, margin) = self.best_home(&thickest, grid);
+        if margin < -NEARLY {
+            return None;
+        }
+        self.sized_at(home, samples, false)
     }
 
     /// Returns the lightest pair of two lists that is feasible in any home orientation: `design`, or a lighter one that the home
@@ -91,14 +108,17 @@ impl<L: Leg> Sizer<'_, L> {
         (found.home.unwrap_or(0), margin)
     }
 
-    /// Sizes the bars for one home orientation.
-    fn sized_at(&mut self, home: usize, samples: &RegionPositions) -> Option<Design> {
+    /// Sizes the bars for one home orientation, in which every pose must be feasible with the thickest bars if the geometry
+    /// `must_hold`.
+    fn sized_at(&mut self, home: usize, samples: &RegionPositions, must_hold: bool) -> Option<Design> {
         let window: Vec<usize> = self.orientation_grid.window(home).collect();
         self.set_bars([self.ranges.leg[1], self.ranges.platform[1]]);
-        let signs = self.feasible_signs(&samples.all, &window);
-        let first = signs[window[0]]?;
-        if window.iter().any(|&k| signs[k] != Some(first)) {
-            return None;
+        if must_hold {
+            let signs = self.feasible_signs(&samples.all, &window);
+            let first = signs[window[0]]?;
+            if window.iter().any(|&k| signs[k] != Some(first)) {
+                return None;
+            }
         }
         self.lay_positions(&samples.all, &window);
         let own = [self.design.leg_bar_radius, self.design.platform_bar_radius];

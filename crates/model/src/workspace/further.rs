@@ -1,5 +1,5 @@
 //! Further values of a pose, which only some studies bound or report: transmission, displacement, and how far the members
-//! extend (docs/model.md, section 6.3).
+//! extend (docs/model.md, section 6.5).
 
 use pulp::{Simd, WithSimd};
 

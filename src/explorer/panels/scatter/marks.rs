@@ -5,7 +5,8 @@ use egui::{Align2, Color32};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points, Text};
 
 use super::Scatter;
-use crate::explorer::{Row, Session, theme};
+use crate::explorer::panels::space::gradient;
+use crate::explorer::{FrontEntry, Row, Session, theme};
 use kinefront_model::mechanism::Architecture;
 use kinefront_optimize::{Objectives, knee};
 
@@ -58,7 +59,8 @@ impl Scatter {
     /// The edge of the dominated region.
     fn staircase<'a>(&self, session: &Session, colors: Colors) -> Option<Line<'a>> {
         let mut steps: Vec<[f64; 2]> = Vec::new();
-        for entry in session.front().iter().filter(|_| self.shows_objectives()) {
+        let is_paper = session.study().asks_as_the_paper();
+        for entry in session.front().iter().filter(|_| self.shows_objectives() && is_paper) {
             let [x, y] = self.place(&entry.row);
             let before = steps.last().map_or(0.0, |last| last[1]);
             steps.extend([[x, before], [x, y]]);
@@ -71,8 +73,46 @@ impl Scatter {
         Some(line.color(colors.ink).width(1.2).allow_hover(false))
     }
 
-    /// The designs of the front by architecture; those that do not pass the filter are dimmed.
+    /// The column of the third objective, which the designs of the front have as colour; `None` for fewer objectives.
+    pub(super) fn third_objective(session: &Session) -> Option<Column> {
+        let objectives = session.study().objectives();
+        objectives
+            .get(2)
+            .map(|objective| Column::of_quantity(objective.quantity))
+    }
+
+    /// The designs of the front in the colours of a column.
+    fn in_colors<'a>(&self, session: &Session, column: Column) -> Vec<LabelledPoints<'a>> {
+        let prepared = session.document().filter.prepare(session.store());
+        let value = |entry: &FrontEntry| entry.row.number(column);
+        let [low, high] = session
+            .front()
+            .iter()
+            .filter_map(value)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+                [low.min(value), high.max(value)]
+            });
+        let mark = |entry: &FrontEntry| {
+            let fraction = (value(entry)? - low) / (high - low).max(f64::MIN_POSITIVE);
+            let color = gradient(fraction);
+            let color = if prepared.passes_entry(entry) {
+                color
+            } else {
+                color.gamma_multiply(0.3)
+            };
+            let points = Points::new("", vec![self.place(&entry.row)]).radius(4.0).color(color);
+            let shape = theme::mark(entry.row.design.architecture);
+            Some((points.shape(shape).allow_hover(false), None))
+        };
+        session.front().iter().filter_map(mark).collect()
+    }
+
+    /// The designs of the front by architecture; those that do not pass the filter are dimmed. With three objectives the colour
+    /// tells the third.
     fn designs<'a>(&self, session: &Session, colors: Colors) -> Vec<LabelledPoints<'a>> {
+        if let Some(third) = Self::third_objective(session) {
+            return self.in_colors(session, third);
+        }
         let prepared = session.document().filter.prepare(session.store());
         let of = |architecture: Architecture, passes: bool| {
             let points: Vec<[f64; 2]> = session

@@ -6,6 +6,7 @@ mod marks;
 
 use crate::study::Column;
 use kinefront_model::evaluation::Better;
+use kinefront_model::mechanism::DesignVariable;
 use std::time::Duration;
 
 use egui::{Align2, Color32, ComboBox, Pos2, Response, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
@@ -27,6 +28,8 @@ pub struct Scatter {
     /// Whether the view is fitted to the designs in every frame.
     fitted: bool,
     transform: Option<PlotTransform>,
+    /// Columns of the objectives that the axes last followed.
+    followed: Option<Vec<Column>>,
 }
 
 impl Default for Scatter {
@@ -53,6 +56,7 @@ impl Scatter {
             extent: Extent::default(),
             fitted: true,
             transform: None,
+            followed: None,
         }
     }
 
@@ -74,6 +78,7 @@ impl Scatter {
 
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        self.follow_objectives(session);
         self.controls(ui, session);
         let bounds = self.bounds(session);
         let dark = ui.visuals().dark_mode;
@@ -112,6 +117,26 @@ impl Scatter {
         self.pointed(&shown.response, session);
         self.draw_cloud(ui, session, dark);
         self.arrows(ui);
+    }
+
+    /// Shows the objectives of the study when they are other ones than before.
+    fn follow_objectives(&mut self, session: &Session) {
+        let objectives = session.study().objectives().into_iter();
+        let columns: Vec<Column> = objectives
+            .map(|objective| Column::of_quantity(objective.quantity))
+            .collect();
+        let before = self.followed.replace(columns.clone());
+        let is_paper = columns == [Column::Mass, Column::WorkspaceRadius];
+        if before.as_ref() == Some(&columns) || (before.is_none() && is_paper) {
+            return;
+        }
+        let base = Column::Dimension(DesignVariable::BaseRadius);
+        let [x, y] = [0, 1].map(|k| columns.get(k).copied().unwrap_or(base));
+        self.axes = [x, y].map(|quantity| ScatterAxis {
+            quantity,
+            log: quantity.is_logarithmic(),
+        });
+        self.fitted = true;
     }
 
     /// Bounds that hold every feasible design and every reference design.
@@ -195,6 +220,9 @@ impl Scatter {
                 .clicked()
             {
                 self.fitted = true;
+            }
+            if let Some(third) = Self::third_objective(session) {
+                ui.weak(format!("colour: {}, dark is small", third.title()));
             }
             ui.separator();
             let dark = ui.visuals().dark_mode;
