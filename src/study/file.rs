@@ -16,7 +16,7 @@ use kinefront_model::evaluation::{Model, ModelSettings};
 use kinefront_model::kinematics::CharacteristicLength;
 use kinefront_model::mechanism::{Architecture, BarLength, LegSettings, WorkingMode};
 use kinefront_model::stiffness::{ActuatorStiffness, Material, StiffnessDefinition};
-use kinefront_model::workspace::{FurtherLimits, GridError, Thresholds, WorkspaceSpec};
+use kinefront_model::workspace::{GridError, Thresholds, WorkspaceSpec};
 
 /// A study: the requirements, the manipulators to search, and the settings of the search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -163,7 +163,7 @@ impl Study {
                 .k_phi_z_min_nm_per_rad
                 .unwrap_or(requirements.torque_z_nm / requirements.rotation_z_deg.to_radians()),
             clearance: requirements.clearance_min_m,
-            further: FurtherLimits::default(),
+            further: None,
         };
         self.bound_poses(&mut thresholds);
         thresholds

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::study::Study;
 use kinefront_model::evaluation::{Better, Bound, Objective, Quantity, QuantityLimit, QuantitySet, Scope};
-use kinefront_model::workspace::Thresholds;
+use kinefront_model::workspace::{FurtherLimits, Thresholds};
 
 /// An objective of a study: the key of the quantity that is minimised or maximised.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -68,7 +68,7 @@ impl Study {
 
     /// Whether the workspaces of the front are proved: proofs cover the largest disc and the constraints of the paper.
     pub fn certifies(&self) -> bool {
-        let covered = self.thresholds().further.required().is_none();
+        let covered = self.thresholds().further.is_none();
         // A radius that is exactly at its limit would fall below it by the tolerance of the proof.
         let bounds_radius = self.limits().any(|limit| limit.quantity == Quantity::WorkspaceRadius);
         self.workspace.certify && !self.workspace.region.is_prescribed() && covered && !bounds_radius
@@ -122,13 +122,17 @@ impl Study {
                 Quantity::StiffnessZ => thresholds.k_z = threshold,
                 Quantity::StiffnessPhiZ => thresholds.k_phi_z = threshold,
                 Quantity::Clearance => thresholds.clearance = Some(threshold),
-                Quantity::Reach => thresholds.further.limit_margin = Some(threshold),
-                Quantity::TransmissionMin => thresholds.further.transmission = Some(threshold),
-                Quantity::DisplacementMax => thresholds.further.displacement = Some(threshold),
+                Quantity::Reach => further(thresholds).limit_margin = Some(threshold),
+                Quantity::TransmissionMin => further(thresholds).transmission = Some(threshold),
+                Quantity::DisplacementMax => further(thresholds).displacement = Some(threshold),
                 _ => {}
             }
         }
     }
+}
+
+fn further(thresholds: &mut Thresholds) -> &mut FurtherLimits {
+    thresholds.further.get_or_insert_default()
 }
 
 /// Whether a limit is one of each pose of the region: that of the least value of a quantity over poses from below, or that of the

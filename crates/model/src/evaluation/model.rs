@@ -10,9 +10,7 @@ use crate::mechanism::{Design, Leg, LegSettings, Manipulator};
 use crate::spatial::{Pose, Rotation};
 use crate::stiffness::planar::ActuatorStiffness;
 use crate::stiffness::{CrossSection, CrossSections, Material, StiffnessDefinition, StiffnessModel};
-use crate::workspace::{
-    FurtherLimits, Grid, GridError, PoseChecker, Region, Thresholds, WorkspaceSampling, WorkspaceSpec,
-};
+use crate::workspace::{Grid, GridError, PoseChecker, Region, Thresholds, WorkspaceSampling, WorkspaceSpec};
 
 /// All inputs of an evaluation other than the design. The default is the model of the paper, with the choices of this
 /// program where the paper leaves something open (docs/model.md, section 11).
@@ -119,7 +117,7 @@ impl Default for ModelSettings {
                 k_z: 1e5,
                 k_phi_z: 10.0 / 1f64.to_radians(),
                 clearance: None,
-                further: FurtherLimits::default(),
+                further: None,
             },
             in_plane_force: 100.0,
             workspace: WorkspaceSpec {

@@ -381,7 +381,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
             Constraint::Clearance,
         ];
         let thresholds = &self.checker.thresholds;
-        let further = thresholds.further.required();
+        let further = thresholds.further;
         let required = || AT_POSES.iter().filter(|constraint| constraint.is_required(thresholds));
         match values {
             Ok(values) => {

@@ -37,7 +37,7 @@ impl OrientationLanes<'_> {
 }
 
 /// Counts the poses before the first infeasible one; the result is `count` if all are feasible.
-struct Leading<'a, L> {
+struct Leading<'a, L, const FURTHER: bool> {
     checker: &'a PoseChecker<L>,
     oriented: OrientationLanes<'a>,
     xs: &'a [f64],
@@ -45,7 +45,7 @@ struct Leading<'a, L> {
     count: usize,
 }
 
-impl<L: Leg> WithSimd for Leading<'_, L> {
+impl<L: Leg, const FURTHER: bool> WithSimd for Leading<'_, L, FURTHER> {
     type Output = usize;
 
     #[inline(always)]
@@ -58,7 +58,8 @@ impl<L: Leg> WithSimd for Leading<'_, L> {
                 break;
             }
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            let count_leading_set = self.checker.feasible_lanes(position, &arms, sign).count_leading_set();
+            let good = self.checker.feasible_lanes::<_, FURTHER>(position, &arms, sign);
+            let count_leading_set = good.count_leading_set();
             if count_leading_set < Lanes::<S>::COUNT {
                 return (at + count_leading_set).min(self.count);
             }
@@ -69,7 +70,7 @@ impl<L: Leg> WithSimd for Leading<'_, L> {
 }
 
 /// Writes 1 for each feasible pose and 0 for each infeasible one.
-struct Good<'a, L> {
+struct Good<'a, L, const FURTHER: bool> {
     checker: &'a PoseChecker<L>,
     oriented: OrientationLanes<'a>,
     xs: &'a [f64],
@@ -77,7 +78,7 @@ struct Good<'a, L> {
     good: &'a mut [f64],
 }
 
-impl<L: Leg> WithSimd for Good<'_, L> {
+impl<L: Leg, const FURTHER: bool> WithSimd for Good<'_, L, FURTHER> {
     type Output = ();
 
     #[inline(always)]
@@ -87,8 +88,8 @@ impl<L: Leg> WithSimd for Good<'_, L> {
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         for ((x, y), good) in xs.iter().zip(ys).zip(Lanes::<S>::column_mut(self.good)) {
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            one.select(self.checker.feasible_lanes(position, &arms, sign), zero)
-                .store(good);
+            let found = self.checker.feasible_lanes::<_, FURTHER>(position, &arms, sign);
+            one.select(found, zero).store(good);
         }
     }
 }
@@ -189,25 +190,43 @@ impl<L: Leg> PoseChecker<L> {
     ) -> usize {
         // A column that ends early must not be mistaken for one of feasible poses.
         assert!(xs.len() == ys.len() && xs.len() >= padded_length(count));
-        self.instructions.run(Leading {
-            checker: self,
-            oriented,
-            xs,
-            ys,
-            count,
-        })
+        macro_rules! run {
+            ($further:literal) => {
+                self.instructions.run(Leading::<L, $further> {
+                    checker: self,
+                    oriented,
+                    xs,
+                    ys,
+                    count,
+                })
+            };
+        }
+        if self.thresholds.further.is_some() {
+            run!(true)
+        } else {
+            run!(false)
+        }
     }
 
     /// Writes 1 for each position at which the pose is feasible and 0 for every other position.
     pub(super) fn mark_feasible(&self, oriented: OrientationLanes<'_>, xs: &[f64], ys: &[f64], good: &mut [f64]) {
         assert!(xs.len() == ys.len() && xs.len() == good.len() && xs.len().is_multiple_of(MAX_LANES));
-        self.instructions.run(Good {
-            checker: self,
-            oriented,
-            xs,
-            ys,
-            good,
-        });
+        macro_rules! run {
+            ($further:literal) => {
+                self.instructions.run(Good::<L, $further> {
+                    checker: self,
+                    oriented,
+                    xs,
+                    ys,
+                    good,
+                })
+            };
+        }
+        if self.thresholds.further.is_some() {
+            run!(true)
+        } else {
+            run!(false)
+        }
     }
 
     /// Returns the smallest values over many positions in one orientation; `indices` numbers the positions from 0. The

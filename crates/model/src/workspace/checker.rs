@@ -23,8 +23,8 @@ pub struct Thresholds {
     pub k_phi_z: f64,
     /// Smallest clearance allowed \[m\] (g7); `None` if members may collide.
     pub clearance: Option<f64>,
-    /// Limits of further values.
-    pub further: FurtherLimits,
+    /// Limits of further values, if the study states any.
+    pub further: Option<FurtherLimits>,
 }
 
 impl Thresholds {
@@ -37,7 +37,7 @@ impl Thresholds {
             && self
                 .clearance
                 .is_none_or(|least| values.clearance.is_some_and(|clearance| clearance >= least))
-            && self.further.required().is_none_or(|limits| {
+            && self.further.as_ref().is_none_or(|limits| {
                 let of_values = |further| limits.are_met_by(values.limit_margin, further);
                 values.further.as_ref().is_some_and(of_values)
             })
@@ -181,12 +181,10 @@ impl<L: Leg> PoseChecker<L> {
         }
         let k_z = self.vertical_stiffness(&posture, &jacobian);
         let clear = |least: f64| self.nearest(position, &posture).distance >= least;
-        let further = &self.thresholds.further;
+        let further = self.thresholds.further.as_ref();
         let within = |limits: &FurtherLimits| limits.are_met_by(posture.limit_margin, &self.further_at(position, arms));
-        (k_z >= self.thresholds.k_z
-            && self.thresholds.clearance.is_none_or(clear)
-            && further.required().is_none_or(within))
-        .then(|| determinant.signum())
+        (k_z >= self.thresholds.k_z && self.thresholds.clearance.is_none_or(clear) && further.is_none_or(within))
+            .then(|| determinant.signum())
     }
 
     /// Returns all values at several poses at once, with `arms` as in [`Manipulator::arms`]. The clearance is computed
@@ -198,7 +196,7 @@ impl<L: Leg> PoseChecker<L> {
             let limit = position.x.splat(f64::INFINITY);
             values.clearance = Some(self.compute_clearance_up_to(position, arms, &directions, limit));
         }
-        if self.thresholds.further.required().is_some() {
+        if self.thresholds.further.is_some() {
             values.further = Some(self.further_lanes(position, arms));
         }
         values
@@ -249,9 +247,15 @@ impl<L: Leg> PoseChecker<L> {
         (values, [legs[0].u, legs[1].u, legs[2].u])
     }
 
-    /// Returns the mask of the feasible poses, at which `det A` has the given sign (±1).
+    /// Returns the mask of the feasible poses, at which `det A` has the given sign (±1). The limits of further values are examined
+    /// only if `FURTHER` says so, because a loop that could examine them is slower.
     #[inline(always)]
-    pub(super) fn feasible_lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS], sign: V) -> V::Mask {
+    pub(super) fn feasible_lanes<V: Real, const FURTHER: bool>(
+        &self,
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
+        sign: V,
+    ) -> V::Mask {
         let (values, directions) = self.lanes_without_clearance(position, arms);
         let least = &self.thresholds;
         let good = values.reachable
@@ -260,8 +264,10 @@ impl<L: Leg> PoseChecker<L> {
             & values.k_xy.at_least(sign.splat(least.k_xy))
             & values.k_phi_z.at_least(sign.splat(least.k_phi_z))
             & values.k_z.at_least(sign.splat(least.k_z));
-        let good = match least.further.required() {
-            Some(limits) if V::any(good) => good & self.within_further_lanes(limits, &values, position, arms),
+        let good = match &least.further {
+            Some(limits) if FURTHER && V::any(good) => {
+                good & self.within_further_lanes(limits, &values, position, arms)
+            }
             _ => good,
         };
         match least.clearance {

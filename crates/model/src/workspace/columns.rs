@@ -78,7 +78,7 @@ impl ValueColumns {
         let length_if = |required: bool| if required { length } else { 0 };
         self.clearance.resize(length_if(thresholds.clearance.is_some()), 0.0);
         for column in &mut self.further {
-            column.resize(length_if(thresholds.further.required().is_some()), 0.0);
+            column.resize(length_if(thresholds.further.is_some()), 0.0);
         }
         for column in [
             &mut self.reachable,
@@ -160,7 +160,7 @@ impl ValueColumns {
     /// Returns the ratios of the displacement allowed to that at the first `count` poses, as [`Self::stiffness_ratios`] does
     /// for the stiffness; none if the study does not bound the displacement.
     pub(crate) fn displacement_ratios(&self, thresholds: &Thresholds, count: usize) -> Vec<f64> {
-        let Some(limit) = thresholds.further.displacement else {
+        let Some(limit) = thresholds.further.and_then(|further| further.displacement) else {
             return Vec::new();
         };
         let ratio = |(displacement, reachable): (&f64, &f64)| {

@@ -22,14 +22,6 @@ pub struct FurtherLimits {
     pub displacement: Option<f64>,
 }
 
-impl FurtherLimits {
-    /// Returns the limits if there is any.
-    #[inline(always)]
-    pub fn required(&self) -> Option<&Self> {
-        (*self != Self::default()).then_some(self)
-    }
-}
-
 /// Further values of a reachable pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FurtherValues {

@@ -199,7 +199,7 @@ impl<L: Leg> PoseChecker<L> {
                 .select(determinant.exceeds(sign.splat(0.0)), determinant.smaller(vanishing))
                 .larger(none),
         );
-        if let Some(further) = least.further.required() {
+        if let Some(further) = &least.further {
             let found = self.further_lanes(position, arms);
             if let Some(limit) = further.limit_margin {
                 worst = worst.smaller(((values.limit_margin - sign.splat(limit)) * per_length).larger(none));

@@ -246,19 +246,19 @@ fn limits_of_poses_bound_the_workspace() {
         })
         .evaluate(&design, GridChoice::Reference)
     };
-    let stiff = bounded(|settings| settings.thresholds.further.displacement = Some(6e-5));
+    let stiff = bounded(|settings| settings.thresholds.further.get_or_insert_default().displacement = Some(6e-5));
     assert!(stiff.quantities.get(Quantity::DisplacementMax).expect("a value") <= 6e-5);
     assert!(stiff.workspace_radius > 0.0 && stiff.workspace_radius < free.workspace_radius);
-    let driven = bounded(|settings| settings.thresholds.further.transmission = Some(0.5));
+    let driven = bounded(|settings| settings.thresholds.further.get_or_insert_default().transmission = Some(0.5));
     assert!(driven.quantities.get(Quantity::TransmissionMin).expect("a value") >= 0.5);
     assert!(driven.workspace_radius > 0.0 && driven.workspace_radius < free.workspace_radius);
-    let inside = bounded(|settings| settings.thresholds.further.limit_margin = Some(0.3));
+    let inside = bounded(|settings| settings.thresholds.further.get_or_insert_default().limit_margin = Some(0.3));
     assert!(inside.constraint(Constraint::Reach).value.expect("a value") >= 0.3);
     // The same limits of a prescribed disc.
     let radius = driven.workspace_radius;
     for (share, holds) in [(0.999, true), (1.001, false)] {
         let model = strategies::model(|settings| {
-            settings.thresholds.further.transmission = Some(0.5);
+            settings.thresholds.further.get_or_insert_default().transmission = Some(0.5);
             settings.workspace.region = Region::Disc(share * radius);
         });
         assert_eq!(
