@@ -200,12 +200,33 @@ impl<'a> Canvas<'a> {
             let offset = (unit(f64::from(k) * std::f64::consts::FRAC_PI_6) * cylinder.radius).extend(0.0);
             strips.push(vec![point(low + offset), point(high + offset)]);
         }
+        let at = high + DVec3::new(-cylinder.radius, cylinder.radius, 0.0) * 0.84;
+        self.outlined(root, strips, at, label)
+    }
+
+    /// Draws a prescribed region that is a polygon, as a prism between two heights.
+    pub(super) fn prism(&self, root: &str, corners: &[DVec2], heights: [f64; 2], label: &str) -> DrawResult {
+        let closed = || corners.iter().chain(corners.first());
+        let mut strips: Vec<Vec<_>> = heights
+            .iter()
+            .map(|&z| closed().map(|corner| point(corner.extend(z))).collect())
+            .collect();
+        let upright = |corner: &DVec2| heights.map(|z| point(corner.extend(z))).to_vec();
+        strips.extend(corners.iter().map(upright));
+        let left = corners
+            .iter()
+            .copied()
+            .reduce(|a, b| if b.x - b.y < a.x - a.y { b } else { a });
+        self.outlined(root, strips, left.unwrap_or_default().extend(heights[1]), label)
+    }
+
+    /// Draws the outline of the workspace, of which the first two strips are its faces, with a label.
+    fn outlined(&self, root: &str, strips: Vec<Vec<[f32; 3]>>, at: DVec3, label: &str) -> DrawResult {
         let count = strips.len();
         let lines = LineStrips3D::new(strips)
             .with_colors(std::iter::repeat_n(rgb(colors::WORKSPACE), count))
             .with_radii((0..count).map(|k| Radius::new_ui_points(if k < 2 { 1.6 } else { 0.7 })));
         self.row(&format!("{root}/outline"), &lines)?;
-        let at = high + DVec3::new(-cylinder.radius, cylinder.radius, 0.0) * 0.84;
         self.word(&format!("{root}/label"), at, label, colors::WORKSPACE)
     }
 

@@ -7,7 +7,8 @@ use super::draw::Canvas;
 use super::paths;
 use super::writer::RecordingError;
 use crate::scene::{
-    ConfigurationSpace, Field, Heatmap, HeatmapSettings, SolidShape, WorkspaceProof, manipulator, regular_workspace,
+    ConfigurationSpace, Field, Heatmap, HeatmapSettings, RegularCylinder, SolidShape, WorkspaceProof, manipulator,
+    region_corners, regular_workspace,
 };
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Design;
@@ -130,7 +131,8 @@ impl DrawnDesign<'_> {
         let floor = self.floor();
         let label = format!("R_w = {:.4} m", cylinder.radius);
         // Slightly above the heatmap, so that the line remains visible.
-        canvas.cylinder(paths::WORKSPACE, &cylinder, [0.97 * floor, DISC * floor], &label)?;
+        let heights = [0.97 * floor, DISC * floor];
+        self.outline(canvas, paths::WORKSPACE, &cylinder, heights, &label)?;
         let away = self.design().base_radius.max(1.3 * cylinder.radius);
         canvas.limits(paths::LIMITS, self.evaluation, DISC * floor, away)
     }
@@ -152,7 +154,29 @@ impl DrawnDesign<'_> {
             return Ok(());
         };
         let floor = self.floor();
-        canvas.cylinder(root, &cylinder, [0.97 * floor, DISC * floor], "")
+        self.outline(canvas, root, &cylinder, [0.97 * floor, DISC * floor], "")
+    }
+
+    /// Draws the region of the workspace: the disc, or the polygon that the study prescribes.
+    fn outline(
+        &self,
+        canvas: &Canvas<'_>,
+        root: &str,
+        cylinder: &RegularCylinder,
+        heights: [f64; 2],
+        label: &str,
+    ) -> Result<(), RecordingError> {
+        match region_corners(self.model) {
+            Some(corners) => {
+                let label = if label.starts_with("R_w") {
+                    "prescribed region"
+                } else {
+                    label
+                };
+                canvas.prism(root, &corners, heights, label)
+            }
+            None => canvas.cylinder(root, cylinder, heights, label),
+        }
     }
 
     /// Draws the axes and the regular workspace of the configuration space.
@@ -167,7 +191,13 @@ impl DrawnDesign<'_> {
         let height = |turn: f64| space.place(DVec2::ZERO, cylinder.phi + turn).z;
         let half = 0.5 * cylinder.phi_range;
         let label = format!("Δφ = {}°", self.model.workspace.rotation_range_deg);
-        canvas.cylinder(&root("cylinder"), &cylinder, [height(-half), height(half)], &label)
+        self.outline(
+            canvas,
+            &root("cylinder"),
+            &cylinder,
+            [height(-half), height(half)],
+            &label,
+        )
     }
 
     /// Draws the inverse condition number as layers stacked over φ: its heatmaps, or only their outlines.

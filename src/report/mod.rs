@@ -196,7 +196,7 @@ impl Report {
             [] => None,
             _ => Some(SearchFronts::new(moga2, &study, &model)),
         };
-        if study.workspace.certify {
+        if study.certifies() {
             tell("proving the workspaces");
             fronts.certify(&study, &model);
         }
@@ -278,6 +278,9 @@ fn common_study(sources: &[Source]) -> Result<Study, ReportError> {
         return Err(ReportError::NothingFeasible);
     };
     let mut study = first.study.clone();
+    if !study.asks_as_the_paper() || study.workspace.region.is_prescribed() {
+        return Err(ReportError::Question(first.name.clone()));
+    }
     for other in others {
         let theirs = &other.study;
         if let Some(key) = study.differing_key(theirs) {

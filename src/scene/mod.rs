@@ -34,4 +34,4 @@ pub use mesh::Mesh;
 pub use proof::{ProofCell, WorkspaceProof, workspace_proof};
 pub use shape::{Label, Line, Nearest, Part, Scene, Solid, SolidShape};
 pub use tour::{Tour, tour};
-pub use workspace::{ConfigurationSpace, RegularCylinder, regular_workspace};
+pub use workspace::{ConfigurationSpace, RegularCylinder, region_corners, regular_workspace};

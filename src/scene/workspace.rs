@@ -2,7 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use kinefront_model::evaluation::Evaluation;
+use kinefront_model::evaluation::{Evaluation, Model};
+use kinefront_model::workspace::Region;
 
 /// The regular workspace: a disc of positions of `P` over a range of orientations.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +27,17 @@ pub fn regular_workspace(evaluation: &Evaluation, rotation_range_deg: f64) -> Op
         phi: home.phi,
         phi_range: rotation_range_deg.to_radians(),
     })
+}
+
+/// Returns the corners of a prescribed region that is no disc, in the base frame \[m\].
+pub fn region_corners(model: &Model) -> Option<Vec<DVec2>> {
+    match &model.workspace.region {
+        Region::Polygon(polygon) => {
+            let corners = polygon.corners().iter();
+            Some(corners.map(|corner| model.workspace.centre + *corner).collect())
+        }
+        Region::Largest | Region::Disc(_) => None,
+    }
 }
 
 /// The space of `(x, y, φ)` with φ drawn upwards: the home orientation has height 0 and a quarter turn has height `R`.

@@ -198,7 +198,7 @@ struct Generation {
 }
 
 /// Number of the best designs that are verified when there is one objective.
-const RUNNERS_UP: usize = 64;
+const RUNNERS_UP: usize = 24;
 
 /// What a search has found so far; it follows from the rows alone.
 #[derive(Debug)]

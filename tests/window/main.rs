@@ -3,5 +3,6 @@
 mod exploring;
 mod files;
 mod panels;
+mod questions;
 mod scene;
 mod support;

@@ -103,9 +103,7 @@ pub fn best(candidates: Vec<Evaluated>, size: usize) -> Vec<Evaluated> {
 fn thinned(front: &[Objectives], size: usize) -> Vec<usize> {
     let points = scaled(front);
     let mut left: Vec<usize> = (0..points.len()).collect();
-    let is_best: Vec<bool> = (0..points.len())
-        .map(|place| points[place].iter().any(|fraction| *fraction == 0.0))
-        .collect();
+    let is_best: Vec<bool> = (0..points.len()).map(|place| points[place].contains(&0.0)).collect();
     let square = |a: usize, b: usize| -> f64 { points[a].iter().zip(&points[b]).map(|(a, b)| (a - b) * (a - b)).sum() };
     while left.len() > size {
         // The two smallest distances of each member.

@@ -1,9 +1,7 @@
-//! All evaluated designs of a run, stored in columns: about 200 bytes per design, so that a million fit in memory.
-
-use std::collections::BTreeMap;
+//! All evaluated designs of a run, stored in columns: about 350 bytes per design, so that a million fit in memory.
 
 use crate::study::{Column, Row};
-use kinefront_model::evaluation::{Constraint, Quantity, QuantitySet};
+use kinefront_model::evaluation::{Constraint, Quantity};
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, WorkingMode};
 use kinefront_optimize::Objectives;
 
@@ -22,14 +20,14 @@ pub struct Store {
     violation: Vec<f64>,
     /// Relative margins; NaN where the study does not require the constraint.
     margins: [Vec<f64>; Constraint::ALL.len()],
-    /// Clearance \[m\]; NaN where there is none.
-    clearance: Vec<f64>,
+    /// Smallest values of the constraints; NaN where there is none.
+    smallest: [Vec<f64>; Constraint::ALL.len()],
     /// One bit per constraint, set if the constraint is active.
     active: Vec<u8>,
     /// The objectives of the study, as they are minimised.
     objectives: Vec<Objectives>,
-    /// Quantities that the study names and that have no other column; NaN where a design has none.
-    quantities: BTreeMap<Quantity, Vec<f64>>,
+    /// Quantities that are computed only if the study names them; NaN where a design has none. Empty for all others.
+    quantities: [Vec<f64>; Quantity::COUNT],
 }
 
 impl Store {
@@ -62,34 +60,20 @@ impl Store {
         for (column, margin) in self.margins.iter_mut().zip(row.margins) {
             column.push(margin.unwrap_or(f64::NAN));
         }
-        self.clearance.push(row.clearance().unwrap_or(f64::NAN));
+        for (column, value) in self.smallest.iter_mut().zip(row.values) {
+            column.push(value.unwrap_or(f64::NAN));
+        }
         self.active.push(row.active);
         self.objectives.push(row.objectives);
-        for quantity in Quantity::all() {
-            if let Some(value) = row.quantities.get(quantity) {
-                let column = self.quantities.entry(quantity).or_default();
-                column.resize(self.active.len() - 1, f64::NAN);
-                column.push(value);
-            }
-        }
-        self.fill_quantities();
-    }
-
-    /// Fills in the values of quantities that the last designs do not have.
-    fn fill_quantities(&mut self) {
-        for column in self.quantities.values_mut() {
-            column.resize(self.active.len(), f64::NAN);
+        for quantity in Quantity::all().filter(|quantity| !quantity.is_always_known()) {
+            let value = row.quantities.get(quantity);
+            self.quantities[quantity as usize].push(value.unwrap_or(f64::NAN));
         }
     }
 
     /// Returns the objectives of design `id`, which must exist, as they are minimised.
     pub fn objectives(&self, id: usize) -> Objectives {
         self.objectives[id]
-    }
-
-    /// Returns the quantities that some design has and that have no column in every study.
-    pub fn further_quantities(&self) -> QuantitySet {
-        self.quantities.keys().copied().collect()
     }
 
     /// Moves the designs of `other` to the end of this store.
@@ -107,16 +91,14 @@ impl Store {
         for (column, more) in self.margins.iter_mut().zip(&mut other.margins) {
             column.append(more);
         }
-        self.clearance.append(&mut other.clearance);
-        let before = self.active.len();
+        for (column, more) in self.smallest.iter_mut().zip(&mut other.smallest) {
+            column.append(more);
+        }
         self.active.append(&mut other.active);
         self.objectives.append(&mut other.objectives);
-        for (quantity, mut more) in std::mem::take(&mut other.quantities) {
-            let column = self.quantities.entry(quantity).or_default();
-            column.resize(before, f64::NAN);
-            column.append(&mut more);
+        for (column, more) in self.quantities.iter_mut().zip(&mut other.quantities) {
+            column.append(more);
         }
-        self.fill_quantities();
     }
 
     /// Returns all values of design `id`, if it exists.
@@ -128,17 +110,15 @@ impl Store {
             mass: self.mass[id],
             radius: self.radius[id],
             phi: Some(self.phi[id]).filter(|phi| phi.is_finite()),
-            values: Constraint::ALL.map(|constraint| match constraint {
-                Constraint::Clearance => Some(self.clearance[id]).filter(|clearance| clearance.is_finite()),
-                _ => None,
-            }),
+            values: std::array::from_fn(|k| Some(self.smallest[k][id]).filter(|value| value.is_finite())),
             violation: self.violation[id],
             margins: std::array::from_fn(|k| Some(self.margins[k][id]).filter(|margin| margin.is_finite())),
             active: self.active[id],
             quantities: self
                 .quantities
                 .iter()
-                .map(|(quantity, values)| (*quantity, Some(values[id])))
+                .zip(Quantity::all())
+                .map(|(column, quantity)| (quantity, column.get(id).copied()))
                 .collect(),
             objectives: self.objectives[id],
         })
@@ -171,16 +151,16 @@ impl Store {
             Column::Dimension(variable) => &self.values[variable as usize],
             Column::HomePhi => &self.phi,
             Column::Violation => &self.violation,
-            Column::Value(Constraint::Clearance) => &self.clearance,
+            Column::Value(constraint) => &self.smallest[constraint as usize],
             Column::Margin(constraint) => &self.margins[constraint as usize],
-            Column::Quantity(quantity) => self.quantities.get(&quantity).map_or(&[], Vec::as_slice),
+            Column::Quantity(quantity) => &self.quantities[quantity as usize],
             _ => &[],
         }
     }
 
     /// Returns the memory in use \[bytes\].
     pub fn bytes(&self) -> usize {
-        let numbers = DESIGN_VARIABLES.len() + 5 + Constraint::ALL.len() + self.quantities.len();
+        let numbers = DESIGN_VARIABLES.len() + 4 + 2 * Constraint::ALL.len() + Quantity::COUNT / 2;
         let per_row = 1 + size_of::<WorkingMode>() + 4 + 1 + 8 * numbers + size_of::<Objectives>();
         self.mass.capacity() * per_row
     }

@@ -152,7 +152,7 @@ fn filter(ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
     egui::ComboBox::from_id_salt("add range")
         .selected_text("add a range")
         .show_ui(ui, |ui| {
-            for quantity in Column::quantities(session.store().further_quantities()) {
+            for quantity in Column::quantities(session.study().named_quantities()) {
                 if !edited.ranges.contains_key(&*quantity.name())
                     && ui.selectable_label(false, quantity.title()).clicked()
                 {

@@ -1,6 +1,6 @@
 //! The front panel: a table of the front, which can be sorted and searched, with stars and notes.
 
-use crate::study::Column;
+use crate::study::{Column, Study};
 use egui::{Align, Label, RichText, Sense, Ui};
 use egui_extras::{TableBuilder, TableRow};
 
@@ -57,15 +57,24 @@ struct Clicked {
 }
 
 /// The columns that sort the table, with their titles.
-fn sortable() -> Vec<(Key, String)> {
+fn sortable(study: &Study) -> Vec<(Key, String)> {
     let number = |column: Column| (Key::Number(column), column.title());
+    let always = [
+        Column::Mass,
+        Column::WorkspaceRadius,
+        Column::Value(Constraint::Clearance),
+    ];
+    let named = study.named_quantities().iter().map(Column::of_quantity);
+    let others: Vec<Column> = named.filter(|column| !always.contains(column)).collect();
     [
         (Key::Star, "★".to_owned()),
         (Key::Id, "#".to_owned()),
         (Key::Architecture, "architecture".to_owned()),
     ]
     .into_iter()
-    .chain([Column::Mass, Column::WorkspaceRadius, Column::HomePhi].map(number))
+    .chain([Column::Mass, Column::WorkspaceRadius].map(number))
+    .chain(others.into_iter().map(number))
+    .chain([number(Column::HomePhi)])
     .chain(DESIGN_VARIABLES.map(|variable| number(Column::Dimension(variable))))
     .chain([number(Column::Value(Constraint::Clearance))])
     .collect()
@@ -121,7 +130,7 @@ impl FrontPanel {
         selected: Option<usize>,
         clicked: &mut Clicked,
     ) {
-        let columns = sortable();
+        let columns = sortable(session.study());
         let mut table = TableBuilder::new(ui)
             .id_salt("front")
             .striped(true)

@@ -1,6 +1,6 @@
 //! Parallel coordinates of variables, objectives and margins, with a brush on every axis.
 
-use crate::study::Column;
+use crate::study::{Column, Study};
 use kinefront_model::evaluation::Better;
 use std::sync::Arc;
 
@@ -37,9 +37,11 @@ struct Drawn {
     dark: bool,
 }
 
-fn axes(model: &Model) -> Vec<Column> {
+fn axes(study: &Study, model: &Model) -> Vec<Column> {
     let mut axes: Vec<Column> = DESIGN_VARIABLES.map(Column::Dimension).to_vec();
     axes.extend([Column::Mass, Column::WorkspaceRadius]);
+    let named = study.named_quantities().iter().map(Column::of_quantity);
+    axes.extend(named.filter(|column| !matches!(column, Column::Mass | Column::WorkspaceRadius)));
     axes.extend(
         Constraint::required(&model.thresholds)
             .filter(|&constraint| constraint != Constraint::DeterminantSign)
@@ -60,7 +62,7 @@ impl ParallelPanel {
                 ui.ctx().copy_text(session.document().filter.to_text());
             }
         });
-        let axes = axes(session.model());
+        let axes = axes(session.study(), session.model());
         let (rect, response) = ui.allocate_exact_size(
             ui.available_size().max(Vec2::new(300.0, 120.0)),
             Sense::click_and_drag(),

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::plan::{Plan, card, paint};
 use crate::explorer::{Session, theme};
-use crate::scene::{Tour, manipulator, regular_workspace, tour};
+use crate::scene::{Tour, manipulator, region_corners, regular_workspace, tour};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 
@@ -157,7 +157,12 @@ impl PosePanel {
             .and_then(|known| regular_workspace(&known.evaluation, session.model().workspace.rotation_range_deg));
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 4.0, theme::ground(ui.visuals().dark_mode));
-        if let Some(cylinder) = workspace {
+        let corners = workspace.and_then(|_| region_corners(session.model()));
+        if let Some(corners) = corners {
+            // The outline may be concave, so that it is not filled.
+            let outline: Vec<_> = corners.into_iter().map(|corner| plan.screen(corner)).collect();
+            painter.add(egui::Shape::closed_line(outline, Stroke::new(1.2, theme::GOOD)));
+        } else if let Some(cylinder) = workspace {
             let centre = plan.screen(cylinder.centre);
             let radius = (cylinder.radius * plan.scale) as f32;
             painter.circle(

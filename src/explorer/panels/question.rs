@@ -74,12 +74,8 @@ fn objectives(ui: &mut Ui, study: &mut Study) {
     if study.objectives.len() < 3 {
         let add = ui.button("Add an objective").on_hover_text("up to three objectives");
         let named = |quantity: &Quantity| study.objectives.iter().any(|other| other.key() == quantity.entry().key);
-        let next = [Quantity::Footprint, Quantity::Mass, Quantity::DexterityMean].into_iter();
-        if let Some(quantity) = next
-            .filter(|quantity| !named(quantity))
-            .next()
-            .filter(|_| add.clicked())
-        {
+        let mut next = [Quantity::Footprint, Quantity::Mass, Quantity::DexterityMean].into_iter();
+        if let Some(quantity) = next.find(|quantity| !named(quantity)).filter(|_| add.clicked()) {
             study.objectives.push(choice(quantity, quantity.entry().better));
         }
     }

@@ -102,9 +102,10 @@ impl SpacePanel {
             scale: 0.27 * rect.size().min_elem(),
             view: self.view,
         };
-        frame(ui, &painter, &projection, &axes);
+        frame(ui, &painter, &projection);
         cloud(ui, &painter, &projection, &axes, session);
         let nearest = front(ui, &painter, &projection, &axes, session, &response, rect);
+        titles(ui, &painter, &projection, &axes);
         if let Some(id) = nearest.filter(|_| response.clicked()) {
             session.select(id);
         }
@@ -125,8 +126,8 @@ fn place(axes: &[SpaceAxis; 3], row: &Row) -> Option<[f64; 3]> {
     Some([at(0)?, at(1)?, at(2)?])
 }
 
-/// Draws the edges of the cube that meet at its first corner, and their titles with both ends of the ranges.
-fn frame(ui: &Ui, painter: &egui::Painter, projection: &Projection, axes: &[SpaceAxis; 3]) {
+/// Draws the edges of the cube that meet at its first corner, and those of the faces that they span.
+fn frame(ui: &Ui, painter: &egui::Painter, projection: &Projection) {
     let ink = ui.visuals().text_color();
     let weak = Stroke::new(1.0, ui.visuals().weak_text_color().gamma_multiply(0.5));
     let corner = |k: usize, end: f64| {
@@ -134,7 +135,7 @@ fn frame(ui: &Ui, painter: &egui::Painter, projection: &Projection, axes: &[Spac
         at[k] = end;
         at
     };
-    for (k, axis) in axes.iter().enumerate() {
+    for k in 0..3 {
         let ends = [corner(k, -1.0), corner(k, 1.0)].map(|at| projection.screen(at));
         painter.line_segment(ends, Stroke::new(1.2, ink));
         // The opposite edges of both faces at the first corner.
@@ -144,15 +145,23 @@ fn frame(ui: &Ui, painter: &egui::Painter, projection: &Projection, axes: &[Spac
             (from[k], to[k]) = (-1.0, 1.0);
             painter.line_segment([projection.screen(from), projection.screen(to)], weak);
         }
-        let font = FontId::proportional(12.0);
-        let beyond = projection.screen(corner(k, 1.22));
-        painter.text(beyond, Align2::CENTER_CENTER, axis.column.title(), font.clone(), ink);
-        for (end, value) in [(-1.0, axis.low), (1.0, axis.high)] {
-            let mut at = corner(k, end);
-            at[(k + 1) % 3] = -1.1;
-            let text = theme::number(value);
-            painter.text(projection.screen(at), Align2::CENTER_CENTER, text, font.clone(), ink);
-        }
+    }
+}
+
+/// Writes the titles of the axes with their ranges, over the points.
+fn titles(ui: &Ui, painter: &egui::Painter, projection: &Projection, axes: &[SpaceAxis; 3]) {
+    let ink = ui.visuals().strong_text_color();
+    for (k, axis) in axes.iter().enumerate() {
+        let range = format!("{} … {}", theme::number(axis.low), theme::number(axis.high));
+        let log = if axis.column.is_logarithmic() { ", log" } else { "" };
+        let text = format!("{}\n{range}{log}", axis.column.title());
+        let mut beyond = [-1.0; 3];
+        beyond[k] = 1.2;
+        let galley = painter.layout_no_wrap(text, FontId::proportional(12.0), ink);
+        let corner = projection.screen(beyond) - 0.5 * galley.size();
+        let behind = Rect::from_min_size(corner, galley.size()).expand(2.0);
+        painter.rect_filled(behind, 2.0, ui.visuals().panel_fill.gamma_multiply(0.7));
+        painter.galley(corner, galley, ink);
     }
 }
 

@@ -116,7 +116,7 @@ fn follow_sections(table: &mut Table) {
         if is_hollow && !has_wall {
             section.insert(WALLS[0].to_owned(), Value::Float(0.2));
         } else if !is_hollow {
-            section.retain(|key, _| !WALLS.iter().any(|wall| *wall == key));
+            section.retain(|key, _| !WALLS.contains(&key));
         }
     }
 }

@@ -255,7 +255,7 @@ fn verify_requests(shared: &Shared) {
                     *known = Known::verified(Arc::clone(&evaluation));
                 }
             });
-            if !study.workspace.certify {
+            if !study.certifies() {
                 continue;
             }
             // A newer design ends a proof that takes long.

@@ -187,7 +187,11 @@ impl Column {
             .chain(DESIGN_VARIABLES.map(Self::Dimension))
             .chain(Constraint::ALL.map(Self::Margin))
             .chain([Self::Value(Constraint::Clearance), Self::HomePhi, Self::Violation])
-            .chain(Self::further(further))
+            .chain(further.iter().map(Self::of_quantity).filter(|column| {
+                let is_listed =
+                    [Self::Mass, Self::WorkspaceRadius, Self::Value(Constraint::Clearance)].contains(column);
+                !is_listed
+            }))
     }
 
     /// The column of a name.
@@ -289,7 +293,10 @@ impl Column {
             Self::HomePhi => "φ_c".into(),
             Self::Margin(constraint) => format!("margin {}", constraint.id()).into(),
             Self::Value(Constraint::Clearance) => "clearance".into(),
-            Self::Value(constraint) => format!("value {}", constraint.id()).into(),
+            Self::Value(constraint) => match Quantity::of_constraint(constraint) {
+                Some(quantity) => quantity.entry().label.into(),
+                None => format!("value {}", constraint.id()).into(),
+            },
             Self::Quantity(quantity) => quantity.entry().label.into(),
             _ => self.name(),
         }
@@ -329,6 +336,7 @@ impl Column {
             self,
             Self::Mass
                 | Self::Violation
+                | Self::Value(Constraint::StiffnessXy | Constraint::StiffnessZ | Constraint::StiffnessPhiZ)
                 | Self::Quantity(Quantity::LegsMass | Quantity::PlatformMass | Quantity::DisplacementMax)
         )
     }

@@ -157,6 +157,11 @@ pub enum CertifyError {
     /// A bar is so thin or so thick that its compliance has no usable value.
     #[error("a bar of the design is so thin or so thick that its stiffness has no usable value")]
     Degenerate,
+    /// The study bounds values that proofs do not cover.
+    #[error(
+        "the study bounds the reach, the transmission or the displacement at every pose, which proofs do not cover"
+    )]
+    Uncovered,
     /// An option is out of range.
     #[error("{name} is {value}; it must be {expected}")]
     Option {
@@ -218,6 +223,9 @@ impl Model {
         options: &CertifyOptions,
         observer: &mut dyn ProofObserver,
     ) -> Result<Certificate, CertifyError> {
+        if self.thresholds.further.is_some() {
+            return Err(CertifyError::Uncovered);
+        }
         let check = |name, value: f64, valid: bool, expected| {
             if valid {
                 Ok(())

@@ -254,6 +254,15 @@ fn limits_of_poses_bound_the_workspace() {
     assert!(driven.workspace_radius > 0.0 && driven.workspace_radius < free.workspace_radius);
     let inside = bounded(|settings| settings.thresholds.further.get_or_insert_default().limit_margin = Some(0.3));
     assert!(inside.constraint(Constraint::Reach).value.expect("a value") >= 0.3);
+    // A proof that leaves a bound out would prove too much.
+    let model = strategies::model(|settings| {
+        settings.thresholds.further.get_or_insert_default().transmission = Some(0.5);
+    });
+    let options = kinefront_model::certify::CertifyOptions::of(&driven).expect("a workspace");
+    assert_eq!(
+        model.certify(&design, &options),
+        Err(kinefront_model::certify::CertifyError::Uncovered)
+    );
     // The same limits of a prescribed disc.
     let radius = driven.workspace_radius;
     for (share, holds) in [(0.999, true), (1.001, false)] {

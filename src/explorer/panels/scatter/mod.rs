@@ -194,7 +194,7 @@ impl Scatter {
                     .selected_text(axis.quantity.title())
                     .width(130.0)
                     .show_ui(ui, |ui| {
-                        for quantity in Column::quantities(session.store().further_quantities()) {
+                        for quantity in Column::quantities(session.study().named_quantities()) {
                             if ui
                                 .selectable_label(axis.quantity == quantity, quantity.title())
                                 .clicked()
