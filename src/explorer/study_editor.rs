@@ -133,7 +133,7 @@ impl StudyEditor {
         self.text = text;
         self.faults.clear();
         self.rejected.clear();
-        match Study::parse(&self.text, "study") {
+        match self.parse(&self.text) {
             Ok(study) => self.study = study,
             Err(StudyError::Values { faults, .. }) => self.faults = faults,
             Err(StudyError::Shape { message, key, span, .. }) => {
@@ -149,6 +149,12 @@ impl StudyEditor {
                 message: error.to_string(),
             }),
         }
+    }
+
+    /// Parses a text whose paths are relative to the folder of the study's file.
+    fn parse(&self, text: &str) -> Result<Study, StudyError> {
+        let folder = self.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+        Study::parse_in(folder, text, "study")
     }
 
     /// Changes the study by hand; an invalid change is reported as faults and not made.
@@ -173,9 +179,7 @@ impl StudyEditor {
         let edited = || {
             let (before, after) = (Table::try_from(&self.study).ok()?, Table::try_from(study).ok()?);
             let text = replace_values(&self.text, &before, &after)?;
-            Study::parse(&text, "study")
-                .is_ok_and(|found| found == *study)
-                .then_some(text)
+            self.parse(&text).is_ok_and(|found| found == *study).then_some(text)
         };
         edited().unwrap_or_else(|| toml::to_string(study).unwrap_or_default())
     }
@@ -291,5 +295,21 @@ mod tests {
         editor.change(|study| study.requirements.clearance_min_m = None);
         assert!(!editor.text().contains("clearance_min_m"), "{}", editor.text());
         assert_eq!(editor.study().optimizer.front_de.scale, 0.4);
+    }
+
+    #[test]
+    fn a_catalogue_is_read_beside_the_file_of_the_study() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (path, catalogue) = (folder.path().join("mine.toml"), folder.path().join("tubes.csv"));
+        let text = "[sections.legs]\nkind = \"tube\"\ncatalogue = \"tubes.csv\"\n";
+        std::fs::write(&path, text).expect("a study");
+        let error = StudyEditor::read(&path).expect_err("no catalogue").to_string();
+        assert!(error.contains("sections.legs.catalogue"), "{error}");
+        std::fs::write(&catalogue, "name,outer_mm,wall_mm,kg_per_m\n40 x 2,40,2,1.87\n").expect("a catalogue");
+        let mut editor = StudyEditor::read(&path).expect("a study");
+        editor.set_text(format!("{text}# as typed\n"));
+        assert!(editor.faults().next().is_none(), "{:?}", editor.faults().next());
+        let sections = editor.study().sections.cross_sections();
+        assert_eq!(sections.legs.mass_per_length(7850.0, 0.02), 1.87);
     }
 }

@@ -96,7 +96,10 @@ impl Study {
     }
 
     /// Parses a study whose paths are relative to `folder`.
-    fn parse_in(folder: &Path, text: &str, name: &str) -> Result<Self, StudyError> {
+    ///
+    /// # Errors
+    /// As [`Study::read`].
+    pub fn parse_in(folder: &Path, text: &str, name: &str) -> Result<Self, StudyError> {
         if let Some((line, text)) = (1..).zip(text.lines()).find(|(_, text)| text.len() > LONGEST_LINE) {
             return Err(StudyError::Line {
                 name: name.to_owned(),
