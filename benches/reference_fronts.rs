@@ -19,7 +19,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use kinefront::study::{BUILTIN, DesignProblem, Study};
-use kinefront_model::evaluation::{BarRanges, Evaluation, GridChoice, Model, WorkspaceTarget};
+use kinefront_model::evaluation::{Evaluation, GridChoice, Model, SizingRanges, WorkspaceTarget};
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design};
 use kinefront_optimize::{
     Archive, FrontDe, FrontDeSettings, Nsga2, Nsga2Settings, Objectives, Outcome, hypervolume, run, spread,
@@ -175,7 +175,7 @@ struct Search {
     architecture: Architecture,
     model: Model,
     ranges: [[f64; 2]; 5],
-    bars: BarRanges,
+    bars: SizingRanges,
 }
 
 impl Search {
@@ -188,11 +188,12 @@ impl Search {
         Self {
             model: study.model().expect("a valid study"),
             ranges,
-            bars: BarRanges {
+            bars: SizingRanges {
                 leg: ranges[3],
                 platform: ranges[4],
                 listed: [None, None],
                 is_exact: false,
+                scale: [1.0; 2],
             },
             architecture,
             study,

@@ -5,7 +5,7 @@
 
 use super::{Study, Tie};
 use kinefront_model::evaluation::{
-    BarRanges, Better, Bound, Evaluation, GridChoice, Model, Objective, Quantity, WorkspaceTarget,
+    Better, Bound, Evaluation, GridChoice, Model, Objective, Quantity, QuantityLimit, SizingRanges, WorkspaceTarget,
 };
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, DesignError, DesignVariable, WorkingMode};
 use kinefront_model::workspace::GridError;
@@ -13,6 +13,13 @@ use kinefront_optimize::{Candidate, Objectives, Outcome, Problem, Target, Variab
 
 /// Variables that are sized.
 const BARS: [DesignVariable; 2] = [DesignVariable::LegBarRadius, DesignVariable::PlatformBarRadius];
+
+/// Variables that change when a design is scaled.
+const LENGTHS: [DesignVariable; 3] = [
+    DesignVariable::BaseRadius,
+    DesignVariable::PlatformRadius,
+    DesignVariable::LinkLength,
+];
 
 /// The optimization problem of a study, with designs encoded as vectors of values.
 ///
@@ -116,16 +123,19 @@ impl DesignProblem {
         self.model.evaluate(design, GridChoice::Reference)
     }
 
-    /// Whether a design is one at which a candidate is evaluated: its values are those of the candidate, but for the bars
-    /// if the candidate is completed.
+    /// Whether a design is one at which a candidate is evaluated: its values are those of the candidate, but for the bars, and
+    /// the lengths if the study leaves the scale open, if the candidate is completed.
     pub fn follows(&self, candidate: &Candidate, design: &Design) -> bool {
         let Ok(asked) = self.design(&candidate.x) else {
             return false;
         };
-        let bars = BARS;
+        let mut completed = BARS.to_vec();
+        if self.may_scale() {
+            completed.extend(LENGTHS);
+        }
         let free = |variable: DesignVariable| {
-            let follows_bars = self.ties[variable as usize].is_some_and(|tie| bars.contains(&tie.source));
-            candidate.target.is_some() && (bars.contains(&variable) || follows_bars)
+            let follows = self.ties[variable as usize].is_some_and(|tie| completed.contains(&tie.source));
+            candidate.target.is_some() && (completed.contains(&variable) || follows)
         };
         let same = |variable: &DesignVariable| {
             let [asked, found] = [&asked, design].map(|design| design.values()[*variable as usize]);
@@ -167,28 +177,69 @@ impl DesignProblem {
         objectives.iter().any(is_mass) && !objectives.iter().any(asks_for_stiffness)
     }
 
-    fn bar_ranges(&self) -> BarRanges {
+    /// Whether a prescribed region and least mass determine how large a geometry is: no value but the mass and what the machine
+    /// needs of space depends on the scale of a geometry that holds the region.
+    fn may_scale(&self) -> bool {
+        let grows_with_scale = |limit: &QuantityLimit| {
+            let quantities = [
+                Quantity::Mass,
+                Quantity::LegsMass,
+                Quantity::PlatformMass,
+                Quantity::Footprint,
+            ];
+            matches!(limit.bound, Bound::AtMost(_)) && quantities.contains(&limit.quantity)
+        };
+        let is_free = |length: &DesignVariable| {
+            let follows_bars = self.ties[*length as usize].is_some_and(|tie| BARS.contains(&tie.source));
+            self.listed[*length as usize].is_none() && !follows_bars
+        };
+        self.is_prescribed
+            && self.model.objectives.len() == 1
+            && self.seeks_light_bars()
+            && self.model.limits.iter().all(grows_with_scale)
+            && LENGTHS.iter().all(is_free)
+    }
+
+    /// Returns what sizing a design may change.
+    fn sizing_ranges(&self, design: &Design) -> SizingRanges {
         let [leg, platform] = BARS.map(|bar| self.ranges[bar as usize]);
-        BarRanges {
+        let factors = LENGTHS.map(|length| {
+            let value = design.values()[length as usize];
+            self.ranges[length as usize].map(|bound| bound / value)
+        });
+        let scale = if self.may_scale() {
+            let [least, most] = [0, 1].map(|end| factors.map(|range| range[end]));
+            [
+                least.into_iter().fold(0.0, f64::max),
+                most.into_iter().fold(f64::INFINITY, f64::min),
+            ]
+        } else {
+            [1.0; 2]
+        };
+        SizingRanges {
             leg,
             platform,
             listed: BARS.map(|bar| self.listed[bar as usize].clone()),
             is_exact: self.model.objectives.len() == 1,
+            scale,
         }
     }
 
-    /// Evaluates a design on the fine grid. Bars of a design for a prescribed region that do not carry there, because they were
-    /// sized for the poses of the reference grid, are sized again; the design is then another one.
+    /// Evaluates a design on the fine grid. A design for a prescribed region that does not hold it there, because it was sized for
+    /// the poses of the reference grid, is sized again; it is then another one.
     pub fn verify(&self, design: &Design) -> Evaluation {
         let evaluation = self.model.evaluate(design, GridChoice::Fine);
         if evaluation.is_feasible() || !self.is_prescribed || !self.seeks_light_bars() {
             return evaluation;
         }
         let target = WorkspaceTarget::Prescribed(GridChoice::Fine);
-        let resized = self.model.sized(design, &self.bar_ranges(), target).and_then(|sized| {
-            let values = self.with_ties_raised(&sized);
-            Design::new(design.architecture, design.working_mode, values).ok()
-        });
+        let resized = self
+            .model
+            .sized(design, &self.sizing_ranges(design), target)
+            .and_then(|sized| {
+                let values = self.with_ties_raised(&sized);
+                Design::new(design.architecture, design.working_mode, values).ok()
+            });
         match resized.map(|design| self.model.evaluate(&design, GridChoice::Fine)) {
             Some(resized) if resized.is_feasible() => resized,
             _ => evaluation,
@@ -235,7 +286,7 @@ impl Problem for DesignProblem {
     }
 
     /// Sets the lightest bars for the geometry in `x` that provide the workspace radius of the target, or the region that the
-    /// study prescribes. For the target [`Target::Best`], or for a radius that the geometry does not allow, the bars are sized
+    /// study prescribes, and for the latter also the scale of the geometry if the mass alone is sought. For the target [`Target::Best`], or for a radius that the geometry does not allow, the bars are sized
     /// for the largest radius that it allows, or for that which a limit asks for. Bars are not sized where thin ones are not
     /// what the study seeks.
     fn complete(&self, x: &[f64], target: Target) -> Option<Vec<f64>> {
@@ -243,7 +294,7 @@ impl Problem for DesignProblem {
             return None;
         }
         let design = self.design(x).ok()?;
-        let ranges = self.bar_ranges();
+        let ranges = self.sizing_ranges(&design);
         let sized = |target| self.model.sized(&design, &ranges, target);
         let sized = match target {
             _ if self.is_prescribed => sized(WorkspaceTarget::Prescribed(GridChoice::Reference)),
@@ -257,10 +308,19 @@ impl Problem for DesignProblem {
         }?;
         let mut x = x.to_vec();
         let values = self.with_ties_raised(&sized);
-        for bar in BARS {
-            x[1 + bar as usize] = values[bar as usize];
+        for variable in DESIGN_VARIABLES {
+            if BARS.contains(&variable) || self.may_scale() {
+                x[1 + variable as usize] = values[variable as usize];
+            }
         }
         Some(x)
+    }
+
+    fn determined_variables(&self) -> Vec<usize> {
+        let bars = BARS.into_iter().filter(|_| self.seeks_light_bars());
+        // With the scale, one length follows from the others.
+        let scale = self.may_scale().then_some(DesignVariable::BaseRadius);
+        bars.chain(scale).map(|variable| 1 + variable as usize).collect()
     }
 
     fn completed(&self, candidate: Candidate) -> Vec<f64> {

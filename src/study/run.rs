@@ -28,7 +28,7 @@ use super::{
     StudySearch, Subscriber, TableRow,
 };
 use kinefront_model::evaluation::Evaluation;
-use kinefront_optimize::{Archive, Objectives, hypervolume, spread};
+use kinefront_optimize::{Archive, ArchiveMember, Objectives, hypervolume, spread};
 
 /// Starts the run of a study on its own thread.
 ///
@@ -244,7 +244,8 @@ fn verify(
     let mut archive = Archive::default();
     let mut verified: BTreeMap<usize, FrontMember> = BTreeMap::new();
     let mut done = 0;
-    for part in front.chunks(4 * search.threads()) {
+    let is_single = study.objectives.len() == 1;
+    'parts: for part in front.chunks(if is_single { 1 } else { 4 } * search.threads()) {
         publisher.send(Event::Verifying { done, total });
         let evaluate = |entry: &Arc<TableRow>| {
             if control.is_abandoned() {
@@ -254,6 +255,11 @@ fn verify(
         };
         let evaluations: Option<Vec<Evaluation>> = search.pool.install(|| part.par_iter().map(evaluate).collect());
         for (entry, evaluation) in part.iter().zip(evaluations?) {
+            // Of runners-up, only those are of interest that are better than what holds on the fine grid.
+            let settles = |member: &ArchiveMember| member.objectives[0] <= entry.row.objectives[0];
+            if is_single && archive.iter().any(settles) {
+                break 'parts;
+            }
             let mut id = entry.id;
             if evaluation.design != entry.row.design {
                 // A design whose bars were sized again is not one of the search.

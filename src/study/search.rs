@@ -197,8 +197,12 @@ struct Generation {
     rows: Vec<Row>,
 }
 
-/// Number of the best designs that are verified when there is one objective.
+/// Largest number of designs that are verified when there is one objective.
 const RUNNERS_UP: usize = 24;
+
+/// Relative excess of the first runner-up over the best objective; that of each further one is at least twice as large. A search
+/// that has converged ends with many copies of the best design, all of which may miss a constraint on the fine grid.
+const LEAST_EXCESS: f64 = 1e-7;
 
 /// What a search has found so far; it follows from the rows alone.
 #[derive(Debug)]
@@ -206,7 +210,7 @@ pub(super) struct Found {
     pub archive: Archive,
     /// The members of the archive, in its order.
     front: Vec<Arc<TableRow>>,
-    /// With one objective, the best designs, best first; otherwise empty.
+    /// With one objective, the best design and others ever farther from it; otherwise empty.
     runners_up: Vec<Arc<TableRow>>,
     pub history: Vec<GenerationSummary>,
     pub evaluated: usize,
@@ -280,8 +284,8 @@ impl Found {
         &self.front
     }
 
-    /// The designs of which the verified front consists: those of the front, and with one objective the next best ones, because
-    /// the best one may not hold on the fine grid.
+    /// The designs of which the verified front consists: those of the front, and with one objective the runners-up, because the best
+    /// one may not hold on the fine grid.
     pub fn candidates(&self) -> Vec<Arc<TableRow>> {
         let runners_up = self
             .runners_up
@@ -290,7 +294,7 @@ impl Found {
         self.front.iter().chain(runners_up).cloned().collect()
     }
 
-    /// Keeps the best designs of a search with one objective.
+    /// Keeps the best design of a search with one objective, and runners-up.
     fn keep_runners_up(&mut self, first_id: usize, rows: &[Row]) {
         if self.reference.len() > 1 {
             return;
@@ -310,6 +314,16 @@ impl Found {
         // The sort is stable: among equals the older design is kept.
         self.runners_up
             .sort_by(|a, b| a.row.objectives[0].total_cmp(&b.row.objectives[0]));
+        let best = self.runners_up.first().map_or(0.0, |best| best.row.objectives[0]);
+        let mut wanted = 0.0;
+        self.runners_up.retain(|entry| {
+            let excess = (entry.row.objectives[0] - best) / best.abs().max(f64::MIN_POSITIVE);
+            let is_kept = excess >= wanted;
+            if is_kept {
+                wanted = (2.0 * excess).max(LEAST_EXCESS);
+            }
+            is_kept
+        });
         self.runners_up.truncate(RUNNERS_UP);
     }
 }
@@ -324,17 +338,19 @@ pub(super) fn outcome(row: &Row) -> Outcome {
 
 fn algorithm(study: &Study, problem: &DesignProblem) -> Box<dyn Algorithm> {
     let (variables, seed) = (problem.variables(), study.optimizer.seed);
+    let cma_es = |variables| {
+        let determined = kinefront_optimize::Problem::determined_variables(problem);
+        CmaEs::new(variables, study.optimizer.cma_es, seed).with_determined_variables(&determined)
+    };
     match study.optimizer.algorithm {
         // A front of one objective is a single design.
-        AlgorithmName::FrontDe if study.objectives.len() == 1 => {
-            Box::new(CmaEs::new(variables, study.optimizer.cma_es, seed))
-        }
+        AlgorithmName::FrontDe if study.objectives.len() == 1 => Box::new(cma_es(variables)),
         AlgorithmName::FrontDe => {
             let algorithm = FrontDe::new(variables, study.optimizer.front_de, seed);
             let leveled = kinefront_optimize::Problem::leveled_objective(problem);
             Box::new(algorithm.with_leveled_objective(leveled))
         }
-        AlgorithmName::CmaEs => Box::new(CmaEs::new(variables, study.optimizer.cma_es, seed)),
+        AlgorithmName::CmaEs => Box::new(cma_es(variables)),
         AlgorithmName::Moga2 => Box::new(Moga2::new(variables, study.optimizer.moga2, seed)),
         AlgorithmName::Nsga2 => Box::new(Nsga2::new(variables, study.optimizer.nsga2, seed)),
     }

@@ -61,6 +61,40 @@ fn a_run_that_is_killed_and_resumed_is_the_run_that_was_not() {
     }
 }
 
+/// The lightest design for a prescribed region: the search converges to limits of the geometry, at which nothing holds on the fine
+/// grid but what is sized there. A run that is extended ends like one that was longer from the start.
+#[test]
+fn a_search_for_the_lightest_design_reports_one_that_holds_on_the_fine_grid() {
+    let folder = folder();
+    let study = small_study(folder.path());
+    let mut text = fs::read_to_string(&study).expect("a study");
+    text.insert_str(
+        0,
+        "objectives = [{ minimize = \"mass_kg\" }]\nworkspace.region = { kind = \"disc\", radius_m = 0.6 }\n",
+    );
+    fs::write(&study, text).expect("a study");
+    let (whole, run) = (folder.path().join("whole"), folder.path().join("run"));
+    let told = optimize(&study, &whole, &["--evaluations", "500"]);
+    assert_eq!(told["front_size"], 1, "{told}");
+    optimize(&study, &run, &["--evaluations", "235", "--threads", "1"]);
+    resume(&run, &["--evaluations", "500"]).success();
+    assert!(tables(&run) == tables(&whole), "the extended run is another one");
+
+    let cell = |file: &str, row: usize, column: &str| -> String {
+        let text = fs::read_to_string(whole.join(file)).expect("a table");
+        let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+        let place = lines[0].iter().position(|name| *name == column).expect("a column");
+        lines[row][place].to_owned()
+    };
+    let mass = |file: &str, row: usize| cell(file, row, "mass_kg").parse::<f64>().expect("a mass");
+    let feasible = (1..=500).filter(|&row| cell("designs.csv", row, "feasible") == "true");
+    let least = feasible
+        .map(|row| mass("designs.csv", row))
+        .fold(f64::INFINITY, f64::min);
+    let reported = mass("front.csv", 1);
+    assert!((0.999..1.02).contains(&(reported / least)), "{reported} after {least}");
+}
+
 /// A finished run can be extended as if the larger budget had been asked at once, though the smaller one cut its last
 /// generation short.
 #[test]

@@ -148,6 +148,12 @@ pub trait Problem: Sync {
         None
     }
 
+    /// Returns the places of the variables that [`Problem::complete`] sets whatever values they have; by default none. It may
+    /// change other variables too, for example to repair a candidate.
+    fn determined_variables(&self) -> Vec<usize> {
+        Vec::new()
+    }
+
     /// Returns the values at which a candidate is evaluated: the completed ones, or its own if it cannot be completed.
     fn completed(&self, candidate: Candidate) -> Vec<f64> {
         candidate

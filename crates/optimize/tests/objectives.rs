@@ -153,3 +153,57 @@ fn the_evolution_strategy_is_repeatable() {
     assert_eq!(found(7), found(7));
     assert_ne!(found(7), found(8));
 }
+
+/// Valleys with steep walls, sharp floors and one lowest point each: valley `k` runs along `y = 0.55 x + 0.01 k`, and the lowest
+/// points of the valleys lie on a parabola about that of valley 0, whose value is 30.
+struct Valleys;
+
+impl Problem for Valleys {
+    fn variables(&self) -> Vec<Variable> {
+        vec![
+            Variable::Real {
+                lower: -1.0,
+                upper: 1.0
+            };
+            3
+        ]
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Outcome {
+        let of_valley = |k: i32| {
+            let shift = f64::from(k);
+            let (across, along) = (x[1] - 0.55 * x[0] - 0.01 * shift, x[0] - 0.2 - 0.004 * shift);
+            let wall = (300.0 * across).max(-500.0 * across);
+            let floor = (6.0 * along).max(-9.0 * along);
+            30.0 + 4e-3 * shift * shift + wall + floor
+        };
+        let value = (-60..=60).map(of_valley).fold(f64::INFINITY, f64::min);
+        Outcome {
+            objectives: [value].into(),
+            violation: 0.0,
+        }
+    }
+
+    /// The last variable is left to the problem.
+    fn complete(&self, x: &[f64], _: Target) -> Option<Vec<f64>> {
+        Some(vec![x[0], x[1], 0.5])
+    }
+
+    fn determined_variables(&self) -> Vec<usize> {
+        vec![2]
+    }
+}
+
+#[test]
+fn descents_find_the_lowest_of_many_sharp_valleys() {
+    let found: Vec<f64> = (0..8)
+        .map(|seed| {
+            let algorithm = CmaEs::new(Valleys.variables(), CmaEsSettings::default(), seed);
+            let mut algorithm = algorithm.with_determined_variables(&Valleys.determined_variables());
+            run(&Valleys, &mut algorithm, 3000)[0].objectives[0]
+        })
+        .collect();
+    let lowest = found.iter().filter(|value| (**value - 30.0).abs() < 3e-5).count();
+    assert!(lowest >= 7, "{found:?}");
+    assert!(found.iter().all(|value| *value < 30.05), "{found:?}");
+}

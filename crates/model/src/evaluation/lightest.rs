@@ -5,6 +5,7 @@
 //! bars and constant wall ratios. In logarithms of the radii the constraints are nearly linear and the mass is convex, so
 //! that a few linearisations suffice.
 
+use super::golden_section::golden_section;
 use crate::stiffness::CrossSection;
 
 /// Sizing problem to be solved.
@@ -237,8 +238,7 @@ fn change(at: [f64; 2], lines: &[LinearConstraint], problem: &SizingProblem, tru
             low = low.max(-line.ratio / first);
         }
     }
-    let mut low = low.min(trust);
-    let mut high = trust;
+    let (low, high) = (low.min(trust), trust);
     let second = |first: f64| {
         required.iter().fold(-trust, |most: f64, [constant, slope]| {
             most.max(constant + slope * first)
@@ -251,24 +251,7 @@ fn change(at: [f64; 2], lines: &[LinearConstraint], problem: &SizingProblem, tru
         }
         problem.mass[0].at(at[0] + first) + problem.mass[1].at(at[1] + second)
     };
-    // A golden-section search is used: the mass is convex in the first change, and infinite below some value of it.
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let mut left = high - GOLDEN * (high - low);
-    let mut right = low + GOLDEN * (high - low);
-    let (mut at_left, mut at_right) = (mass(left), mass(right));
-    while high - low > 0.5 * problem.accuracy.settled {
-        if at_left <= at_right && at_left.is_finite() {
-            high = right;
-            (right, at_right) = (left, at_left);
-            left = high - GOLDEN * (high - low);
-            at_left = mass(left);
-        } else {
-            low = left;
-            (left, at_left) = (right, at_right);
-            right = low + GOLDEN * (high - low);
-            at_right = mass(right);
-        }
-    }
-    let first = if at_left <= at_right { left } else { right };
+    // The mass is convex in the first change, and infinite below some value of it.
+    let first = golden_section([low, high], 0.5 * problem.accuracy.settled, mass);
     [at[0] + first, at[1] + second(first).min(trust)]
 }

@@ -11,6 +11,8 @@
 //! ```
 
 mod constraint;
+mod golden_section;
+mod growth;
 mod lightest;
 mod listed;
 mod members;
@@ -20,6 +22,7 @@ mod pose_columns;
 mod quantities;
 mod quantity;
 mod sizing;
+mod sizing_exactly;
 mod sizing_prescribed;
 mod worst;
 
@@ -31,7 +34,7 @@ pub use pose::{PoseEvaluation, Unreachable};
 pub use quantity::{
     Better, Bound, LimitResult, Objective, Quantity, QuantityEntry, QuantityLimit, QuantitySet, QuantityValues, Scope,
 };
-pub use sizing::{BarRanges, WorkspaceTarget};
+pub use sizing::{SizingRanges, WorkspaceTarget};
 
 use crate::clearance::Clearance;
 use crate::mechanism::Design;

@@ -28,17 +28,20 @@ const RINGS: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 /// Number of halvings in the search for the largest radius.
 const HALVINGS: usize = 10;
 
-/// Ranges of the bar radii \[m\].
+/// What sizing may change.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BarRanges {
-    /// Range of `r_j`.
+pub struct SizingRanges {
+    /// Range of `r_j` \[m\].
     pub leg: [f64; 2],
-    /// Range of `r_p`.
+    /// Range of `r_p` \[m\].
     pub platform: [f64; 2],
-    /// Values of `r_j` and `r_p` within their ranges, if they are listed.
+    /// Values of `r_j` and `r_p` within their ranges \[m\], if they are listed.
     pub listed: [Option<Vec<f64>>; 2],
     /// Whether bars for a prescribed region are sized to the last digits, not to 1/1000 of their mass.
     pub is_exact: bool,
+    /// Smallest and largest factor by which `R`, `r` and `L_b` may be multiplied, if bars are sized exactly for a prescribed region;
+    /// both are 1 if the lengths must stay as they are.
+    pub scale: [f64; 2],
 }
 
 /// Workspace radius for which bars are sized.
@@ -57,10 +60,12 @@ impl Model {
     /// workspace radius `target`. The design's own bars are the starting point. Returns `None` if the geometry or the
     /// ranges do not allow such bars.
     ///
+    /// For a prescribed region, and only then, `R`, `r` and `L_b` may grow together as far as the ranges allow.
+    ///
     /// The disc and the orientations are sampled, the latter as on the reference grid. The other constraints are
     /// checked only at the centre and on the rim, and the clearance with members as thick as the design's own bars. The
     /// home orientation is the one in which the design is stiffest before it is sized.
-    pub fn sized(&self, design: &Design, ranges: &BarRanges, target: WorkspaceTarget) -> Option<Design> {
+    pub fn sized(&self, design: &Design, ranges: &SizingRanges, target: WorkspaceTarget) -> Option<Design> {
         if design.link_length + design.platform_radius < 0.5 * design.base_radius {
             return None;
         }
@@ -84,7 +89,7 @@ pub(super) enum Shape {
 pub(super) struct Sizer<'a, L> {
     pub(super) model: &'a Model,
     pub(super) design: Design,
-    pub(super) ranges: &'a BarRanges,
+    pub(super) ranges: &'a SizingRanges,
     /// Checker of the design, with the thickest bars until a radius is determined.
     checker: PoseChecker<L>,
     /// Arms in every orientation, as on the reference grid.
@@ -100,7 +105,7 @@ pub(super) struct Sizer<'a, L> {
 }
 
 impl<'a, L: Leg> Sizer<'a, L> {
-    fn new(model: &'a Model, design: &Design, ranges: &'a BarRanges, grid: GridChoice) -> Self {
+    pub(super) fn new(model: &'a Model, design: &Design, ranges: &'a SizingRanges, grid: GridChoice) -> Self {
         let orientation_grid = *model.sampling(grid).orientation_grid();
         let checker = model.checker::<L>(design);
         let arms = (0..orientation_grid.count)
@@ -129,7 +134,11 @@ impl<'a, L: Leg> Sizer<'a, L> {
     fn sized(mut self, target: WorkspaceTarget) -> Option<Design> {
         self.set_bars([self.ranges.leg[1], self.ranges.platform[1]]);
         if let WorkspaceTarget::Prescribed(grid) = target {
-            return self.sized_prescribed(grid);
+            return if self.ranges.is_exact {
+                self.sized_exactly(grid)
+            } else {
+                self.sized_prescribed(grid)
+            };
         }
         // The candidates are the orientations with a feasible centre that belong to a whole window of such
         // orientations.

@@ -1,4 +1,4 @@
-//! Sizing of the bars for a prescribed region: exact on the poses that the evaluation examines (docs/model.md, section 9).
+//! Sizing of the bars for a prescribed region, on the poses that the evaluation examines (docs/model.md, section 9).
 
 use glam::DVec2;
 
@@ -8,9 +8,38 @@ use super::sizing::{Shape, Sizer};
 use crate::mechanism::{Design, Leg};
 use crate::workspace::{RegionPositions, directions, search_prescribed};
 
-/// Poses whose ratio is larger than this multiple of the smallest of its kind do not determine the bars, unless the result shows
-/// that they do.
-const NEAR: f64 = 1.7;
+/// How bars are sized at many poses.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SizedPoses {
+    /// Whether every pose must be feasible with the thickest bars.
+    pub must_hold: bool,
+    /// Poses whose ratio is larger than this multiple of the smallest of its kind do not determine the bars, unless the result
+    /// shows that they do.
+    pub near: f64,
+    pub accuracy: SizingAccuracy,
+    /// Largest number of times that poses are added and the bars sized again.
+    pub repeats: usize,
+}
+
+impl SizedPoses {
+    /// For designs of which the next is a little better.
+    const COARSELY: SizedPoses = SizedPoses {
+        must_hold: true,
+        near: 1.7,
+        accuracy: SizingAccuracy::COARSE,
+        repeats: 5,
+    };
+
+    /// For bars that are known nearly, to an accuracy.
+    pub fn exactly(accuracy: SizingAccuracy) -> Self {
+        Self {
+            must_hold: true,
+            near: 1.1,
+            accuracy,
+            repeats: 10,
+        }
+    }
+}
 
 /// Worst margin that a geometry may miss to be sized all the same.
 const NEARLY: f64 = 0.15;
@@ -18,73 +47,53 @@ const NEARLY: f64 = 0.15;
 /// Number of home orientations that are tried.
 const HOMES: usize = 4;
 
-/// Number of better home orientations in which bars are sized again, if they are to be exact.
-const EXACT_HOMES: usize = 12;
-
-/// Largest number of times that poses are added and the bars sized again.
-const REPEATS: usize = 5;
-
 impl<L: Leg> Sizer<'_, L> {
-    /// Returns the design with the lightest bars for the region that the study prescribes.
-    pub(super) fn sized_prescribed(mut self, grid_choice: GridChoice) -> Option<Design> {
-        let model = self.model;
-        let spec = &model.workspace;
-        let grid = *model.sampling(grid_choice).grid();
+    /// Lays out the region as the evaluation examines it.
+    pub(super) fn samples(&mut self, grid_choice: GridChoice) -> RegionPositions {
+        let spec = &self.model.workspace;
+        let grid = self.model.sampling(grid_choice).grid();
         let step = self.design.base_radius / grid.ray_steps() as f64;
         let symmetric = self.sectors == 1 && matches!(spec.region, crate::workspace::Region::Disc(_));
-        let samples = spec
-            .region
-            .positions(DVec2::ZERO, &grid, step, &directions(&grid, symmetric));
         self.shape = Shape::Sampled;
+        spec.region
+            .positions(DVec2::ZERO, grid, step, &directions(grid, symmetric))
+    }
+
+    /// Returns the design with light bars for the region that the study prescribes, in the home orientation that is stiffest.
+    pub(super) fn sized_prescribed(mut self, grid_choice: GridChoice) -> Option<Design> {
+        let samples = self.samples(grid_choice);
         let all: Vec<usize> = (0..self.arms.len()).collect();
         let signs = self.feasible_signs(&samples.all[..samples.first], &all);
         let candidates = self.windows(&signs);
         let homes = self.stiffest_homes(&signs, &samples, &candidates);
-        let sized = homes.into_iter().take(HOMES).find_map(|home| {
-            let sized = self.sized_at(home, &samples, true)?;
-            Some((home, sized))
-        });
-        let Some(mut sized) = sized else {
-            return self.sized_nearly(&samples, grid_choice);
-        };
-        // With thinner bars another home orientation may be better, in which still lighter bars carry.
-        for _ in 0..if self.ranges.is_exact { EXACT_HOMES } else { 0 } {
-            let (best, _) = self.best_home(&sized.1, grid_choice);
-            let lighter = Some(best).filter(|best| *best != sized.0).and_then(|home| {
-                let design = self.sized_at(home, &samples, true)?;
-                (model.mass(&design) < model.mass(&sized.1)).then_some((home, design))
-            });
-            match lighter {
-                Some(lighter) => sized = lighter,
-                None => break,
-            }
-        }
-        Some(self.lighter_listed(sized.1, grid_choice))
+        homes
+            .into_iter()
+            .take(HOMES)
+            .find_map(|home| self.sized_at(home, &samples.all, SizedPoses::COARSELY))
     }
 
     /// Sizes the bars of a geometry that misses the region by little, as if it did not: a search that approaches a geometric
     /// constraint then sees how the mass goes on beyond it.
-    fn sized_nearly(&mut self, samples: &RegionPositions, grid: GridChoice) -> Option<Design> {
-        if !self.ranges.is_exact {
-            return None;
-        }
+    pub(super) fn sized_nearly(mut self, grid: GridChoice) -> Option<Design> {
+        let samples = self.samples(grid);
         let thickest = self.with_bars([self.ranges.leg[1], self.ranges.platform[1]]);
         let (home, margin) = self.best_home(&thickest, grid);
         if margin < -NEARLY {
             return None;
         }
-        self.sized_at(home, samples, false)
+        let regardless = SizedPoses {
+            must_hold: false,
+            ..SizedPoses::exactly(SizingAccuracy::EXACT)
+        };
+        self.sized_at(home, &samples.all, regardless)
     }
 
     /// Returns the lightest pair of two lists that is feasible in any home orientation: `design`, or a lighter one that the home
     /// orientations examined so far do not show.
-    fn lighter_listed(&self, design: Design, grid: GridChoice) -> Design {
+    pub(super) fn lighter_listed(&self, design: Design, grid: GridChoice) -> Design {
         let (model, [Some(legs), Some(platform)]) = (self.model, &self.ranges.listed) else {
             return design;
         };
-        if !self.ranges.is_exact {
-            return design;
-        }
         let pairs = legs.iter().flat_map(|&leg| platform.iter().map(move |&bar| [leg, bar]));
         let mut lighter: Vec<(f64, Design)> = pairs
             .map(|bars| self.with_bars(bars))
@@ -108,30 +117,24 @@ impl<L: Leg> Sizer<'_, L> {
         (found.home.unwrap_or(0), margin)
     }
 
-    /// Sizes the bars for one home orientation, in which every pose must be feasible with the thickest bars if the geometry
-    /// `must_hold`.
-    fn sized_at(&mut self, home: usize, samples: &RegionPositions, must_hold: bool) -> Option<Design> {
+    /// Sizes the bars for one home orientation.
+    pub(super) fn sized_at(&mut self, home: usize, positions: &[DVec2], how: SizedPoses) -> Option<Design> {
         let window: Vec<usize> = self.orientation_grid.window(home).collect();
         self.set_bars([self.ranges.leg[1], self.ranges.platform[1]]);
-        if must_hold {
-            let signs = self.feasible_signs(&samples.all, &window);
+        if how.must_hold {
+            let signs = self.feasible_signs(positions, &window);
             let first = signs[window[0]]?;
             if window.iter().any(|&k| signs[k] != Some(first)) {
                 return None;
             }
         }
-        self.lay_positions(&samples.all, &window);
+        self.lay_positions(positions, &window);
         let own = [self.design.leg_bar_radius, self.design.platform_bar_radius];
-        let mut near = near_weakest(&self.ratios_at_all(own), NEAR);
+        let mut near = near_weakest(&self.ratios_at_all(own), how.near);
         let everything = std::mem::take(&mut self.laid);
-        for _ in 0..REPEATS {
+        for _ in 0..how.repeats {
             self.laid = everything.chosen(&near);
-            let accuracy = if self.ranges.is_exact {
-                SizingAccuracy::EXACT
-            } else {
-                SizingAccuracy::COARSE
-            };
-            let bars = self.lightest_bars(accuracy)?;
+            let bars = self.lightest_bars(how.accuracy)?;
             self.laid = everything.chosen(&(0..everything.count).collect::<Vec<_>>());
             let missed = below_one(&self.ratios_at_all(bars));
             if missed.is_empty() {

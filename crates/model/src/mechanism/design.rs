@@ -143,6 +143,16 @@ impl Design {
     /// Largest ratio of `r` or `L_b` to `R` that is accepted.
     pub const MAX_RATIO: f64 = 1000.0;
 
+    /// Returns the design with `R`, `r` and `L_b` multiplied by `factor`, and with its own bars.
+    pub(crate) fn with_lengths_times(&self, factor: f64) -> Self {
+        Self {
+            base_radius: self.base_radius * factor,
+            platform_radius: self.platform_radius * factor,
+            link_length: self.link_length * factor,
+            ..*self
+        }
+    }
+
     /// Creates the design with the real variables given in the order of [`DESIGN_VARIABLES`].
     ///
     /// # Errors

@@ -26,6 +26,7 @@ pub(crate) use further::FurtherColumns;
 pub use further::{FurtherLanes, FurtherLimits, FurtherValues};
 pub use grid::{Grid, GridError};
 pub use orientations::OrientationGrid;
+pub(crate) use prescribed::RegionMargins;
 pub use prescribed::search_prescribed;
 pub use region::{Polygon, PolygonError, Region};
 pub(crate) use region::{RegionPositions, directions};

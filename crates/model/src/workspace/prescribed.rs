@@ -8,14 +8,123 @@ use pulp::{Simd, WithSimd};
 
 use super::batch::OrientationLanes;
 use super::columns::Positions;
-use super::region::directions;
-use super::regular::{RegularWorkspace, orientations};
-use super::{PoseChecker, Region, WorkspaceSampling};
+use super::region::{RegionPositions, directions};
+use super::regular::{Orientation, RegularWorkspace, orientations};
+use super::{PoseChecker, Region, ValueColumns, WorkspaceSampling};
 use crate::lanes::{Lanes, MAX_LANES, Planar, Real};
 use crate::mechanism::Leg;
 
 /// Margin of a window that a singularity cuts: as if a constraint were missed entirely.
 const CUT: f64 = -1.0;
+
+/// Worst margins of a design over a region that is prescribed, one orientation at a time.
+pub(crate) struct RegionMargins<'a, L> {
+    checker: PoseChecker<L>,
+    sampling: &'a WorkspaceSampling,
+    step_base: f64,
+    /// Orientations of the grid.
+    orientations: Vec<Orientation>,
+    /// Values at the centre for every orientation.
+    centres: ValueColumns,
+    /// Sign of `det A` that is required in every orientation.
+    pub signs: Vec<f64>,
+    directions: Vec<DVec2>,
+    samples: RegionPositions,
+    /// The positions that are examined first, and the others.
+    parts: [Positions; 2],
+}
+
+impl<'a, L: Leg> RegionMargins<'a, L> {
+    /// Lays out the region of the study for the design in `checker`.
+    ///
+    /// `step_base` is the base radius `R`, by which margins of lengths are divided and of which the ray step is a fraction.
+    /// `symmetric` states that a rotation by 120° maps the design onto itself.
+    pub fn new(checker: PoseChecker<L>, sampling: &'a WorkspaceSampling, step_base: f64, symmetric: bool) -> Self {
+        let spec = sampling.spec();
+        let symmetric = symmetric && matches!(spec.region, Region::Disc(_));
+        let (orientations, centres) = orientations(&checker, spec.centre, sampling.orientation_grid());
+        let mut margins = Self {
+            checker,
+            sampling,
+            step_base,
+            orientations,
+            centres,
+            signs: Vec::new(),
+            directions: directions(sampling.grid(), symmetric),
+            samples: RegionPositions::default(),
+            parts: Default::default(),
+        };
+        margins.lay(1.0);
+        margins.read_signs(1.0);
+        margins
+    }
+
+    /// Lays out the region with its centre and all its lengths multiplied by `factor`.
+    pub fn lay(&mut self, factor: f64) {
+        self.samples = self.positions(factor, false);
+        let parts = self.samples.all.split_at(self.samples.first);
+        for (columns, positions) in self.parts.iter_mut().zip([parts.0, parts.1]) {
+            columns.clear();
+            columns.extend(positions);
+            columns.pad();
+        }
+    }
+
+    /// Lays out only the positions of the region multiplied by `factor` that are examined first.
+    pub fn lay_first(&mut self, factor: f64) {
+        let samples = self.positions(factor, true);
+        self.parts[0].clear();
+        self.parts[0].extend(&samples.all);
+        self.parts[0].pad();
+    }
+
+    fn positions(&self, factor: f64, first: bool) -> RegionPositions {
+        let (spec, grid) = (self.sampling.spec(), self.sampling.grid());
+        let step = self.step_base / grid.ray_steps() as f64;
+        let (region, centre) = (spec.region.scaled(factor), spec.centre * factor);
+        if first {
+            region.first_positions(centre, grid, step, &self.directions)
+        } else {
+            region.positions(centre, grid, step, &self.directions)
+        }
+    }
+
+    /// Requires in each orientation the sign of `det A` that it has at the centre (at the first corner of a polygon) of the region
+    /// multiplied by `factor`.
+    pub fn read_signs(&mut self, factor: f64) {
+        let spec = self.sampling.spec();
+        let reference = match spec.region {
+            Region::Polygon(_) => self.samples.all[0],
+            _ => spec.centre * factor,
+        };
+        let count = self.orientations.len();
+        self.signs = if reference == spec.centre {
+            signs(&self.centres, count)
+        } else {
+            let grid = self.sampling.orientation_grid();
+            signs(&orientations(&self.checker, reference, grid).1, count)
+        };
+    }
+
+    /// Returns the worst margin in one orientation over the positions that are examined first.
+    pub fn at_first(&self, orientation: usize) -> f64 {
+        self.at(orientation, &self.parts[0])
+    }
+
+    /// Returns the worst margin in one orientation over the positions that are not examined first; infinite if there are none.
+    pub fn at_others(&self, orientation: usize) -> f64 {
+        self.at(orientation, &self.parts[1])
+    }
+
+    fn at(&self, orientation: usize, positions: &Positions) -> f64 {
+        let oriented = OrientationLanes {
+            arms: &self.orientations[orientation].arms,
+            sign: self.signs[orientation],
+        };
+        self.checker
+            .worst_margin(oriented, &positions.xs, &positions.ys, self.step_base)
+    }
+}
 
 /// Finds the home orientation of the prescribed region of the design in `checker`, and the worst margin over its window.
 ///
@@ -27,43 +136,11 @@ pub fn search_prescribed<L: Leg>(
     step_base: f64,
     symmetric: bool,
 ) -> (RegularWorkspace, f64) {
-    let (spec, grid, orientation_grid) = (sampling.spec(), sampling.grid(), *sampling.orientation_grid());
-    let symmetric = symmetric && matches!(spec.region, Region::Disc(_));
-    let directions = directions(grid, symmetric);
-    let step = step_base / grid.ray_steps() as f64;
-    let samples = spec.region.positions(spec.centre, grid, step, &directions);
-    let reference = match spec.region {
-        Region::Polygon(_) => samples.all[0],
-        _ => spec.centre,
-    };
-    let (orientations, centres) = orientations(checker, spec.centre, &orientation_grid);
-    let signs: Vec<f64> = if reference == spec.centre {
-        signs(&centres, orientations.len())
-    } else {
-        signs(
-            &super::regular::orientations(checker, reference, &orientation_grid).1,
-            orientations.len(),
-        )
-    };
-    let columns = |positions: &[DVec2]| {
-        let mut columns = Positions::default();
-        columns.extend(positions);
-        columns.pad();
-        columns
-    };
-    let parts = [
-        columns(&samples.all[..samples.first]),
-        columns(&samples.all[samples.first..]),
-    ];
-    let margin = |k: usize, part: &Positions| {
-        let oriented = OrientationLanes {
-            arms: &orientations[k].arms,
-            sign: signs[k],
-        };
-        checker.worst_margin(oriented, &part.xs, &part.ys, step_base)
-    };
-    let mut worst: Vec<f64> = (0..orientations.len()).map(|k| margin(k, &parts[0])).collect();
-    let mut is_known = vec![samples.first == samples.all.len(); worst.len()];
+    let (spec, orientation_grid) = (sampling.spec(), *sampling.orientation_grid());
+    let margins = RegionMargins::new(*checker, sampling, step_base, symmetric);
+    let signs = &margins.signs;
+    let mut worst: Vec<f64> = (0..signs.len()).map(|k| margins.at_first(k)).collect();
+    let mut is_known = vec![margins.samples.first == margins.samples.all.len(); worst.len()];
     let of_window = |home: usize, worst: &[f64]| {
         let mut least = f64::INFINITY;
         for k in orientation_grid.window(home) {
@@ -86,7 +163,7 @@ pub fn search_prescribed<L: Leg>(
         let Some(k) = unknown else {
             break (home, bounds[leader]);
         };
-        worst[k] = worst[k].min(margin(k, &parts[1]));
+        worst[k] = worst[k].min(margins.at_others(k));
         is_known[k] = true;
         // An orientation belongs to the windows of exactly those home orientations that lie in the window about it.
         for (place, bound) in bounds.iter_mut().enumerate() {
@@ -103,18 +180,18 @@ pub fn search_prescribed<L: Leg>(
         radius: spec.region.inscribed_radius().unwrap_or(0.0),
         home: Some(home),
         home_sign: signs[home],
-        orientations,
+        orientations: margins.orientations,
         orientation_grid,
         limits: Vec::new(),
-        centres,
-        directions,
-        samples: samples.all,
+        centres: margins.centres,
+        directions: margins.directions,
+        samples: margins.samples.all,
     };
     (found, margin)
 }
 
 /// Returns the sign of `det A` in each orientation; that of an unreachable pose is positive, which makes no difference.
-fn signs(values: &super::ValueColumns, count: usize) -> Vec<f64> {
+fn signs(values: &ValueColumns, count: usize) -> Vec<f64> {
     let sign = |k: usize| {
         values
             .get(k)

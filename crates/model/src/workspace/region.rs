@@ -55,6 +55,9 @@ pub(crate) struct RegionPositions {
     pub first: usize,
 }
 
+/// Resolution of the grid, as a fraction of the radius of a disc, above which the radius of the rim is rounded up to the resolution.
+const COARSE: f64 = 5e-5;
+
 /// Number of positions of the boundary of a polygon that are examined first.
 const FIRST: usize = 16;
 
@@ -220,19 +223,55 @@ impl Region {
         }
     }
 
+    /// Returns the region with all lengths multiplied by `factor`.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        match self {
+            Region::Largest => Region::Largest,
+            Region::Disc(radius) => Region::Disc(radius * factor),
+            Region::Polygon(Polygon(corners)) => {
+                Region::Polygon(Polygon(corners.iter().map(|corner| *corner * factor).collect()))
+            }
+        }
+    }
+
     /// Returns the positions at which a prescribed region about `centre` is examined. `step` is the step of a ray and
-    /// `directions` are its directions; the radius of a disc is rounded up to the resolution of the grid, so that the disc is
-    /// feasible exactly if `R_w` of the same grid is no smaller.
+    /// `directions` are its directions. The radius of a very small disc is rounded up to the resolution of the grid, so that on
+    /// the same grid a disc of 0.9999 `R_w` is feasible and one of 1.0001 `R_w` is not.
     pub(crate) fn positions(&self, centre: DVec2, grid: &Grid, step: f64, directions: &[DVec2]) -> RegionPositions {
         let mut found = match self {
             Region::Largest => RegionPositions::default(),
-            Region::Disc(radius) => disc(*radius, step, grid.halvings(), directions),
+            Region::Disc(radius) => disc(rim(*radius, step, grid), step, directions),
             Region::Polygon(polygon) => polygon.positions(grid.ray_steps()),
         };
         for position in &mut found.all {
             *position += centre;
         }
         found
+    }
+
+    /// Returns only those positions of a prescribed region that are examined first.
+    pub(crate) fn first_positions(
+        &self,
+        centre: DVec2,
+        grid: &Grid,
+        step: f64,
+        directions: &[DVec2],
+    ) -> RegionPositions {
+        match self {
+            Region::Disc(radius) => {
+                let rim = rim(*radius, step, grid);
+                let all = directions.iter().map(|direction| centre + *direction * rim).collect();
+                RegionPositions {
+                    all,
+                    first: directions.len(),
+                }
+            }
+            Region::Largest | Region::Polygon(_) => {
+                let mut found = self.positions(centre, grid, step, directions);
+                found.all.truncate(found.first);
+                found
+            }
+        }
     }
 
     /// Returns positions about `centre` and their weights, which sum up to 1, for means over the region of a workspace of the
@@ -266,11 +305,18 @@ impl Region {
     }
 }
 
-/// Returns the rings of a disc from the outside inwards, and its centre.
-fn disc(radius: f64, step: f64, halvings: u32, directions: &[DVec2]) -> RegionPositions {
-    let resolution = step / f64::from(1u32 << halvings.min(30));
+/// Returns the radius of the rim on which a disc is examined.
+fn rim(radius: f64, step: f64, grid: &Grid) -> f64 {
+    let resolution = step / f64::from(1u32 << grid.halvings().min(30));
+    if resolution <= COARSE * radius {
+        return radius;
+    }
     // A radius that is a multiple of the resolution but for rounding is not rounded up.
-    let rim = (radius / resolution - 1e-9).ceil() * resolution;
+    (radius / resolution - 1e-9).ceil() * resolution
+}
+
+/// Returns the rings of a disc from its rim inwards, and its centre.
+fn disc(rim: f64, step: f64, directions: &[DVec2]) -> RegionPositions {
     let inside = (rim / step - 1e-9).ceil() as usize;
     let inner = (1..inside).rev().map(|ring| ring as f64 * step);
     let mut all: Vec<DVec2> = Vec::new();

@@ -1,7 +1,7 @@
 //! Prescribed regions: against the largest disc, against every pose one by one, and the bars that are sized for them.
 
 use glam::DVec2;
-use kinefront_model::evaluation::{BarRanges, Constraint, GridChoice, Model, WorkspaceTarget};
+use kinefront_model::evaluation::{Constraint, GridChoice, Model, SizingRanges, WorkspaceTarget};
 use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
 use kinefront_model::spatial::{Pose, unit};
 use kinefront_model::workspace::{Polygon, PolygonError, Region};
@@ -162,11 +162,12 @@ fn corners_that_are_no_polygon_are_refused() {
     assert!(concave.contains(DVec2::new(1.0, 0.4)) && !concave.contains(DVec2::new(1.0, 0.6)));
 }
 
-const RANGES: BarRanges = BarRanges {
+const RANGES: SizingRanges = SizingRanges {
     leg: [0.0, 0.1],
     platform: [0.0, 0.1],
     listed: [None, None],
     is_exact: true,
+    scale: [1.0; 2],
 };
 
 #[test]
@@ -207,11 +208,12 @@ fn bars_for_a_region_hold_on_its_grid_and_not_with_less() {
 fn the_lightest_pair_of_two_lists_is_the_one_found_by_trying_all() {
     let model = prescribed(Region::Disc(0.25));
     let radii: Vec<f64> = (1..=8).map(|k| 0.006 * f64::from(k)).collect();
-    let ranges = BarRanges {
+    let ranges = SizingRanges {
         leg: [radii[0], radii[7]],
         platform: [radii[0], radii[7]],
         listed: [Some(radii.clone()), Some(radii.clone())],
         is_exact: true,
+        scale: [1.0; 2],
     };
     for text in [
         "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03",
@@ -270,4 +272,51 @@ fn directions_of_the_unit_circle_are_used_for_discs() {
         .map(|k| centre + unit(f64::from(k) * 10f64.to_radians()) * 0.15)
         .collect();
     examine(&model, &design, &rim);
+}
+
+/// With the scale left open, no similar design that holds the region is lighter, whatever its scale and home orientation.
+#[test]
+fn the_scale_of_a_sized_geometry_is_the_lightest() {
+    let model = prescribed(Region::Disc(0.3));
+    let target = WorkspaceTarget::Prescribed(GridChoice::Reference);
+    for text in [
+        "3-PRR R=0.7 r=0.15 Lb=0.5 rj=0.02 rp=0.02",
+        "3-PRR R=3.0 r=0.55 Lb=1.98 rj=0.02 rp=0.02",
+        "3-RRR R=0.9 r=0.2 Lb=1.0 rj=0.03 rp=0.03",
+        "3-RPR R=1.0 r=0.1 Lb=1.4 rj=0.03 rp=0.03",
+    ] {
+        let design: Design = text.parse().expect("a design");
+        let open = SizingRanges {
+            scale: [0.05, 5.0],
+            ..RANGES
+        };
+        let sized = model
+            .sized(&design, &open, target)
+            .expect("a design that holds the region");
+        let found = model.evaluate(&sized, GridChoice::Reference);
+        assert!(found.is_feasible(), "{sized}: {}", found.violation);
+        let [base, platform, link, ..] = design.values();
+        let factor = sized.base_radius / base;
+        for (k, value) in [platform, link].into_iter().enumerate() {
+            assert!(
+                (sized.values()[k + 1] / value / factor - 1.0).abs() < 1e-12,
+                "{sized} is not similar to {design}"
+            );
+        }
+        for step in -40..=60 {
+            let factor = factor * (1.0 + 2e-3 * f64::from(step));
+            let values = [base * factor, platform * factor, link * factor, 0.02, 0.02];
+            let similar = Design::new(design.architecture, design.working_mode, values).expect("a design");
+            let Some(other) = model.sized(&similar, &RANGES, target) else {
+                continue;
+            };
+            let other = model.evaluate(&other, GridChoice::Reference);
+            // On the reference grid the number of rings changes with the scale, so that the mass is not quite smooth.
+            assert!(
+                !other.is_feasible() || other.mass >= found.mass * (1.0 - 2e-4),
+                "{} is lighter than {sized}",
+                other.design
+            );
+        }
+    }
 }

@@ -1,16 +1,17 @@
 //! Compares the lightest bars for a geometry with evaluations and an exhaustive search.
 
-use kinefront_model::evaluation::{BarRanges, GridChoice, Model, WorkspaceTarget};
+use kinefront_model::evaluation::{GridChoice, Model, SizingRanges, WorkspaceTarget};
 use kinefront_model::mechanism::{Design, WorkingMode};
 use proptest::prelude::*;
 
 use crate::strategies::{applicable_cases, design};
 
-const RANGES: BarRanges = BarRanges {
+const RANGES: SizingRanges = SizingRanges {
     leg: [0.0, 0.1],
     platform: [0.0, 0.1],
     listed: [None, None],
     is_exact: false,
+    scale: [1.0; 2],
 };
 
 fn sized(model: &Model, design: &Design, target: WorkspaceTarget) -> Option<Design> {
@@ -80,11 +81,12 @@ fn what_cannot_be_had_is_none() {
         None,
         "the geometry does not allow the radius"
     );
-    let thin = BarRanges {
+    let thin = SizingRanges {
         leg: [0.0, 0.01],
         platform: [0.0, 0.01],
         listed: [None, None],
         is_exact: false,
+        scale: [1.0; 2],
     };
     let found = model.sized(&design, &thin, WorkspaceTarget::Radius(1.0));
     assert_eq!(found, None, "the ranges of the bars do not allow the radius");
