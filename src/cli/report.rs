@@ -9,7 +9,7 @@ use miette::Report as Words;
 
 use super::{Ending, Failure, say};
 
-const SENSITIVITY: u32 = 2000;
+const SENSITIVITY: usize = 2000;
 const PICTURE_WIDTH: u32 = 800;
 const SCALE: f32 = 2.0;
 
@@ -32,9 +32,10 @@ pub struct ReportArguments {
     /// Replace an existing report.
     #[arg(long)]
     replace: bool,
-    /// Number of evaluations of each search for the sensitivity to assumptions; 0 omits the sensitivity.
-    #[arg(long, value_name = "N", default_value_t = SENSITIVITY, value_parser = clap::value_parser!(u32).range(0..=10_000_000))]
-    sensitivity: u32,
+    /// Number of evaluations of each search for the sensitivity to assumptions; 0 omits the sensitivity [default: 2000; 0 for
+    /// studies with other objectives than mass and the largest workspace].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=10_000_000))]
+    sensitivity: Option<u32>,
     /// Width in pixels of the pictures of designs.
     #[arg(long, value_name = "PIXELS", default_value_t = PICTURE_WIDTH, value_parser = clap::value_parser!(u32).range(160..=8000))]
     picture_width: u32,
@@ -71,8 +72,8 @@ impl ReportArguments {
         for run in &self.runs {
             command += &format!(" {}", run.file_name().unwrap_or(run.as_os_str()).to_string_lossy());
         }
-        if self.sensitivity != SENSITIVITY {
-            command += &format!(" --sensitivity {}", self.sensitivity);
+        if let Some(evaluations) = self.sensitivity {
+            command += &format!(" --sensitivity {evaluations}");
         }
         if self.picture_width != PICTURE_WIDTH {
             command += &format!(" --picture-width {}", self.picture_width);
@@ -84,11 +85,16 @@ impl ReportArguments {
     }
 }
 
+/// Returns the number of evaluations for the sensitivity; 0 omits it.
+fn evaluations(asked: u32) -> Option<usize> {
+    (asked > 0).then_some(asked as usize)
+}
+
 pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
     let folder = arguments.folder();
     free(&folder, arguments.replace).map_err(failure)?;
     let options = Options {
-        sensitivity: (arguments.sensitivity > 0).then_some(arguments.sensitivity as usize),
+        sensitivity: arguments.sensitivity.map_or(Some(SENSITIVITY), evaluations),
         picture: [arguments.picture_width, arguments.picture_width * 3 / 4],
         scale: arguments.scale,
         command: arguments.command(),
@@ -113,6 +119,10 @@ pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
                     ));
                 }
             }
+            let mut options = options;
+            if sources.iter().any(|source| !source.study.asks_as_the_paper()) {
+                options.sensitivity = arguments.sensitivity.and_then(evaluations);
+            }
             Report::make(&sources, options, &mut tell)
         })
     };
@@ -133,6 +143,7 @@ fn failure(error: ReportError) -> Failure {
             | ReportError::Table(_)
             | ReportError::Differing { .. }
             | ReportError::NothingFeasible
+            | ReportError::Sensitivity(_)
             | ReportError::Occupied(_)
     );
     let report = Words::from_err(error);

@@ -32,8 +32,10 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let scene = &subject.scene;
     let mut sheet = Sheet::new();
     sheet.manipulator(scene);
-    if let Some(cylinder) = subject.cylinder {
-        sheet.circle("WORKSPACE", cylinder.centre, cylinder.radius);
+    match (&subject.corners, subject.cylinder) {
+        (Some(corners), _) => sheet.outline("WORKSPACE", corners),
+        (None, Some(cylinder)) => sheet.circle("WORKSPACE", cylinder.centre, cylinder.radius),
+        (None, None) => {}
     }
     let height = 0.03 * design.base_radius;
     for label in &scene.labels {
@@ -73,11 +75,12 @@ fn facts(subject: &Prepared) -> Vec<String> {
         format!("mass in motion {} kg", number(evaluation.mass)),
     ];
     if let Some(cylinder) = subject.cylinder {
-        facts.push(format!(
-            "regular workspace R_w {} mm, rotation range {} deg",
-            number(MM * cylinder.radius),
-            number(cylinder.phi_range.to_degrees())
-        ));
+        let region = match &subject.corners {
+            Some(_) => "prescribed region".to_owned(),
+            None => format!("regular workspace R_w {} mm", number(MM * cylinder.radius)),
+        };
+        let range = number(cylinder.phi_range.to_degrees());
+        facts.push(format!("{region}, rotation range {range} deg"));
     }
     let [x, y] = (pose.position * MM).to_array();
     let phi = pose.phi.to_degrees();
@@ -160,10 +163,15 @@ impl Sheet {
     fn bar(&mut self, layer: &str, from: DVec3, to: DVec3, radius: f64) {
         let (from, to) = (from.truncate(), to.truncate());
         let side = (to - from).normalize_or(DVec2::X).perp() * radius;
+        self.outline(layer, &[from + side, from - side, to - side, to + side]);
+    }
+
+    /// Adds a closed polygon.
+    fn outline(&mut self, layer: &str, corners: &[DVec2]) {
         let mut outline = Polyline::default();
-        for corner in [from + side, from - side, to - side, to + side] {
+        for corner in corners {
             let vertex = Vertex {
-                location: point(corner),
+                location: point(*corner),
                 ..Vertex::default()
             };
             outline.add_vertex(&mut self.drawing, vertex);

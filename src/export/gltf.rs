@@ -42,10 +42,17 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         nodes.push(file.node("base", mesh));
     }
     if let Some(cylinder) = subject.cylinder {
-        let around = (0..=CIRCLE).map(|k| unit(2.0 * std::f64::consts::PI * k as f64 / CIRCLE as f64));
-        let rim: Vec<DVec3> = around
-            .map(|direction| (cylinder.centre + direction * cylinder.radius).extend(0.0))
-            .collect();
+        let rim: Vec<DVec3> = match &subject.corners {
+            Some(corners) => corners
+                .iter()
+                .chain(corners.first())
+                .map(|corner| corner.extend(0.0))
+                .collect(),
+            None => (0..=CIRCLE)
+                .map(|k| unit(2.0 * std::f64::consts::PI * k as f64 / CIRCLE as f64))
+                .map(|direction| (cylinder.centre + direction * cylinder.radius).extend(0.0))
+                .collect(),
+        };
         let line = file.line(&rim, Part::Workspace);
         if let Some(mesh) = file.mesh("regular_workspace", vec![line]) {
             nodes.push(file.node("regular_workspace", mesh));

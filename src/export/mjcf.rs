@@ -5,6 +5,7 @@ use super::xml::Element;
 use super::{Format, Prepared, inertial, joint_axis, joint_name, rgba};
 use crate::AnyError;
 use crate::scene::{Body, Joint, Solid, SolidShape};
+use glam::DVec2;
 use kinefront_model::mechanism::Actuator;
 
 pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
@@ -53,19 +54,41 @@ fn world(subject: &Prepared) -> Element {
             .with("dir", "0.3 0.4 -1"),
     );
     world = world.children(subject.base.iter().map(geom));
-    if let Some(cylinder) = subject.cylinder {
-        // A site is only displayed and does not take part in the simulation.
-        let [x, y] = cylinder.centre.to_array();
-        world.push(
-            Element::new("site")
-                .with("name", "regular_workspace")
-                .with("type", "cylinder")
+    world.children(workspace(subject)).children(trees(subject))
+}
+
+/// The workspace, of which a prescribed polygon is shown by its sides. A site is only displayed and does not take part in the
+/// simulation.
+fn workspace(subject: &Prepared) -> Vec<Element> {
+    let site = |name: &str, kind: &str, color: &str| {
+        Element::new("site")
+            .with("name", name)
+            .with("type", kind)
+            .with("rgba", color)
+    };
+    match (&subject.corners, subject.cylinder) {
+        (Some(corners), _) => {
+            let sides = corners.iter().zip(corners.iter().cycle().skip(1)).enumerate();
+            let side = |(place, (from, to)): (usize, (&DVec2, &DVec2))| {
+                site(
+                    &format!("regular_workspace_{}", place + 1),
+                    "capsule",
+                    "0.35 0.7 0.43 0.8",
+                )
+                .with_numbers("fromto", &[from.x, from.y, 0.0, to.x, to.y, 0.0])
+                .with_numbers("size", &[2e-3 * subject.evaluation.design.base_radius])
+            };
+            sides.map(side).collect()
+        }
+        (None, Some(cylinder)) => {
+            let [x, y] = cylinder.centre.to_array();
+            let disc = site("regular_workspace", "cylinder", "0.35 0.7 0.43 0.25")
                 .with_numbers("pos", &[x, y, 0.0])
-                .with_numbers("size", &[cylinder.radius, 1e-3])
-                .with("rgba", "0.35 0.7 0.43 0.25"),
-        );
+                .with_numbers("size", &[cylinder.radius, 1e-3]);
+            vec![disc]
+        }
+        (None, None) => Vec::new(),
     }
-    world.children(trees(subject))
 }
 
 /// The bodies, nested in their parents; each tree begins with a body that hangs on the base.

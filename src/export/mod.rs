@@ -21,11 +21,12 @@ mod urdf;
 mod xml;
 
 use crate::AnyError;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::palette;
 use crate::scene::{
-    Body, Linkage, Part, RegularCylinder, Scene, Solid, SolidShape, Tour, linkage, manipulator, regular_workspace, tour,
+    Body, Linkage, Part, RegularCylinder, Scene, Solid, SolidShape, Tour, linkage, manipulator, region_corners,
+    regular_workspace, tour,
 };
 use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, Model, Unreachable};
@@ -195,6 +196,8 @@ struct Prepared<'a> {
     /// The fixed parts (base triangle and rails) as solids.
     base: Vec<Solid>,
     cylinder: Option<RegularCylinder>,
+    /// Corners of the workspace if the study prescribes a polygon, in the base frame \[m\].
+    corners: Option<Vec<DVec2>>,
     tour: Option<Tour>,
 }
 
@@ -329,6 +332,7 @@ pub fn export(subject: &ExportSubject, format: Format) -> Result<Vec<u8>, Export
         linkage,
         base: scene.base_bars(design.base_radius),
         scene,
+        corners: cylinder.and_then(|_| region_corners(model)),
         cylinder,
         tour,
     };

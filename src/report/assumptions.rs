@@ -3,7 +3,7 @@
 use super::fronts::Front;
 use super::source::Source;
 use super::{Fronts, ReportError};
-use crate::study::{LengthChoice, StiffnessChoice, Study, TelescopicBar};
+use crate::study::{DesignProblem, LengthChoice, StiffnessChoice, Study, TelescopicBar};
 use kinefront_model::evaluation::GridChoice;
 use kinefront_model::mechanism::Architecture;
 
@@ -242,14 +242,14 @@ pub(super) fn search_alternatives(
             }
         }
         let name = alternative.map_or(AS_STATED, |alternative| alternative.name);
-        let model = study.model()?;
+        let problem = DesignProblem::new(&study)?;
         let mut alone = Vec::new();
         for &architecture in &base.architectures {
             tell(&format!("sensitivity: {name}, {architecture}"));
             let mut single = study.clone();
             single.architectures = vec![architecture];
             let source = Source::run(name, single)?;
-            match Fronts::new(&[source], &model, study.optimizer.front_designs) {
+            match Fronts::new(&[source], &problem, study.optimizer.front_designs) {
                 Some(fronts) => alone.extend(fronts.alone),
                 None => alone.push((architecture, Front::default())),
             }
@@ -258,7 +258,7 @@ pub(super) fn search_alternatives(
             .references
             .iter()
             .filter_map(|reference| reference.parse(study.working_mode).ok())
-            .map(|design| model.evaluate(&design, GridChoice::Fine).workspace_radius)
+            .map(|design| problem.model().evaluate(&design, GridChoice::Fine).workspace_radius)
             .collect();
         variations.push(Variation {
             alternative,

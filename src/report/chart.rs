@@ -1,5 +1,7 @@
 //! Drawing charts as SVG and converting SVG to PNG.
 
+use std::borrow::Cow;
+
 use crate::AnyError;
 use std::sync::{Arc, OnceLock};
 
@@ -11,18 +13,35 @@ use resvg::{tiny_skia, usvg};
 /// An axis of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ChartAxis {
-    pub label: &'static str,
+    pub label: Cow<'static, str>,
     pub range: [f64; 2],
     pub logarithmic: bool,
 }
 
 impl ChartAxis {
     /// Creates a linear axis from 0 to slightly beyond the largest value.
-    pub fn from_zero(label: &'static str, values: impl Iterator<Item = f64>) -> Self {
+    pub fn from_zero(label: impl Into<Cow<'static, str>>, values: impl Iterator<Item = f64>) -> Self {
         let largest = values.fold(0.0, f64::max);
         Self {
-            label,
+            label: label.into(),
             range: [0.0, if largest > 0.0 { 1.06 * largest } else { 1.0 }],
+            logarithmic: false,
+        }
+    }
+
+    /// Creates a linear axis from slightly below the smallest value to slightly beyond the largest one.
+    pub fn about(label: impl Into<Cow<'static, str>>, values: impl Iterator<Item = f64>) -> Self {
+        let [low, high] = values
+            .filter(|value| value.is_finite())
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+                [low.min(value), high.max(value)]
+            });
+        let (low, high) = if low <= high { (low, high) } else { (0.0, 1.0) };
+        // Equal values get an axis that has a length, too.
+        let spare = (0.06 * (high - low)).max(1e-3 * high.abs()).max(1e-9);
+        Self {
+            label: label.into(),
+            range: [low - spare, high + spare],
             logarithmic: false,
         }
     }
@@ -40,7 +59,7 @@ impl ChartAxis {
             [0.1, 10.0]
         };
         Self {
-            label,
+            label: label.into(),
             range,
             logarithmic: true,
         }
@@ -162,8 +181,8 @@ impl Chart {
             .bold_line_style(GRID.stroke_width(FINE))
             .axis_style(INK.stroke_width(FINE))
             .set_all_tick_mark_size(5 * FINE)
-            .x_desc(self.x.label)
-            .y_desc(self.y.label)
+            .x_desc(self.x.label.as_ref())
+            .y_desc(self.y.label.as_ref())
             .axis_desc_style(font(17))
             .label_style(font(15))
             .x_labels(9)

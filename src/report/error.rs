@@ -25,12 +25,12 @@ pub enum ReportError {
         /// Section or key of the study in which they differ.
         key: String,
     },
-    /// A run has another question than the one that a report answers.
+    /// A run has another question than the one under which assumptions can be varied.
     #[error(
-        "{0} has other objectives than mass and the largest workspace radius, which a report compares; open it with \
-         `kinefront explore`, or export its front"
+        "{0} has other objectives than mass and the largest workspace radius, for which alone a report varies assumptions; leave out \
+         --sensitivity"
     )]
-    Question(String),
+    Sensitivity(String),
     /// The runs have no feasible design.
     #[error("no design of the run is feasible: there is no front to report")]
     NothingFeasible,

@@ -3,6 +3,7 @@
 use super::chart::{Chart, ChartAxis, Mark, Series};
 use super::fits::Trend;
 use super::fronts::Front;
+use super::question::Question;
 use super::{ClearanceCost, Figure, Report, ReportError, slug};
 use crate::palette;
 use crate::text::short;
@@ -38,6 +39,10 @@ const ALTERNATIVE_COLORS: [[u8; 3]; 14] = [
 /// Draws all figures in the order of the page.
 pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
     let mut figures = Figures(Vec::new());
+    if let Some(question) = &report.question {
+        of_question(report, question, &mut figures)?;
+        return Ok(figures.0);
+    }
     for (name, words, logarithmic) in [
         ("fronts", "Pareto fronts of the architectures", false),
         (
@@ -101,6 +106,25 @@ pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
     Ok(figures.0)
 }
 
+/// Draws the figures of another question than the paper's.
+fn of_question(report: &Report, question: &Question, figures: &mut Figures) -> Result<(), ReportError> {
+    for (name, words, chart) in question.charts(&report.fronts) {
+        figures.add(name, words, (chart, 0))?;
+    }
+    for (architecture, front) in &report.fronts.alone {
+        for (kind, words, bars) in [
+            ("lengths", "R, r and L_b along the front", false),
+            ("bars", "r_j and r_p along the front", true),
+        ] {
+            if let Some(chart) = question.variables(front, bars) {
+                let name = format!("{kind}-{}", slug(architecture.name()));
+                figures.add(name, format!("{words} ({architecture})"), (chart, 0))?;
+            }
+        }
+    }
+    Ok(())
+}
+
 struct Figures(Vec<Figure>);
 
 impl Figures {
@@ -120,7 +144,7 @@ impl Figures {
 }
 
 /// Returns the colour of an architecture, darkened for lines on white.
-fn color(architecture: Architecture) -> [u8; 3] {
+pub(super) fn color(architecture: Architecture) -> [u8; 3] {
     palette::architecture(architecture).map(|value| (f64::from(value) * 0.82) as u8)
 }
 
@@ -340,7 +364,7 @@ fn active(architecture: Architecture, front: &Front, thresholds: &Thresholds) ->
     Chart {
         x: ChartAxis::from_zero(RADIUS, front.shown().map(|member| member.workspace_radius)),
         y: ChartAxis {
-            label: "",
+            label: "".into(),
             range: [-0.5, names.len() as f64 - 0.5],
             logarithmic: false,
         },

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use super::Source;
-use crate::study::{DesignProblem, FrontMember, FrontProofs, FrontProver, Study};
-use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
+use crate::study::{DesignProblem, FrontMember, FrontProofs, FrontProver, Study, keep_runners_up};
+use kinefront_model::evaluation::{Evaluation, Model, Objective};
 use kinefront_model::mechanism::{Architecture, Design};
 use kinefront_optimize::{Archive, Objectives, Outcome, knee, spread};
 
@@ -70,23 +70,34 @@ impl Front {
         self.members.last().map_or(0.0, |member| member.workspace_radius)
     }
 
-    /// Returns the designs to be pictured, each with its name: the lightest, the knee and the largest.
-    pub fn marked(&self) -> Vec<(&'static str, &Evaluation)> {
+    /// Returns the designs to be pictured, each with its name: the lightest, the knee and the largest, or the best in each of
+    /// other `objectives` and the knee.
+    pub fn marked(&self, objectives: Option<&[Objective]>) -> Vec<(String, &Evaluation)> {
         let mut marked = Vec::new();
         let last = self.shown.len().saturating_sub(1);
-        let objectives: Vec<Objectives> = self
+        let values: Vec<Objectives> = self
             .shown()
             .map(|member| DesignProblem::outcome(member).objectives)
             .collect();
-        for (place, name) in [
-            (Some(0), "lightest"),
-            (knee(&objectives), "knee"),
-            (Some(last), "largest"),
-        ] {
+        let best = |k: usize| (0..values.len()).min_by(|&a, &b| values[a][k].total_cmp(&values[b][k]));
+        let named = match objectives {
+            None => vec![
+                (Some(0), "lightest".to_owned()),
+                (knee(&values), "knee".to_owned()),
+                (Some(last), "largest".to_owned()),
+            ],
+            Some(objectives) => {
+                let of_each = objectives.iter().enumerate();
+                let best =
+                    of_each.map(|(k, objective)| (best(k), format!("best {}", objective.quantity.entry().label)));
+                best.chain([(knee(&values), "knee".to_owned())]).collect()
+            }
+        };
+        for (place, name) in named {
             if let Some(member) = place.and_then(|place| self.shown.get(place))
                 && !marked
                     .iter()
-                    .any(|&(_, other): &(_, &Evaluation)| std::ptr::eq(other, member))
+                    .any(|(_, other): &(_, &Evaluation)| std::ptr::eq(*other, member))
             {
                 marked.push((name, member));
             }
@@ -107,15 +118,15 @@ pub struct Fronts {
 
 impl Fronts {
     /// Computes the fronts of all designs of the sources: the designs that are non-dominated on the reference grid are
-    /// evaluated again on the fine grid of `model`. `None` if there is no feasible design.
-    pub fn new(sources: &[Source], model: &Model, most: usize) -> Option<Self> {
+    /// verified on the fine grid of `problem`. `None` if there is no feasible design.
+    pub fn new(sources: &[Source], problem: &DesignProblem, most: usize) -> Option<Self> {
         let mut alone = Vec::new();
         for &architecture in Architecture::ALL {
             let candidates = candidates(sources, architecture);
-            let evaluations: Vec<Evaluation> = candidates
-                .par_iter()
-                .map(|design| model.evaluate(design, GridChoice::Fine))
-                .collect();
+            let evaluations: Vec<Evaluation> = match problem.model().objectives[..] {
+                [_] => first_that_holds(&candidates, problem).into_iter().collect(),
+                _ => candidates.par_iter().map(|design| problem.verify(design)).collect(),
+            };
             let front = Front::new(evaluations, most);
             if !front.members.is_empty() {
                 alone.push((architecture, front));
@@ -143,7 +154,14 @@ impl Fronts {
     }
 }
 
-/// Returns the designs of an architecture that are non-dominated on the reference grid.
+/// Returns the first of the designs that is feasible on the fine grid.
+fn first_that_holds(candidates: &[Design], problem: &DesignProblem) -> Option<Evaluation> {
+    let mut verified = candidates.iter().map(|design| problem.verify(design));
+    verified.find(Evaluation::is_feasible)
+}
+
+/// Returns the designs of an architecture that are non-dominated on the reference grid; with one objective, the best one and
+/// runners-up.
 fn candidates(sources: &[Source], architecture: Architecture) -> Vec<Design> {
     let mut archive = Archive::default();
     let rows: Vec<_> = sources
@@ -151,6 +169,11 @@ fn candidates(sources: &[Source], architecture: Architecture) -> Vec<Design> {
         .flat_map(|source| &source.rows)
         .filter(|row| row.design.architecture == architecture && row.is_feasible())
         .collect();
+    if rows.first().is_some_and(|row| row.objectives.len() == 1) {
+        let mut rows = rows;
+        keep_runners_up(&mut rows, |row| row.objectives[0]);
+        return rows.into_iter().map(|row| row.design).collect();
+    }
     for (id, row) in rows.iter().enumerate() {
         let outcome = Outcome {
             objectives: row.objectives,
@@ -172,28 +195,32 @@ pub struct SearchFronts {
 
 /// Returns the fronts of the first search over exactly these architectures; `None` if there is none or none is
 /// feasible.
-fn of_search(sources: &[Source], architectures: &[Architecture], model: &Model, most: usize) -> Option<Fronts> {
+fn of_search(
+    sources: &[Source],
+    architectures: &[Architecture],
+    problem: &DesignProblem,
+    most: usize,
+) -> Option<Fronts> {
     let source = sources
         .iter()
         .find(|source| source.study.architectures == architectures)?;
-    Fronts::new(std::slice::from_ref(source), model, most)
+    Fronts::new(std::slice::from_ref(source), problem, most)
 }
 
 /// Returns the front of the search over all architectures of the study together, if there is one.
-pub(super) fn joint(sources: &[Source], study: &Study, model: &Model) -> Option<Front> {
+pub(super) fn joint(sources: &[Source], study: &Study, problem: &DesignProblem) -> Option<Front> {
     match study.architectures[..] {
         [_] => None,
-        _ => {
-            of_search(sources, &study.architectures, model, study.optimizer.front_designs).map(|fronts| fronts.together)
-        }
+        _ => of_search(sources, &study.architectures, problem, study.optimizer.front_designs)
+            .map(|fronts| fronts.together),
     }
 }
 
 impl SearchFronts {
     /// Determines the fronts of the first search over each architecture and of the first search over all of them.
-    pub fn new(sources: &[Source], study: &Study, model: &Model) -> Self {
+    pub fn new(sources: &[Source], study: &Study, problem: &DesignProblem) -> Self {
         let most = study.optimizer.front_designs;
-        let fronts = |&architecture| of_search(sources, &[architecture], model, most);
+        let fronts = |&architecture| of_search(sources, &[architecture], problem, most);
         Self {
             alone: study
                 .architectures
@@ -201,7 +228,7 @@ impl SearchFronts {
                 .filter_map(fronts)
                 .flat_map(|fronts| fronts.alone)
                 .collect(),
-            joint: joint(sources, study, model),
+            joint: joint(sources, study, problem),
         }
     }
 

@@ -13,6 +13,7 @@ mod fits;
 mod fronts;
 mod page;
 mod picture;
+mod question;
 mod reference;
 mod source;
 mod write;
@@ -29,7 +30,9 @@ pub use reference::EvaluatedReference;
 pub use source::Source;
 pub use write::free;
 
-use crate::study::{AlgorithmName, BUILTIN, RunFolderError, Study};
+use question::Question;
+
+use crate::study::{AlgorithmName, BUILTIN, DesignProblem, RunFolderError, Study};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Architecture;
 
@@ -92,6 +95,8 @@ pub struct Report {
     references: Vec<EvaluatedReference>,
     trends: Vec<(Architecture, Vec<Trend>)>,
     variations: Vec<Variation>,
+    /// What the study asks; `None` for the question of the paper.
+    question: Option<Question>,
     figures: Vec<Figure>,
     pictures: Vec<DesignPicture>,
     /// Whether the study states the problem of the paper, so that the page may compare with the paper.
@@ -123,7 +128,7 @@ impl SearchSummary {
             architectures: names.join(", "),
             seed: source.study.optimizer.seed,
             evaluations: source.rows.len(),
-            feasible: source.rows.iter().filter(|row| row.radius > 0.0).count(),
+            feasible: source.rows.iter().filter(|row| row.is_feasible()).count(),
             search_s: source.times.map(|times| times.search_s),
             verification_s: source.times.map(|times| times.verification_s),
             version: source.version.clone(),
@@ -183,19 +188,24 @@ impl Report {
         start: Instant,
     ) -> Result<Self, ReportError> {
         let study = common_study(sources)?;
-        let model = study.model()?;
+        let problem = DesignProblem::new(&study)?;
+        let question = Question::of(&study, &problem, sources);
+        if let (Some(_), Some(_), [first, ..]) = (&question, options.sensitivity, sources) {
+            return Err(ReportError::Sensitivity(first.name.clone()));
+        }
         let most = study.optimizer.front_designs;
         tell("verifying the fronts");
-        let mut fronts = Fronts::new(sources, &model, most).ok_or(ReportError::NothingFeasible)?;
+        let mut fronts = Fronts::new(sources, &problem, most).ok_or(ReportError::NothingFeasible)?;
         let joint = match sources {
             // The front of a single search is the one that has just been verified.
             [_] => Some(fronts.together.clone()),
-            _ => fronts::joint(sources, &study, &model),
+            _ => fronts::joint(sources, &study, &problem),
         };
         let moga2_fronts = match moga2 {
             [] => None,
-            _ => Some(SearchFronts::new(moga2, &study, &model)),
+            _ => Some(SearchFronts::new(moga2, &study, &problem)),
         };
+        let model = problem.model().clone();
         if study.certifies() {
             tell("proving the workspaces");
             fronts.certify(&study, &model);
@@ -223,6 +233,7 @@ impl Report {
             references,
             trends,
             variations,
+            question,
             figures: Vec::new(),
             pictures: Vec::new(),
             of_paper,
@@ -236,9 +247,10 @@ impl Report {
 
     fn draw_pictures(&self) -> Result<Vec<DesignPicture>, ReportError> {
         let model = &self.model;
+        let objectives = self.question.as_ref().map(|question| question.objectives.as_slice());
         let marked = self.fronts.alone.iter().flat_map(|(architecture, front)| {
-            front.marked().into_iter().map(move |(mark, evaluation)| {
-                let name = format!("{}-{mark}", architecture.name().to_lowercase());
+            front.marked(objectives).into_iter().map(move |(mark, evaluation)| {
+                let name = format!("{}-{}", architecture.name().to_lowercase(), slug(&mark));
                 (name, format!("{architecture}, {mark}"), evaluation)
             })
         });
@@ -278,9 +290,6 @@ fn common_study(sources: &[Source]) -> Result<Study, ReportError> {
         return Err(ReportError::NothingFeasible);
     };
     let mut study = first.study.clone();
-    if !study.asks_as_the_paper() || study.workspace.region.is_prescribed() {
-        return Err(ReportError::Question(first.name.clone()));
-    }
     for other in others {
         let theirs = &other.study;
         if let Some(key) = study.differing_key(theirs) {

@@ -9,9 +9,10 @@ use parry3d_f64::shape::{Cuboid, Cylinder, SharedShape};
 use rayon::prelude::*;
 
 use crate::palette;
-use crate::scene::{SolidShape, manipulator, regular_workspace};
+use crate::scene::{SolidShape, manipulator, region_corners, regular_workspace};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::spatial::unit;
+use kinefront_model::workspace::{Polygon, Region};
 
 /// Colours of the ground and of the workspace.
 const GROUND: DVec3 = DVec3::ONE;
@@ -187,14 +188,44 @@ impl RenderSolid {
     }
 }
 
+/// The workspace as it is marked below a design.
+enum Marked {
+    /// Centre and radius \[m\].
+    Disc(DVec2, f64),
+    /// A prescribed polygon with its corners relative to the centre, and the centre \[m\].
+    Polygon(Polygon, DVec2),
+}
+
+impl Marked {
+    /// Returns how strongly a point is tinted. The rim is stronger so that the edge is visible although the tint is weak.
+    fn tint(&self, at: DVec2) -> Option<f64> {
+        const RIM: f64 = 0.9;
+        const INSIDE: f64 = 0.28;
+        match self {
+            Marked::Disc(centre, radius) => {
+                let distance = at.distance(*centre);
+                (distance < *radius).then_some(if distance > 0.985 * radius { RIM } else { INSIDE })
+            }
+            Marked::Polygon(polygon, centre) => {
+                let at = at - *centre;
+                let size = polygon
+                    .corners()
+                    .iter()
+                    .fold(0.0f64, |size, corner| size.max(corner.length()));
+                let is_rim = || polygon.distance_to_boundary(at) < 0.015 * size;
+                polygon.contains(at).then(|| if is_rim() { RIM } else { INSIDE })
+            }
+        }
+    }
+}
+
 /// Everything that rays can hit: bodies, workspace and ground.
 struct RenderScene {
     bodies: Vec<RenderSolid>,
     /// Points that bound everything visible.
     corners: Vec<DVec3>,
-    /// Centre and radius of the regular workspace.
-    disc: Option<(DVec2, f64)>,
-    /// Heights of the disc and of the ground below it.
+    workspace: Option<Marked>,
+    /// Heights of the workspace and of the ground below it.
     heights: [f64; 2],
     /// Offset from a surface at which a shadow ray starts.
     step: f64,
@@ -220,11 +251,16 @@ impl RenderScene {
         if let Some(cylinder) = cylinder {
             let around = (0..24).map(|k| unit(f64::from(k) * std::f64::consts::PI / 12.0) * cylinder.radius);
             corners.extend(around.map(|spoke| (cylinder.centre + spoke).extend(heights[0])));
+            let prescribed = region_corners(model).into_iter().flatten();
+            corners.extend(prescribed.map(|corner| corner.extend(heights[0])));
         }
         Ok(Self {
             bodies,
             corners,
-            disc: cylinder.map(|cylinder| (cylinder.centre, cylinder.radius)),
+            workspace: cylinder.map(|cylinder| match &model.workspace.region {
+                Region::Polygon(polygon) => Marked::Polygon(polygon.clone(), model.workspace.centre),
+                Region::Largest | Region::Disc(_) => Marked::Disc(cylinder.centre, cylinder.radius),
+            }),
             heights,
             step: 1e-4 * design.base_radius,
             light: LIGHT.normalize(),
@@ -248,13 +284,9 @@ impl RenderScene {
         let meets = |height: f64| origin + direction * ((height - origin.z) / direction.z);
         let ground = meets(self.heights[1]);
         let mut color = GROUND * if self.is_shaded(ground) { 0.72 } else { 1.0 };
-        if let Some((centre, radius)) = self.disc {
-            let distance = meets(self.heights[0]).truncate().distance(centre);
-            if distance < radius {
-                // The rim is stronger so that the edge is visible although the tint is weak.
-                let fraction = if distance > 0.985 * radius { 0.9 } else { 0.28 };
-                color = color.lerp(WORKSPACE, fraction);
-            }
+        let at = meets(self.heights[0]).truncate();
+        if let Some(tint) = self.workspace.as_ref().and_then(|workspace| workspace.tint(at)) {
+            color = color.lerp(WORKSPACE, tint);
         }
         color
     }

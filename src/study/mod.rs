@@ -30,6 +30,7 @@ pub use run_folder::{
     Checkpoint, Difference, FileSum, FileSums, Finding, HypervolumeReference, Inspection, Repair, ResumeError,
     Resumption, RunFolder, RunFolderError, RunReport, RunWriter, WriteError, partial_path, write_whole,
 };
+pub(crate) use search::keep_runners_up;
 pub use search::{SearchError, StudySearch};
 pub use settings::{
     ActuatorSection, AlgorithmName, Bounds, BuiltinCatalogue, CATALOGUES, CatalogueChoice, CatalogueFault,

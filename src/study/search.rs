@@ -311,21 +311,25 @@ impl Found {
                 })
             });
         self.runners_up.extend(entries);
-        // The sort is stable: among equals the older design is kept.
-        self.runners_up
-            .sort_by(|a, b| a.row.objectives[0].total_cmp(&b.row.objectives[0]));
-        let best = self.runners_up.first().map_or(0.0, |best| best.row.objectives[0]);
-        let mut wanted = 0.0;
-        self.runners_up.retain(|entry| {
-            let excess = (entry.row.objectives[0] - best) / best.abs().max(f64::MIN_POSITIVE);
-            let is_kept = excess >= wanted;
-            if is_kept {
-                wanted = (2.0 * excess).max(LEAST_EXCESS);
-            }
-            is_kept
-        });
-        self.runners_up.truncate(RUNNERS_UP);
+        keep_runners_up(&mut self.runners_up, |entry| entry.row.objectives[0]);
     }
+}
+
+/// Keeps the best of some designs by a single objective, and others ever farther from it, best first.
+pub(crate) fn keep_runners_up<T>(designs: &mut Vec<T>, objective: impl Fn(&T) -> f64) {
+    // The sort is stable: among equals the older design is kept.
+    designs.sort_by(|a, b| objective(a).total_cmp(&objective(b)));
+    let best = designs.first().map_or(0.0, &objective);
+    let mut wanted = 0.0;
+    designs.retain(|design| {
+        let excess = (objective(design) - best) / best.abs().max(f64::MIN_POSITIVE);
+        let is_kept = excess >= wanted;
+        if is_kept {
+            wanted = (2.0 * excess).max(LEAST_EXCESS);
+        }
+        is_kept
+    });
+    designs.truncate(RUNNERS_UP);
 }
 
 /// The outcome that a row states.

@@ -78,7 +78,7 @@ fn a_front_with_clearance_has_no_overlap_on_a_million_poses() {
     };
     let front = |study: &Study| {
         let source = Source::run("a run", study.clone()).expect("a run");
-        let fronts = Fronts::new(&[source], &study.model().expect("a valid study"), 100).expect("a front");
+        let fronts = Fronts::new(&[source], &DesignProblem::new(study).expect("a valid study"), 100).expect("a front");
         let of_each = fronts.alone.into_iter().flat_map(|(_, front)| front.members);
         of_each.collect::<Vec<_>>()
     };

@@ -157,6 +157,42 @@ fn plan_view_and_front_are_read_back() {
 
 /// A small mechanism with thin bars is exported, and a working mode with two consecutive minus signs, which would end
 /// an XML comment.
+/// A prescribed polygon is exported as it is, not as the disc within it.
+#[test]
+fn a_prescribed_rectangle_is_exported_with_its_corners() {
+    let folder = folder();
+    let study = folder.path().join("table.toml");
+    let text = "objectives = [{ minimize = \"mass_kg\" }]\n\
+                workspace.region = { kind = \"rectangle\", width_m = 0.6, height_m = 0.4 }\n";
+    std::fs::write(&study, text).expect("a study");
+    let written = |name: &str| {
+        let path = folder.path().join(name);
+        let design = "3-PRR R=1.6 r=0.35 Lb=1.2 rj=0.04 rp=0.05";
+        kinefront()
+            .args(["export", "--design", design, "--study"])
+            .arg(&study)
+            .arg("--out")
+            .arg(&path)
+            .assert()
+            .success();
+        std::fs::read(path).expect("a file")
+    };
+    let drawing = String::from_utf8(written("table.dxf")).expect("text");
+    let lines: Vec<&str> = drawing.lines().map(str::trim).collect();
+    let in_workspace: Vec<&[&str]> = lines.windows(2).filter(|pair| pair == &["8", "WORKSPACE"]).collect();
+    assert!(!in_workspace.is_empty() && drawing.contains("prescribed region"));
+    for pair in [["10", "-300.0"], ["10", "300.0"], ["20", "-200.0"], ["20", "200.0"]] {
+        assert!(lines.windows(2).any(|found| found == pair), "no corner with {pair:?}");
+    }
+    let scene = String::from_utf8(written("table.mjcf")).expect("text");
+    for side in 1..=4 {
+        assert!(scene.contains(&format!("regular_workspace_{side}")), "side {side}");
+    }
+    let glb = written("table.glb");
+    let text = String::from_utf8_lossy(&glb);
+    assert!(text.contains("regular_workspace"));
+}
+
 #[test]
 fn small_mechanisms_and_other_working_modes_are_exported() {
     let folder = folder();

@@ -237,3 +237,49 @@ fn reports_say_what_is_wrong_and_replace_nothing_unasked() {
         .code(2)
         .stderr(contains("designs.csv").and(contains("line 4")));
 }
+
+/// A report follows the question of the study: one objective for a rectangle, and two other objectives.
+#[test]
+fn a_report_answers_the_question_of_its_study() {
+    let folder = folder();
+    let of_question = |name: &str, question: &str| {
+        let study = small_study(folder.path());
+        let mut text = std::fs::read_to_string(&study).expect("a study");
+        text.insert_str(0, question);
+        std::fs::write(&study, text).expect("a study");
+        let run = folder.path().join(name);
+        let told = optimize(&study, &run, &["--evaluations", "300"]);
+        assert!(told["front_size"].as_u64() > Some(0), "{told}");
+        let out = folder.path().join(format!("{name}-page"));
+        report(&[&run], &out, &[]).success();
+        let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
+        let table = std::fs::read_to_string(out.join("fronts.csv")).expect("a table");
+        (run, out, page, table)
+    };
+    let (run, out, page, table) = of_question(
+        "lightest",
+        "objectives = [{ minimize = \"mass_kg\" }]\nquantities = [\"transmission_min\"]\n\
+         workspace.region = { kind = \"rectangle\", width_m = 0.6, height_m = 0.4 }\n",
+    );
+    assert!(out.join("figures/front-progress.svg").exists());
+    assert!(page.contains("as small as possible") && page.contains("(-0.3, -0.2)") && page.contains("least transmission"));
+    assert!(!page.contains("largest workspace"), "the page speaks of another question");
+    // One design of each architecture that has a feasible one, each with its picture.
+    let designs = table.lines().count() - 1;
+    assert!((1..=3).contains(&designs), "{table}");
+    let pictures = std::fs::read_dir(out.join("pictures")).expect("a folder").count();
+    assert_eq!(pictures, designs);
+    report(&[&run], &folder.path().join("refused"), &["--sensitivity", "100"])
+        .code(2)
+        .stderr(contains("leave out"));
+
+    let (_, out, page, _) = of_question(
+        "stiff",
+        "architectures = [\"3-PRR\"]\nobjectives = [{ minimize = \"mass_kg\" }, { maximize = \"k_xy_n_per_m\" }]\n\
+         workspace.region = { kind = \"disc\", radius_m = 0.3 }\n[constraints]\nfootprint_m = { at_most = 4.0 }\n",
+    );
+    for figure in ["front-mass-kg-k-xy-n-per-m", "lengths-3-prr", "bars-3-prr"] {
+        assert!(out.join(format!("figures/{figure}.png")).exists(), "{figure}");
+    }
+    assert!(page.contains("as large as possible") && page.contains("at most 4 m") && page.contains("hypervolume"));
+}

@@ -3,6 +3,7 @@
 mod clearance;
 mod made;
 mod paper;
+mod question;
 mod references;
 mod results;
 mod sensitivity;
@@ -11,6 +12,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use super::question::Question;
 use super::{DesignPicture, Figure, Report};
 use crate::text::number;
 
@@ -23,7 +25,63 @@ pub(super) fn html(report: &Report) -> String {
     } else {
         format!("Kinefront report: {}", report.study.name)
     };
-    let mut sections: Vec<(&str, &str, Markup)> = vec![
+    let sections = match &report.question {
+        Some(question) => of_question(report, question),
+        None => of_workspaces(report),
+    };
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="generator" content={ "Kinefront " (env!("CARGO_PKG_VERSION")) };
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                header {
+                    h1 { (title) }
+                    @if !report.study.description.is_empty() { p.lead { (report.study.description) } }
+                    nav { @for (id, name, _) in &sections { a href={ "#" (id) } { (name) } } }
+                }
+                main {
+                    @if report.of_paper { (paper::guide(report)) }
+                    @for (id, name, section) in &sections {
+                        section id=(id) { h2 { (name) } (section) }
+                    }
+                }
+            }
+        }
+    };
+    page.into_string()
+}
+
+/// Returns the sections of a report on another question than the paper's: identifiers, titles and contents.
+fn of_question(report: &Report, question: &Question) -> Vec<(&'static str, &'static str, Markup)> {
+    let mut sections = vec![
+        ("question", "The question", question::asked(report, question)),
+        ("fronts", "Designs found", question::found(report, question)),
+    ];
+    if !report.references.is_empty() {
+        sections.push(("designs", "Reference designs", references::references(report)));
+    }
+    if question.objectives.len() > 1 {
+        let along = question::variables(report, question);
+        sections.push(("variables", "Design variables along the fronts", along));
+    }
+    sections.extend([
+        ("constraints", "Active constraints", question::constraints(report)),
+        ("clearance", "Clearance between members", clearance::clearance(report)),
+        ("pictures", "Pictures of designs", results::pictures(report)),
+        ("made", "How this report was made", made::made(report)),
+    ]);
+    sections
+}
+
+/// Returns the sections of a report on the lightest designs for the largest workspaces.
+fn of_workspaces(report: &Report) -> Vec<(&'static str, &'static str, Markup)> {
+    let mut sections = vec![
         (
             "comparison",
             "Comparison of the architectures",
@@ -61,32 +119,7 @@ pub(super) fn html(report: &Report) -> String {
         ));
     }
     sections.push(("made", "How this report was made", made::made(report)));
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="generator" content={ "Kinefront " (env!("CARGO_PKG_VERSION")) };
-                title { (title) }
-                style { (PreEscaped(STYLE)) }
-            }
-            body {
-                header {
-                    h1 { (title) }
-                    @if !report.study.description.is_empty() { p.lead { (report.study.description) } }
-                    nav { @for (id, name, _) in &sections { a href={ "#" (id) } { (name) } } }
-                }
-                main {
-                    @if report.of_paper { (paper::guide(report)) }
-                    @for (id, name, section) in &sections {
-                        section id=(id) { h2 { (name) } (section) }
-                    }
-                }
-            }
-        }
-    };
-    page.into_string()
+    sections
 }
 
 /// Lays out the figures whose names begin with `prefix` side by side.

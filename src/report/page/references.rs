@@ -34,6 +34,13 @@ pub(super) fn references(report: &Report) -> Markup {
             }
             tbody { @for reference in &report.references { (stated(reference)) } }
         } }
+        @if report.question.is_none() { (lighter(report)) }
+    }
+}
+
+/// Lists the lightest design found for the workspace radius of each reference design.
+fn lighter(report: &Report) -> Markup {
+    html! {
         h3 { "Lighter designs found" }
         div.scroll { table {
             caption { "The lightest design found with at least the workspace radius of each reference design (fine grid)." }

@@ -249,8 +249,9 @@ pub(super) fn constraints(report: &Report) -> Markup {
 pub(super) fn pictures(report: &Report) -> Markup {
     html! {
         p {
-            "The lightest design, the knee and the design with the largest workspace of each front at the home pose, "
-            "with true bar radii and the regular workspace in green"
+            @if report.question.is_none() { "The lightest design, the knee and the design with the largest workspace" }
+            @else { "The best design in each objective and the knee" }
+            " of each front at the home pose, with true bar radii and the regular workspace in green"
             @if !report.references.is_empty() { "; then the reference designs" }
             ". The pictures are rendered from the same solids as in the recordings and exports."
         }
