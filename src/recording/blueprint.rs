@@ -14,24 +14,26 @@ use rerun::{AsComponents, EntityPath, RecordingStream, StoreId, StoreKind, TimeP
 use super::{APPLICATION_ID, paths, timelines};
 use crate::scene::Field;
 
-/// Sends the layout of a run's recording; `clouds` are the entities whose rows together form the cloud of designs.
+/// Sends the layout of a run's recording; `clouds` are the entities whose rows together form the cloud of designs; `plot`
+/// and `hypervolume` are names of views.
 ///
 /// `base_radius` is the largest `R` of the study \[m\], which sets the scale of the 3-D views.
 pub(super) fn send_run_layout(
     recording: &RecordingStream,
     clouds: &[String],
+    [plot, hypervolume]: [&str; 2],
     scatter_bounds: Range2D,
     base_radius: f64,
 ) -> Result<(), ChunkError> {
     let mut layout = ViewLayout::new();
-    let scatter = layout.view("2D", "Pareto front", paths::SCATTER, &["+ $origin/**"])?;
+    let scatter = layout.view("2D", plot, paths::SCATTER, &["+ $origin/**"])?;
     layout.property(&scatter, "VisualBounds2D", &parts::VisualBounds2D::new(scatter_bounds))?;
     // Of the front and the axes the latest state is drawn; of the designs the whole history.
     for cloud in clouds {
         let place = parts::ViewContents::blueprint_base_visualizer_path_for_entity(scatter.id, &cloud.as_str().into());
         layout.log(place, &up_to_now())?;
     }
-    let hypervolume = layout.curve("Hypervolume [kg·m]", paths::HYPERVOLUME, "+ $origin")?;
+    let hypervolume = layout.curve(hypervolume, paths::HYPERVOLUME, "+ $origin")?;
     let feasible = layout.curve("Feasible fraction", paths::FEASIBLE_SHARE, "+ $origin")?;
     let size = layout.curve("Designs on the front", paths::FRONT_SIZE, "+ $origin")?;
     let along = layout.curve("Along the front", paths::ALONG_FRONT, "+ $origin/**")?;

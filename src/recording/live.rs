@@ -7,7 +7,7 @@ use rerun::sink::LogSink;
 use rerun::{Transform3D, Vec3D};
 
 use super::draw::Canvas;
-use super::scatter::{FrontPoint, PlotRange, front_points, selected, staircase};
+use super::plot::{FrontPoint, Plot, PlotPoint};
 use super::stage::{Rows, Stage};
 use super::subject::DrawnDesign;
 use super::writer::{RecordingError, RecordingWriter};
@@ -114,7 +114,7 @@ pub enum Picked {
 /// The scene, as sent to a viewer.
 pub struct LiveScene {
     writer: RecordingWriter,
-    frame: PlotRange,
+    frame: Plot,
     /// Size for which the 3-D views are set up \[m\].
     extent: f64,
     /// Size for which the view of the pinned designs is set up \[m\].
@@ -135,7 +135,7 @@ impl LiveScene {
     pub fn new(sink: Box<dyn LogSink>, study: &Study) -> Result<Self, RecordingError> {
         let scene = Self {
             writer: RecordingWriter::sending(sink, "scene")?,
-            frame: PlotRange::new(study),
+            frame: Plot::new(study),
             extent: VIEW * study.bounds.R_m[1],
             pins_extent: 1.0,
             comparing: false,
@@ -153,7 +153,7 @@ impl LiveScene {
     /// # Errors
     /// [`RecordingError::Encode`] when the layout cannot be encoded.
     pub fn turn_to(&mut self, study: &Study) -> Result<(), RecordingError> {
-        self.frame = PlotRange::new(study);
+        self.frame = Plot::new(study);
         self.extent = VIEW * study.bounds.R_m[1];
         self.layout()
     }
@@ -267,19 +267,23 @@ impl LiveScene {
     ) -> Result<(), RecordingError> {
         let mut rows = Rows::default();
         for member in front {
-            self.frame.include(member.mass, member.radius);
+            self.frame.include(&member.at());
         }
-        if let Some(marked) = marked {
-            self.frame.include(marked.mass, marked.workspace_radius);
+        let marked = marked.map(|marked| {
+            let same = |member: &&FrontPoint| member.mass.to_bits() == marked.mass.to_bits();
+            PlotPoint::of_evaluation(front.iter().find(same).map(|member| member.id), marked)
+        });
+        if let Some(marked) = &marked {
+            self.frame.include(marked);
         }
         rows.push(paths::PLOT, &self.frame.transform());
-        rows.push(paths::AXES, &self.frame.lines());
-        rows.push(paths::TICKS, &self.frame.labels());
-        rows.push(paths::LEGEND, &self.frame.legend(&study.architectures));
-        rows.push(paths::FRONT_LINE, &staircase(front, &self.frame));
-        rows.push(paths::FRONT_DESIGNS, &front_points(front));
-        if let Some(marked) = marked {
-            rows.push(paths::SELECTED, &selected(marked));
+        rows.push(paths::AXES, &self.frame.grid().lines());
+        rows.push(paths::TICKS, &self.frame.grid().labels());
+        rows.push(paths::LEGEND, &self.frame.grid().legend(&study.architectures));
+        rows.push(paths::FRONT_LINE, &self.frame.staircase(front));
+        rows.push(paths::FRONT_DESIGNS, &self.frame.front_points(front));
+        if let Some(marked) = &marked {
+            rows.push(paths::SELECTED, &self.frame.selected(marked));
         }
         self.front.show(&self.writer, rows)
     }

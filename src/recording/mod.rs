@@ -4,8 +4,8 @@
 //! |---|---|---|
 //! | `/study` | the study as run, as markdown | static |
 //! | `/designs` | one row per evaluated design: the columns of `designs.csv` | `evaluation`, `generation` |
-//! | `/scatter/plot/designs/…` | points (log₁₀ mass, R_w), one row per generation and kind of design | both |
-//! | `/scatter/plot/front/…` | the front at that time: its designs, labelled, and its staircase line | both |
+//! | `/scatter/plot/designs/…` | points (log₁₀ mass, R_w), or of other objectives, one row per generation and kind of design | both |
+//! | `/scatter/plot/front/…` | the front at that time: its designs, labelled, and its staircase line (mass and R_w only) | both |
 //! | `/scatter/plot/axes/…` | axes, ticks, titles and legend of the scatter plot | both |
 //! | `/run/hypervolume`, `/run/feasible_share`, `/run/front_size` | curves, one value per generation | both |
 //! | `/summary` | the verified front as a table, as markdown | static |
@@ -32,6 +32,8 @@ mod columns;
 mod design;
 mod draw;
 mod live;
+mod objective_plot;
+mod plot;
 mod proof;
 mod read;
 mod recorder;
@@ -46,10 +48,10 @@ mod writer;
 pub use apart::{RecordedRunError, UNPACK_COMMAND, read_apart, unpack, unpack_with};
 pub use design::record_design;
 pub use live::{LiveScene, Picked, Pinned, Shown, VisibleLayers};
+pub use plot::FrontPoint;
 pub use read::{CopyError, ReadError, RecordedDesign, RecordedRun, read_run, save_copy};
 pub use recorder::{Recorder, is_recorded};
 pub use run_files::{RunFileError, RunFiles};
-pub use scatter::FrontPoint;
 pub use writer::RecordingError;
 
 /// Application id of Kinefront's recordings; the viewer stores layouts under it.

@@ -8,12 +8,12 @@ use std::time::{Duration, Instant};
 
 use rerun::{Scalars, SeriesLines, TimeColumn};
 
+use super::plot::{FrontPoint, INFEASIBLE_COLOR, Plot, PlotPoint};
 use super::rows::RowBuffer;
-use super::scatter::{FrontPoint, INFEASIBLE_COLOR, PlotRange, front_points, points, selected, staircase};
 use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
 use super::{blueprint, colors, columns, design, paths, timelines};
 use crate::study::{Batch, Event, GenerationSummary, Row, RunSummary, RunWriter, Study, TableRow};
-use kinefront_model::evaluation::{Evaluation, Model};
+use kinefront_model::evaluation::{Evaluation, Model, Objective, Quantity};
 use kinefront_model::mechanism::Architecture;
 
 /// Number of designs after which the rows that were collected are written, large enough to keep the file's index small.
@@ -46,7 +46,7 @@ pub struct Recorder {
     writer: RecordingWriter,
     model: Model,
     architectures: Vec<Architecture>,
-    frame: PlotRange,
+    frame: Plot,
     /// Every how many generations one is recorded.
     every: usize,
     /// Whether the current generation is recorded.
@@ -92,14 +92,20 @@ impl Recorder {
     pub fn create(path: &Path, study: &Study, every: usize) -> Result<Self, RecordingError> {
         let model = study.model()?;
         let writer = RecordingWriter::create(path, &format!("{} (seed {})", study.name, study.optimizer.seed))?;
-        let frame = PlotRange::new(study);
+        let frame = Plot::new(study);
         let clouds: Vec<String> = study
             .architectures
             .iter()
             .map(|&architecture| cloud(architecture))
             .chain([paths::INFEASIBLE.to_owned()])
             .collect();
-        blueprint::send_run_layout(writer.stream(), &clouds, frame.bounds(), study.bounds.R_m[1])?;
+        let names = match (study.asks_as_the_paper(), study.objectives.len()) {
+            (true, _) => ["Pareto front", "Hypervolume [kg·m]"],
+            (false, 1) => ["Progress", "Hypervolume"],
+            (false, _) => ["Pareto front", "Hypervolume"],
+        };
+        let bounds = frame.bounds();
+        blueprint::send_run_layout(writer.stream(), &clouds, names, bounds, study.bounds.R_m[1])?;
         writer.text(paths::STUDY, ALWAYS, &study_text(study)?)?;
         Ok(Self {
             writer,
@@ -165,8 +171,12 @@ impl Recorder {
     }
 
     fn batch(&mut self, batch: &Batch) {
-        for row in &batch.rows {
-            self.frame_changed |= self.frame.include(row.mass, row.radius);
+        let points = |rows: &mut dyn Iterator<Item = (usize, &Row)>| -> Vec<PlotPoint> {
+            rows.map(|(id, row)| PlotPoint::of_row(id, row)).collect()
+        };
+        let rows = || (batch.first_id..).zip(&batch.rows);
+        for point in points(&mut rows()) {
+            self.frame_changed |= self.frame.include(&point);
         }
         self.records = is_recorded(batch.generation, batch.first_id, self.every);
         if !self.records {
@@ -174,40 +184,33 @@ impl Recorder {
         }
         let moment = moment(batch.first_id + batch.rows.len(), batch.generation);
         for &architecture in Architecture::ALL {
-            let of_kind = |row: &&Row| row.is_feasible() && row.design.architecture == architecture;
+            let of_kind = |(_, row): &(usize, &Row)| row.is_feasible() && row.design.architecture == architecture;
             let color = colors::architecture(architecture);
             self.cloud(
                 &cloud(architecture),
                 &moment,
-                batch.rows.iter().filter(of_kind),
+                &points(&mut rows().filter(of_kind)),
                 color,
                 2.0,
             );
         }
         let frame = self.frame;
-        let infeasible = batch.rows.iter().filter(|row| !row.is_feasible() && frame.holds(row));
+        let mut infeasible = points(&mut rows().filter(|(_, row)| !row.is_feasible()));
+        infeasible.retain(|point| frame.holds(point));
         let [r, g, b] = INFEASIBLE_COLOR;
         self.cloud(
             paths::INFEASIBLE,
             &moment,
-            infeasible,
+            &infeasible,
             rerun::Color::from_rgb(r, g, b),
             1.5,
         );
         self.pending.extend(batch.entries());
     }
 
-    fn cloud<'a>(
-        &mut self,
-        entity: &str,
-        moment: Moment<'_>,
-        designs: impl Iterator<Item = &'a Row>,
-        color: rerun::Color,
-        size: f32,
-    ) {
-        let designs: Vec<&Row> = designs.collect();
+    fn cloud(&mut self, entity: &str, moment: Moment<'_>, designs: &[PlotPoint], color: rerun::Color, size: f32) {
         if !designs.is_empty() {
-            self.rows.add(entity, moment, &points(&designs, color, size));
+            self.rows.add(entity, moment, &self.frame.points(designs, color, size));
         }
     }
 
@@ -218,9 +221,10 @@ impl Recorder {
             self.frame_changed = false;
         }
         if self.front_changed {
-            self.rows.add(paths::FRONT_DESIGNS, &moment, &front_points(&self.front));
             self.rows
-                .add(paths::FRONT_LINE, &moment, &staircase(&self.front, &self.frame));
+                .add(paths::FRONT_DESIGNS, &moment, &self.frame.front_points(&self.front));
+            self.rows
+                .add(paths::FRONT_LINE, &moment, &self.frame.staircase(&self.front));
             self.front_changed = false;
         }
         self.curves(&moment, summary);
@@ -243,7 +247,8 @@ impl Recorder {
             self.generation(last);
         }
         self.write_collected()?;
-        self.writer.text(paths::SUMMARY, ALWAYS, &summary_text(summary))?;
+        self.writer
+            .text(paths::SUMMARY, ALWAYS, &summary_text(&self.study, summary))?;
         for (name, _) in ALONG_FRONT {
             let lines = SeriesLines::new().with_names([name]);
             self.writer.row(&along_front(name), ALWAYS, &lines)?;
@@ -290,16 +295,17 @@ impl Recorder {
             let value = Scalars::single(value(&member.evaluation));
             self.writer.row(&along_front(name), moment, &value)?;
         }
-        self.writer.row(paths::SELECTED, moment, &selected(&member.evaluation))
+        let point = PlotPoint::of_evaluation(Some(member.id), &member.evaluation);
+        self.writer.row(paths::SELECTED, moment, &self.frame.selected(&point))
     }
 
     /// Adds the axes, ticks and legend of the scatter plot.
     fn axes(&mut self, moment: Moment<'_>) {
         self.rows.add(paths::PLOT, moment, &self.frame.transform());
-        self.rows.add(paths::AXES, moment, &self.frame.lines());
-        self.rows.add(paths::TICKS, moment, &self.frame.labels());
+        self.rows.add(paths::AXES, moment, &self.frame.grid().lines());
+        self.rows.add(paths::TICKS, moment, &self.frame.grid().labels());
         self.rows
-            .add(paths::LEGEND, moment, &self.frame.legend(&self.architectures));
+            .add(paths::LEGEND, moment, &self.frame.grid().legend(&self.architectures));
     }
 
     /// Adds the axes, legend and front at the first step of the timeline `front`, on which the scatter plot would
@@ -307,9 +313,10 @@ impl Recorder {
     fn scatter_on_front(&mut self) {
         let moment: Moment<'_> = &[(timelines::FRONT, 0)];
         self.axes(moment);
-        self.rows.add(paths::FRONT_DESIGNS, moment, &front_points(&self.front));
         self.rows
-            .add(paths::FRONT_LINE, moment, &staircase(&self.front, &self.frame));
+            .add(paths::FRONT_DESIGNS, moment, &self.frame.front_points(&self.front));
+        self.rows
+            .add(paths::FRONT_LINE, moment, &self.frame.staircase(&self.front));
     }
 
     /// Writes the designs and rows that were collected.
@@ -354,36 +361,52 @@ fn study_text(study: &Study) -> Result<String, RecordingError> {
 }
 
 /// Returns the verified front as a table, thinned to a readable number of rows.
-fn summary_text(summary: &RunSummary) -> String {
+fn summary_text(study: &Study, summary: &RunSummary) -> String {
     const MOST_ROWS: usize = 40;
     let last = summary.history.last();
     let mut text = format!(
         "# Result\n\n{} evaluations, {} feasible. {} designs are on the front after verification on the fine grid \
-         ({} dropped); hypervolume {:.1} kg·m.\n\n",
+         ({} dropped); hypervolume {:.1}{}.\n\n",
         last.map_or(0, |last| last.evaluations),
         last.map_or(0, |last| last.feasible),
         summary.front.len(),
         summary.dropped,
         summary.verified_hypervolume,
+        if study.asks_as_the_paper() { " kg·m" } else { "" },
     );
+    // Mass and workspace radius have columns in any case.
+    let is_other = |(_, objective): &(usize, Objective)| {
+        ![Quantity::Mass, Quantity::WorkspaceRadius].contains(&objective.quantity)
+    };
+    let others: Vec<(usize, Objective)> = study.objectives().into_iter().enumerate().filter(is_other).collect();
     if let Some(proofs) = &summary.proofs {
         text.push_str(&format!("{proofs}\n\n"));
     }
-    text.push_str(
-        "| # | architecture | mass [kg] | R_w [m] | φ_c [°] | R | r | L_b | r_j | r_p | clearance [mm] | active |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|\n",
-    );
+    let titles = others.iter().map(|(_, objective)| {
+        let entry = objective.quantity.entry();
+        format!(" {} [{}] |", entry.label, entry.unit).replace(" []", "")
+    });
+    text.push_str(&format!(
+        "| # | architecture | mass [kg] | R_w [m] |{} φ_c [°] | R | r | L_b | r_j | r_p | clearance [mm] | active |\n\
+         |---|---|---|---|{}---|---|---|---|---|---|---|---|\n",
+        titles.collect::<String>(),
+        "---|".repeat(others.len()),
+    ));
     for (_, member) in summary.spread(MOST_ROWS) {
         let e = &member.evaluation;
         let [base, platform, link, leg_bar, platform_bar] = e.design.values();
         let active: Vec<&str> = e.active().map(|constraint| constraint.id()).collect();
         let clearance = e.clearance();
         text.push_str(&format!(
-            "| {} | {} | {:.2} | {:.4} | {} | {base:.3} | {platform:.3} | {link:.3} | {leg_bar:.4} | {platform_bar:.4} | {} | {} |\n",
+            "| {} | {} | {:.2} | {:.4} |{} {} | {base:.3} | {platform:.3} | {link:.3} | {leg_bar:.4} | {platform_bar:.4} | {} | {} |\n",
             member.id,
             e.design.architecture,
             e.mass,
             e.workspace_radius,
+            others
+                .iter()
+                .map(|(place, objective)| format!(" {:.5} |", objective.value(e.objectives[*place])))
+                .collect::<String>(),
             e.home_phi_deg.map(|phi| phi.to_string()).unwrap_or_default(),
             clearance.map(|clearance| format!("{:.1}", 1e3 * clearance)).unwrap_or_default(),
             active.join(" "),

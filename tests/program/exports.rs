@@ -184,7 +184,7 @@ fn a_prescribed_rectangle_is_exported_with_its_corners() {
     for pair in [["10", "-300.0"], ["10", "300.0"], ["20", "-200.0"], ["20", "200.0"]] {
         assert!(lines.windows(2).any(|found| found == pair), "no corner with {pair:?}");
     }
-    let scene = String::from_utf8(written("table.mjcf")).expect("text");
+    let scene = String::from_utf8(written("table.xml")).expect("text");
     for side in 1..=4 {
         assert!(scene.contains(&format!("regular_workspace_{side}")), "side {side}");
     }

@@ -262,8 +262,13 @@ fn a_report_answers_the_question_of_its_study() {
          workspace.region = { kind = \"rectangle\", width_m = 0.6, height_m = 0.4 }\n",
     );
     assert!(out.join("figures/front-progress.svg").exists());
-    assert!(page.contains("as small as possible") && page.contains("(-0.3, -0.2)") && page.contains("least transmission"));
-    assert!(!page.contains("largest workspace"), "the page speaks of another question");
+    assert!(
+        page.contains("as small as possible") && page.contains("(-0.3, -0.2)") && page.contains("least transmission")
+    );
+    assert!(
+        !page.contains("largest workspace"),
+        "the page speaks of another question"
+    );
     // One design of each architecture that has a feasible one, each with its picture.
     let designs = table.lines().count() - 1;
     assert!((1..=3).contains(&designs), "{table}");
@@ -276,7 +281,7 @@ fn a_report_answers_the_question_of_its_study() {
     let (_, out, page, _) = of_question(
         "stiff",
         "architectures = [\"3-PRR\"]\nobjectives = [{ minimize = \"mass_kg\" }, { maximize = \"k_xy_n_per_m\" }]\n\
-         workspace.region = { kind = \"disc\", radius_m = 0.3 }\n[constraints]\nfootprint_m = { at_most = 4.0 }\n",
+         workspace.region = { kind = \"disc\", radius_m = 0.3 }\nconstraints.footprint_m = { at_most = 4.0 }\n",
     );
     for figure in ["front-mass-kg-k-xy-n-per-m", "lengths-3-prr", "bars-3-prr"] {
         assert!(out.join(format!("figures/{figure}.png")).exists(), "{figure}");

@@ -294,6 +294,7 @@ impl Session {
             architecture: entry.row.design.architecture,
             mass: entry.row.mass,
             radius: entry.row.radius,
+            objectives: entry.row.objectives,
             passes_filter: prepared.passes_entry(entry),
         });
         self.front_points = Arc::new(points.collect());
