@@ -4,6 +4,7 @@ use rerun::Transform3D;
 use rerun::datatypes::{Range1D, Range2D};
 
 use super::plot::{HEIGHT, PlotGrid, PlotPoint};
+use crate::text::number;
 use kinefront_model::evaluation::{Better, Objective, Quantity};
 use kinefront_optimize::Objectives;
 
@@ -127,7 +128,8 @@ impl ObjectivePlot {
         let values = self.objectives.iter().flatten().zip(objectives.iter());
         let words = values.map(|(objective, minimised)| {
             let entry = objective.quantity.entry();
-            format!("{} {:.5} {}", entry.label, objective.value(*minimised), entry.unit)
+            let value = number(objective.value(*minimised));
+            format!("{} {value} {}", entry.label, entry.unit).trim_end().to_owned()
         });
         words.collect::<Vec<_>>().join(", ")
     }

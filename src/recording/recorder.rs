@@ -13,6 +13,7 @@ use super::rows::RowBuffer;
 use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
 use super::{blueprint, colors, columns, design, paths, timelines};
 use crate::study::{Batch, Event, GenerationSummary, Row, RunSummary, RunWriter, Study, TableRow};
+use crate::text::number;
 use kinefront_model::evaluation::{Evaluation, Model, Objective, Quantity};
 use kinefront_model::mechanism::Architecture;
 
@@ -405,7 +406,7 @@ fn summary_text(study: &Study, summary: &RunSummary) -> String {
             e.workspace_radius,
             others
                 .iter()
-                .map(|(place, objective)| format!(" {:.5} |", objective.value(e.objectives[*place])))
+                .map(|(place, objective)| format!(" {} |", number(objective.value(e.objectives[*place]))))
                 .collect::<String>(),
             e.home_phi_deg.map(|phi| phi.to_string()).unwrap_or_default(),
             clearance.map(|clearance| format!("{:.1}", 1e3 * clearance)).unwrap_or_default(),

@@ -29,6 +29,28 @@ fn a_recording_holds_what_the_tables_hold() {
     agrees_with_its_tables(&out);
 }
 
+/// The plot of a recording shows what the study seeks.
+#[test]
+fn recordings_follow_the_question_of_the_study() {
+    let folder = folder();
+    for (name, question) in [
+        ("one", "objectives = [{ minimize = \"mass_kg\" }]\n"),
+        (
+            "two",
+            "objectives = [{ minimize = \"mass_kg\" }, { maximize = \"k_xy_n_per_m\" }]\n",
+        ),
+    ] {
+        let study = small_study(folder.path());
+        let mut text = std::fs::read_to_string(&study).expect("a study");
+        text.insert_str(0, "workspace.region = { kind = \"disc\", radius_m = 0.5 }\n");
+        text.insert_str(0, question);
+        std::fs::write(&study, text).expect("a study");
+        let run = folder.path().join(name);
+        optimize(&study, &run, &["--evaluations", "240"]);
+        agrees_with_its_tables(&run);
+    }
+}
+
 fn check_design(path: &Path) -> Option<serde_json::Value> {
     let python = python(&["rerun", "pyarrow", "numpy"])?;
     Some(serde_json::from_str(&script(python, "check_design.py", &[path])).expect("JSON"))

@@ -69,12 +69,23 @@ for entity, key in [("/run/hypervolume", "hypervolume"), ("/run/front_size", "fr
     assert curve["generation"].to_pylist() == [g["generation"] for g in history]
     assert column(curve, "Scalars:scalars") == [float(g[key]) for g in history]
 
-# Every feasible design is a point of the scatter, at (log10 mass, R_w).
-wanted = sorted(
-    (float(np.float32(np.log10(float(d["mass_kg"])))), float(np.float32(d["workspace_radius_m"])))
-    for d in designs
-    if d["feasible"] == "true"
-)
+# Every feasible design is a point of the scatter: at (log10 mass, R_w), at the first two of other objectives, or, with one
+# objective, at its value over the number of evaluations. Masses and stiffness are in decades.
+def coordinate(design, key):
+    value = float(design[{"k_xy_n_per_m": "value_g4"}.get(key, key)])
+    return np.log10(value) if key.endswith(("_kg", "_n_per_m")) else value
+
+
+def place(design):
+    keys = [objective.get("minimize") or objective["maximize"] for objective in report.get("objectives", [])]
+    if not keys:
+        return coordinate(design, "mass_kg"), coordinate(design, "workspace_radius_m")
+    if len(keys) == 1:
+        return int(design["id"]) + 1, coordinate(design, keys[0])
+    return coordinate(design, keys[0]), coordinate(design, keys[1])
+
+
+wanted = sorted(tuple(float(np.float32(at)) for at in place(d)) for d in designs if d["feasible"] == "true")
 points = []
 for architecture in report["architectures"]:
     try:

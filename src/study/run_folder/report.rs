@@ -138,7 +138,8 @@ fn reported_objectives(study: &Study) -> Vec<ReportedObjective> {
     let reference = study.hypervolume_reference();
     let of = |((choice, objective), minimised): ((&ObjectiveChoice, Objective), &f64)| ReportedObjective {
         objective: choice.clone(),
-        reference: objective.value(*minimised),
+        // The negative of 0 is stated as 0.
+        reference: objective.value(*minimised) + 0.0,
     };
     study
         .objectives
