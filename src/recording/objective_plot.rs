@@ -38,7 +38,7 @@ enum Shows {
 }
 
 /// Ends of an axis and the distance of its ticks.
-struct Scale {
+struct AxisScale {
     low: f64,
     high: f64,
     step: f64,
@@ -75,7 +75,7 @@ impl ObjectivePlot {
 
     pub fn holds(&self, point: &PlotPoint) -> bool {
         self.axes.iter().all(|axis| {
-            let Scale { low, high, .. } = axis.scale();
+            let AxisScale { low, high, .. } = axis.scale();
             axis.coordinate(point).is_some_and(|at| (low..=high).contains(&at))
         })
     }
@@ -175,7 +175,7 @@ impl ObjectiveAxis {
     }
 
     /// Returns the ends of the axis and the distance of its ticks, which are multiples of it.
-    fn scale(&self) -> Scale {
+    fn scale(&self) -> AxisScale {
         let [low, high] = match (self.shows, self.range) {
             (Shows::Evaluations, Some([_, last])) => [0.0, last],
             (Shows::Objective(..), Some(range)) => range,
@@ -183,7 +183,7 @@ impl ObjectiveAxis {
         };
         if self.is_logarithmic() {
             let low = low.floor();
-            return Scale {
+            return AxisScale {
                 low,
                 high: high.ceil().max(low + 1.0),
                 step: 1.0,
@@ -195,7 +195,7 @@ impl ObjectiveAxis {
         let steps = [0.1, 0.2, 0.5, 1.0, 2.0].map(|part| part * decade);
         let step = steps.into_iter().find(|step| span / step <= STEPS).unwrap_or(decade);
         let low = (low / step).floor() * step;
-        Scale {
+        AxisScale {
             low,
             high: ((high / step).ceil() * step).max(low + step),
             step,
@@ -203,7 +203,7 @@ impl ObjectiveAxis {
     }
 
     fn ticks(&self) -> Vec<(f32, String)> {
-        let Scale { low, high, step } = self.scale();
+        let AxisScale { low, high, step } = self.scale();
         let count = ((high - low) / step).round() as usize;
         let label = |at: f64| {
             if self.is_logarithmic() {

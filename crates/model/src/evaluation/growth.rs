@@ -129,7 +129,7 @@ impl<'a, L: Leg> Growth<'a, L> {
         }
         while above - below > ACCURACY * above {
             let middle = 0.5 * (below + above);
-            self.margins.lay_first(1.0 / middle);
+            self.margins.lay_boundary(1.0 / middle);
             if window.iter().all(|&k| self.margins.at_first(k) >= 0.0) {
                 above = middle;
             } else {

@@ -10,7 +10,7 @@ use super::batch::OrientationLanes;
 use super::columns::Positions;
 use super::region::{RegionPositions, directions};
 use super::regular::{Orientation, RegularWorkspace, orientations};
-use super::{PoseChecker, Region, ValueColumns, WorkspaceSampling};
+use super::{Grid, PoseChecker, Region, ValueColumns, WorkspaceSampling, WorkspaceSpec};
 use crate::lanes::{Lanes, MAX_LANES, Planar, Real};
 use crate::mechanism::Leg;
 
@@ -61,7 +61,9 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
 
     /// Lays out the region with its centre and all its lengths multiplied by `factor`.
     pub fn lay(&mut self, factor: f64) {
-        self.samples = self.positions(factor, false);
+        let (spec, grid, step) = self.grid();
+        let region = spec.region.scaled(factor);
+        self.samples = region.positions(spec.centre * factor, grid, step, &self.directions);
         let parts = self.samples.all.split_at(self.samples.first);
         for (columns, positions) in self.parts.iter_mut().zip([parts.0, parts.1]) {
             columns.clear();
@@ -70,23 +72,19 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         }
     }
 
-    /// Lays out only the positions of the region multiplied by `factor` that are examined first.
-    pub fn lay_first(&mut self, factor: f64) {
-        let samples = self.positions(factor, true);
+    /// Lays out only the boundary of the region multiplied by `factor`, as the positions that are examined first.
+    pub fn lay_boundary(&mut self, factor: f64) {
+        let (spec, grid, step) = self.grid();
+        let region = spec.region.scaled(factor);
+        let boundary = region.boundary_positions(spec.centre * factor, grid, step, &self.directions);
         self.parts[0].clear();
-        self.parts[0].extend(&samples.all);
+        self.parts[0].extend(&boundary);
         self.parts[0].pad();
     }
 
-    fn positions(&self, factor: f64, first: bool) -> RegionPositions {
-        let (spec, grid) = (self.sampling.spec(), self.sampling.grid());
-        let step = self.step_base / grid.ray_steps() as f64;
-        let (region, centre) = (spec.region.scaled(factor), spec.centre * factor);
-        if first {
-            region.first_positions(centre, grid, step, &self.directions)
-        } else {
-            region.positions(centre, grid, step, &self.directions)
-        }
+    fn grid(&self) -> (&'a WorkspaceSpec, &'a Grid, f64) {
+        let grid = self.sampling.grid();
+        (self.sampling.spec(), grid, self.step_base / grid.ray_steps() as f64)
     }
 
     /// Requires in each orientation the sign of `det A` that it has at the centre (at the first corner of a polygon) of the region

@@ -173,11 +173,16 @@ impl Polygon {
             .collect()
     }
 
+    /// Returns the distance of positions that divides the longer side of the rectangle that holds the polygon into `count` steps.
+    fn spacing(&self, count: usize) -> f64 {
+        let [low, high] = self.bounds();
+        (high - low).max_element() / count as f64
+    }
+
     /// Returns the positions at which the polygon is examined: its boundary and the lattice within it, with `count` steps along
     /// the longer side of the rectangle that holds it.
     fn positions(&self, count: usize) -> RegionPositions {
-        let [low, high] = self.bounds();
-        let boundary = self.boundary((high - low).max_element() / count as f64);
+        let boundary = self.boundary(self.spacing(count));
         let stride = boundary.len().div_ceil(FIRST);
         let (mut first, rest): (Vec<_>, Vec<_>) = boundary
             .into_iter()
@@ -249,27 +254,17 @@ impl Region {
         found
     }
 
-    /// Returns only those positions of a prescribed region that are examined first.
-    pub(crate) fn first_positions(
-        &self,
-        centre: DVec2,
-        grid: &Grid,
-        step: f64,
-        directions: &[DVec2],
-    ) -> RegionPositions {
+    /// Returns only those positions of a prescribed region that lie on its boundary.
+    pub(crate) fn boundary_positions(&self, centre: DVec2, grid: &Grid, step: f64, directions: &[DVec2]) -> Vec<DVec2> {
         match self {
+            Region::Largest => Vec::new(),
             Region::Disc(radius) => {
                 let rim = rim(*radius, step, grid);
-                let all = directions.iter().map(|direction| centre + *direction * rim).collect();
-                RegionPositions {
-                    all,
-                    first: directions.len(),
-                }
+                directions.iter().map(|direction| centre + *direction * rim).collect()
             }
-            Region::Largest | Region::Polygon(_) => {
-                let mut found = self.positions(centre, grid, step, directions);
-                found.all.truncate(found.first);
-                found
+            Region::Polygon(polygon) => {
+                let boundary = polygon.boundary(polygon.spacing(grid.ray_steps())).into_iter();
+                boundary.map(|position| centre + position).collect()
             }
         }
     }
