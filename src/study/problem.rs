@@ -190,29 +190,38 @@ impl DesignProblem {
             matches!(limit.bound, Bound::AtMost(_)) && quantities.contains(&limit.quantity)
         };
         let is_free = |length: &DesignVariable| {
-            let follows_bars = self.ties[*length as usize].is_some_and(|tie| BARS.contains(&tie.source));
-            self.listed[*length as usize].is_none() && !follows_bars
+            let [lower, upper] = self.ranges[*length as usize];
+            let has_range = match self.ties[*length as usize] {
+                Some(tie) => !BARS.contains(&tie.source),
+                None => lower < upper,
+            };
+            has_range && self.listed[*length as usize].is_none()
         };
         self.is_prescribed
             && self.model.objectives.len() == 1
             && self.seeks_light_bars()
+            && self.model.is_free_of_scale()
             && self.model.limits.iter().all(grows_with_scale)
             && LENGTHS.iter().all(is_free)
+    }
+
+    /// The lengths that follow from no other variable.
+    fn untied_lengths(&self) -> impl Iterator<Item = DesignVariable> {
+        LENGTHS
+            .into_iter()
+            .filter(|length| self.ties[*length as usize].is_none())
     }
 
     /// Returns what sizing a design may change.
     fn sizing_ranges(&self, design: &Design) -> SizingRanges {
         let [leg, platform] = BARS.map(|bar| self.ranges[bar as usize]);
-        let factors = LENGTHS.map(|length| {
-            let value = design.values()[length as usize];
-            self.ranges[length as usize].map(|bound| bound / value)
-        });
         let scale = if self.may_scale() {
-            let [least, most] = [0, 1].map(|end| factors.map(|range| range[end]));
-            [
-                least.into_iter().fold(0.0, f64::max),
-                most.into_iter().fold(f64::INFINITY, f64::min),
-            ]
+            self.untied_lengths()
+                .fold([0.0, f64::INFINITY], |[least, most], length| {
+                    let value = design.values()[length as usize];
+                    let [lower, upper] = self.ranges[length as usize].map(|bound| bound / value);
+                    [lower.max(least), upper.min(most)]
+                })
         } else {
             [1.0; 2]
         };
@@ -319,7 +328,7 @@ impl Problem for DesignProblem {
     fn determined_variables(&self) -> Vec<usize> {
         let bars = BARS.into_iter().filter(|_| self.seeks_light_bars());
         // With the scale, one length follows from the others.
-        let scale = self.may_scale().then_some(DesignVariable::BaseRadius);
+        let scale = self.untied_lengths().take(usize::from(self.may_scale()));
         bars.chain(scale).map(|variable| 1 + variable as usize).collect()
     }
 

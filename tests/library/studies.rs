@@ -395,6 +395,34 @@ fn candidates_take_the_values_that_variables_may_have() {
     }
 }
 
+/// Where the mass alone is sought for a prescribed region, the bars and the scale are left to sizing, unless a length is fixed or a
+/// limit depends on the scale.
+#[test]
+fn sizing_determines_the_scale_where_nothing_else_depends_on_it() {
+    use kinefront_optimize::Problem;
+    let determined = |question: &str| {
+        let text = format!(
+            "objectives = [{{ minimize = \"mass_kg\" }}]\nworkspace.region = {{ kind = \"disc\", radius_m = 0.3 }}\n{question}"
+        );
+        let study = Study::parse(&text, "test.toml").expect("a study");
+        DesignProblem::new(&study)
+            .expect("a valid study")
+            .determined_variables()
+    };
+    let (bars, with_scale) = (vec![4, 5], vec![4, 5, 1]);
+    assert_eq!(determined(""), with_scale);
+    assert_eq!(determined("constraints.footprint_m = { at_most = 2.0 }"), with_scale);
+    assert_eq!(determined("variables.r_m = \"0.3 R\""), with_scale);
+    for question in [
+        "variables.r_m = 0.3",
+        "variables.Lb_m = [0.6, 0.8]",
+        "constraints.dexterity_mean = { at_least = 0.3 }",
+        "constraints.clearance_m = { at_least = 0.005 }",
+    ] {
+        assert_eq!(determined(question), bars, "{question}");
+    }
+}
+
 #[test]
 fn questions_that_cannot_be_asked_are_refused_with_the_reason_and_what_would_be_right() {
     let disc = "workspace.region = { kind = \"disc\", radius_m = 0.3 }";

@@ -37,12 +37,15 @@ pub(super) struct Growth<'a, L> {
     signs: Vec<Option<f64>>,
 }
 
-/// Returns whether a geometry is as feasible as any similar one for which the region is larger in proportion.
-pub(super) fn is_free_of_scale(model: &Model) -> bool {
-    let has_length = |limits: FurtherLimits| limits.limit_margin.is_some();
-    model.thresholds.clearance.is_none()
-        && !model.thresholds.further.is_some_and(has_length)
-        && !matches!(model.characteristic_length, CharacteristicLength::Fixed(_))
+impl Model {
+    /// Returns whether a geometry without bars is as feasible as any similar one for which the region is larger in proportion, so
+    /// that sizing may change its scale.
+    pub fn is_free_of_scale(&self) -> bool {
+        let has_length = |limits: FurtherLimits| limits.limit_margin.is_some();
+        self.thresholds.clearance.is_none()
+            && !self.thresholds.further.is_some_and(has_length)
+            && !matches!(self.characteristic_length, CharacteristicLength::Fixed(_))
+    }
 }
 
 impl<'a, L: Leg> Growth<'a, L> {

@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::GridChoice;
 use super::golden_section::golden_section;
-use super::growth::{GrownHome, Growth, is_free_of_scale};
+use super::growth::{GrownHome, Growth};
 use super::lightest::SizingAccuracy;
 use super::sizing::Sizer;
 use super::sizing_prescribed::SizedPoses;
@@ -58,7 +58,7 @@ impl<L: Leg> Sizer<'_, L> {
     /// bars are lightest.
     pub(super) fn sized_exactly(self, grid: GridChoice) -> Option<Design> {
         let model = self.model;
-        let [smallest, largest] = if is_free_of_scale(model) {
+        let [smallest, largest] = if model.is_free_of_scale() {
             self.ranges.scale
         } else {
             [1.0; 2]
