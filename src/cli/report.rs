@@ -93,7 +93,7 @@ fn evaluations(asked: u32) -> Option<usize> {
 pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
     let folder = arguments.folder();
     free(&folder, arguments.replace).map_err(failure)?;
-    let options = Options {
+    let mut options = Options {
         sensitivity: arguments.sensitivity.map_or(Some(SENSITIVITY), evaluations),
         picture: [arguments.picture_width, arguments.picture_width * 3 / 4],
         scale: arguments.scale,
@@ -119,7 +119,6 @@ pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
                     ));
                 }
             }
-            let mut options = options;
             if sources.iter().any(|source| !source.study.asks_as_the_paper()) {
                 options.sensitivity = arguments.sensitivity.and_then(evaluations);
             }

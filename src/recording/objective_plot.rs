@@ -3,7 +3,8 @@
 use rerun::Transform3D;
 use rerun::datatypes::{Range1D, Range2D};
 
-use super::plot::{HEIGHT, PlotGrid, PlotPoint};
+use super::plot::{HEIGHT, PlotGrid, PlotPoint, decade_label, tick_label};
+use crate::study::Column;
 use crate::text::number;
 use kinefront_model::evaluation::{Better, Objective, Quantity};
 use kinefront_optimize::Objectives;
@@ -38,6 +39,7 @@ enum Shows {
 }
 
 /// Ends of an axis and the distance of its ticks.
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct AxisScale {
     low: f64,
     high: f64,
@@ -64,13 +66,13 @@ impl ObjectivePlot {
     }
 
     pub fn include(&mut self, point: &PlotPoint) -> bool {
-        let before = self.grid();
+        let before = self.axes.map(|axis| axis.scale());
         if point.is_feasible {
             for axis in &mut self.axes {
                 axis.include(point);
             }
         }
-        self.grid() != before
+        self.axes.map(|axis| axis.scale()) != before
     }
 
     pub fn holds(&self, point: &PlotPoint) -> bool {
@@ -207,12 +209,9 @@ impl ObjectiveAxis {
         let count = ((high - low) / step).round() as usize;
         let label = |at: f64| {
             if self.is_logarithmic() {
-                match at as i32 {
-                    decade @ 0..=4 => format!("{}", 10u32.pow(decade.unsigned_abs())),
-                    decade => format!("1e{decade}"),
-                }
+                decade_label(at as i32)
             } else {
-                format!("{}", (at * 1e6).round() / 1e6)
+                tick_label(at)
             }
         };
         (0..=count)
@@ -225,17 +224,12 @@ impl ObjectiveAxis {
         let Shows::Objective(_, objective) = self.shows else {
             return "evaluations".to_owned();
         };
-        let entry = objective.quantity.entry();
-        let unit = if entry.unit.is_empty() {
-            String::new()
-        } else {
-            format!(" [{}]", entry.unit)
-        };
+        let title = Column::of_quantity(objective.quantity).title();
         let better = match (objective.goal, objective.quantity) {
             (Better::Lower, Quantity::Mass) => "lighter",
             (Better::Lower, _) => "smaller",
             (Better::Higher, _) => "larger",
         };
-        format!("{}{unit}, {better} is better", entry.label)
+        format!("{title}, {better} is better")
     }
 }

@@ -220,6 +220,19 @@ impl Plot {
     }
 }
 
+/// Returns the label of a decade on a logarithmic axis.
+pub(super) fn decade_label(decade: i32) -> String {
+    match decade {
+        0..=4 => format!("{}", 10u32.pow(decade.unsigned_abs())),
+        _ => format!("1e{decade}"),
+    }
+}
+
+/// Returns the label of a value on an axis that is not logarithmic, without the rounding errors of multiples of a step.
+pub(super) fn tick_label(value: f64) -> String {
+    format!("{}", (value * 1e6).round() / 1e6)
+}
+
 /// Axes of a plot, in its coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PlotGrid {

@@ -12,7 +12,7 @@ use super::plot::{FrontPoint, INFEASIBLE_COLOR, Plot, PlotPoint};
 use super::rows::RowBuffer;
 use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
 use super::{blueprint, colors, columns, design, paths, timelines};
-use crate::study::{Batch, Event, GenerationSummary, Row, RunSummary, RunWriter, Study, TableRow};
+use crate::study::{Batch, Column, Event, GenerationSummary, Row, RunSummary, RunWriter, Study, TableRow};
 use crate::text::number;
 use kinefront_model::evaluation::{Evaluation, Model, Objective, Quantity};
 use kinefront_model::mechanism::Architecture;
@@ -172,12 +172,10 @@ impl Recorder {
     }
 
     fn batch(&mut self, batch: &Batch) {
-        let points = |rows: &mut dyn Iterator<Item = (usize, &Row)>| -> Vec<PlotPoint> {
-            rows.map(|(id, row)| PlotPoint::of_row(id, row)).collect()
-        };
-        let rows = || (batch.first_id..).zip(&batch.rows);
-        for point in points(&mut rows()) {
-            self.frame_changed |= self.frame.include(&point);
+        let placed = (batch.first_id..).zip(&batch.rows);
+        let placed: Vec<(&Row, PlotPoint)> = placed.map(|(id, row)| (row, PlotPoint::of_row(id, row))).collect();
+        for (_, point) in &placed {
+            self.frame_changed |= self.frame.include(point);
         }
         self.records = is_recorded(batch.generation, batch.first_id, self.every);
         if !self.records {
@@ -185,19 +183,17 @@ impl Recorder {
         }
         let moment = moment(batch.first_id + batch.rows.len(), batch.generation);
         for &architecture in Architecture::ALL {
-            let of_kind = |(_, row): &(usize, &Row)| row.is_feasible() && row.design.architecture == architecture;
+            let is_shown = |(row, point): &(&Row, PlotPoint)| {
+                (point.is_feasible && row.design.architecture == architecture).then_some(*point)
+            };
+            let designs: Vec<PlotPoint> = placed.iter().filter_map(is_shown).collect();
             let color = colors::architecture(architecture);
-            self.cloud(
-                &cloud(architecture),
-                &moment,
-                &points(&mut rows().filter(of_kind)),
-                color,
-                2.0,
-            );
+            self.cloud(&cloud(architecture), &moment, &designs, color, 2.0);
         }
-        let frame = self.frame;
-        let mut infeasible = points(&mut rows().filter(|(_, row)| !row.is_feasible()));
-        infeasible.retain(|point| frame.holds(point));
+        let points = placed.into_iter().map(|(_, point)| point);
+        let infeasible: Vec<PlotPoint> = points
+            .filter(|point| !point.is_feasible && self.frame.holds(point))
+            .collect();
         let [r, g, b] = INFEASIBLE_COLOR;
         self.cloud(
             paths::INFEASIBLE,
@@ -383,10 +379,8 @@ fn summary_text(study: &Study, summary: &RunSummary) -> String {
     if let Some(proofs) = &summary.proofs {
         text.push_str(&format!("{proofs}\n\n"));
     }
-    let titles = others.iter().map(|(_, objective)| {
-        let entry = objective.quantity.entry();
-        format!(" {} [{}] |", entry.label, entry.unit).replace(" []", "")
-    });
+    let title = |quantity: Quantity| format!(" {} |", Column::of_quantity(quantity).title());
+    let titles = others.iter().map(|(_, objective)| title(objective.quantity));
     text.push_str(&format!(
         "| # | architecture | mass [kg] | R_w [m] |{} φ_c [°] | R | r | L_b | r_j | r_p | clearance [mm] | active |\n\
          |---|---|---|---|{}---|---|---|---|---|---|---|---|\n",

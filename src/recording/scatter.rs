@@ -3,7 +3,7 @@
 use rerun::Transform3D;
 use rerun::datatypes::{Range1D, Range2D};
 
-use super::plot::{FrontPoint, HEIGHT, PlotGrid};
+use super::plot::{FrontPoint, HEIGHT, PlotGrid, decade_label, tick_label};
 use crate::study::Study;
 
 /// Returns the position of a design in the plot.
@@ -91,13 +91,10 @@ impl PlotRange {
 
     /// Returns the axes and their ticks.
     pub(super) fn grid(&self) -> PlotGrid {
-        let decade = |decade: i32| match decade {
-            0..=4 => (decade as f32, format!("{}", 10u32.pow(decade.unsigned_abs()))),
-            _ => (decade as f32, format!("1e{decade}")),
-        };
+        let decade = |decade: i32| (decade as f32, decade_label(decade));
         let tick = |k: u32| {
             let at = self.tick * f64::from(k);
-            (at as f32, format!("{}", (at * 1e6).round() / 1e6))
+            (at as f32, tick_label(at))
         };
         PlotGrid {
             x: [self.decades.0 as f32, self.decades.1 as f32],

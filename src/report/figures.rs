@@ -206,7 +206,8 @@ fn plain(report: &Report, own: usize, series: Vec<Series>, notes: Vec<([f64; 2],
     (front_chart(x, series, notes, false), beyond)
 }
 
-fn values(series: &[Series], axis: usize) -> impl Iterator<Item = f64> {
+/// Iterates over the coordinates of all points on one axis.
+pub(super) fn values(series: &[Series], axis: usize) -> impl Iterator<Item = f64> {
     series
         .iter()
         .flat_map(|series| &series.points)

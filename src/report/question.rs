@@ -2,9 +2,9 @@
 
 use super::Source;
 use super::chart::{Chart, ChartAxis, Mark, Series};
-use super::figures::color;
+use super::figures::{color, values};
 use super::fronts::{Front, Fronts};
-use crate::study::{DesignProblem, Study};
+use crate::study::{Column, DesignProblem, Study};
 use kinefront_model::evaluation::{Better, Evaluation, Objective};
 use kinefront_model::mechanism::DESIGN_VARIABLES;
 use kinefront_optimize::{Objectives, hypervolume};
@@ -56,7 +56,7 @@ impl Question {
 
     /// Returns the label of an objective with its unit.
     pub fn label(&self, objective: usize) -> String {
-        labelled(&self.objectives[objective])
+        Column::of_quantity(self.objectives[objective].quantity).title()
     }
 
     /// Returns the hypervolume of a front.
@@ -108,13 +108,7 @@ impl Question {
                 points: front.shown().map(point).collect(),
             })
             .collect();
-        let [x, y] = [0, 1].map(|axis| {
-            let values = series
-                .iter()
-                .flat_map(|series| &series.points)
-                .map(move |point| point[axis]);
-            ChartAxis::about(self.label(axes[axis]), values)
-        });
+        let [x, y] = [0, 1].map(|axis| ChartAxis::about(self.label(axes[axis]), values(&series, axis)));
         plain(x, y, series)
     }
 
@@ -134,14 +128,8 @@ impl Question {
                 points: points.clone(),
             })
             .collect();
-        let values = |axis: usize| {
-            series
-                .iter()
-                .flat_map(|series| &series.points)
-                .map(move |point| point[axis])
-        };
-        let x = ChartAxis::from_zero("evaluations", values(0));
-        let y = ChartAxis::about(self.label(0), values(1));
+        let x = ChartAxis::from_zero("evaluations", values(&series, 0));
+        let y = ChartAxis::about(self.label(0), values(&series, 1));
         Chart {
             legend_above: false,
             ..plain(x, y, series)
@@ -168,14 +156,8 @@ impl Question {
                     .collect(),
             })
             .collect();
-        let values = |axis: usize| {
-            series
-                .iter()
-                .flat_map(|series| &series.points)
-                .map(move |point| point[axis])
-        };
-        let x = ChartAxis::about(self.label(0), values(0));
-        let y = ChartAxis::from_zero("[m]", values(1));
+        let x = ChartAxis::about(self.label(0), values(&series, 0));
+        let y = ChartAxis::from_zero("[m]", values(&series, 1));
         Some(plain(x, y, series))
     }
 }
@@ -188,16 +170,6 @@ fn plain(x: ChartAxis, y: ChartAxis, series: Vec<Series>) -> Chart {
         series,
         notes: Vec::new(),
         legend_above: true,
-    }
-}
-
-/// Returns the label of an objective with its unit.
-fn labelled(objective: &Objective) -> String {
-    let entry = objective.quantity.entry();
-    if entry.unit.is_empty() {
-        entry.label.to_owned()
-    } else {
-        format!("{} [{}]", entry.label, entry.unit)
     }
 }
 

@@ -177,8 +177,8 @@ impl DesignProblem {
         objectives.iter().any(is_mass) && !objectives.iter().any(asks_for_stiffness)
     }
 
-    /// Whether a prescribed region and least mass determine how large a geometry is: no value but the mass and what the machine
-    /// needs of space depends on the scale of a geometry that holds the region.
+    /// Whether a prescribed region and the least mass determine the scale of a geometry: of all that the study asks, only masses
+    /// and the footprint depend on it.
     fn may_scale(&self) -> bool {
         let grows_with_scale = |limit: &QuantityLimit| {
             let quantities = [
@@ -295,9 +295,9 @@ impl Problem for DesignProblem {
     }
 
     /// Sets the lightest bars for the geometry in `x` that provide the workspace radius of the target, or the region that the
-    /// study prescribes, and for the latter also the scale of the geometry if the mass alone is sought. For the target [`Target::Best`], or for a radius that the geometry does not allow, the bars are sized
-    /// for the largest radius that it allows, or for that which a limit asks for. Bars are not sized where thin ones are not
-    /// what the study seeks.
+    /// study prescribes, and for the latter also the scale of the geometry if the mass alone is sought. For the target
+    /// [`Target::Best`], or for a radius that the geometry does not allow, the bars are sized for the largest radius that it
+    /// allows, or for that which a limit asks for. Bars are not sized where thin ones are not what the study seeks.
     fn complete(&self, x: &[f64], target: Target) -> Option<Vec<f64>> {
         if !self.seeks_light_bars() {
             return None;

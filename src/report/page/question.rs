@@ -6,7 +6,7 @@ use super::references::active;
 use super::{cell, figures, optional};
 use crate::report::Report;
 use crate::report::question::{Question, sought};
-use crate::study::DesignProblem;
+use crate::study::{Column, DesignProblem};
 use crate::text::short;
 use kinefront_model::evaluation::{Bound, Constraint, Evaluation, LimitResult, Quantity};
 use kinefront_model::mechanism::DESIGN_VARIABLES;
@@ -145,7 +145,7 @@ fn designs(report: &Report, question: &Question) -> Markup {
                 th { "architecture" }
                 @for variable in DESIGN_VARIABLES { th.number { (variable.symbol()) } }
                 @for k in 0..question.objectives.len() { th.number { (question.label(k)) } }
-                @for quantity in &others { @let entry = quantity.entry(); th.number { (entry.label) @if !entry.unit.is_empty() { " [" (entry.unit) "]" } } }
+                @for quantity in &others { th.number { (Column::of_quantity(*quantity).title()) } }
                 th { "active constraints and limits" }
             } }
             tbody { @for member in listed { tr {

@@ -60,7 +60,7 @@ impl Model {
     /// workspace radius `target`. The design's own bars are the starting point. Returns `None` if the geometry or the
     /// ranges do not allow such bars.
     ///
-    /// For a prescribed region, and only then, `R`, `r` and `L_b` may grow together as far as the ranges allow.
+    /// Exact sizing for a prescribed region, and nothing else, also multiplies `R`, `r` and `L_b` by a factor within `ranges`.
     ///
     /// The disc and the orientations are sampled, the latter as on the reference grid. The other constraints are
     /// checked only at the centre and on the rim, and the clearance with members as thick as the design's own bars. The
