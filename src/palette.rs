@@ -4,15 +4,34 @@ use crate::scene::Part;
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::Architecture;
 
-/// Returns the colour of an architecture. The colours can be distinguished with any type of colour vision (Okabe and
-/// Ito).
+/// Returns the colour of an architecture: a hue for each chain, and a shade for each driven joint. The hues can be distinguished with
+/// any type of colour vision (Okabe and Ito).
 pub fn architecture(architecture: Architecture) -> [u8; 3] {
-    const PALETTE: [[u8; 3]; 4] = [[86, 180, 233], [230, 159, 0], [0, 190, 140], [204, 121, 167]];
-    let index = Architecture::ALL
-        .iter()
-        .position(|&other| other == architecture)
-        .unwrap_or(0);
-    PALETTE[index % PALETTE.len()]
+    const HUES: [[u8; 3]; 7] = [
+        [86, 180, 233],
+        [230, 159, 0],
+        [0, 190, 140],
+        [204, 121, 167],
+        [240, 228, 66],
+        [60, 125, 205],
+        [224, 102, 40],
+    ];
+    let mut chains: Vec<&str> = Vec::new();
+    for other in Architecture::ALL {
+        if !chains.contains(&other.chain_name()) {
+            chains.push(other.chain_name());
+        }
+    }
+    let own = architecture.chain_name();
+    let chain = chains.iter().position(|&name| name == own).unwrap_or(0);
+    let of_chain = Architecture::ALL.iter().filter(|other| other.chain_name() == own);
+    let shade = of_chain.take_while(|&&other| other != architecture).count();
+    HUES[chain % HUES.len()].map(|part| match shade {
+        0 => part,
+        // Lighter, then darker.
+        1 => part + (255 - part) / 2,
+        _ => (u16::from(part) * 11 / 20) as u8,
+    })
 }
 
 /// Returns the colour of a part: orange for actuated parts, darker grey for fixed parts, steel grey for other moving
@@ -24,10 +43,10 @@ pub fn part(part: Part) -> [u8; 3] {
         Part::Stroke => [255, 170, 70],
         Part::Slider | Part::ActuatedJoint => [255, 128, 20],
         Part::Tube => [92, 104, 124],
-        Part::Rod | Part::Link => [190, 200, 214],
+        Part::Rod | Part::Link | Part::Guide => [190, 200, 214],
         Part::Crank => [150, 164, 186],
         Part::PlatformBar => [90, 150, 235],
-        Part::PassiveJoint => [238, 240, 244],
+        Part::PassiveJoint | Part::Carriage => [238, 240, 244],
         Part::AxisX => [230, 70, 70],
         Part::AxisY => [80, 200, 90],
         Part::Workspace => [255, 255, 255],

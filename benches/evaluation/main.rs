@@ -124,10 +124,7 @@ fn poses_of<L: Leg>(criterion: &mut Criterion, architecture: Architecture) {
                 for k in 0..BATCH {
                     let posture = posture(batch, k);
                     let condition = Jacobian::new(&posture).inverse_condition(batch.checker.length);
-                    black_box((
-                        condition,
-                        joint_model::stiffness(model, &batch.checker.manipulator, &posture),
-                    ));
+                    black_box((condition, joint_model::stiffness(model, architecture, &posture)));
                 }
             }
         });
@@ -180,7 +177,7 @@ fn plainly(model: &Model, design: &Design, general: bool) -> f64 {
             if jacobian.inverse_condition(checker.length) < least.inverse_condition {
                 return None;
             }
-            let k = joint_model::stiffness(checker.stiffness.as_ref()?, &checker.manipulator, &posture)?;
+            let k = joint_model::stiffness(checker.stiffness.as_ref()?, design.architecture, &posture)?;
             let k_xy = smaller_eigenvalue(k[(0, 0)], k[(0, 1)], k[(1, 1)]);
             let stiff = k_xy >= least.k_xy && k[(2, 2)] >= least.k_z && k[(5, 5)] >= least.k_phi_z;
             stiff.then(|| jacobian.determinant().signum())

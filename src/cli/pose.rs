@@ -3,9 +3,10 @@
 use std::ffi::OsString;
 use std::io::Write;
 
-use kinefront::export::PoseReportJson;
+use kinefront::export::{AssemblyModesJson, PoseReportJson};
+use kinefront_model::kinematics::assembly_modes;
 use kinefront_model::mechanism::Design;
-use kinefront_model::spatial::Pose;
+use kinefront_model::spatial::{JointValues, Pose};
 
 use super::{Ending, Failure, load_study, tables, to_json};
 
@@ -15,8 +16,11 @@ pub struct PoseArguments {
     #[arg(long)]
     design: String,
     /// Pose, as in "x=0.1 y=0.2 phi_deg=30" (metres and degrees).
-    #[arg(long)]
-    pose: String,
+    #[arg(long, required_unless_present = "actuators", conflicts_with = "actuators")]
+    pose: Option<String>,
+    /// Values of the driven joints, as in "q1=0.9 q2=1.0 q3=1.1" (metres or radians): prints all poses that they allow.
+    #[arg(long, value_name = "VALUES")]
+    actuators: Option<String>,
     /// Study file, or name of a built-in study [default: paper].
     #[arg(long, value_name = "FILE")]
     study: Option<OsString>,
@@ -28,9 +32,22 @@ pub struct PoseArguments {
 pub fn run(arguments: &PoseArguments) -> Result<Ending, Failure> {
     let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
     let design = Design::parse(&arguments.design, study.working_mode).map_err(Failure::input)?;
-    let pose = arguments.pose.parse::<Pose>().map_err(Failure::input)?;
-    let outcome = study.model().map_err(Failure::runtime)?.pose(&design, &pose);
+    let model = study.model().map_err(Failure::runtime)?;
     let mut out = std::io::stdout().lock();
+    let Some(pose) = &arguments.pose else {
+        let values = arguments.actuators.as_deref().unwrap_or_default();
+        let values: JointValues = values.parse().map_err(Failure::input)?;
+        let modes = assembly_modes(&design, &model.legs, values.0);
+        if arguments.json {
+            let json = to_json(&AssemblyModesJson::new(&modes)).map_err(Failure::Runtime)?;
+            writeln!(out, "{json}")?;
+        } else {
+            writeln!(out, "{}", tables::assembly_modes(&design, values.0, &modes))?;
+        }
+        return Ok(Ending::Done);
+    };
+    let pose = pose.parse::<Pose>().map_err(Failure::input)?;
+    let outcome = model.pose(&design, &pose);
     if arguments.json {
         writeln!(
             out,

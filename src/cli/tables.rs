@@ -6,6 +6,7 @@ use kinefront::export::CertificateJson;
 use kinefront::study::{FrontMember, RunSummary, Study};
 use kinefront::text::{self, number};
 use kinefront_model::evaluation::{Bound, Evaluation, Model, PoseEvaluation, Quantity, Unreachable};
+use kinefront_model::kinematics::AssemblyMode;
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 
@@ -170,6 +171,31 @@ pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseEvaluation, Unrea
         stiffness.add_row(row);
     }
     format!("{facts}\n{joints}\n{stiffness}")
+}
+
+/// Formats all poses at which the driven joints of a design have the given values.
+pub fn assembly_modes(design: &Design, values: [f64; 3], modes: &[AssemblyMode]) -> String {
+    let unit = design.architecture.actuator().unit();
+    let mut facts = table(["design", &design.to_string()], &[]);
+    let values: Vec<String> = values.iter().map(|value| format!("{value} {unit}")).collect();
+    facts.add_row(["driven joints".to_owned(), values.join(", ")]);
+    facts.add_row(["assembly modes".to_owned(), modes.len().to_string()]);
+    if modes.is_empty() {
+        return facts.to_string();
+    }
+    let headings = ["pose", "working mode", "within limits", "of this design"];
+    let mut rows = table(headings, &[]);
+    let yes = |holds: bool| if holds { "yes" } else { "no" }.to_owned();
+    for mode in modes {
+        rows.add_row([
+            pose_text(&mode.pose),
+            mode.working_mode
+                .map_or_else(|| "none".to_owned(), |mode| mode.to_string()),
+            yes(mode.is_within_limits),
+            yes(mode.is_of_design),
+        ]);
+    }
+    format!("{facts}\n{rows}")
 }
 
 /// Formats the verified front of a run, thinned to the number of rows that fit a screen.

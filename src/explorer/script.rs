@@ -36,7 +36,7 @@ use super::panels::Panel;
 use super::{Explorer, Phase};
 use crate::scene::{EllipsoidKind, Field};
 use kinefront_model::evaluation::Constraint;
-use kinefront_model::mechanism::DESIGN_VARIABLES;
+use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable, FURTHER_VARIABLES};
 use kinefront_model::spatial::Pose;
 
 /// A script in progress.
@@ -64,7 +64,7 @@ enum Step {
     Pin,
     Keep,
     Star,
-    Modify(usize, f64),
+    Modify(DesignVariable, f64),
     Heatmap(Option<Field>),
     Ellipsoids(Option<EllipsoidKind>),
     Pose(Pose),
@@ -271,7 +271,8 @@ fn step(line: &str) -> Option<Step> {
         "star" => Step::Star,
         "what-if" => {
             let (key, value) = rest.split_once('=')?;
-            let variable = DESIGN_VARIABLES.iter().position(|variable| variable.key() == key)?;
+            let mut variables = DESIGN_VARIABLES.into_iter().chain(FURTHER_VARIABLES);
+            let variable = variables.find(|variable| variable.key() == key)?;
             Step::Modify(variable, value.parse().ok()?)
         }
         "heatmap" if rest == "none" => Step::Heatmap(None),

@@ -9,11 +9,12 @@ use super::Prepared;
 use crate::scene::{Body, Frame, Linkage};
 use kinefront_model::certify::{Certificate, CertifyOptions, Verdict};
 use kinefront_model::evaluation::{Bound, Evaluation, LimitResult, Model, PoseEvaluation, Quantity, Unreachable};
-use kinefront_model::mechanism::{Actuator, Design};
+use kinefront_model::kinematics::AssemblyMode;
+use kinefront_model::mechanism::{Design, DesignVariable, JointKind, WorkingMode};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::Material;
 
-/// The lengths of a design \[m\].
+/// The variables of a design \[m, and deg where the key says so\].
 #[derive(Debug, Serialize)]
 pub struct DesignJson {
     #[serde(rename = "R")]
@@ -26,16 +27,33 @@ pub struct DesignJson {
     leg_bar_radius: f64,
     #[serde(rename = "rp")]
     platform_bar_radius: f64,
+    #[serde(rename = "La", skip_serializing_if = "Option::is_none")]
+    proximal_length: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    alpha_deg: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    beta_deg: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gamma_deg: Option<f64>,
 }
 
 impl From<&Design> for DesignJson {
     fn from(design: &Design) -> Self {
+        // As in the text of a design, what is not given has its default.
+        let given = |variable: DesignVariable| {
+            let mut given = design.given_variables();
+            given.find(|other| *other == variable).map(|found| design.value(found))
+        };
         Self {
             base_radius: design.base_radius,
             platform_radius: design.platform_radius,
             link_length: design.link_length,
             leg_bar_radius: design.leg_bar_radius,
             platform_bar_radius: design.platform_bar_radius,
+            proximal_length: given(DesignVariable::ProximalLength),
+            alpha_deg: given(DesignVariable::RailAngle),
+            beta_deg: given(DesignVariable::GuideAngle),
+            gamma_deg: given(DesignVariable::PlatformGuideAngle),
         }
     }
 }
@@ -290,6 +308,35 @@ impl From<&Result<PoseEvaluation, Unreachable>> for PoseReportJson {
     }
 }
 
+/// The output of `kinefront pose --actuators --json`.
+#[derive(Debug, Serialize)]
+pub struct AssemblyModesJson {
+    modes: Vec<AssemblyModeJson>,
+}
+
+#[derive(Debug, Serialize)]
+struct AssemblyModeJson {
+    pose: PoseJson,
+    working_mode: Option<[i8; 3]>,
+    within_limits: bool,
+    of_this_design: bool,
+}
+
+impl AssemblyModesJson {
+    /// Creates the output for the modes of a design.
+    pub fn new(modes: &[AssemblyMode]) -> Self {
+        let mode = |mode: &AssemblyMode| AssemblyModeJson {
+            pose: PoseJson::new(&mode.pose, mode.pose.phi.to_degrees()),
+            working_mode: mode.working_mode.map(WorkingMode::signs),
+            within_limits: mode.is_within_limits,
+            of_this_design: mode.is_of_design,
+        };
+        Self {
+            modes: modes.iter().map(mode).collect(),
+        }
+    }
+}
+
 /// The output of `kinefront export --format json`.
 #[derive(Debug, Serialize)]
 struct ExportJson<'a> {
@@ -435,6 +482,8 @@ struct ClosureJson<'a> {
     leg_body: &'a str,
     on_leg_m: [f64; 2],
     on_platform_m: [f64; 2],
+    /// Whether the body cannot turn in the platform.
+    rigid: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -444,10 +493,10 @@ struct TourJson {
     actuators: Option<[f64; 3]>,
 }
 
-fn kind(actuator: Actuator) -> &'static str {
+fn kind(actuator: JointKind) -> &'static str {
     match actuator {
-        Actuator::Prismatic => "prismatic",
-        Actuator::Revolute => "revolute",
+        JointKind::Prismatic => "prismatic",
+        JointKind::Revolute => "revolute",
     }
 }
 
@@ -487,6 +536,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
                 leg_body: &linkage.bodies[closure.leg].name,
                 on_leg_m: closure.on_leg.to_array(),
                 on_platform_m: closure.on_platform.to_array(),
+                rigid: closure.is_rigid,
             })
             .collect(),
         tour: tour

@@ -1,4 +1,4 @@
-//! MJCF for MuJoCo: legs as trees, the platform free in the plane, `C_1` to `C_3` as equality constraints, and
+//! MJCF for MuJoCo: legs as trees, the platform free in the plane, the connections at `C_1` to `C_3` as equality constraints, and
 //! actuators as position servos whose gain is the study's actuator stiffness.
 
 use super::xml::Element;
@@ -6,7 +6,7 @@ use super::{Format, Prepared, inertial, joint_axis, joint_name, rgba};
 use crate::AnyError;
 use crate::scene::{Body, Joint, Solid, SolidShape};
 use glam::DVec2;
-use kinefront_model::mechanism::Actuator;
+use kinefront_model::mechanism::JointKind;
 
 pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let root = Element::new("mujoco")
@@ -106,13 +106,15 @@ fn trees(subject: &Prepared) -> Vec<Element> {
     roots.flat_map(|place| inside[place].clone()).collect()
 }
 
-/// The joints `C_1` to `C_3`, which close the loops.
+/// The connections at `C_1` to `C_3`, which close the loops.
 fn closures(subject: &Prepared<'_>) -> impl Iterator<Item = Element> {
     let linkage = &subject.linkage;
     let platform = &linkage.bodies[linkage.platform()];
     linkage.closures.iter().enumerate().map(move |(leg, closure)| {
         let [x, y] = closure.on_leg.to_array();
-        Element::new("connect")
+        // A weld keeps the relative pose of both bodies in the model as it is written.
+        let kind = if closure.is_rigid { "weld" } else { "connect" };
+        Element::new(kind)
             .with("name", format!("C{}", leg + 1))
             .with("body1", linkage.bodies[closure.leg].name.clone())
             .with("body2", platform.name.clone())
@@ -157,8 +159,8 @@ fn element(subject: &Prepared, body: &Body) -> Element {
         Some(joint) => {
             let mut hinge = Element::new("joint").with("name", joint_name(body));
             let kind = match joint.kind {
-                Actuator::Prismatic => "slide",
-                Actuator::Revolute => "hinge",
+                JointKind::Prismatic => "slide",
+                JointKind::Revolute => "hinge",
             };
             hinge = hinge.with("type", kind).with("axis", joint_axis(joint.kind));
             hinge = hinge.with_numbers("ref", &[joint.value]);

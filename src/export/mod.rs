@@ -30,10 +30,10 @@ use crate::scene::{
 };
 use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, Model, Unreachable};
-use kinefront_model::mechanism::Actuator;
+use kinefront_model::mechanism::JointKind;
 use kinefront_model::spatial::{LEGS, Pose};
 
-pub use json::{CertificateJson, DesignJson, EvaluationJson, PoseReportJson};
+pub use json::{AssemblyModesJson, CertificateJson, DesignJson, EvaluationJson, PoseReportJson};
 pub use table::{ConversionError, front_to_parquet};
 
 /// A file format.
@@ -276,10 +276,10 @@ fn joint_name(body: &Body) -> String {
 }
 
 /// Returns the axis of a joint in the frame of its body.
-fn joint_axis(kind: Actuator) -> &'static str {
+fn joint_axis(kind: JointKind) -> &'static str {
     match kind {
-        Actuator::Prismatic => "1 0 0",
-        Actuator::Revolute => "0 0 1",
+        JointKind::Prismatic => "1 0 0",
+        JointKind::Revolute => "0 0 1",
     }
 }
 

@@ -4,7 +4,7 @@ use super::xml::{Element, numbers};
 use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, text};
 use crate::AnyError;
 use crate::scene::{Body, Frame, Joint, Solid, SolidShape};
-use kinefront_model::mechanism::Actuator;
+use kinefront_model::mechanism::JointKind;
 
 /// Value that means "no limit" where the format requires a number.
 const UNLIMITED: f64 = 1e16;
@@ -46,7 +46,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let platform = &linkage.bodies[linkage.platform()];
     for (leg, closure) in linkage.closures.iter().enumerate() {
         let passive = Joint {
-            kind: Actuator::Revolute,
+            kind: JointKind::Revolute,
             actuated: false,
             value: 0.0,
             limits: None,
@@ -54,7 +54,15 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         let [x, y] = closure.on_platform.to_array();
         let parent = &linkage.bodies[closure.leg].name;
         let name = format!("C{}", leg + 1);
-        model.push(joint_element(&name, parent, &platform.name, passive, Some([x, y])));
+        model.push(if closure.is_rigid {
+            Element::new("joint")
+                .with("name", name)
+                .with("type", "fixed")
+                .leaf("parent", parent)
+                .leaf("child", &platform.name)
+        } else {
+            joint_element(&name, parent, &platform.name, passive, Some([x, y]))
+        });
     }
     Element::new("sdf")
         // The newest version that Gazebo Classic reads, and Gazebo Classic closes loops.
@@ -112,8 +120,8 @@ fn visual(index: usize, solid: &Solid) -> Element {
 /// Returns a joint at the origin of the child's frame, or at the point `at` of it.
 fn joint_element(name: &str, parent: &str, child: &str, joint: Joint, at: Option<[f64; 2]>) -> Element {
     let kind = match joint.kind {
-        Actuator::Prismatic => "prismatic",
-        Actuator::Revolute => "revolute",
+        JointKind::Prismatic => "prismatic",
+        JointKind::Revolute => "revolute",
     };
     let [lower, upper] = joint.limits.map_or([-UNLIMITED, UNLIMITED], |limits| {
         limits.map(|limit| limit - joint.value)

@@ -6,7 +6,7 @@ use glam::DVec2;
 use super::xml::{Element, numbers};
 use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, text};
 use crate::scene::{Body, Joint, Linkage, Solid, SolidShape};
-use kinefront_model::mechanism::Actuator;
+use kinefront_model::mechanism::JointKind;
 
 /// Limits of force or torque and of speed for all joints: the format requires them and the study does not define them.
 const EFFORT: f64 = 1e4;
@@ -51,9 +51,9 @@ fn leg_joint(linkage: &Linkage, body: &Body, joint: &Joint) -> Element {
         .map_or("base", |parent| linkage.bodies[parent].name.as_str());
     let frame = linkage.local_frame(body);
     let kind = match joint.kind {
-        Actuator::Prismatic => "prismatic",
-        Actuator::Revolute if joint.limits.is_some() => "revolute",
-        Actuator::Revolute => "continuous",
+        JointKind::Prismatic => "prismatic",
+        JointKind::Revolute if joint.limits.is_some() => "revolute",
+        JointKind::Revolute => "continuous",
     };
     let mut limit = Element::new("limit");
     if let Some(limits) = joint.limits {
@@ -68,14 +68,17 @@ fn leg_joint(linkage: &Linkage, body: &Body, joint: &Joint) -> Element {
         .child(limit)
 }
 
-/// The joint `C_1`, on which the platform hangs in the tree.
+/// The connection at `C_1`, on which the platform hangs in the tree.
 fn platform_joint(linkage: &Linkage) -> Element {
     let platform = &linkage.bodies[linkage.platform()];
     let closure = linkage.closures[0];
     let leg = &linkage.bodies[closure.leg];
     let angle = platform.frame.angle - leg.frame.angle;
+    if closure.is_rigid {
+        return joint_element("C1", "fixed", &leg.name, &platform.name, closure.on_leg, angle);
+    }
     joint_element("C1", "continuous", &leg.name, &platform.name, closure.on_leg, angle)
-        .child(Element::new("axis").with("xyz", joint_axis(Actuator::Revolute)))
+        .child(Element::new("axis").with("xyz", joint_axis(JointKind::Revolute)))
 }
 
 /// Frames at `P` and at the cut joints (`C_i` on the leg and on the platform), so that a program can close the loops again:

@@ -4,7 +4,7 @@ use crate::scene::{EllipsoidSet, Tour};
 use crate::study::CertifiedRadius;
 use crate::text::{self, short};
 use kinefront_model::evaluation::{Evaluation, Model};
-use kinefront_model::mechanism::DESIGN_VARIABLES;
+use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable};
 
 /// Returns the card of a design; `heading` names the design.
 pub(super) fn card(
@@ -37,9 +37,17 @@ pub(super) fn card(
     if let Some(certified) = certified {
         card += &format!("{}\n\n", certified);
     }
-    card += "| R | r | L_b | r_j | r_p |\n|---|---|---|---|---|\n|";
-    for (variable, value) in DESIGN_VARIABLES.into_iter().zip(design.values()) {
-        card += &if variable.may_be_zero() {
+    let variables: Vec<DesignVariable> = DESIGN_VARIABLES.into_iter().chain(design.given_variables()).collect();
+    card += "|";
+    card.extend(variables.iter().map(|variable| format!(" {} |", variable.symbol())));
+    card += "\n|";
+    card += &"---|".repeat(variables.len());
+    card += "\n|";
+    for variable in variables {
+        let value = design.value(variable);
+        card += &if variable.is_angle() {
+            format!(" {value:.2}° |")
+        } else if variable.may_be_zero() {
             format!(" {:.2} mm |", 1e3 * value)
         } else {
             format!(" {value:.4} m |")

@@ -78,7 +78,7 @@ impl<'a> Canvas<'a> {
     /// Draws the manipulator below `root`.
     pub(super) fn manipulator(&self, root: &str, scene: &Scene) -> DrawResult {
         let groups: [(&str, &[Part]); 4] = [
-            ("legs", &[Part::Tube, Part::Rod, Part::Crank, Part::Link]),
+            ("legs", &[Part::Tube, Part::Rod, Part::Crank, Part::Link, Part::Guide]),
             ("platform", &[Part::PlatformBar]),
             ("joints/passive", &[Part::PassiveJoint]),
             ("joints/actuated", &[Part::ActuatedJoint]),
@@ -91,8 +91,10 @@ impl<'a> Canvas<'a> {
                 .collect();
             self.bars(&format!("{root}/{name}"), &solids)?;
         }
-        let sliders: Vec<&Solid> = scene.solids_of(Part::Slider).collect();
-        self.blocks(&format!("{root}/joints/sliders"), &sliders)?;
+        for (name, part) in [("sliders", Part::Slider), ("carriages", Part::Carriage)] {
+            let blocks: Vec<&Solid> = scene.solids_of(part).collect();
+            self.blocks(&format!("{root}/joints/{name}"), &blocks)?;
+        }
         for (name, parts, width) in [
             ("base", &[Part::Base, Part::Rail][..], 1.6),
             ("strokes", &[Part::Stroke], 0.8),

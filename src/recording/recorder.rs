@@ -182,7 +182,7 @@ impl Recorder {
             return;
         }
         let moment = moment(batch.first_id + batch.rows.len(), batch.generation);
-        for &architecture in Architecture::ALL {
+        for architecture in self.study.architectures.clone() {
             let is_shown = |(row, point): &(&Row, PlotPoint)| {
                 (point.is_feasible && row.design.architecture == architecture).then_some(*point)
             };

@@ -63,5 +63,5 @@ fn mass_with_thicker_bars(model: &Model, design: &Design, more: f64) -> f64 {
         let value = &mut values[variable as usize];
         *value = (*value + more).max(0.0);
     }
-    Design::new(design.architecture, design.working_mode, values).map_or(0.0, |design| model.mass(&design))
+    design.with_dimensions(values).map_or(0.0, |design| model.mass(&design))
 }

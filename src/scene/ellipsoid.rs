@@ -5,9 +5,9 @@ use glam::{DVec2, DVec3};
 use super::field::free_stiffness;
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::kinematics::Jacobian;
+use kinefront_model::mechanism::AnyLeg;
 use kinefront_model::spatial::{Pose, smaller_eigenvalue, unit};
 use kinefront_model::stiffness::PlanarStiffness;
-use kinefront_model::with_leg;
 
 /// Meaning of the axes of an ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,16 +83,13 @@ pub fn ellipsoids(model: &Model, evaluation: &Evaluation, kind: EllipsoidKind) -
         position: home.position + offset,
         phi: home.phi,
     });
-    let ellipsoids: Vec<Ellipsoid> = with_leg!(evaluation.design.architecture, L => {
-        let checker = model.checker::<L>(&evaluation.design);
-        poses
-            .filter_map(|pose| {
-                let posture = checker.manipulator.posture(&pose).ok()?;
-                let stiffness = checker.stiffness_at(&posture, &Jacobian::new(&posture));
-                ellipsoid(pose, &stiffness, kind)
-            })
-            .collect()
-    });
+    let checker = model.checker::<AnyLeg>(&evaluation.design);
+    let at = |pose: Pose| {
+        let posture = checker.manipulator.posture(&pose).ok()?;
+        let stiffness = checker.stiffness_at(&posture, &Jacobian::new(&posture));
+        ellipsoid(pose, &stiffness, kind)
+    };
+    let ellipsoids: Vec<Ellipsoid> = poses.filter_map(at).collect();
     let largest = ellipsoids.iter().map(|e| e.values.max_element()).fold(0.0, f64::max);
     (largest > 0.0).then(|| EllipsoidSet {
         kind,

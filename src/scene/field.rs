@@ -149,8 +149,8 @@ impl Field {
             }
             Field::WorstMargin => {
                 let margin = |constraint: Constraint| {
-                    let threshold = constraint.threshold(design, &model.thresholds);
-                    let value = constraint.value(design, values, 1.0)?;
+                    let threshold = constraint.least(&model.thresholds);
+                    let value = constraint.value(values, 1.0)?;
                     Some(constraint.margin(value, threshold, design))
                 };
                 [

@@ -5,10 +5,9 @@ use glam::DVec2;
 use super::Solid;
 use super::manipulator::Sizes;
 use kinefront_model::evaluation::{Model, Unreachable};
-use kinefront_model::mechanism::{Actuator, Design, Leg, LegBody, LegJoint, LegPart, Manipulator, MemberKind};
+use kinefront_model::mechanism::{AnyLeg, Design, JointKind, Leg, LegBody, LegPart, Manipulator, MemberKind};
 use kinefront_model::spatial::{LEGS, Pose, Rotation};
 use kinefront_model::stiffness::CrossSection;
-use kinefront_model::with_leg;
 
 /// A planar frame, given in the base frame or in the frame of another body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,10 +23,10 @@ pub struct Frame {
 pub struct Joint {
     /// Kind of the joint: a prismatic joint moves along the body's x axis, a revolute joint turns about z at the body's
     /// origin.
-    pub kind: Actuator,
+    pub kind: JointKind,
     /// Whether the joint is actuated.
     pub actuated: bool,
-    /// Joint value \[m or rad\]: the actuator value, or 0 for a passive joint.
+    /// Joint value \[m or rad\]; that of a passive revolute joint counts from the pose of the linkage.
     pub value: f64,
     /// Smallest and largest value, if the joint has limits.
     pub limits: Option<[f64; 2]>,
@@ -107,15 +106,19 @@ impl Body {
     }
 }
 
-/// A revolute joint that closes a loop: `C_i`.
+/// Connection of a leg's last body to the platform, which closes a loop, at `C_i`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Closure {
+    /// Whether the body cannot turn in the platform either, because it is a guide of the platform.
+    pub is_rigid: bool,
     /// Index of the leg's last body.
     pub leg: usize,
     /// `C_i` in the frame of that body \[m\].
     pub on_leg: DVec2,
     /// `C_i` in the platform frame \[m\].
     pub on_platform: DVec2,
+    /// Angle from the platform frame to the frame of the leg's last body \[rad\].
+    pub angle: f64,
 }
 
 /// The manipulator at a pose as rigid bodies: the bodies of legs 1, 2 and 3, each from the base outwards, then the
@@ -124,7 +127,7 @@ pub struct Closure {
 pub struct Linkage {
     /// The bodies.
     pub bodies: Vec<Body>,
-    /// The joints `C_1`, `C_2`, `C_3`.
+    /// The connections at `C_1`, `C_2`, `C_3`.
     pub closures: [Closure; LEGS],
 }
 
@@ -152,22 +155,26 @@ impl Linkage {
 /// # Errors
 /// [`Unreachable`], which names the leg that does not reach the pose.
 pub fn linkage(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage, Unreachable> {
-    with_leg!(design.architecture, L => build::<L>(model, design, pose))
-}
-
-fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage, Unreachable> {
-    let manipulator = Manipulator::<L>::new(design, &model.legs);
+    let manipulator = Manipulator::<AnyLeg>::new(design, &model.legs);
     let posture = manipulator
         .posture(pose)
         .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
     let sizes = Sizes::new(model, design);
+    let description = design.architecture.chain();
+    // A motor at the platform turns a mount, on which the platform is fixed.
+    let has_mounts = design.architecture.driven() == 2 && description.joints[2] == JointKind::Revolute;
     let mut bodies: Vec<Body> = Vec::new();
     let mut last = [0; LEGS];
     for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
         for (depth, body) in leg.bodies(state).iter().enumerate() {
             last[index] = bodies.len();
             let parent = (depth > 0).then(|| bodies.len() - 1);
-            bodies.push(leg_body::<L>(model, design, &sizes, index, body, parent));
+            bodies.push(leg_body(model, design, &sizes, index, body, parent));
+        }
+        if has_mounts {
+            let value = leg.joint_values(state)[2];
+            bodies.push(mount(&sizes, index, state.chain.c, pose.phi, value, bodies.len() - 1));
+            last[index] = bodies.len() - 1;
         }
     }
     let ends = posture.arms.map(|arm| pose.position + arm);
@@ -175,16 +182,18 @@ fn build<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage,
     let closures = [0, 1, 2].map(|index| {
         let on = |frame: &Frame| Rotation::new(-frame.angle).apply(ends[index] - frame.origin);
         Closure {
+            is_rigid: has_mounts || description.joints[2] == JointKind::Prismatic,
             leg: last[index],
             on_leg: on(&bodies[last[index]].frame),
             on_platform: manipulator.platform_joints[index],
+            angle: bodies[last[index]].frame.angle - pose.phi,
         }
     });
     Ok(Linkage { bodies, closures })
 }
 
 /// A body of leg `index`; `parent` is the place of the body that it hangs on, or `None` for the base.
-fn leg_body<L: Leg>(
+fn leg_body(
     model: &Model,
     design: &Design,
     sizes: &Sizes,
@@ -196,19 +205,15 @@ fn leg_body<L: Leg>(
         origin: body.origin,
         angle: libm::atan2(body.axis.y, body.axis.x),
     };
-    let joint = match body.joint {
-        LegJoint::Passive => Joint {
-            kind: Actuator::Revolute,
-            actuated: false,
-            value: 0.0,
-            limits: None,
+    let joint = Joint {
+        kind: body.joint.kind,
+        actuated: body.joint.is_driven,
+        value: if body.joint.is_driven || body.joint.kind == JointKind::Prismatic {
+            body.joint.value
+        } else {
+            0.0
         },
-        LegJoint::Actuated { value, limits } => Joint {
-            kind: L::ACTUATOR,
-            actuated: true,
-            value,
-            limits,
-        },
+        limits: body.joint.limits,
     };
     let solid = |part| sizes.solid(index, part).seen_from(frame.origin, frame.angle);
     let bars = body.parts.iter().filter_map(|part| match *part {
@@ -219,7 +224,16 @@ fn leg_body<L: Leg>(
             let bar = (&model.sections.legs, design.leg_bar_radius);
             Some(mass_bar(model, &frame, [from, to], bar, 1.0))
         }
-        LegPart::Slider { .. } | LegPart::Joint { .. } => None,
+        LegPart::GuideBar { from, to, kind } => {
+            let bar = (&model.sections.legs, design.leg_bar_radius);
+            // The mass is that of the length in the design, wherever the travel begins.
+            let length = match kind {
+                MemberKind::TurningGuide => design.proximal_length,
+                _ => design.link_length,
+            };
+            Some(mass_bar(model, &frame, [from, to], bar, length / from.distance(to)))
+        }
+        LegPart::Slider { .. } | LegPart::Carriage { .. } | LegPart::Joint { .. } => None,
     });
     Body {
         name: format!("leg{}_{}", index + 1, body.name),
@@ -229,6 +243,24 @@ fn leg_body<L: Leg>(
         joint: Some(joint),
         bars: bars.collect(),
         solids: body.parts.iter().map(solid).collect(),
+    }
+}
+
+/// What the driven joint at the end of leg `index` turns; it is fixed on the platform and has no size of its own.
+fn mount(sizes: &Sizes, index: usize, at: DVec2, phi: f64, value: f64, parent: usize) -> Body {
+    Body {
+        name: format!("leg{}_mount", index + 1),
+        parent: Some(parent),
+        frame: Frame { origin: at, angle: phi },
+        height: sizes.height(MemberKind::PlatformBar),
+        joint: Some(Joint {
+            kind: JointKind::Revolute,
+            actuated: true,
+            value,
+            limits: None,
+        }),
+        bars: Vec::new(),
+        solids: Vec::new(),
     }
 }
 

@@ -4,12 +4,11 @@ use glam::{DVec2, DVec3};
 
 use super::{Label, Line, Nearest, Part, Scene, Solid, SolidShape};
 use crate::text::number;
-use kinefront_model::clearance::{Bodies, BodySettings, Clearance, Neighbour};
+use kinefront_model::clearance::{BodySettings, Clearance, Neighbour};
 use kinefront_model::evaluation::{Model, Unreachable};
-use kinefront_model::mechanism::{Design, Guide, Leg, LegPart, Manipulator, MemberKind};
-use kinefront_model::spatial::{ANCHOR_DIRECTIONS, Pose, unit};
+use kinefront_model::mechanism::{AnyLeg, Design, Leg, LegPart, Manipulator, MemberKind, TravelKind};
+use kinefront_model::spatial::{Pose, unit};
 use kinefront_model::stiffness::CrossSections;
-use kinefront_model::with_leg;
 
 /// Distance from a member's axis to the end of a pin, as a multiple of the member's radius.
 const PIN: f64 = 1.2;
@@ -24,7 +23,80 @@ const LEAST: f64 = 0.008;
 /// # Errors
 /// [`Unreachable`], which names the leg that does not reach the pose.
 pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene, Unreachable> {
-    with_leg!(design.architecture, L => draw::<L>(model, design, pose))
+    let manipulator = Manipulator::<AnyLeg>::new(design, &model.legs);
+    let posture = manipulator
+        .posture(pose)
+        .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+    let bodies = model.bodies_of(design);
+    let clearance = bodies.nearest(&manipulator, pose.position, &posture);
+    let mut scene = Scene {
+        nearest: Some(nearest(model, design, &clearance)),
+        ..Scene::default()
+    };
+    let sizes = Sizes::new(model, design);
+
+    // The base triangle lies at the height of the members that are attached to it.
+    let chain = design.architecture.chain();
+    let base = sizes.height(chain.proximal.unwrap_or(chain.distal));
+    let anchors = manipulator.legs.each_ref().map(|leg| leg.frame().anchor.extend(base));
+    scene.lines.push(Line {
+        part: Part::Base,
+        points: vec![anchors[0], anchors[1], anchors[2], anchors[0]],
+    });
+    frame(&mut scene, DVec2::ZERO, 0.0, 0.12 * design.base_radius, "O");
+    frame(&mut scene, pose.position, pose.phi, 0.12 * design.base_radius, "P");
+
+    // The labels lie above all members.
+    let kinds = [chain.proximal, Some(chain.distal), Some(MemberKind::PlatformBar)];
+    let top = kinds
+        .into_iter()
+        .flatten()
+        .fold(0.0, |top, kind| sizes.height(kind).max(top));
+    let lift = top
+        + 3.4
+            * design
+                .leg_bar_radius
+                .max(design.platform_bar_radius)
+                .max(LEAST * design.base_radius);
+    for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
+        let c = pose.position + posture.arms[index];
+        let number = index + 1;
+        for travel in leg.travels(state) {
+            let (part, kind) = match travel.kind {
+                TravelKind::Rail => (Part::Rail, MemberKind::Slider),
+                TravelKind::Stroke => (Part::Stroke, MemberKind::TelescopicLeg),
+            };
+            scene.lines.push(Line {
+                part,
+                points: [travel.from, travel.to]
+                    .map(|end| end.extend(sizes.height(kind)))
+                    .to_vec(),
+            });
+        }
+        for body in leg.bodies(state) {
+            let solids = body.parts.iter().map(|part| sizes.solid(index, part));
+            scene.solids.extend(solids);
+        }
+        scene.solids.push(sizes.platform_bar(index, c, pose.position));
+        let mut label = |at: DVec2, text: String| {
+            scene.labels.push(Label {
+                at: at.extend(lift),
+                text,
+            })
+        };
+        let (anchor, b) = (leg.frame().anchor, state.chain.b);
+        label(anchor, format!("A{number}"));
+        if b != anchor {
+            label(b, format!("B{number}"));
+        }
+        label(c, format!("C{number}"));
+    }
+    Ok(scene)
+}
+
+/// Returns the part that a slider or carriage is.
+fn carriage(actuated: bool) -> Part {
+    if actuated { Part::Slider } else { Part::Carriage }
 }
 
 fn flat(point: DVec2) -> DVec3 {
@@ -100,7 +172,7 @@ impl<'a> Sizes<'a> {
     /// Returns a part of a leg as a solid.
     pub(super) fn solid(&self, leg: usize, part: &LegPart) -> Solid {
         let (part, shape) = match *part {
-            LegPart::Slider { at, axis } => {
+            LegPart::Slider { at, axis, actuated } => {
                 let half_width = self.bodies.radius(MemberKind::Slider, self.design);
                 let shape = SolidShape::Block {
                     centre: at.extend(self.height(MemberKind::Slider)),
@@ -108,11 +180,24 @@ impl<'a> Sizes<'a> {
                     angle: libm::atan2(axis.y, axis.x),
                     inner: 0.0,
                 };
-                (Part::Slider, shape)
+                (carriage(actuated), shape)
             }
             LegPart::Tube { from, to } => (Part::Tube, self.bar(MemberKind::TelescopicLeg, from, to, 1.0)),
             // The rod slides inside the tube, so it is drawn thinner.
             LegPart::Rod { from, to } => (Part::Rod, self.bar(MemberKind::TelescopicLeg, from, to, ROD)),
+            LegPart::Carriage { at, axis, on, actuated } => {
+                // As wide as a slider, and a third as long, so that carriages on crossing guides stay apart to the eye.
+                let half_width = self.bodies.radius(MemberKind::Slider, self.design);
+                let half_length = self.bodies.slider_half_length(self.design) / 3.0;
+                let shape = SolidShape::Block {
+                    centre: at.extend(self.height(on)),
+                    half_size: DVec3::new(half_length.max(half_width), half_width, half_width),
+                    angle: libm::atan2(axis.y, axis.x),
+                    inner: 0.0,
+                };
+                (carriage(actuated), shape)
+            }
+            LegPart::GuideBar { from, to, kind } => (Part::Guide, self.bar(kind, from, to, 1.0)),
             LegPart::Crank { from, to } => (Part::Crank, self.bar(MemberKind::Crank, from, to, 1.0)),
             LegPart::Link { from, to } => (Part::Link, self.bar(MemberKind::Link, from, to, 1.0)),
             LegPart::Joint { at, actuated, joins } => {
@@ -167,74 +252,6 @@ fn nearest(model: &Model, design: &Design, clearance: &Clearance) -> Nearest {
         text: format!("{} mm", number(1e3 * clearance.distance)),
         too_near: clearance.distance < model.thresholds.clearance.unwrap_or(0.0),
     }
-}
-
-fn draw<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<Scene, Unreachable> {
-    let manipulator = Manipulator::<L>::new(design, &model.legs);
-    let posture = manipulator
-        .posture(pose)
-        .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
-    let bodies = Bodies::new::<L>(design, &model.bodies, &model.sections);
-    let clearance = bodies.nearest(&manipulator, pose.position, &posture);
-    let mut scene = Scene {
-        nearest: Some(nearest(model, design, &clearance)),
-        ..Scene::default()
-    };
-    let sizes = Sizes::new(model, design);
-
-    // The base triangle lies at the height of the members that are attached to it.
-    let base = sizes.height(L::PROXIMAL.unwrap_or(L::DISTAL));
-    let anchors = ANCHOR_DIRECTIONS.map(|direction| (direction * design.base_radius).extend(base));
-    scene.lines.push(Line {
-        part: Part::Base,
-        points: vec![anchors[0], anchors[1], anchors[2], anchors[0]],
-    });
-    frame(&mut scene, DVec2::ZERO, 0.0, 0.12 * design.base_radius, "O");
-    frame(&mut scene, pose.position, pose.phi, 0.12 * design.base_radius, "P");
-
-    // The labels lie above all members.
-    let kinds = [L::PROXIMAL, Some(L::DISTAL), Some(MemberKind::PlatformBar)];
-    let top = kinds
-        .into_iter()
-        .flatten()
-        .fold(0.0, |top, kind| sizes.height(kind).max(top));
-    let lift = top
-        + 3.4
-            * design
-                .leg_bar_radius
-                .max(design.platform_bar_radius)
-                .max(LEAST * design.base_radius);
-    for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
-        let c = pose.position + posture.arms[index];
-        let number = index + 1;
-        if let Some(guide) = leg.guide(state) {
-            let (part, kind, ends) = match guide {
-                Guide::Rail { from, to } => (Part::Rail, MemberKind::Slider, [from, to]),
-                Guide::Stroke { from, to } => (Part::Stroke, MemberKind::TelescopicLeg, [from, to]),
-            };
-            scene.lines.push(Line {
-                part,
-                points: ends.map(|end| end.extend(sizes.height(kind))).to_vec(),
-            });
-        }
-        for body in leg.bodies(state) {
-            let solids = body.parts.iter().map(|part| sizes.solid(index, part));
-            scene.solids.extend(solids);
-        }
-        scene.solids.push(sizes.platform_bar(index, c, pose.position));
-        let mut label = |at: DVec2, text: String| {
-            scene.labels.push(Label {
-                at: at.extend(lift),
-                text,
-            })
-        };
-        label(leg.anchor(), format!("A{number}"));
-        if state.b != leg.anchor() {
-            label(state.b, format!("B{number}"));
-        }
-        label(c, format!("C{number}"));
-    }
-    Ok(scene)
 }
 
 fn frame(scene: &mut Scene, origin: DVec2, angle: f64, length: f64, name: &str) {

@@ -11,13 +11,17 @@ pub enum Part {
     Rail,
     /// Stroke of a telescopic leg, from its shortest to its longest length.
     Stroke,
-    /// Slider block, actuated.
+    /// Driven slider or carriage.
     Slider,
+    /// Slider or carriage that no actuator drives.
+    Carriage,
+    /// Bar on which a carriage moves.
+    Guide,
     /// Fixed half of a telescopic leg.
     Tube,
     /// Moving half of a telescopic leg.
     Rod,
-    /// Bar clamped to the actuator.
+    /// Bar between a revolute base joint and the next one.
     Crank,
     /// Last bar of a leg, up to `C_i`.
     Link,

@@ -3,9 +3,8 @@
 use super::RegularCylinder;
 use kinefront_model::evaluation::Model;
 use kinefront_model::kinematics::forward;
-use kinefront_model::mechanism::{Actuator, Design, Leg, Manipulator};
+use kinefront_model::mechanism::{AnyLeg, Design, JointKind, Leg, Manipulator};
 use kinefront_model::spatial::{Pose, unit};
-use kinefront_model::with_leg;
 
 /// Poses along the regular workspace.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,14 +22,21 @@ pub struct Tour {
 /// Computes the tour of a design with `steps` poses around each rim; `None` if no rim of at least 90 % of the radius
 /// can be followed.
 pub fn tour(model: &Model, design: &Design, cylinder: &RegularCylinder, steps: usize) -> Option<Tour> {
-    with_leg!(design.architecture, L => {
-        let manipulator = Manipulator::<L>::new(design, &model.legs);
-        // R_w is searched along finitely many directions: between them the rim may lie outside a straight boundary.
-        (0..100).map(|k| cylinder.radius * (1.0 - 1e-3 * f64::from(k))).find_map(|radius| {
-            let poses = path(&RegularCylinder { radius, ..*cylinder }, steps.max(8));
-            let reached = poses.iter().all(|pose| manipulator.posture(pose).is_ok());
-            let forward_error = if reached { check(&manipulator, design, &poses)? } else { return None };
-            Some(Tour { poses, radius, forward_error })
+    let manipulator = Manipulator::<AnyLeg>::new(design, &model.legs);
+    // R_w is searched along finitely many directions: between them the rim may lie outside a straight boundary.
+    let mut radii = (0..100).map(|k| cylinder.radius * (1.0 - 1e-3 * f64::from(k)));
+    radii.find_map(|radius| {
+        let poses = path(&RegularCylinder { radius, ..*cylinder }, steps.max(8));
+        let reached = poses.iter().all(|pose| manipulator.posture(pose).is_ok());
+        let forward_error = if reached {
+            check(&manipulator, design, &poses)?
+        } else {
+            return None;
+        };
+        Some(Tour {
+            poses,
+            radius,
+            forward_error,
         })
     })
 }
@@ -74,10 +80,11 @@ fn path(cylinder: &RegularCylinder, steps: usize) -> Vec<Pose> {
 const SUBSTEPS: u32 = 16;
 
 /// Returns the largest difference between the poses and their forward kinematics, followed from each pose to the next.
-fn check<L: Leg>(manipulator: &Manipulator<L>, design: &Design, poses: &[Pose]) -> Option<f64> {
+fn check(manipulator: &Manipulator<AnyLeg>, design: &Design, poses: &[Pose]) -> Option<f64> {
+    let architecture = design.architecture;
     let actuators = |pose: &Pose| {
         let posture = manipulator.posture(pose).ok()?;
-        Some([0, 1, 2].map(|i| manipulator.legs[i].actuator(&posture.legs[i])))
+        Some([0, 1, 2].map(|i| manipulator.legs[i].joint_values(&posture.legs[i])[architecture.driven()]))
     };
     let mut found = *poses.first()?;
     let mut before = actuators(&found)?;
@@ -87,16 +94,16 @@ fn check<L: Leg>(manipulator: &Manipulator<L>, design: &Design, poses: &[Pose]) 
         for step in 1..=SUBSTEPS {
             let fraction = f64::from(step) / f64::from(SUBSTEPS);
             let part = [0, 1, 2].map(|i| {
-                let way = match L::ACTUATOR {
-                    Actuator::Prismatic => target[i] - before[i],
+                let way = match architecture.actuator() {
+                    JointKind::Prismatic => target[i] - before[i],
                     // The shorter of the two directions of rotation.
-                    Actuator::Revolute => libm::remainder(target[i] - before[i], 2.0 * std::f64::consts::PI),
+                    JointKind::Revolute => libm::remainder(target[i] - before[i], 2.0 * std::f64::consts::PI),
                 };
                 before[i] + fraction * way
             });
             // At the edge of reach an iterate may become unreachable; the iteration then starts from the pose itself.
-            found = forward(manipulator, part, found, 1e-13)
-                .or_else(|_| forward(manipulator, target, *pose, 1e-13))
+            found = forward(architecture, manipulator, part, found, 1e-13)
+                .or_else(|_| forward(architecture, manipulator, target, *pose, 1e-13))
                 .ok()?;
         }
         let turned = (found.phi - pose.phi).abs() * design.platform_radius;

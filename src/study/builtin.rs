@@ -12,7 +12,7 @@ pub struct Builtin {
 }
 
 /// All built-in studies; the first is the default.
-pub const BUILTIN: [Builtin; 7] = [
+pub const BUILTIN: [Builtin; 9] = [
     Builtin {
         name: "paper",
         text: include_str!("../../assets/studies/paper.toml"),
@@ -40,6 +40,14 @@ pub const BUILTIN: [Builtin; 7] = [
     Builtin {
         name: "three-objectives",
         text: include_str!("../../assets/studies/three-objectives.toml"),
+    },
+    Builtin {
+        name: "alignment-stage",
+        text: include_str!("../../assets/studies/alignment-stage.toml"),
+    },
+    Builtin {
+        name: "all-planar-architectures",
+        text: include_str!("../../assets/studies/all-planar-architectures.toml"),
     },
 ];
 

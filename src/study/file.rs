@@ -7,14 +7,14 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::settings::{
-    ActuatorSection, AlgorithmName, Bounds, Grids, HypervolumeSection, LengthChoice, Limits, MaterialSection,
-    ModelSection, ObjectiveChoice, OptimizerSection, ReferenceDesign, RequirementSection, SectionsSection,
-    StiffnessChoice, TelescopicBar, Variables, WorkspaceSection,
+    ActuatorSection, AlgorithmName, Bounds, GeometrySection, Grids, HypervolumeSection, LengthChoice, Limits,
+    MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, ReferenceDesign, RequirementSection,
+    SectionsSection, StiffnessChoice, TelescopicBar, Variables, WorkspaceSection,
 };
 use kinefront_model::clearance::BodySettings;
 use kinefront_model::evaluation::{Model, ModelSettings};
 use kinefront_model::kinematics::CharacteristicLength;
-use kinefront_model::mechanism::{Architecture, BarLength, LegSettings, WorkingMode};
+use kinefront_model::mechanism::{Architecture, Arrangement, BarLength, LegSettings, WorkingMode};
 use kinefront_model::stiffness::{ActuatorStiffness, Material, StiffnessDefinition};
 use kinefront_model::workspace::{GridError, Thresholds, WorkspaceSpec};
 
@@ -52,6 +52,8 @@ pub struct Study {
     pub model: ModelSection,
     /// The section `[bodies]`.
     pub bodies: BodySettings,
+    /// The section `[geometry]`.
+    pub geometry: GeometrySection,
     /// The section `[bounds]`.
     pub bounds: Bounds,
     /// The section `[variables]`.
@@ -72,7 +74,7 @@ impl Default for Study {
         Self {
             name: "untitled".to_owned(),
             description: String::new(),
-            architectures: Architecture::ALL.to_vec(),
+            architectures: Architecture::PAPER.to_vec(),
             working_mode: WorkingMode::ALL_PLUS,
             objectives: ObjectiveChoice::of_paper(),
             quantities: Vec::new(),
@@ -84,6 +86,7 @@ impl Default for Study {
             workspace: WorkspaceSection::default(),
             model: ModelSection::default(),
             bodies: BodySettings::default(),
+            geometry: GeometrySection::default(),
             bounds: Bounds::default(),
             variables: Variables::default(),
             grid: Grids::default(),
@@ -119,6 +122,7 @@ impl Study {
                     TelescopicBar::Longest => BarLength::Longest,
                 },
                 telescopic_shortest: model.telescopic_shortest,
+                geometry: Arrangement::from(&self.geometry).into(),
             },
             bodies: self.bodies,
             platform_bars: model.platform_bars,

@@ -1,4 +1,5 @@
-//! A study as an optimization problem; `x` consists of the architecture and the five lengths.
+//! A study as an optimization problem; `x` consists of the architecture, the five dimensions, and the further variables that have
+//! bounds.
 //!
 //! Variables that are listed or tied take their values when a candidate is completed: the nearest of the list, and what follows
 //! from the other variable.
@@ -24,7 +25,8 @@ const LENGTHS: [DesignVariable; 3] = [
 /// The optimization problem of a study, with designs encoded as vectors of values.
 ///
 /// The first value is the index of the architecture in the study's list; the lengths follow in the order of
-/// [`DESIGN_VARIABLES`]. If the study has one architecture, the first variable has a single choice.
+/// [`DESIGN_VARIABLES`], and then the further variables; a chain that does not have one of these ignores it. If the study has one
+/// architecture, the first variable has a single choice.
 #[derive(Debug, Clone)]
 pub struct DesignProblem {
     model: Model,
@@ -34,6 +36,8 @@ pub struct DesignProblem {
     /// Values that a variable may have, if they are listed.
     listed: [Option<Vec<f64>>; DESIGN_VARIABLES.len()],
     ties: [Option<Tie>; DESIGN_VARIABLES.len()],
+    /// Further variables that have bounds.
+    further: Vec<(DesignVariable, [f64; 2])>,
     is_prescribed: bool,
 }
 
@@ -50,6 +54,11 @@ impl DesignProblem {
             ranges: DESIGN_VARIABLES.map(|variable| study.range(variable)),
             listed: DESIGN_VARIABLES.map(|variable| study.listed(variable)),
             ties: DESIGN_VARIABLES.map(|variable| study.tie(variable)),
+            further: study
+                .bounds
+                .further_variables()
+                .map(|variable| (variable, study.bounds.range(variable)))
+                .collect(),
             is_prescribed: study.workspace.region.is_prescribed(),
         })
     }
@@ -65,11 +74,21 @@ impl DesignProblem {
     /// [`DesignError`] if the bounds allow values that are not a valid design.
     pub fn design(&self, x: &[f64]) -> Result<Design, DesignError> {
         let architecture = self.architectures[(x[0] as usize).min(self.architectures.len() - 1)];
-        Design::new(
-            architecture,
-            self.working_mode,
-            self.settled([x[1], x[2], x[3], x[4], x[5]]),
-        )
+        let dimensions = self.settled([x[1], x[2], x[3], x[4], x[5]]);
+        let design = Design::new(architecture, self.working_mode, dimensions)?;
+        self.places_of_further(architecture)
+            .try_fold(design, |design, (place, variable)| design.with(variable, x[place]))
+    }
+
+    /// Returns the further variables that an architecture has, each with its place in `x`.
+    fn places_of_further(&self, architecture: Architecture) -> impl Iterator<Item = (usize, DesignVariable)> {
+        let first = 1 + DESIGN_VARIABLES.len();
+        let all = self
+            .further
+            .iter()
+            .enumerate()
+            .map(move |(place, (variable, _))| (first + place, *variable));
+        all.filter(move |(_, variable)| architecture.further_variables().contains(variable))
     }
 
     /// Returns the values of the variables with the listed ones at the nearest value of their list and the tied ones as they
@@ -144,12 +163,18 @@ impl DesignProblem {
         asked.architecture == design.architecture
             && asked.working_mode == design.working_mode
             && DESIGN_VARIABLES.iter().all(same)
+            && self
+                .places_of_further(asked.architecture)
+                .all(|(_, variable)| asked.value(variable).to_bits() == design.value(variable).to_bits())
     }
 
     /// Returns the values at which a candidate was evaluated as `design`.
     pub fn values(candidate: &Candidate, design: &Design) -> Vec<f64> {
-        let architecture = candidate.x.first().copied();
-        architecture.into_iter().chain(design.values()).collect()
+        let mut x = candidate.x.clone();
+        for (value, found) in x.iter_mut().skip(1).zip(design.values()) {
+            *value = found;
+        }
+        x
     }
 
     /// Converts an evaluation into the outcome that the optimizer uses: the objectives, as they are minimised, and the
@@ -203,6 +228,7 @@ impl DesignProblem {
             && self.model.is_free_of_scale()
             && self.model.limits.iter().all(grows_with_scale)
             && LENGTHS.iter().all(is_free)
+            && self.further.iter().all(|(variable, _)| variable.is_angle())
     }
 
     /// The lengths that follow from no other variable.
@@ -247,7 +273,7 @@ impl DesignProblem {
             .sized(design, &self.sizing_ranges(design), target)
             .and_then(|sized| {
                 let values = self.with_ties_raised(&sized);
-                Design::new(design.architecture, design.working_mode, values).ok()
+                sized.with_dimensions(values).ok()
             });
         match resized.map(|design| self.model.evaluate(&design, GridChoice::Fine)) {
             Some(resized) if resized.is_feasible() => resized,
@@ -276,6 +302,7 @@ impl DesignProblem {
         .chain(
             self.ranges
                 .iter()
+                .chain(self.further.iter().map(|(_, range)| range))
                 .map(|&[lower, upper]| Variable::Real { lower, upper }),
         )
         .collect()
@@ -337,7 +364,7 @@ impl Problem for DesignProblem {
             .target
             .and_then(|target| self.complete(&candidate.x, target))
             .unwrap_or(candidate.x);
-        if let [_, values @ ..] = x.as_mut_slice()
+        if let Some(values) = x.get_mut(1..=DESIGN_VARIABLES.len())
             && let Ok(all) = <[f64; DESIGN_VARIABLES.len()]>::try_from(&*values)
         {
             values.copy_from_slice(&self.settled(all));

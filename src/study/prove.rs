@@ -207,7 +207,7 @@ impl<'a> FrontProver<'a> {
                 return None;
             }
         }
-        Design::new(design.architecture, design.working_mode, values).ok()
+        design.with_dimensions(values).ok()
     }
 
     /// Returns the front with the proved radii, sorted by mass, and what was found. Thickened designs get the ids from

@@ -143,12 +143,15 @@ fn instruction_sets_are_known_to_the_lanes() {
 #[test]
 fn architectures_are_named_in_mechanism_alone() {
     let legs = [
-        "PrrLeg",
-        "RprLeg",
-        "RrrLeg",
+        "PrrChain",
+        "RprChain",
+        "RrrChain",
+        "Architecture::R",
         "Architecture::Prr",
-        "Architecture::Rpr",
-        "Architecture::Rrr",
+        "Architecture::Prp",
+        "Architecture::Ppr",
+        "\"RRR\"",
+        "\"PRR\"",
     ];
     assert_absent(&PHYSICS, &legs);
     assert_absent(

@@ -6,7 +6,7 @@ use kinefront::scene::{
     regular_workspace, tour,
 };
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model, ModelSettings, PoseEvaluation};
-use kinefront_model::mechanism::{Actuator, Design, MemberKind};
+use kinefront_model::mechanism::{Design, JointKind, MemberKind};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::StiffnessDefinition;
 use nalgebra::{Matrix3, Vector3};
@@ -92,7 +92,7 @@ fn joints_close_along_every_tour() {
                     (Some(link), None, None) => {
                         near(length(Some(link)).expect("a link"), design.link_length, "link");
                         let crank = part(Part::Crank);
-                        let has_crank = design.architecture.actuator() == Actuator::Revolute;
+                        let has_crank = design.architecture.actuator() == JointKind::Revolute;
                         assert_eq!(crank.is_some(), has_crank, "{design}: a crank");
                         if let Some(crank) = crank {
                             near(length(Some(crank)).expect("a crank"), design.link_length, "crank");

@@ -112,7 +112,12 @@ fn is_alternative(setting: &Setting) -> bool {
     let of_sections = setting.section.starts_with("sections.") && setting.key != "kind";
     let of_region = setting.section == "workspace.region" && setting.key != "kind";
     let paths = ["quantities", "constraints", "hypervolume.reference"];
-    of_sections || of_region || setting.section == "variables" || paths.contains(&setting.path().as_str())
+    let of_some_chains = setting.section == "bounds" && setting.initial.is_some();
+    of_sections
+        || of_region
+        || of_some_chains
+        || setting.section == "variables"
+        || paths.contains(&setting.path().as_str())
 }
 
 fn insert(table: &mut toml::Table, setting: &Setting, value: toml::Value) {

@@ -148,7 +148,12 @@ fn pose_tells_joints_and_stiffness() {
         "x=0 y=0.5 phi_deg=0",
         "--json",
     ]);
-    assert!(beyond["reason"].as_str().expect("a reason").contains("leg 3: actuator"));
+    assert!(
+        beyond["reason"]
+            .as_str()
+            .expect("a reason")
+            .contains("leg 3: prismatic joint")
+    );
 }
 
 #[test]

@@ -257,7 +257,10 @@ fn exports_say_what_is_wrong() {
             .stderr(contains(words));
         assert!(!out.exists(), "{words}");
     };
-    fails(&["--design", DESIGN, "--pose", "x=9 y=0 phi_deg=0"], "leg 1: actuator");
+    fails(
+        &["--design", DESIGN, "--pose", "x=9 y=0 phi_deg=0"],
+        "leg 1: prismatic joint",
+    );
     fails(&["--design", &DESIGN.replace("rj=0.036", "rj=0")], "radius 0");
     fails(
         &["--design", DESIGN, "--format", "step"],

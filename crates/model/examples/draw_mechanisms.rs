@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use glam::DVec2;
 use kinefront_model::evaluation::{Model, PoseEvaluation};
-use kinefront_model::mechanism::{Actuator, Design};
+use kinefront_model::mechanism::{Design, JointKind};
 use kinefront_model::spatial::{ANCHOR_DIRECTIONS, LEGS, Pose, Rotation};
 
 const DESIGNS: [&str; 3] = [
@@ -118,7 +118,7 @@ fn draw_leg(
     let (a, b, c) = (anchors[leg], DVec2::from(found.b[leg]), DVec2::from(found.c[leg]));
     let u = (c - b).normalize();
     let number = subscript(leg);
-    let has_rail = design.architecture.actuator() == Actuator::Prismatic && b.distance(a) > 1e-9;
+    let has_rail = design.architecture.actuator() == JointKind::Prismatic && b.distance(a) > 1e-9;
     let outwards = ANCHOR_DIRECTIONS[leg] * 0.11;
     drawing.line(b, c, INK, 4.0, "");
     if has_rail {
@@ -126,7 +126,7 @@ fn draw_leg(
         drawing.line(a, anchors[(leg + 1) % LEGS], PALE, 5.0, "");
         drawing.slider(b, along);
         drawing.text(a.lerp(b, 0.5) + along.perp() * -0.08, &format!("ρ{number}"), ACTUATED);
-    } else if design.architecture.actuator() == Actuator::Prismatic {
+    } else if design.architecture.actuator() == JointKind::Prismatic {
         drawing.line(a, a.lerp(c, 0.55), ACTUATED, 9.0, "");
         drawing.line(a, a.lerp(c, 0.55), "white", 5.0, "");
         drawing.text(a.lerp(c, 0.45) + u.perp() * 0.1, &format!("ρ{number}"), ACTUATED);
@@ -134,7 +134,7 @@ fn draw_leg(
         drawing.line(a, b, INK, 4.0, "");
         drawing.text(a + (b - a) * 0.25 - outwards * 0.8, &format!("θ{number}"), ACTUATED);
     }
-    let is_crank = design.architecture.actuator() == Actuator::Revolute;
+    let is_crank = design.architecture.actuator() == JointKind::Revolute;
     drawing.joint(a, if is_crank { ACTUATED } else { INK });
     if b.distance(a) > 1e-9 {
         drawing.joint(b, INK);

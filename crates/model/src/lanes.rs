@@ -10,7 +10,28 @@
 
 use std::ops::{Add, BitAnd, Div, Mul, Neg, Sub};
 
-use pulp::{Simd, WithSimd};
+use pulp::{NullaryFnOnce, Simd, WithSimd};
+
+/// A computation on lanes that may be compiled as a function of its own ([`Real::call_apart`]).
+pub trait LaneJob {
+    /// What it computes.
+    type Output;
+
+    /// Runs it; to be marked `#[inline(always)]`.
+    fn run(self) -> Self::Output;
+}
+
+/// A job in the form that instruction sets run.
+struct ApartJob<J>(J);
+
+impl<J: LaneJob> NullaryFnOnce for ApartJob<J> {
+    type Output = J::Output;
+
+    #[inline(always)]
+    fn call(self) -> J::Output {
+        self.0.run()
+    }
+}
 
 /// One number, or several numbers in parallel lanes.
 pub trait Real:
@@ -33,6 +54,12 @@ pub trait Real:
     fn select(self, mask: Self::Mask, other: Self) -> Self;
     /// Returns whether the mask is set in any lane.
     fn any(mask: Self::Mask) -> bool;
+    /// Runs `job` in a function of its own, which is compiled for the instruction set of `self`. It saves the compiler from copying
+    /// a job into every loop that needs it.
+    #[inline(always)]
+    fn call_apart<J: LaneJob>(self, job: J) -> J::Output {
+        job.run()
+    }
 
     /// Returns the smaller of two numbers, or `other` if either is NaN.
     #[inline(always)]
@@ -346,6 +373,15 @@ impl<S: Simd> Real for Lanes<S> {
     #[inline(always)]
     fn any(mask: LaneMask<S>) -> bool {
         mask.bits() != 0
+    }
+
+    #[inline(always)]
+    fn call_apart<J: LaneJob>(self, job: J) -> J::Output {
+        #[inline(never)]
+        fn call<S: Simd, J: LaneJob>(simd: S, job: J) -> J::Output {
+            simd.vectorize(ApartJob(job))
+        }
+        call(self.simd, job)
     }
 }
 

@@ -77,6 +77,26 @@ pub fn unit(angle: f64) -> DVec2 {
     DVec2::new(cos, sin)
 }
 
+/// Returns the unit vector at `angle` \[deg\] from the x axis, with exact mirror symmetry at multiples of 30°.
+pub fn direction_deg(angle: f64) -> DVec2 {
+    let turned = angle.rem_euclid(360.0);
+    let thirds = turned / 30.0;
+    if thirds.fract() != 0.0 {
+        return unit(turned.to_radians());
+    }
+    let cosine = |thirds: u32| match thirds % 12 {
+        0 => 1.0,
+        1 | 11 => HALF_SQRT_3,
+        2 | 10 => 0.5,
+        3 | 9 => 0.0,
+        4 | 8 => -0.5,
+        5 | 7 => -HALF_SQRT_3,
+        _ => -1.0,
+    };
+    let thirds = thirds as u32;
+    DVec2::new(cosine(thirds), cosine(thirds + 9))
+}
+
 /// Planar rotation that stores the sine and cosine of its angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotation {
@@ -89,6 +109,14 @@ impl Rotation {
     pub fn new(angle: f64) -> Self {
         let (sin, cos) = libm::sincos(angle);
         Self { cos, sin }
+    }
+
+    /// Creates the rotation that turns the x axis to `direction`, a unit vector.
+    pub fn by(direction: DVec2) -> Self {
+        Self {
+            cos: direction.x,
+            sin: direction.y,
+        }
     }
 
     /// Returns `v` rotated by this rotation.
@@ -110,15 +138,20 @@ pub fn smaller_eigenvalue<V: Real>(xx: V, xy: V, yy: V) -> V {
     ((xx * yy - xy * xy) / larger).select(larger.exceeds(xx.splat(0.0)), half_trace - root)
 }
 
-/// Why a text is not a pose.
+/// Why a text is not a pose, or not the values of three joints.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PoseTextError {
     /// A word without `=`.
     #[error("`{0}` is not of the form key=value")]
     NoEquals(String),
-    /// A key that a pose does not have.
-    #[error("unknown key `{0}`; expected x, y or phi_deg")]
-    UnknownKey(String),
+    /// An unknown key.
+    #[error("unknown key `{key}`; expected {expected}")]
+    UnknownKey {
+        /// The key.
+        key: String,
+        /// The keys that there are.
+        expected: &'static str,
+    },
     /// A value that is not a number.
     #[error("`{text}` is not a number (key {key})")]
     NotANumber {
@@ -139,8 +172,48 @@ pub enum PoseTextError {
     #[error("`{0}` is given twice")]
     Repeated(&'static str),
     /// A key that is not given.
-    #[error("`{0}` is missing; a pose needs x, y (m) and phi_deg")]
-    Missing(&'static str),
+    #[error("`{key}` is missing; expected {expected}")]
+    Missing {
+        /// The key.
+        key: &'static str,
+        /// The keys that there are.
+        expected: &'static str,
+    },
+}
+
+/// Parses three finite numbers with keys, in any order; `expected` names the keys and units in messages.
+fn three_numbers(text: &str, keys: [&'static str; 3], expected: &'static str) -> Result<[f64; 3], PoseTextError> {
+    let mut values = [None; 3];
+    for word in text.split_whitespace() {
+        let (key, value) = word
+            .split_once('=')
+            .ok_or_else(|| PoseTextError::NoEquals(word.to_owned()))?;
+        let index = keys
+            .iter()
+            .position(|&known| known == key)
+            .ok_or_else(|| PoseTextError::UnknownKey {
+                key: key.to_owned(),
+                expected,
+            })?;
+        let key = keys[index];
+        let number: f64 = value.parse().map_err(|_| PoseTextError::NotANumber {
+            key,
+            text: value.to_owned(),
+        })?;
+        if !number.is_finite() {
+            return Err(PoseTextError::NotFinite { key, number });
+        }
+        if values[index].replace(number).is_some() {
+            return Err(PoseTextError::Repeated(key));
+        }
+    }
+    let value = |index: usize| {
+        values[index].ok_or(PoseTextError::Missing {
+            key: keys[index],
+            expected,
+        })
+    };
+    Ok([value(0)?, value(1)?, value(2)?])
 }
 
 impl std::str::FromStr for Pose {
@@ -148,30 +221,22 @@ impl std::str::FromStr for Pose {
 
     /// Parses a pose from text such as `x=0.1 y=0.2 phi_deg=30`.
     fn from_str(text: &str) -> Result<Self, PoseTextError> {
-        const KEYS: [&str; 3] = ["x", "y", "phi_deg"];
-        let mut values = [None; KEYS.len()];
-        for word in text.split_whitespace() {
-            let (key, value) = word
-                .split_once('=')
-                .ok_or_else(|| PoseTextError::NoEquals(word.to_owned()))?;
-            let index = KEYS
-                .iter()
-                .position(|&known| known == key)
-                .ok_or_else(|| PoseTextError::UnknownKey(key.to_owned()))?;
-            let key = KEYS[index];
-            let text = || value.to_owned();
-            let number: f64 = value
-                .parse()
-                .map_err(|_| PoseTextError::NotANumber { key, text: text() })?;
-            if !number.is_finite() {
-                return Err(PoseTextError::NotFinite { key, number });
-            }
-            if values[index].replace(number).is_some() {
-                return Err(PoseTextError::Repeated(key));
-            }
-        }
-        let value = |index: usize| values[index].ok_or(PoseTextError::Missing(KEYS[index]));
-        Ok(Pose::new(value(0)?, value(1)?, value(2)?.to_radians()))
+        let expected = "x, y (m) and phi_deg";
+        let [x, y, phi_deg] = three_numbers(text, ["x", "y", "phi_deg"], expected)?;
+        Ok(Pose::new(x, y, phi_deg.to_radians()))
+    }
+}
+
+/// Values of the driven joints of legs 1, 2, 3 \[m or rad\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointValues(pub [f64; LEGS]);
+
+impl std::str::FromStr for JointValues {
+    type Err = PoseTextError;
+
+    /// Parses values from text such as `q1=0.9 q2=1.0 q3=1.1`.
+    fn from_str(text: &str) -> Result<Self, PoseTextError> {
+        three_numbers(text, ["q1", "q2", "q3"], "q1, q2 and q3 (m or rad)").map(Self)
     }
 }
 
@@ -183,6 +248,19 @@ mod tests {
     fn rotation_keeps_length_and_turns_by_its_angle() {
         let v = Rotation::new(0.3).apply(unit(0.4));
         assert!((v - unit(0.7)).length() < 1e-15);
+    }
+
+    #[test]
+    fn directions_in_degrees_are_exact_at_multiples_of_thirty() {
+        for (angle, wanted) in [(210.0, 0), (330.0, 1), (90.0, 2), (-150.0, 0), (450.0, 2)] {
+            assert_eq!(direction_deg(angle), ANCHOR_DIRECTIONS[wanted]);
+        }
+        for angle in [-725.5f64, -30.0, 0.0, 17.25, 60.0, 149.999, 240.0, 359.0] {
+            assert!(
+                (direction_deg(angle) - unit(angle.to_radians())).length() < 1e-14,
+                "{angle}"
+            );
+        }
     }
 
     #[test]

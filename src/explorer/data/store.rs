@@ -1,8 +1,8 @@
-//! All evaluated designs of a run, stored in columns: about 350 bytes per design, so that a million fit in memory.
+//! All evaluated designs of a run, stored in columns: about 380 bytes per design, so that a million fit in memory.
 
 use crate::study::{Column, Row};
 use kinefront_model::evaluation::{Constraint, Quantity};
-use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, WorkingMode};
+use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, FURTHER_VARIABLES, WorkingMode};
 use kinefront_optimize::Objectives;
 
 /// Evaluated designs in the order of their ids, which are consecutive from 0.
@@ -13,6 +13,8 @@ pub struct Store {
     mode: Vec<WorkingMode>,
     generation: Vec<u32>,
     values: [Vec<f64>; DESIGN_VARIABLES.len()],
+    /// Further variables; NaN where the chain does not have one.
+    further: [Vec<f64>; FURTHER_VARIABLES.len()],
     mass: Vec<f64>,
     radius: Vec<f64>,
     /// Home orientation `φ_c` \[deg\]; NaN for an infeasible design.
@@ -53,6 +55,9 @@ impl Store {
         for (column, value) in self.values.iter_mut().zip(row.design.values()) {
             column.push(value);
         }
+        for (column, variable) in self.further.iter_mut().zip(FURTHER_VARIABLES) {
+            column.push(row.number(Column::Dimension(variable)).unwrap_or(f64::NAN));
+        }
         self.mass.push(row.mass);
         self.radius.push(row.radius);
         self.phi.push(row.phi.unwrap_or(f64::NAN));
@@ -82,6 +87,9 @@ impl Store {
         self.mode.append(&mut other.mode);
         self.generation.append(&mut other.generation);
         for (column, more) in self.values.iter_mut().zip(&mut other.values) {
+            column.append(more);
+        }
+        for (column, more) in self.further.iter_mut().zip(&mut other.further) {
             column.append(more);
         }
         self.mass.append(&mut other.mass);
@@ -130,7 +138,13 @@ impl Store {
             return None;
         }
         let values = std::array::from_fn(|k| self.values[k][id]);
-        Design::new(self.architecture(id), self.mode[id], values).ok()
+        let design = Design::new(self.architecture(id), self.mode[id], values).ok()?;
+        let further = FURTHER_VARIABLES.into_iter().zip(&self.further);
+        further
+            .map(|(variable, column)| (variable, column[id]))
+            .filter(|(_, value)| value.is_finite())
+            .try_fold(design, |design, (variable, value)| design.with(variable, value))
+            .ok()
     }
 
     /// Returns the architecture of design `id`, which must exist.
@@ -148,7 +162,10 @@ impl Store {
         match quantity {
             Column::Mass => &self.mass,
             Column::WorkspaceRadius => &self.radius,
-            Column::Dimension(variable) => &self.values[variable as usize],
+            Column::Dimension(variable) => {
+                let of_further = FURTHER_VARIABLES.iter().position(|&further| further == variable);
+                of_further.map_or_else(|| &self.values[variable as usize], |place| &self.further[place])
+            }
             Column::HomePhi => &self.phi,
             Column::Violation => &self.violation,
             Column::Value(constraint) => &self.smallest[constraint as usize],
@@ -160,7 +177,8 @@ impl Store {
 
     /// Returns the memory in use \[bytes\].
     pub fn bytes(&self) -> usize {
-        let numbers = DESIGN_VARIABLES.len() + 4 + 2 * Constraint::ALL.len() + Quantity::COUNT / 2;
+        let numbers =
+            DESIGN_VARIABLES.len() + FURTHER_VARIABLES.len() + 4 + 2 * Constraint::ALL.len() + Quantity::COUNT / 2;
         let per_row = 1 + size_of::<WorkingMode>() + 4 + 1 + 8 * numbers + size_of::<Objectives>();
         self.mass.capacity() * per_row
     }

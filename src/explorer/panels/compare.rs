@@ -5,7 +5,7 @@ use egui::{Color32, Grid, RichText, ScrollArea, Ui};
 use crate::explorer::{Named, Session, theme};
 use crate::study::Column;
 use kinefront_model::evaluation::{Constraint, Evaluation};
-use kinefront_model::mechanism::DESIGN_VARIABLES;
+use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable, FURTHER_VARIABLES};
 
 /// The panel that compares the pinned designs.
 #[derive(Default)]
@@ -90,11 +90,17 @@ fn names(ui: &mut Ui, pins: &[Named]) -> Vec<Option<PinClick>> {
 }
 
 fn dimensions(ui: &mut Ui, pins: &[Named]) {
-    for variable in DESIGN_VARIABLES {
-        let values = pins
-            .iter()
-            .map(|pin| Some(pin.design.values()[variable as usize]))
-            .collect();
+    let has = |pin: &Named, variable: DesignVariable| {
+        let further = pin.design.architecture.further_variables();
+        DESIGN_VARIABLES.contains(&variable) || further.contains(&variable)
+    };
+    for variable in DESIGN_VARIABLES.into_iter().chain(FURTHER_VARIABLES) {
+        let is_given = |pin: &Named| pin.design.given_variables().any(|given| given == variable);
+        if !DESIGN_VARIABLES.contains(&variable) && !pins.iter().any(is_given) {
+            continue;
+        }
+        let of_pin = |pin: &Named| has(pin, variable).then(|| pin.design.value(variable));
+        let values = pins.iter().map(of_pin).collect();
         row(ui, &Column::Dimension(variable).title(), values, None);
     }
 }

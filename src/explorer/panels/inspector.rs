@@ -6,7 +6,7 @@ use egui::{Color32, Grid, RichText, ScrollArea, Sense, Slider, Ui, Vec2, WidgetI
 use crate::explorer::{Known, Session, theme};
 use kinefront_model::certify::Verdict;
 use kinefront_model::evaluation::{ConstraintResult, Quantity};
-use kinefront_model::mechanism::DESIGN_VARIABLES;
+use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignVariable};
 
 /// The inspector panel.
 #[derive(Default)]
@@ -21,7 +21,7 @@ impl Inspector {
         };
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             heading(ui, session);
-            sliders(ui, session, &selected.design.values());
+            sliders(ui, session, &selected.design);
             ui.separator();
             match session.known().cloned() {
                 Some(known) => {
@@ -101,11 +101,25 @@ fn heading(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-fn sliders(ui: &mut Ui, session: &mut Session, values: &[f64; 5]) {
+/// Range of a slider for a variable that has no bounds in the study.
+fn usual_range(variable: DesignVariable) -> Option<[f64; 2]> {
+    match variable {
+        DesignVariable::RailAngle => Some([-90.0, 90.0]),
+        DesignVariable::GuideAngle => Some([30.0, 150.0]),
+        DesignVariable::PlatformGuideAngle => Some([-180.0, 180.0]),
+        _ => None,
+    }
+}
+
+fn sliders(ui: &mut Ui, session: &mut Session, design: &Design) {
     let study = session.study().clone();
-    for (index, variable) in DESIGN_VARIABLES.into_iter().enumerate() {
-        let [low, high] = study.range(variable);
-        let mut value = values[index];
+    let further = design.architecture.further_variables().iter().copied();
+    for variable in DESIGN_VARIABLES.into_iter().chain(further) {
+        let [low, high] = match usual_range(variable) {
+            Some(usual) if !study.bounds.further_variables().any(|bounded| bounded == variable) => usual,
+            _ => study.range(variable),
+        };
+        let mut value = design.value(variable);
         // A design that does not come from the run may lie outside the study's bounds.
         let range = low.min(value)..=high.max(value);
         let thin = variable.may_be_zero();
@@ -114,7 +128,9 @@ fn sliders(ui: &mut Ui, session: &mut Session, values: &[f64; 5]) {
             ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(60.0);
             let slider = Slider::new(&mut value, range)
                 .custom_formatter(move |value, _| {
-                    if thin {
+                    if variable.is_angle() {
+                        format!("{value:.2}°")
+                    } else if thin {
                         format!("{:.2} mm", 1e3 * value)
                     } else {
                         format!("{value:.4} m")
@@ -122,6 +138,9 @@ fn sliders(ui: &mut Ui, session: &mut Session, values: &[f64; 5]) {
                 })
                 .custom_parser(move |text| {
                     let text = text.trim();
+                    if variable.is_angle() {
+                        return text.trim_end_matches('°').trim().parse().ok();
+                    }
                     let (number, unit) = match text.strip_suffix("mm") {
                         Some(number) => (number, 1e-3),
                         None => (text.strip_suffix('m').unwrap_or(text), if thin { 1e-3 } else { 1.0 }),
@@ -132,7 +151,7 @@ fn sliders(ui: &mut Ui, session: &mut Session, values: &[f64; 5]) {
             ui.ctx()
                 .accesskit_node_builder(slider.id, |node| node.set_label(variable.symbol()));
             if slider.changed() {
-                session.modify(index, value);
+                session.modify(variable, value);
             }
         });
     }

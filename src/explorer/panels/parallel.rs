@@ -39,6 +39,7 @@ struct Drawn {
 
 fn axes(study: &Study, model: &Model) -> Vec<Column> {
     let mut axes: Vec<Column> = DESIGN_VARIABLES.map(Column::Dimension).to_vec();
+    axes.extend(study.bounds.further_variables().map(Column::Dimension));
     axes.extend([Column::Mass, Column::WorkspaceRadius]);
     let named = study.named_quantities().iter().map(Column::of_quantity);
     axes.extend(named.filter(|column| !matches!(column, Column::Mass | Column::WorkspaceRadius)));

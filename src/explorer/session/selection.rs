@@ -3,7 +3,7 @@
 use super::{MOST_PINS, Session};
 use crate::explorer::data::{Named, Origin, Selected};
 use crate::recording::Picked;
-use kinefront_model::mechanism::{DESIGN_VARIABLES, Design};
+use kinefront_model::mechanism::{Design, DesignVariable};
 
 impl Session {
     /// Selects a design of the run.
@@ -91,13 +91,11 @@ impl Session {
     }
 
     /// Changes one variable of the selected design, as part of a gesture.
-    pub fn modify(&mut self, variable: usize, value: f64) {
+    pub fn modify(&mut self, variable: DesignVariable, value: f64) {
         let Some(selected) = self.document().selected.clone() else {
             return;
         };
-        let mut values = selected.design.values();
-        values[variable] = value;
-        match Design::new(selected.design.architecture, selected.design.working_mode, values) {
+        match selected.design.with(variable, value) {
             Ok(design) => {
                 let from = match selected.origin {
                     Origin::Evaluated(id) => Some(id),
@@ -106,7 +104,7 @@ impl Session {
                 };
                 self.following = false;
                 self.staging.pose = None;
-                let gesture = DESIGN_VARIABLES[variable].key();
+                let gesture = variable.key();
                 self.history.drag(gesture, |document| {
                     document.selected = Some(Selected {
                         design,

@@ -57,8 +57,8 @@ pub(super) fn made(report: &Report) -> Markup {
 
 fn actuator(architecture: Architecture) -> String {
     let kind = match architecture.actuator() {
-        kinefront_model::mechanism::Actuator::Prismatic => "prismatic",
-        kinefront_model::mechanism::Actuator::Revolute => "revolute",
+        kinefront_model::mechanism::JointKind::Prismatic => "prismatic",
+        kinefront_model::mechanism::JointKind::Revolute => "revolute",
     };
     format!("{kind}: 1 spring")
 }

@@ -336,7 +336,7 @@ fn comparisons(report: &Report) -> Markup {
     html! {
         tr {
             td { "All Pareto-optimal designs of the three architectures together are of type " (best) "." }
-            @if fronts.alone.len() < Architecture::ALL.len() {
+            @if fronts.alone.len() < Architecture::PAPER.len() {
                 td { "not compared: not all architectures were searched" }
             } @else {
                 @let fraction = fronts.together.fraction(best);

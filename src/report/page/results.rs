@@ -266,10 +266,12 @@ pub(super) fn pictures(report: &Report) -> Markup {
 
 /// Lists the variables, objectives, home orientation and active constraints of a design.
 fn numbers(evaluation: &Evaluation) -> Markup {
-    let values = evaluation.design.values();
     html! { div.numbers {
-        @for (variable, value) in DESIGN_VARIABLES.into_iter().zip(values) {
-            span { (variable.symbol()) " " b { (number(value)) } " m" }
+        @for variable in DESIGN_VARIABLES.into_iter().chain(evaluation.design.given_variables()) {
+            span {
+                (variable.symbol()) " " b { (number(evaluation.design.value(variable))) }
+                @if variable.is_angle() { "°" } @else { " m" }
+            }
         }
         span { "mass " b { (number(evaluation.mass)) } " kg" }
         span { "R_w " b { (number(evaluation.workspace_radius)) } " m" }

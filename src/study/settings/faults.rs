@@ -4,7 +4,8 @@ use super::question::unknown_quantity;
 use super::{Bounds, LengthChoice, LimitChoice, ObjectiveChoice, SectionChoice, settings, variables};
 use crate::study::{AlgorithmName, Study};
 use kinefront_model::evaluation::{Quantity, Scope};
-use kinefront_model::mechanism::Design;
+use kinefront_model::mechanism::{Architecture, Arrangement, Design, DesignVariable, Geometry, JointKind};
+use kinefront_model::spatial::LEGS;
 use kinefront_model::workspace::{Grid, GridError};
 
 /// A key with an invalid value.
@@ -26,10 +27,12 @@ impl Fault {
 }
 
 /// Rules about several settings at once, each of which adds what it finds.
-const RULES: [fn(&Study, &mut Vec<Fault>); 12] = [
+const RULES: [fn(&Study, &mut Vec<Fault>); 14] = [
     check_characteristic_length,
     check_slider,
     check_bounds,
+    check_further_bounds,
+    check_geometry,
     check_proportions,
     check_grids,
     check_moga2,
@@ -105,10 +108,70 @@ fn check_bounds(study: &Study, faults: &mut Vec<Fault>) {
     }
 }
 
+fn check_further_bounds(study: &Study, faults: &mut Vec<Fault>) {
+    for variable in study.bounds.further_variables() {
+        let key = format!("bounds.{}", Bounds::key(variable));
+        let [lower, upper] = study.bounds.range(variable);
+        let (valid, expected) = match variable {
+            DesignVariable::ProximalLength => (lower > 0.0, "above 0"),
+            DesignVariable::GuideAngle => (lower > 0.0 && upper < 180.0, "above 0° and below 180°"),
+            _ => (true, "within ±360°"),
+        };
+        if !(lower.is_finite() && upper.is_finite() && valid) {
+            let message = format!("is [{lower}, {upper}]; both must be finite and {expected}");
+            faults.push(Fault::new(&*key, message));
+        } else if lower > upper {
+            let message = format!("has its lower bound {lower} above its upper bound {upper}");
+            faults.push(Fault::new(&*key, message));
+        }
+        let has_it = |architecture: &Architecture| architecture.further_variables().contains(&variable);
+        if !study.architectures.iter().any(has_it) {
+            let names: Vec<&str> = Architecture::ALL
+                .iter()
+                .filter(|found| has_it(found))
+                .map(|found| found.name())
+                .collect();
+            let message = format!(
+                "has no effect: none of the study's architectures has {}; those that have it are {}",
+                variable.symbol(),
+                names.join(", ")
+            );
+            faults.push(Fault::new(key, message));
+        }
+    }
+}
+
+fn check_geometry(study: &Study, faults: &mut Vec<Fault>) {
+    let geometry = Geometry::from(Arrangement::from(&study.geometry));
+    for (key, [lower, upper]) in [("geometry.rail", geometry.rail), ("geometry.guide", geometry.guide)] {
+        if lower >= upper {
+            let message = format!("is [{lower}, {upper}]; the second share must be above the first");
+            faults.push(Fault::new(key, message));
+        }
+    }
+    let on_rails = |architecture: &&Architecture| architecture.chain().joints[0] == JointKind::Prismatic;
+    let Some(architecture) = study.architectures.iter().find(on_rails) else {
+        return;
+    };
+    for leg in 0..LEGS {
+        let next = (leg + 1) % LEGS;
+        if geometry.base_joint(leg, 1.0).distance(geometry.base_joint(next, 1.0)) < 1e-9 {
+            let message = format!(
+                "puts A{} and A{} at one point, but the rail of a {architecture} leads from one to the other",
+                leg + 1,
+                next + 1
+            );
+            faults.push(Fault::new("geometry.base_angles_deg", message));
+        }
+    }
+}
+
 fn check_proportions(study: &Study, faults: &mut Vec<Fault>) {
     let [smallest, _] = study.bounds.R_m;
     let limit = Design::MAX_RATIO;
-    for (key, [_, largest]) in [("bounds.r_m", study.bounds.r_m), ("bounds.Lb_m", study.bounds.Lb_m)] {
+    let of_proximal = study.bounds.La_m.map(|range| ("bounds.La_m", range));
+    let given = [("bounds.r_m", study.bounds.r_m), ("bounds.Lb_m", study.bounds.Lb_m)];
+    for (key, [_, largest]) in given.into_iter().chain(of_proximal) {
         if largest > limit * smallest {
             let message =
                 format!("has an upper bound above {limit} times the smallest R; the workspace grid scales with R");

@@ -4,8 +4,8 @@ use kinefront_model::mechanism::Architecture;
 
 use super::declare::{Check, Initial, Setting, settings};
 use super::{
-    ActuatorSection, AlgorithmName, Bounds, HypervolumeSection, MaterialSection, ModelSection, RegionKind,
-    RequirementSection, Variables, WorkspaceSection,
+    ActuatorSection, AlgorithmName, Bounds, GeometrySection, HypervolumeSection, MaterialSection, ModelSection,
+    RegionKind, RequirementSection, Variables, WorkspaceSection,
 };
 
 const MOST: i64 = 100_000_000;
@@ -13,7 +13,7 @@ const PROBABILITY: Check = Check::Within(0.0, 1.0, "");
 const LAYER: Check = Check::Within(-1e3, 1e3, " diameters of the thicker bar");
 const PHI_STEP: Check = Check::Within(0.01, 120.0, "");
 
-const SECTIONS: [&[Setting]; 22] = [
+const SECTIONS: [&[Setting]; 23] = [
     settings!("" {
         name: Check::Name, "Short name, which appears in run folders and recordings.";
         description: Check::Any, "Description of the study in one or two sentences.";
@@ -59,8 +59,11 @@ const SECTIONS: [&[Setting]; 22] = [
         link: LAYER, "Layer of the links.";
         telescopic_leg: LAYER, "Layer of the telescopic legs.";
         crank: LAYER, "Layer of the cranks.";
+        turning_guide: LAYER, "Layer of the guides that turn about a base joint.";
+        guide: LAYER, "Layer of the guides on the platform or on sliders.";
         slider: LAYER, "Layer of the sliders.";
     }),
+    GeometrySection::SETTINGS,
     Bounds::SETTINGS,
     Variables::SETTINGS,
     settings!("grid.reference" {

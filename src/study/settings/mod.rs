@@ -23,7 +23,7 @@ pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnat
 pub use question::{LimitChoice, Limits, ObjectiveChoice};
 pub use region::{RegionKind, RegionSection};
 pub use sections::{
-    ActuatorSection, Bounds, GridSection, Grids, LengthChoice, MaterialSection, ModelSection, ReferenceDesign,
-    RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
+    ActuatorSection, Bounds, GeometrySection, GridSection, Grids, LengthChoice, MaterialSection, ModelSection,
+    ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
 };
 pub use variables::{Tie, VariableChoice, Variables};

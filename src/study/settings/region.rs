@@ -3,6 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use super::GeometrySection;
 use crate::study::Study;
 use kinefront_model::mechanism::DesignVariable;
 use kinefront_model::workspace::{Polygon, Region};
@@ -127,10 +128,16 @@ impl Study {
             self.range(DesignVariable::PlatformRadius)[1],
             self.range(DesignVariable::LinkLength)[1],
         ];
+        // Elsewhere than in the paper, rails and guides may lead anywhere.
+        let has_other_rails = self.bounds.range(DesignVariable::RailAngle) != [0.0; 2];
+        if self.geometry != GeometrySection::default() || has_other_rails {
+            return None;
+        }
+        let lengths = [self.bounds.range(DesignVariable::ProximalLength)[1], link];
         let reach = self
             .architectures
             .iter()
-            .map(|architecture| architecture.farthest_reach(base, platform, link))
+            .map(|architecture| architecture.farthest_reach(base, platform, lengths))
             .fold(0.0, f64::max);
         (distance > reach).then(|| {
             format!(

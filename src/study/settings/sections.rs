@@ -4,7 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::RegionSection;
 use super::declare::{Check, Initial, section};
-use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignVariable, TextError, WorkingMode};
+use kinefront_model::mechanism::{
+    Arrangement, DESIGN_VARIABLES, Design, DesignVariable, FURTHER_VARIABLES, TextError, WorkingMode,
+};
+use kinefront_model::spatial::LEGS;
 use kinefront_model::stiffness::Material;
 use kinefront_model::workspace::{Grid, GridError};
 
@@ -148,13 +151,61 @@ section! {
         rj_m: [f64; 2] = [0.0, 0.1], Check::Any;
         /// Radius `r_p` of the platform bars.
         rp_m: [f64; 2] = [0.0, 0.1], Check::Any;
+        optional {
+            /// Length `L_a` of the bar from the base joint to the next one, for chains that have it; if omitted, it equals `L_b`.
+            La_m: [f64; 2], Check::Any, Initial::AsText;
+            /// Angle `α` of the rails to the sides of the base; if omitted, 0°.
+            alpha_deg: [f64; 2], Check::Within(-360.0, 360.0, ""), Initial::AsText;
+            /// Angle `β` between the two guides of a leg; if omitted, 90°.
+            beta_deg: [f64; 2], Check::Any, Initial::AsText;
+            /// Angle `γ` of the guides on the platform to its bars; if omitted, 0°.
+            gamma_deg: [f64; 2], Check::Within(-360.0, 360.0, ""), Initial::AsText;
+        }
+    }
+}
+
+section! {
+    /// Arrangement of the base and platform joints, and travel of the prismatic joints.
+    pub struct GeometrySection in "geometry" {
+        /// Directions of the base joints from `O`.
+        base_angles_deg: [f64; LEGS] = Arrangement::PAPER.base_angles_deg, Check::Within(-360.0, 360.0, "");
+        /// Distances of the base joints from `O`, as multiples of `R`.
+        base_radii: [f64; LEGS] = Arrangement::PAPER.base_radii, Check::Within(0.01, 100.0, "");
+        /// Directions of the platform joints from `P`, in the platform frame.
+        platform_angles_deg: [f64; LEGS] = Arrangement::PAPER.platform_angles_deg, Check::Within(-360.0, 360.0, "");
+        /// Distances of the platform joints from `P`, as multiples of `r`.
+        platform_radii: [f64; LEGS] = Arrangement::PAPER.platform_radii, Check::Within(0.01, 100.0, "");
+        /// Turn of each rail in addition to `α`.
+        rail_turn_deg: [f64; LEGS] = Arrangement::PAPER.rail_turn_deg, Check::Within(-360.0, 360.0, "");
+        /// Travel of a slider, as shares of the distance between neighbouring base joints.
+        rail: [f64; 2] = Arrangement::PAPER.rail, Check::Within(-100.0, 100.0, "");
+        /// Travel on every other guide, as shares of `L_b`, or of `L_a` on the guide at the base of an RPP leg.
+        guide: [f64; 2] = Arrangement::PAPER.guide, Check::Within(-100.0, 100.0, "");
+    }
+}
+
+impl From<&GeometrySection> for Arrangement {
+    fn from(section: &GeometrySection) -> Self {
+        Self {
+            base_angles_deg: section.base_angles_deg,
+            base_radii: section.base_radii,
+            platform_angles_deg: section.platform_angles_deg,
+            platform_radii: section.platform_radii,
+            rail_turn_deg: section.rail_turn_deg,
+            rail: section.rail,
+            guide: section.guide,
+        }
     }
 }
 
 impl Bounds {
-    /// Returns the range of a variable.
+    /// Returns the range of a variable; one that has no bounds keeps its default, and `L_a` that of `L_b`.
     pub fn range(&self, variable: DesignVariable) -> [f64; 2] {
         match variable {
+            DesignVariable::ProximalLength => self.La_m.unwrap_or(self.Lb_m),
+            DesignVariable::RailAngle => self.alpha_deg.unwrap_or([0.0; 2]),
+            DesignVariable::GuideAngle => self.beta_deg.unwrap_or([90.0; 2]),
+            DesignVariable::PlatformGuideAngle => self.gamma_deg.unwrap_or([0.0; 2]),
             DesignVariable::BaseRadius => self.R_m,
             DesignVariable::PlatformRadius => self.r_m,
             DesignVariable::LinkLength => self.Lb_m,
@@ -163,11 +214,31 @@ impl Bounds {
         }
     }
 
-    /// Iterates over the variables, each with the key of its range.
+    /// Returns the variables beyond the five dimensions that have bounds.
+    pub fn further_variables(&self) -> impl Iterator<Item = DesignVariable> + use<> {
+        let given = [
+            self.La_m.is_some(),
+            self.alpha_deg.is_some(),
+            self.beta_deg.is_some(),
+            self.gamma_deg.is_some(),
+        ];
+        let all = FURTHER_VARIABLES.into_iter().zip(given);
+        all.filter(|(_, is_given)| *is_given).map(|(variable, _)| variable)
+    }
+
+    /// Returns the key of the range of a variable.
+    pub fn key(variable: DesignVariable) -> String {
+        match variable.is_angle() {
+            true => variable.key().to_owned(),
+            false => format!("{}_m", variable.key()),
+        }
+    }
+
+    /// Iterates over the five dimensions, each with the key of its range.
     pub fn keys() -> impl Iterator<Item = (DesignVariable, String)> {
         DESIGN_VARIABLES
             .into_iter()
-            .map(|variable| (variable, format!("{}_m", variable.key())))
+            .map(|variable| (variable, Self::key(variable)))
     }
 }
 

@@ -74,6 +74,8 @@ impl Variables {
             DesignVariable::LinkLength => self.Lb_m.as_ref(),
             DesignVariable::LegBarRadius => self.rj_m.as_ref(),
             DesignVariable::PlatformBarRadius => self.rp_m.as_ref(),
+            // The bounds free or fix these.
+            _ => None,
         }
     }
 }

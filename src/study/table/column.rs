@@ -5,7 +5,7 @@ use std::fmt;
 
 use crate::study::Study;
 use kinefront_model::evaluation::{Better, Constraint, Quantity, QuantitySet};
-use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable, FURTHER_VARIABLES};
 
 use super::TableRow;
 
@@ -29,7 +29,7 @@ pub enum Column {
     Architecture,
     /// Working mode, a sign per leg.
     WorkingMode,
-    /// One of the five dimensions \[m\].
+    /// One of the variables of a design \[m, or deg for an angle\].
     Dimension(DesignVariable),
     /// Mass in motion \[kg\].
     Mass,
@@ -134,7 +134,9 @@ impl Column {
 
     /// The columns of `designs.csv`, in their order.
     pub fn of_designs(study: &Study) -> impl Iterator<Item = Column> + use<> {
-        Self::of_every_study().chain(Self::further(study.named_quantities()))
+        Self::of_every_study()
+            .chain(Self::further(study.named_quantities()))
+            .chain(study.bounds.further_variables().map(Self::Dimension))
     }
 
     /// The columns of `front.csv`, in their order.
@@ -142,6 +144,7 @@ impl Column {
         Self::of_every_study()
             .chain(Self::OF_FRONT)
             .chain(Self::further(study.named_quantities()))
+            .chain(study.bounds.further_variables().map(Self::Dimension))
     }
 
     /// The columns that `front.csv` has besides those of `designs.csv`.
@@ -176,6 +179,7 @@ impl Column {
         Self::of_every_study()
             .chain(Self::OF_FRONT)
             .chain(Self::further(QuantitySet::all()))
+            .chain(FURTHER_VARIABLES.map(Self::Dimension))
             .chain([Self::OnJointFront, Self::Verified, Self::Starred, Self::Note])
     }
 
@@ -258,6 +262,7 @@ impl Column {
     /// Unit of the values; empty for a number without a unit and for texts.
     pub fn unit(self) -> &'static str {
         match self {
+            Self::Dimension(variable) if variable.is_angle() => "°",
             Self::Dimension(_)
             | Self::WorkspaceRadius
             | Self::ReferenceRadius
@@ -273,6 +278,10 @@ impl Column {
 
     /// Whether a row may have no value.
     pub fn is_optional(self) -> bool {
+        if let Self::Dimension(variable) = self {
+            // A chain may not have a further variable.
+            return FURTHER_VARIABLES.contains(&variable);
+        }
         matches!(
             self,
             Self::HomePhi

@@ -137,7 +137,11 @@ impl Row {
     /// Value of a numerical column, if the design has one.
     pub fn number(&self, column: Column) -> Option<f64> {
         match column {
-            Column::Dimension(variable) => Some(self.design.values()[variable as usize]),
+            Column::Dimension(variable) => {
+                let has_it = DESIGN_VARIABLES.contains(&variable)
+                    || self.design.architecture.further_variables().contains(&variable);
+                has_it.then(|| self.design.value(variable))
+            }
             Column::Mass => Some(self.mass),
             Column::WorkspaceRadius => Some(self.radius),
             Column::HomePhi => self.phi,
@@ -179,7 +183,12 @@ pub(super) fn read_design<'a>(
         let column = Column::Dimension(variable);
         *dimension = number(column).ok_or(RowError::Value(column))?;
     }
-    Ok(Design::new(architecture, mode, dimensions)?)
+    let design = Design::new(architecture, mode, dimensions)?;
+    let further = architecture.further_variables().iter();
+    let given = further.filter_map(|&variable| Some((variable, number(Column::Dimension(variable))?)));
+    given
+        .into_iter()
+        .try_fold(design, |design, (variable, value)| Ok(design.with(variable, value)?))
 }
 
 /// Returns a bit set of constraints.

@@ -7,7 +7,7 @@ use super::CertifyError;
 use super::forms::{Forms, ProvedForms};
 use crate::enclosure::{Interval, PoseEnclosure};
 use crate::evaluation::{Constraint, Model};
-use crate::mechanism::{Design, Leg};
+use crate::mechanism::Design;
 
 /// Number of orientations of the first sample per window.
 const PER_WINDOW: f64 = 16.0;
@@ -28,9 +28,9 @@ struct BadPose {
     distance: f64,
 }
 
-struct Homes<'a, L> {
+struct Homes<'a> {
     model: &'a Model,
-    forms: Forms<'a, L>,
+    forms: Forms<'a>,
     /// Distance below which infeasible poses are all alike \[m\].
     near: f64,
     /// Distance beyond which none is looked for \[m\].
@@ -39,15 +39,15 @@ struct Homes<'a, L> {
     found: Vec<BadPose>,
 }
 
-pub(super) fn upper_bound<L: Leg>(model: &Model, design: &Design, proved: f64) -> Result<Option<f64>, CertifyError> {
+pub(super) fn upper_bound(model: &Model, design: &Design, proved: f64) -> Result<Option<f64>, CertifyError> {
     let spec = &model.workspace;
     // With a prescribed home orientation, that is the only one; in a window without width, no double is known to lie.
     if spec.home_phi_deg.is_some() || spec.rotation_range_deg <= 0.0 {
         return Ok(None);
     }
-    let reach = design.base_radius + design.platform_radius + 2.0 * design.link_length + spec.centre.length();
+    let reach = model.extent(design) + spec.centre.length();
     let near = proved.max(1e-3 * design.base_radius) * (1.0 + 1e-6);
-    let mut homes = Homes::<L> {
+    let mut homes = Homes {
         forms: Forms::new(model, design)?,
         model,
         near,
@@ -72,7 +72,7 @@ pub(super) fn upper_bound<L: Leg>(model: &Model, design: &Design, proved: f64) -
     Ok(bound.map(|(distance, _)| distance))
 }
 
-impl<L: Leg> Homes<'_, L> {
+impl Homes<'_> {
     /// Looks for infeasible poses at orientations over the whole turn.
     fn sample(&mut self) {
         let count = (PER_WINDOW * 360.0 / self.model.workspace.rotation_range_deg).ceil() as usize;

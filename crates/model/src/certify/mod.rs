@@ -264,7 +264,7 @@ impl Model {
             (1e-12..1.0).contains(&tolerance),
             "from 1e-12 to below 1",
         )?;
-        with_leg!(design.architecture, L => search::certify::<L>(self, design, options, observer))
+        search::certify(self, design, options, observer)
     }
 
     /// Returns a distance that the workspace radius exceeds at no home orientation: with `Certificate::lower` it encloses `R_w`
@@ -276,7 +276,7 @@ impl Model {
     /// # Errors
     /// [`CertifyError::Degenerate`]: bars without a usable stiffness.
     pub fn bound_of_homes(&self, design: &Design, proved: f64) -> Result<Option<f64>, CertifyError> {
-        with_leg!(design.architecture, L => homes::upper_bound::<L>(self, design, proved))
+        homes::upper_bound(self, design, proved)
     }
 
     /// Encloses the constraints of a design over a box of poses: a constraint holds strictly where all its values are positive, and
@@ -290,9 +290,7 @@ impl Model {
         design: &Design,
         pose: &PoseEnclosure,
     ) -> Result<Vec<(Constraint, TaylorModel)>, CertifyError> {
-        with_leg!(design.architecture, L => {
-            let forms = forms::Forms::<L>::new(self, design)?;
-            Ok(forms.enclose(pose, ProvedForms::default()).iter().copied().collect())
-        })
+        let forms = forms::Forms::new(self, design)?;
+        Ok(forms.enclose(pose, ProvedForms::default()).iter().copied().collect())
     }
 }

@@ -8,7 +8,7 @@ use super::polar_box::PolarBox;
 use super::{BoxOutcome, Certificate, CertifyError, CertifyOptions, ExaminedBox, ProofObserver, Verdict, Violation};
 use crate::enclosure::{Interval, PoseEnclosure, TaylorModel, VARIABLES};
 use crate::evaluation::{Constraint, Model};
-use crate::mechanism::{Design, Leg};
+use crate::mechanism::Design;
 use crate::spatial::Pose;
 
 /// A box narrower than this multiple of `R` is not divided.
@@ -26,13 +26,13 @@ const BOXES_BETWEEN_QUESTIONS: usize = 64;
 /// Radius beyond all reach, as a multiple of the sizes of the design.
 const BEYOND: f64 = 4.0;
 
-pub(super) fn certify<L: Leg>(
+pub(super) fn certify(
     model: &Model,
     design: &Design,
     options: &CertifyOptions,
     observer: &mut dyn ProofObserver,
 ) -> Result<Certificate, CertifyError> {
-    let mut proof = Proof::<L>::new(model, design, options, observer)?;
+    let mut proof = Proof::new(model, design, options, observer)?;
     if options.blind_radius.is_none() {
         proof.find_bad_poses();
     }
@@ -41,12 +41,12 @@ pub(super) fn certify<L: Leg>(
     Ok(proof.certificate())
 }
 
-struct Proof<'a, L> {
+struct Proof<'a> {
     model: &'a Model,
     design: &'a Design,
     options: &'a CertifyOptions,
     observer: &'a mut dyn ProofObserver,
-    forms: Forms<'a, L>,
+    forms: Forms<'a>,
     /// Orientations of the window, rounded outwards for boxes and inwards for poses \[rad\].
     window: [f64; 2],
     inner_window: [f64; 2],
@@ -66,7 +66,7 @@ struct Proof<'a, L> {
     is_out_of_budget: bool,
 }
 
-impl<'a, L: Leg> Proof<'a, L> {
+impl<'a> Proof<'a> {
     fn new(
         model: &'a Model,
         design: &'a Design,
@@ -113,7 +113,7 @@ impl<'a, L: Leg> Proof<'a, L> {
             None => {
                 let design = self.design;
                 let centre = self.model.workspace.centre.length();
-                BEYOND * (design.base_radius + design.platform_radius + 2.0 * design.link_length + centre)
+                BEYOND * (self.model.extent(design) + centre)
             }
         }
     }

@@ -7,7 +7,9 @@ use super::capsule::{Capsule, Clearance, MemberId, Neighbour};
 use super::distance::{may_be_nearer, squared};
 use super::layers::BodySettings;
 use crate::lanes::{Planar, Real};
-use crate::mechanism::{Design, Leg, Manipulator, MemberAxis, MemberKind, Members, Posture};
+use crate::mechanism::{
+    Architecture, Design, DistalLanes, Geometry, Leg, Manipulator, MemberAxis, MemberKind, Members, Posture,
+};
 use crate::spatial::{LEGS, nearest_on_segment};
 use crate::stiffness::CrossSections;
 
@@ -17,9 +19,10 @@ pub(crate) const PROXIMAL: usize = 0;
 pub(crate) const DISTAL: usize = 1;
 pub(crate) const PLATFORM: usize = 2;
 
-/// Returns the kinds of the members of each row; `None` for a row that legs of this type do not have.
-pub(crate) fn kinds<L: Leg>() -> [Option<MemberKind>; ROWS] {
-    [L::PROXIMAL, Some(L::DISTAL), Some(MemberKind::PlatformBar)]
+/// Returns the kinds of the members of each row; `None` for a row that legs of this architecture do not have.
+pub(crate) fn kinds(architecture: Architecture) -> [Option<MemberKind>; ROWS] {
+    let chain = architecture.chain();
+    [chain.proximal, Some(chain.distal), Some(MemberKind::PlatformBar)]
 }
 
 /// Returns the pairs of members that are not joined, as indices `LEGS · row + leg`.
@@ -61,7 +64,8 @@ pub struct Bodies {
     kinds: [Option<MemberKind>; ROWS],
     radii: [f64; ROWS],
     heights: [f64; ROWS],
-    platform_radius: f64,
+    /// Lengths of the platform bars \[m\].
+    platform_radii: [f64; LEGS],
     /// Half the length of a slider, and half the length of its axis \[m\].
     slider: [f64; 2],
     /// Pairs that are not joined, in increasing order of the lower bound of their clearance.
@@ -73,9 +77,9 @@ pub struct Bodies {
 type Axes<V> = [MemberAxis<V>; ROWS * LEGS];
 
 impl Bodies {
-    /// Prepares the members of `design`, whose legs are of type `L`.
-    pub fn new<L: Leg>(design: &Design, settings: &BodySettings, sections: &CrossSections) -> Self {
-        let kinds = kinds::<L>();
+    /// Prepares the members of `design`.
+    pub fn new(design: &Design, geometry: &Geometry, settings: &BodySettings, sections: &CrossSections) -> Self {
+        let kinds = kinds(design.architecture);
         let (legs, platform) = (sections.legs.is_square(), sections.platform.is_square());
         // The limit keeps squares and sums finite, whatever radii a design has.
         let radii = kinds.map(|kind| kind.map_or(0.0, |kind| settings.radius(kind, design).min(NUMBER_LIMIT)));
@@ -93,7 +97,9 @@ impl Bodies {
             kinds,
             radii,
             heights,
-            platform_radius: design.platform_radius,
+            platform_radii: geometry
+                .platform_radii
+                .map(|multiple| multiple * design.platform_radius),
             slider: [half_length, (half_length - radii[PROXIMAL]).max(0.0)],
             pairs: [none; MAX_PAIRS],
             count: 0,
@@ -122,30 +128,25 @@ impl Bodies {
 
     /// Returns the axes of all members, given those of the legs.
     #[inline(always)]
-    fn axes<V: Real, L: Leg>(
-        &self,
-        members: &[Members<V>; LEGS],
-        position: Planar<V>,
-        arms: &[Planar<V>; LEGS],
-    ) -> Axes<V> {
+    fn axes<V: Real>(&self, members: &[Members<V>; LEGS], position: Planar<V>, arms: &[Planar<V>; LEGS]) -> Axes<V> {
         [
-            self.proximal::<V, L>(&members[0]),
-            self.proximal::<V, L>(&members[1]),
-            self.proximal::<V, L>(&members[2]),
+            self.proximal(&members[0]),
+            self.proximal(&members[1]),
+            self.proximal(&members[2]),
             members[0].distal,
             members[1].distal,
             members[2].distal,
-            self.platform_bar(position, arms[0]),
-            self.platform_bar(position, arms[1]),
-            self.platform_bar(position, arms[2]),
+            self.platform_bar(position, arms[0], 0),
+            self.platform_bar(position, arms[1], 1),
+            self.platform_bar(position, arms[2], 2),
         ]
     }
 
     /// Returns the axis of the proximal member. For a leg without one it returns that of the distal member, which no
     /// pair uses.
     #[inline(always)]
-    fn proximal<V: Real, L: Leg>(&self, members: &Members<V>) -> MemberAxis<V> {
-        match (&members.proximal, L::PROXIMAL) {
+    fn proximal<V: Real>(&self, members: &Members<V>) -> MemberAxis<V> {
+        match (&members.proximal, self.kinds[PROXIMAL]) {
             (Some(axis), Some(MemberKind::Slider)) => axis.extended(axis.length.splat(self.slider[1])),
             (Some(axis), _) => *axis,
             (None, _) => members.distal,
@@ -153,12 +154,13 @@ impl Bodies {
     }
 
     #[inline(always)]
-    fn platform_bar<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> MemberAxis<V> {
+    fn platform_bar<V: Real>(&self, position: Planar<V>, arm: Planar<V>, leg: usize) -> MemberAxis<V> {
         let like = arm.x;
+        let length = self.platform_radii[leg];
         MemberAxis {
             from: position.plus(arm),
-            direction: arm.scaled(like.splat(-1.0 / self.platform_radius)),
-            length: like.splat(self.platform_radius),
+            direction: arm.scaled(like.splat(-1.0 / length)),
+            length: like.splat(length),
         }
     }
 
@@ -180,7 +182,7 @@ impl Bodies {
 
     /// Returns the smallest clearance at several poses at once where it is below `limit`, otherwise `limit` \[m\].
     ///
-    /// `directions` are the unit vectors `u_i` of the legs; `arms` is as in [`Manipulator::arms`]. Pairs are skipped if
+    /// `distals` are the distal bars of the legs; `arms` is as in [`Manipulator::arms`]. Pairs are skipped if
     /// their layers or the circles around their axes show that they cannot be nearer than the smallest clearance found
     /// so far.
     #[inline(always)]
@@ -189,10 +191,10 @@ impl Bodies {
         legs: &[L; LEGS],
         position: Planar<V>,
         arms: &[Planar<V>; LEGS],
-        directions: &[Planar<V>; LEGS],
+        distals: &[DistalLanes<V>; LEGS],
         limit: V,
     ) -> V {
-        let members = members(legs, position, arms, directions);
+        let members = members(legs, position, arms, distals);
         let mut least = limit;
         // Loops over lanes avoid closures and iterator adapters: code that is not inlined is compiled for the baseline
         // processor.
@@ -204,7 +206,7 @@ impl Bodies {
         if !V::any(least.exceeds(limit.splat(self.pairs[0].least))) {
             return least;
         }
-        let axes = self.axes::<V, L>(&members, position, arms);
+        let axes = self.axes(&members, position, arms);
         for pair in &self.pairs[..self.count] {
             if !V::any(least.exceeds(limit.splat(pair.least))) {
                 break;
@@ -228,10 +230,10 @@ impl Bodies {
         legs: &[L; LEGS],
         position: Planar<V>,
         arms: &[Planar<V>; LEGS],
-        directions: &[Planar<V>; LEGS],
+        distals: &[DistalLanes<V>; LEGS],
     ) -> V {
-        let members = members(legs, position, arms, directions);
-        let axes = self.axes::<V, L>(&members, position, arms);
+        let members = members(legs, position, arms, distals);
+        let axes = self.axes(&members, position, arms);
         let mut farthest = position.x.splat(0.0);
         for (place, axis) in axes.iter().enumerate() {
             let row = place / LEGS;
@@ -320,9 +322,12 @@ impl Bodies {
         posture: &Posture,
     ) -> ([Members<f64>; LEGS], Axes<f64>) {
         let arms = posture.arms.map(Planar::from);
-        let directions = posture.legs.map(|leg| leg.u.into());
-        let members = members(&manipulator.legs, position.into(), &arms, &directions);
-        let axes = self.axes::<f64, L>(&members, position.into(), &arms);
+        let distals = posture.legs.map(|leg| DistalLanes {
+            tangent: leg.chain.distal.direction.into(),
+            offset: leg.chain.distal.offset,
+        });
+        let members = members(&manipulator.legs, position.into(), &arms, &distals);
+        let axes = self.axes(&members, position.into(), &arms);
         (members, axes)
     }
 
@@ -354,12 +359,12 @@ fn members<V: Real, L: Leg>(
     legs: &[L; LEGS],
     position: Planar<V>,
     arms: &[Planar<V>; LEGS],
-    directions: &[Planar<V>; LEGS],
+    distals: &[DistalLanes<V>; LEGS],
 ) -> [Members<V>; LEGS] {
     [
-        legs[0].members(position.plus(arms[0]), directions[0]),
-        legs[1].members(position.plus(arms[1]), directions[1]),
-        legs[2].members(position.plus(arms[2]), directions[2]),
+        legs[0].members(position.plus(arms[0]), &distals[0]),
+        legs[1].members(position.plus(arms[1]), &distals[1]),
+        legs[2].members(position.plus(arms[2]), &distals[2]),
     ]
 }
 

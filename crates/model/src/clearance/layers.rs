@@ -17,6 +17,10 @@ pub struct Layers {
     pub telescopic_leg: f64,
     /// Layer of the cranks.
     pub crank: f64,
+    /// Layer of the guides that turn about a base joint.
+    pub turning_guide: f64,
+    /// Layer of the guides on the platform or on sliders.
+    pub guide: f64,
     /// Layer of the sliders.
     pub slider: f64,
 }
@@ -40,6 +44,8 @@ impl Layers {
         link: 0.0,
         telescopic_leg: 0.0,
         crank: 0.0,
+        turning_guide: 0.0,
+        guide: 0.0,
         slider: 0.0,
     };
 
@@ -49,6 +55,8 @@ impl Layers {
             MemberKind::Slider => self.slider,
             MemberKind::TelescopicLeg => self.telescopic_leg,
             MemberKind::Crank => self.crank,
+            MemberKind::TurningGuide => self.turning_guide,
+            MemberKind::Guide => self.guide,
             MemberKind::Link => self.link,
             MemberKind::PlatformBar => self.platform,
         }
@@ -65,6 +73,8 @@ impl Default for Layers {
             link: 1.25,
             telescopic_leg: 1.25,
             crank: 2.5,
+            turning_guide: 2.5,
+            guide: 1.25,
             slider: 2.75,
         }
     }
@@ -90,8 +100,8 @@ impl BodySettings {
     pub fn radius(&self, kind: MemberKind, design: &Design) -> f64 {
         match kind {
             MemberKind::Slider => self.slider_half_width * design.leg_bar_radius,
-            MemberKind::TelescopicLeg | MemberKind::Crank | MemberKind::Link => design.leg_bar_radius,
             MemberKind::PlatformBar => design.platform_bar_radius,
+            _ => design.leg_bar_radius,
         }
     }
 

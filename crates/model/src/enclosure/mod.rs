@@ -4,14 +4,12 @@
 //! |---|---|
 //! | [`Interval`] | a constant between two doubles |
 //! | [`TaylorModel`] | a function over a box: a polynomial of degree 2 and a bound of its remainder |
-//! | [`PoseEnclosure`], [`LegEnclosure`], [`MembersEnclosure`] | a box of poses, and what a leg and its members are over it |
+//! | [`PoseEnclosure`], [`MembersEnclosure`] | a box of poses, and what the members of a leg are over it |
 
 mod interval;
 mod pose;
 mod taylor;
 
 pub use interval::Interval;
-pub use pose::{
-    AxisEnclosure, LegEnclosure, MembersEnclosure, PlanarModel, PoseEnclosure, TurnedFrame, cross, difference, dot, sum,
-};
+pub use pose::{AxisEnclosure, MembersEnclosure, PlanarModel, PoseEnclosure, TurnedFrame, cross, difference, dot, sum};
 pub use taylor::{TaylorModel, VARIABLES};

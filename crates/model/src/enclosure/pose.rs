@@ -28,25 +28,6 @@ impl PoseEnclosure {
     }
 }
 
-/// What the constraints need of a leg, over a box of poses.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LegEnclosure {
-    /// Each of these is positive exactly where the leg reaches the pose within its limits; those that do not exist are 1.
-    pub reach: [TaylorModel; 3],
-    /// `u_i` in base axes.
-    pub u: PlanarModel,
-    /// Moment of the leg's line about `P`, as a multiple of `r`.
-    pub moment: TaylorModel,
-    /// `(C_i − P) · u_i`, as a multiple of `r`.
-    pub along: TaylorModel,
-    /// Square of the transmission `B_ii`, in units of `L_b` for a revolute actuator.
-    pub transmission_square: TaylorModel,
-    /// Length of the distal bar in the beam model, as a multiple of `L_b`.
-    pub distal: TaylorModel,
-    /// `u_i · (B_i − A_i)` and `u_i × (B_i − A_i)` of the proximal bar as multiples of `L_b`, for leg types that have one.
-    pub proximal: Option<PlanarModel>,
-}
-
 /// Axis of a member in the base frame, relative to `P`, over a box of poses; lengths are multiples of `L_b`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisEnclosure {
@@ -106,9 +87,14 @@ impl TurnedFrame {
         }
     }
 
-    /// The frame in whose x axis `A_i` of a leg stands, and `c_i` in the platform.
-    pub fn of_leg(index: usize) -> Self {
-        Self::by_thirties(7 + 4 * index as u8)
+    /// The frame that is turned by an angle \[deg\].
+    pub fn by_degrees(angle: f64) -> Self {
+        let thirds = angle.rem_euclid(360.0) / 30.0;
+        if thirds.fract() == 0.0 && thirds < 12.0 {
+            return Self::by_thirties(thirds as u8);
+        }
+        let (sine, cosine) = Interval::radians(angle).sine_and_cosine();
+        Self { cosine, sine }
     }
 
     /// The x axis, in the frame from which this one is turned.

@@ -1,14 +1,14 @@
 //! Constraints g1 … g6, the sign rule, and g7, which a study may require; their values and margins (docs/model.md,
 //! section 6).
 
-use crate::mechanism::Design;
+use crate::mechanism::{Assembly, Design};
 use crate::spatial::Pose;
 use crate::workspace::{PoseValues, Thresholds};
 
 /// One constraint of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Constraint {
-    /// g1: `L_b + r ≥ R/2`.
+    /// g1: a leg and the platform bridge the distance from the base to `O`, for example `L_b + r ≥ R/2`.
     Assembly,
     /// g2: limit margin (smallest distance to a joint limit or to the end of reach) ≥ 0.
     Reach,
@@ -91,10 +91,17 @@ impl Constraint {
     }
 
     /// Returns the smallest value allowed; if g7 is not required, its threshold is 0, at which members touch.
-    pub fn threshold(self, design: &Design, thresholds: &Thresholds) -> f64 {
+    pub fn threshold(self, assembly: &Assembly, thresholds: &Thresholds) -> f64 {
         match self {
-            Constraint::Assembly => 0.5 * design.base_radius,
-            Constraint::Reach | Constraint::DeterminantSign => 0.0,
+            Constraint::Assembly => assembly.threshold,
+            _ => self.least(thresholds),
+        }
+    }
+
+    /// Returns the smallest value that a constraint allows at a pose; 0 for those without a threshold of the study.
+    pub fn least(self, thresholds: &Thresholds) -> f64 {
+        match self {
+            Constraint::Assembly | Constraint::Reach | Constraint::DeterminantSign => 0.0,
             Constraint::Dexterity => thresholds.inverse_condition,
             Constraint::StiffnessXy => thresholds.k_xy,
             Constraint::StiffnessZ => thresholds.k_z,
@@ -114,11 +121,11 @@ impl Constraint {
         }
     }
 
-    /// Returns the value at a reachable pose, with `det A / ℓ` multiplied by `sign`, that of the home pose; `None` for
-    /// a clearance that was not computed because it is not required.
-    pub fn value(self, design: &Design, values: &PoseValues, sign: f64) -> Option<f64> {
+    /// Returns the value at a reachable pose, with `det A / ℓ` multiplied by `sign`, that of the home pose; `None` for g1, which
+    /// applies to a design as a whole, and for a clearance that was not computed because it is not required.
+    pub fn value(self, values: &PoseValues, sign: f64) -> Option<f64> {
         let value = match self {
-            Constraint::Assembly => design.link_length + design.platform_radius,
+            Constraint::Assembly => return None,
             Constraint::Reach => values.limit_margin,
             Constraint::Dexterity => values.inverse_condition,
             Constraint::StiffnessXy => values.stiffness_values.k_xy,

@@ -3,11 +3,11 @@
 use glam::DVec3;
 
 use super::{Model, Unreachable};
-use crate::clearance::{Bodies, MemberId};
+use crate::clearance::MemberId;
 use crate::kinematics::Jacobian;
-use crate::mechanism::{Design, Leg, Manipulator, MemberKind};
+use crate::mechanism::{AnyLeg, Design, Leg, Manipulator, MemberKind};
 use crate::spatial::{LEGS, Pose};
-use crate::stiffness::{Contribution, StiffnessModel};
+use crate::stiffness::Contribution;
 
 /// A member at a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,34 +39,36 @@ impl Model {
     /// # Errors
     /// Returns the leg that does not reach the pose, and why.
     pub fn members(&self, design: &Design, pose: &Pose) -> Result<Vec<MemberReport>, Unreachable> {
-        with_leg!(design.architecture, L => self.members_of::<L>(design, pose))
-    }
-
-    fn members_of<L: Leg>(&self, design: &Design, pose: &Pose) -> Result<Vec<MemberReport>, Unreachable> {
-        let manipulator = Manipulator::<L>::new(design, &self.legs);
+        let manipulator = Manipulator::<AnyLeg>::new(design, &self.legs);
         let posture = manipulator
             .posture(pose)
             .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
-        let contributions = StiffnessModel::new::<L>(design, &self.material, &self.sections, &self.actuators)
-            .and_then(|stiffness| stiffness.contributions(&manipulator, &posture, &Jacobian::new(&posture)));
-        let of_leg = self.legs_mass(design) / (LEGS * L::BARS) as f64;
+        let contributions = self
+            .stiffness(design)
+            .and_then(|stiffness| stiffness.contributions(&posture, &Jacobian::new(&posture)));
+        let chain = design.architecture.chain();
+        let of_leg = |length: f64| self.bar_mass(&self.sections.legs, design.leg_bar_radius, length);
         let of_platform = self.platform_mass(design) / LEGS as f64;
-        let capsules =
-            Bodies::new::<L>(design, &self.bodies, &self.sections).capsules(&manipulator, pose.position, &posture);
+        let capsules = self.bodies_of(design).capsules(&manipulator, pose.position, &posture);
         let members = capsules.into_iter().map(|capsule| {
             let kind = capsule.member.kind;
             let leg = capsule.member.leg;
             let of_leg_shares = contributions.as_ref().map(|contributions| &contributions[leg]);
-            let ends = match (kind, manipulator.legs[leg].actuator_axis(&posture.legs[leg])) {
+            let ends = match kind {
                 // The axis of a capsule ends before the end faces of the block.
-                (MemberKind::Slider, Some(axis)) => {
+                MemberKind::Slider => {
+                    let axis = manipulator.legs[leg].frame().rail;
                     let middle = 0.5 * (capsule.from + capsule.to);
                     let half = axis.extend(0.0) * self.bodies.slider_half_length(design);
                     [middle - half, middle + half]
                 }
                 _ => [capsule.from, capsule.to],
             };
-            let driven = kind == L::PROXIMAL.unwrap_or(L::DISTAL);
+            let driven = if design.architecture.driven() == 0 {
+                chain.proximal.unwrap_or(chain.distal)
+            } else {
+                chain.distal
+            };
             MemberReport {
                 member: capsule.member,
                 from: ends[0],
@@ -74,21 +76,22 @@ impl Model {
                 radius: capsule.radius,
                 length: match kind {
                     MemberKind::Slider => 2.0 * self.bodies.slider_half_length(design),
-                    MemberKind::TelescopicLeg => posture.legs[leg].length,
+                    MemberKind::TelescopicLeg => posture.legs[leg].chain.distal.offset,
                     _ => capsule.from.distance(capsule.to),
                 },
                 mass: match kind {
                     MemberKind::Slider => 0.0,
                     MemberKind::PlatformBar => of_platform,
-                    _ => of_leg,
+                    kind if kind == chain.distal => of_leg(design.link_length),
+                    _ => of_leg(design.proximal_length),
                 },
                 contribution: of_leg_shares.map(|contributions| match kind {
                     MemberKind::PlatformBar => contributions.platform,
-                    kind if kind == L::DISTAL => contributions.distal,
+                    kind if kind == chain.distal => contributions.distal,
                     _ => contributions.proximal,
                 }),
                 actuator: of_leg_shares
-                    .filter(|_| driven)
+                    .filter(|_| kind == driven)
                     .map(|contributions| contributions.actuator),
             }
         });

@@ -6,8 +6,8 @@ use super::{Better, Evaluation, Objective, Quantity, QuantityLimit, QuantitySet,
 use crate::clearance::{Bodies, BodySettings};
 use crate::kinematics::{CharacteristicLength, Jacobian};
 use crate::lanes::InstructionSet;
-use crate::mechanism::{Design, Leg, LegSettings, Manipulator};
-use crate::spatial::{Pose, Rotation};
+use crate::mechanism::{AnyLeg, Assembly, Design, Geometry, Leg, LegSettings, Manipulator};
+use crate::spatial::{LEGS, Pose, Rotation};
 use crate::stiffness::planar::ActuatorStiffness;
 use crate::stiffness::{CrossSection, CrossSections, Material, StiffnessDefinition, StiffnessModel};
 use crate::workspace::{Grid, GridError, PoseChecker, Region, Thresholds, WorkspaceSampling, WorkspaceSpec};
@@ -180,8 +180,8 @@ impl Model {
 
     /// Returns the mass of the bars of all legs \[kg\].
     pub fn legs_mass(&self, design: &Design) -> f64 {
-        let bars = (3 * design.architecture.bars_per_leg()) as f64;
-        bars * self.bar_mass(&self.sections.legs, design.leg_bar_radius, design.link_length)
+        let section = &self.sections.legs;
+        LEGS as f64 * self.bar_mass(section, design.leg_bar_radius, design.leg_bars_length())
     }
 
     /// Returns the mass of the platform bars \[kg\].
@@ -191,7 +191,7 @@ impl Model {
             design.platform_bar_radius,
             design.platform_radius,
         );
-        f64::from(self.platform_bars) * bar
+        f64::from(self.platform_bars) * self.legs.geometry.mean_platform_radius() * bar
     }
 
     /// Returns the mass of one bar \[kg\].
@@ -218,16 +218,54 @@ impl Model {
         let manipulator = Manipulator::new(design, &self.legs);
         PoseChecker {
             manipulator,
-            stiffness: StiffnessModel::new::<L>(design, &self.material, &self.sections, &self.actuators),
+            stiffness: self.stiffness(design),
             definition: self.stiffness_definition,
             length: self.length(design, &manipulator),
-            bodies: Bodies::new::<L>(design, &self.bodies, &self.sections),
+            bodies: self.bodies_of(design),
             base_radius: design.base_radius,
-            link_length: design.link_length,
+            longest_lever: design.architecture.longest_lever(design),
+            actuator: design.architecture.actuator(),
+            assembly: worst_assembly(&manipulator.legs, &self.legs.geometry),
             in_plane_force: self.in_plane_force,
             thresholds: self.thresholds,
             instructions: InstructionSet::best(),
         }
+    }
+
+    /// Returns the stiffness model of a design; `None` if a bar is infinitely compliant.
+    pub fn stiffness(&self, design: &Design) -> Option<StiffnessModel> {
+        StiffnessModel::new(
+            design,
+            &self.legs.geometry,
+            &self.material,
+            &self.sections,
+            &self.actuators,
+        )
+    }
+
+    /// Returns the members of a design, prepared for clearance computations.
+    pub fn bodies_of(&self, design: &Design) -> Bodies {
+        Bodies::new(design, &self.legs.geometry, &self.bodies, &self.sections)
+    }
+
+    /// Returns what g1 compares, for the leg that comes off worst.
+    pub fn assembly(&self, design: &Design) -> Assembly {
+        let legs = [0, 1, 2].map(|index| AnyLeg::new(design, &self.legs, index));
+        worst_assembly(&legs, &self.legs.geometry)
+    }
+
+    /// Returns a distance from `O` that no point of the platform's joints, and so no `P`, exceeds \[m\].
+    pub(crate) fn extent(&self, design: &Design) -> f64 {
+        let sizes = design.base_radius + design.platform_radius + 2.0 * design.link_length;
+        (0..LEGS).fold(sizes, |farthest, index| {
+            let leg = AnyLeg::new(design, &self.legs, index);
+            let corner = leg
+                .reach_box()
+                .map(DVec2::abs)
+                .into_iter()
+                .fold(DVec2::ZERO, DVec2::max);
+            farthest.max(corner.length() + leg.frame().arm_length)
+        })
     }
 
     /// Returns the characteristic length `ℓ` of a design \[m\].
@@ -273,6 +311,20 @@ impl Model {
 
     /// Returns whether a rotation by 120° about the centre of the workspace maps the design onto itself.
     pub fn is_symmetric(&self, design: &Design) -> bool {
-        self.workspace.centre == DVec2::ZERO && design.working_mode.is_uniform()
+        self.workspace.centre == DVec2::ZERO && design.working_mode.is_uniform() && self.legs.geometry.is_three_fold()
     }
+}
+
+/// Returns what g1 compares, for the leg that comes off worst.
+fn worst_assembly<L: Leg>(legs: &[L; LEGS], geometry: &Geometry) -> Assembly {
+    let first = legs[0].assembly();
+    // A symmetric design has the same values for all legs, which rounding must not tell apart.
+    if geometry.is_three_fold() {
+        return first;
+    }
+    let excess = |assembly: &Assembly| assembly.value - assembly.threshold;
+    legs[1..].iter().fold(first, |worst, leg| {
+        let next = leg.assembly();
+        if excess(&next) < excess(&worst) { next } else { worst }
+    })
 }

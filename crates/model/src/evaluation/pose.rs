@@ -5,7 +5,7 @@ use nalgebra::Matrix6;
 use super::{Constraint, Model};
 use crate::clearance::Clearance;
 use crate::kinematics::Jacobian;
-use crate::mechanism::{Design, Leg, ReachReason, Shortfall};
+use crate::mechanism::{AnyLeg, Design, Leg, ReachReason, Shortfall};
 use crate::spatial::{LEGS, Pose};
 use crate::stiffness::StiffnessValues;
 
@@ -46,9 +46,9 @@ fn words(shortfall: &Shortfall) -> String {
     let distance = -shortfall.limit_margin;
     match shortfall.reason {
         ReachReason::OutOfReach => format!("out of reach by {distance:.6} m"),
-        ReachReason::BelowLimit => format!("actuator {distance:.6} m below its lower limit"),
-        ReachReason::AboveLimit => format!("actuator {distance:.6} m above its upper limit"),
-        ReachReason::Degenerate => "its end joints coincide".to_owned(),
+        ReachReason::BelowLimit => format!("prismatic joint {distance:.6} m below its lower limit"),
+        ReachReason::AboveLimit => format!("prismatic joint {distance:.6} m above its upper limit"),
+        ReachReason::Degenerate => "two of its joints coincide, or its guides are parallel".to_owned(),
     }
 }
 
@@ -56,12 +56,13 @@ impl Model {
     /// Returns the margin of a constraint at a pose, in doubles; that of g2 at a pose that is not reached, and for a constraint that
     /// has no value there, is the shortfall of the leg. The margin of `det_sign` is the absolute value.
     pub fn margin_at(&self, design: &Design, pose: &Pose, constraint: Constraint) -> f64 {
+        let assembly = self.assembly(design);
         let value = match self.pose(design, pose) {
             Err(unreachable) => {
                 return Constraint::Reach.margin(unreachable.shortfall.limit_margin, 0.0, design);
             }
             Ok(found) => match constraint {
-                Constraint::Assembly => design.link_length + design.platform_radius,
+                Constraint::Assembly => assembly.value,
                 Constraint::Reach => found.limit_margin,
                 Constraint::Dexterity => found.inverse_condition,
                 Constraint::StiffnessXy => found.stiffness_values.k_xy,
@@ -71,7 +72,7 @@ impl Model {
                 Constraint::Clearance => found.clearance.distance,
             },
         };
-        constraint.margin(value, constraint.threshold(design, &self.thresholds), design)
+        constraint.margin(value, constraint.threshold(&assembly, &self.thresholds), design)
     }
 
     /// Evaluates `design` at `pose`.
@@ -79,11 +80,8 @@ impl Model {
     /// # Errors
     /// The leg that does not reach the pose, and why.
     pub fn pose(&self, design: &Design, pose: &Pose) -> Result<PoseEvaluation, Unreachable> {
-        with_leg!(design.architecture, L => self.pose_of::<L>(design, pose))
-    }
-
-    fn pose_of<L: Leg>(&self, design: &Design, pose: &Pose) -> Result<PoseEvaluation, Unreachable> {
-        let checker = self.checker::<L>(design);
+        let checker = self.checker::<AnyLeg>(design);
+        let driven = design.architecture.driven();
         let posture = checker
             .manipulator
             .posture(pose)
@@ -91,8 +89,8 @@ impl Model {
         let jacobian = Jacobian::new(&posture);
         let stiffness = checker.stiffness_at(&posture, &jacobian);
         Ok(PoseEvaluation {
-            actuators: [0, 1, 2].map(|i| checker.manipulator.legs[i].actuator(&posture.legs[i])),
-            b: posture.legs.map(|leg| leg.b.to_array()),
+            actuators: [0, 1, 2].map(|i| checker.manipulator.legs[i].joint_values(&posture.legs[i])[driven]),
+            b: posture.legs.map(|leg| leg.chain.b.to_array()),
             c: posture.arms.map(|arm| (pose.position + arm).to_array()),
             limit_margin: posture.limit_margin,
             inverse_condition: jacobian.inverse_condition(checker.length),

@@ -59,7 +59,9 @@ pub(super) fn add_of_region<L: Leg>(
         return;
     }
     let mut columns = FurtherColumns::default();
-    let (mut transmission, mut displacement, mut outermost) = (f64::INFINITY, 0.0f64, checker.base_radius);
+    let farthest_anchor = |most: f64, leg: &L| most.max(leg.frame().anchor_distance);
+    let base = checker.manipulator.legs.iter().fold(0.0, farthest_anchor);
+    let (mut transmission, mut displacement, mut outermost) = (f64::INFINITY, 0.0f64, base);
     for index in found.orientation_grid.window(home) {
         let oriented = OrientationLanes {
             arms: &found.orientations[index].arms,

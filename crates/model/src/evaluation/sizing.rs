@@ -16,7 +16,6 @@ use super::pose_columns::{PlacedPose, PoseColumns};
 use super::{GridChoice, Model};
 use crate::mechanism::{Design, Leg};
 use crate::spatial::{LEGS, Rotation, unit};
-use crate::stiffness::StiffnessModel;
 use crate::workspace::{OrientationGrid, PoseChecker, ValueColumns};
 
 /// Number of directions of a ring over a sector of 120°.
@@ -66,7 +65,8 @@ impl Model {
     /// checked only at the centre and on the rim, and the clearance with members as thick as the design's own bars. The
     /// home orientation is the one in which the design is stiffest before it is sized.
     pub fn sized(&self, design: &Design, ranges: &SizingRanges, target: WorkspaceTarget) -> Option<Design> {
-        if design.link_length + design.platform_radius < 0.5 * design.base_radius {
+        let assembly = self.assembly(design);
+        if assembly.value < assembly.threshold {
             return None;
         }
         let grid = match target {
@@ -175,8 +175,9 @@ impl<'a, L: Leg> Sizer<'a, L> {
         let unit = self.with_bars([1.0, 1.0]);
         let sections = &self.model.sections;
         let squared = [self.model.legs_mass(&unit), self.model.platform_mass(&unit)];
-        let legs = (LEGS * L::BARS) as f64 * self.design.link_length;
-        let platform = f64::from(self.model.platform_bars) * self.design.platform_radius;
+        let legs = LEGS as f64 * self.design.leg_bars_length();
+        let mean = self.model.legs.geometry.mean_platform_radius();
+        let platform = f64::from(self.model.platform_bars) * mean * self.design.platform_radius;
         let lengths = [legs, platform];
         [0, 1].map(|k| {
             let section = [&sections.legs, &sections.platform][k];
@@ -206,12 +207,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
 
     pub(super) fn set_bars(&mut self, bars: [f64; 2]) {
         let design = self.with_bars(bars);
-        self.checker.stiffness = StiffnessModel::new::<L>(
-            &design,
-            &self.model.material,
-            &self.model.sections,
-            &self.model.actuators,
-        );
+        self.checker.stiffness = self.model.stiffness(&design);
     }
 
     /// Lays out the ring of a radius in the given orientations, and returns the number of poses in each orientation.

@@ -36,7 +36,7 @@ pub(super) fn evaluate<L: Leg>(
             (found, Some(worst))
         }
     };
-    let assembled = design.link_length + design.platform_radius >= 0.5 * design.base_radius;
+    let assembled = checker.assembly.value >= checker.assembly.threshold;
     let reporter = ConstraintSearch {
         model,
         checker,
@@ -117,9 +117,8 @@ impl<L: Leg> ConstraintSearch<'_, L> {
     /// Returns reports without values, except for g1, which needs no pose.
     fn blank(&self) -> ConstraintResults {
         Constraint::ALL.map(|constraint| {
-            let threshold = constraint.threshold(self.design, &self.checker.thresholds);
-            let value = matches!(constraint, Constraint::Assembly)
-                .then(|| self.design.link_length + self.design.platform_radius);
+            let threshold = constraint.threshold(&self.checker.assembly, &self.checker.thresholds);
+            let value = matches!(constraint, Constraint::Assembly).then_some(self.checker.assembly.value);
             ConstraintResult {
                 constraint,
                 value,
@@ -162,7 +161,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
     fn value(&self, constraint: Constraint, values: &Result<PoseValues, f64>, sign: f64) -> Option<f64> {
         match (constraint, values) {
             (Constraint::Assembly, _) => None,
-            (_, Ok(values)) => constraint.value(self.design, values, sign),
+            (_, Ok(values)) => constraint.value(values, sign),
             (Constraint::Reach, Err(limit_margin)) => Some(*limit_margin),
             (_, Err(_)) => None,
         }
@@ -387,8 +386,8 @@ impl<L: Leg> ConstraintSearch<'_, L> {
             Ok(values) => {
                 let sum = required()
                     .filter_map(|constraint| {
-                        let threshold = constraint.threshold(self.design, thresholds);
-                        let value = constraint.value(self.design, values, 1.0)?;
+                        let threshold = constraint.threshold(&self.checker.assembly, thresholds);
+                        let value = constraint.value(values, 1.0)?;
                         // The shortfall is at most that of a constraint missed entirely, as at an unreachable pose.
                         Some((-constraint.margin(value, threshold, self.design)).clamp(0.0, 1.0))
                     })

@@ -4,7 +4,7 @@
 use nalgebra::Vector3;
 
 use super::Jacobian;
-use crate::mechanism::{Leg, Manipulator};
+use crate::mechanism::{Architecture, JointKind, Leg, Manipulator};
 use crate::spatial::{LEGS, Pose};
 
 /// Reason why no pose was found.
@@ -33,12 +33,14 @@ pub enum ForwardError {
 /// Returns a [`ForwardError`] if a leg does not reach the pose of an iteration, if `A` is singular there, or if the
 /// method does not converge within 50 iterations.
 pub fn forward<L: Leg>(
+    architecture: Architecture,
     manipulator: &Manipulator<L>,
     target: [f64; LEGS],
     start: Pose,
     tolerance: f64,
 ) -> Result<Pose, ForwardError> {
     const ITERATIONS: usize = 50;
+    let driven = architecture.driven();
     let mut pose = start;
     for _ in 0..ITERATIONS {
         let posture = manipulator
@@ -47,8 +49,8 @@ pub fn forward<L: Leg>(
         let jacobian = Jacobian::new(&posture);
         let mut error = Vector3::zeros();
         for i in 0..LEGS {
-            let mut difference = target[i] - manipulator.legs[i].actuator(&posture.legs[i]);
-            if matches!(L::ACTUATOR, crate::mechanism::Actuator::Revolute) {
+            let mut difference = target[i] - manipulator.legs[i].joint_values(&posture.legs[i])[driven];
+            if matches!(architecture.actuator(), JointKind::Revolute) {
                 difference = libm::remainder(difference, 2.0 * std::f64::consts::PI);
             }
             error[i] = difference;

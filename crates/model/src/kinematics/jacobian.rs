@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 
 use crate::lanes::Real;
 use crate::mechanism::{LegLanes, Posture};
-use crate::spatial::{LEGS, cross};
+use crate::spatial::LEGS;
 
 /// Definition of the characteristic length `ℓ`, which makes the rotational part of the Jacobian comparable with the
 /// translational part (docs/model.md, section 3.3).
@@ -27,7 +27,7 @@ pub struct Jacobian<V = f64> {
     pub ux: [V; LEGS],
     /// Second column of `A`: `y` components of `u_i`.
     pub uy: [V; LEGS],
-    /// Third column of `A`: `(C_i − P) × u_i` \[m\].
+    /// Third column of `A`: moments of the legs' lines about `P` \[m\].
     pub moment: [V; LEGS],
     /// Diagonal of `B`: the transmissions.
     pub transmission: [V; LEGS],
@@ -41,12 +41,12 @@ impl Jacobian {
         Self {
             ux: [legs[0].u.x, legs[1].u.x, legs[2].u.x],
             uy: [legs[0].u.y, legs[1].u.y, legs[2].u.y],
-            moment: [0, 1, 2].map(|i| cross(posture.arms[i], legs[i].u)),
+            moment: [legs[0].moment, legs[1].moment, legs[2].moment],
             transmission: [legs[0].transmission, legs[1].transmission, legs[2].transmission],
         }
     }
 
-    /// Returns `A` as a matrix with the rows `[u_ix, u_iy, (C_i − P) × u_i]`.
+    /// Returns `A` as a matrix with the rows `[u_ix, u_iy, m_i]`, where `m_i` is the moment of the leg's line about `P`.
     pub fn direct(&self) -> Matrix3<f64> {
         Matrix3::from_fn(|i, column| [self.ux[i], self.uy[i], self.moment[i]][column])
     }

@@ -1,8 +1,8 @@
-//! The design vector `x = (d, R, r, L_b, r_j, r_p)` and the working mode.
+//! The design vector `x = (d, R, r, L_b, r_j, r_p)`, the further variables of some chains, and the working mode.
 
 use super::Architecture;
 
-/// Design of one manipulator: architecture, working mode and the five dimensions in metres.
+/// Design of one manipulator: architecture, working mode, the five dimensions in metres, and what its chain has beyond them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Design {
     /// `d`: the architecture.
@@ -13,15 +13,23 @@ pub struct Design {
     pub base_radius: f64,
     /// `r`: circumradius of the platform joints `C_i` \[m\].
     pub platform_radius: f64,
-    /// `L_b`: length of the links, or the largest length of a telescopic leg \[m\].
+    /// `L_b`: length of the links or guides, or the largest length of a telescopic leg \[m\].
     pub link_length: f64,
     /// `r_j`: radius of the leg bars \[m\].
     pub leg_bar_radius: f64,
     /// `r_p`: radius of the three platform bars \[m\].
     pub platform_bar_radius: f64,
+    /// `L_a`: length of the bar `A_iB_i`, or its largest length \[m\]. It equals `L_b` unless it is given.
+    pub proximal_length: f64,
+    /// `α`: angle from the side `A_iA_{i+1}` of the base to the rail \[deg\].
+    pub rail_angle_deg: f64,
+    /// `β`: angle between the two guides of a leg \[deg\].
+    pub guide_angle_deg: f64,
+    /// `γ`: angle from `PC_i` to the guide on the platform \[deg\].
+    pub platform_guide_angle_deg: f64,
 }
 
-/// One of the five real design variables.
+/// One of the real design variables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum DesignVariable {
     /// `R`, [`Design::base_radius`].
@@ -34,9 +42,17 @@ pub enum DesignVariable {
     LegBarRadius,
     /// `r_p`, [`Design::platform_bar_radius`].
     PlatformBarRadius,
+    /// `L_a`, [`Design::proximal_length`].
+    ProximalLength,
+    /// `α`, [`Design::rail_angle_deg`].
+    RailAngle,
+    /// `β`, [`Design::guide_angle_deg`].
+    GuideAngle,
+    /// `γ`, [`Design::platform_guide_angle_deg`].
+    PlatformGuideAngle,
 }
 
-/// The real variables in the order of the design vector.
+/// The real variables that every architecture has, in the order of the design vector.
 pub const DESIGN_VARIABLES: [DesignVariable; 5] = [
     DesignVariable::BaseRadius,
     DesignVariable::PlatformRadius,
@@ -45,8 +61,16 @@ pub const DESIGN_VARIABLES: [DesignVariable; 5] = [
     DesignVariable::PlatformBarRadius,
 ];
 
+/// The variables that only some chains have ([`Architecture::further_variables`]), in the order in which they are written.
+pub const FURTHER_VARIABLES: [DesignVariable; 4] = [
+    DesignVariable::ProximalLength,
+    DesignVariable::RailAngle,
+    DesignVariable::GuideAngle,
+    DesignVariable::PlatformGuideAngle,
+];
+
 impl DesignVariable {
-    /// Returns the key in design texts, JSON and CSV: `R`, `r`, `Lb`, `rj`, `rp`.
+    /// Returns the key in design texts, JSON and CSV: `R`, `r`, `Lb`, `rj`, `rp`, `La`, `alpha_deg`, `beta_deg`, `gamma_deg`.
     pub fn key(self) -> &'static str {
         match self {
             DesignVariable::BaseRadius => "R",
@@ -54,10 +78,14 @@ impl DesignVariable {
             DesignVariable::LinkLength => "Lb",
             DesignVariable::LegBarRadius => "rj",
             DesignVariable::PlatformBarRadius => "rp",
+            DesignVariable::ProximalLength => "La",
+            DesignVariable::RailAngle => "alpha_deg",
+            DesignVariable::GuideAngle => "beta_deg",
+            DesignVariable::PlatformGuideAngle => "gamma_deg",
         }
     }
 
-    /// Returns the symbol in the paper, as text: `R`, `r`, `L_b`, `r_j`, `r_p`.
+    /// Returns the symbol, as text: `R`, `r`, `L_b`, `r_j`, `r_p` as in the paper, `L_a`, `α`, `β`, `γ`.
     pub fn symbol(self) -> &'static str {
         match self {
             DesignVariable::BaseRadius => "R",
@@ -65,7 +93,24 @@ impl DesignVariable {
             DesignVariable::LinkLength => "L_b",
             DesignVariable::LegBarRadius => "r_j",
             DesignVariable::PlatformBarRadius => "r_p",
+            DesignVariable::ProximalLength => "L_a",
+            DesignVariable::RailAngle => "α",
+            DesignVariable::GuideAngle => "β",
+            DesignVariable::PlatformGuideAngle => "γ",
         }
+    }
+
+    /// Returns the unit: `m` or `deg`.
+    pub fn unit(self) -> &'static str {
+        if self.is_angle() { "deg" } else { "m" }
+    }
+
+    /// Returns whether the variable is an angle.
+    pub fn is_angle(self) -> bool {
+        matches!(
+            self,
+            DesignVariable::RailAngle | DesignVariable::GuideAngle | DesignVariable::PlatformGuideAngle
+        )
     }
 
     /// Returns whether zero is a legal value: a bar radius may be 0 (an infinitely compliant bar), any other dimension
@@ -134,6 +179,16 @@ pub enum DesignError {
         /// Ratio of the variable to `R`.
         ratio: f64,
     },
+    /// The chain does not have the variable.
+    #[error("{architecture} has no {key}; {wanted}")]
+    NotOfChain {
+        /// The architecture.
+        architecture: Architecture,
+        /// Key of the variable ([`DesignVariable::key`]).
+        key: &'static str,
+        /// The chains that have it.
+        wanted: &'static str,
+    },
 }
 
 impl Design {
@@ -143,17 +198,19 @@ impl Design {
     /// Largest ratio of `r` or `L_b` to `R` that is accepted.
     pub const MAX_RATIO: f64 = 1000.0;
 
-    /// Returns the design with `R`, `r` and `L_b` multiplied by `factor`, and with its own bars.
+    /// Returns the design with `R`, `r`, `L_b` and `L_a` multiplied by `factor`, and with its own bars.
     pub(crate) fn with_lengths_times(&self, factor: f64) -> Self {
         Self {
             base_radius: self.base_radius * factor,
             platform_radius: self.platform_radius * factor,
             link_length: self.link_length * factor,
+            proximal_length: self.proximal_length * factor,
             ..*self
         }
     }
 
-    /// Creates the design with the real variables given in the order of [`DESIGN_VARIABLES`].
+    /// Creates the design with the real variables given in the order of [`DESIGN_VARIABLES`]; what its chain has beyond them takes
+    /// its default, which [`Design::with`] changes.
     ///
     /// # Errors
     /// Returns a [`DesignError`] if a value is not a positive finite length (bar radii may be 0), if `r` or `L_b` exceeds
@@ -219,7 +276,117 @@ impl Design {
             link_length,
             leg_bar_radius,
             platform_bar_radius,
+            proximal_length: link_length,
+            rail_angle_deg: 0.0,
+            guide_angle_deg: 90.0,
+            platform_guide_angle_deg: 0.0,
         })
+    }
+
+    /// Returns the design with another value of one variable; `L_a` follows `L_b` unless it is given.
+    ///
+    /// # Errors
+    /// Returns a [`DesignError`] if the chain has no such variable, or if the value is out of its domain.
+    pub fn with(mut self, variable: DesignVariable, value: f64) -> Result<Self, DesignError> {
+        let out_of_domain = |wanted| {
+            Err(DesignError::OutOfDomain {
+                key: variable.key(),
+                value,
+                wanted,
+            })
+        };
+        let place = match variable {
+            DesignVariable::ProximalLength => &mut self.proximal_length,
+            DesignVariable::RailAngle => &mut self.rail_angle_deg,
+            DesignVariable::GuideAngle => &mut self.guide_angle_deg,
+            DesignVariable::PlatformGuideAngle => &mut self.platform_guide_angle_deg,
+            _ => {
+                let mut values = self.values();
+                values[variable as usize] = value;
+                return self.with_dimensions(values);
+            }
+        };
+        *place = value;
+        if !self.architecture.further_variables().contains(&variable) {
+            return Err(DesignError::NotOfChain {
+                architecture: self.architecture,
+                key: variable.key(),
+                wanted: match variable {
+                    DesignVariable::ProximalLength => "only RRR, RRP and RPP legs have a bar from A to B",
+                    DesignVariable::RailAngle => "only legs whose first joint is prismatic have a rail",
+                    DesignVariable::GuideAngle => "only RPP and PPR legs have two guides",
+                    _ => "only legs whose last joint is prismatic have a guide on the platform",
+                },
+            });
+        }
+        let ratio = value / self.base_radius;
+        let volume = self.leg_bar_radius * self.leg_bar_radius * value;
+        match variable {
+            DesignVariable::ProximalLength if !(value.is_finite() && value > 0.0) => {
+                out_of_domain("a finite length above 0 m")
+            }
+            DesignVariable::ProximalLength if ratio > Self::MAX_RATIO => Err(DesignError::OutOfProportion {
+                key: variable.key(),
+                ratio,
+            }),
+            DesignVariable::ProximalLength if volume.is_nan() || volume > Self::MAX_VOLUME => {
+                out_of_domain("so small that the mass of the bar is a finite number")
+            }
+            DesignVariable::GuideAngle if !(value > 0.0 && value < 180.0) => {
+                out_of_domain("above 0° and below 180°, so that the guides are not parallel")
+            }
+            variable if variable.is_angle() && (value.is_nan() || value.abs() > 360.0) => out_of_domain("within ±360°"),
+            _ => Ok(self),
+        }
+    }
+
+    /// Returns the design with other dimensions; further variables keep the values that were given.
+    ///
+    /// # Errors
+    /// As [`Design::new`].
+    pub fn with_dimensions(&self, values: [f64; 5]) -> Result<Self, DesignError> {
+        let design = Self::new(self.architecture, self.working_mode, values)?;
+        self.given_variables()
+            .try_fold(design, |design, variable| design.with(variable, self.value(variable)))
+    }
+
+    /// Returns the length of the bars of one leg together: `L_b`, and `L_a` where the chain has it \[m\].
+    pub fn leg_bars_length(&self) -> f64 {
+        if self.architecture.chain().has_proximal_bar {
+            self.proximal_length + self.link_length
+        } else {
+            self.link_length
+        }
+    }
+
+    /// Returns the value of a variable \[m, or deg for an angle\].
+    pub fn value(&self, variable: DesignVariable) -> f64 {
+        match variable {
+            DesignVariable::BaseRadius => self.base_radius,
+            DesignVariable::PlatformRadius => self.platform_radius,
+            DesignVariable::LinkLength => self.link_length,
+            DesignVariable::LegBarRadius => self.leg_bar_radius,
+            DesignVariable::PlatformBarRadius => self.platform_bar_radius,
+            DesignVariable::ProximalLength => self.proximal_length,
+            DesignVariable::RailAngle => self.rail_angle_deg,
+            DesignVariable::GuideAngle => self.guide_angle_deg,
+            DesignVariable::PlatformGuideAngle => self.platform_guide_angle_deg,
+        }
+    }
+
+    /// Returns the value that a further variable has unless it is given: `L_b` for `L_a`, 90° between two guides, otherwise 0°.
+    pub fn default_value(&self, variable: DesignVariable) -> f64 {
+        match variable {
+            DesignVariable::ProximalLength => self.link_length,
+            DesignVariable::GuideAngle => 90.0,
+            _ => 0.0,
+        }
+    }
+
+    /// Returns the further variables of the chain whose values are not the defaults.
+    pub fn given_variables(&self) -> impl Iterator<Item = DesignVariable> + '_ {
+        let further = self.architecture.further_variables().iter().copied();
+        further.filter(|&variable| self.value(variable) != self.default_value(variable))
     }
 
     /// Returns the real variables in the order of [`DESIGN_VARIABLES`] \[m\].

@@ -5,12 +5,16 @@ use crate::lanes::{Planar, Real};
 /// Kind of a member.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MemberKind {
-    /// Actuated slider on a rail.
+    /// Slider on a rail.
     Slider,
     /// Tube and rod of a telescopic leg, treated as one bar.
     TelescopicLeg,
-    /// Bar clamped to a revolute actuator.
+    /// Bar from a revolute base joint to the next joint.
     Crank,
+    /// Guide that turns about a base joint.
+    TurningGuide,
+    /// Guide on the platform, or on a slider.
+    Guide,
     /// Bar between the proximal member and the platform.
     Link,
     /// Bar of the platform, from `C_i` to `P`.
@@ -24,6 +28,8 @@ impl MemberKind {
             MemberKind::Slider => "slider",
             MemberKind::TelescopicLeg => "telescopic_leg",
             MemberKind::Crank => "crank",
+            MemberKind::TurningGuide => "turning_guide",
+            MemberKind::Guide => "guide",
             MemberKind::Link => "link",
             MemberKind::PlatformBar => "platform_bar",
         }
@@ -72,10 +78,10 @@ impl<V: Real> MemberAxis<V> {
 /// The axes of a leg's members at several poses at once.
 #[derive(Clone, Copy)]
 pub struct Members<V> {
-    /// Axis of the proximal member ([`super::Leg::PROXIMAL`]). For a slider, it starts at the
+    /// Axis of the proximal member (that before the distal one). For a slider, it starts at the
     /// centre of the slider, has the direction of the rail and length 0.
     pub proximal: Option<MemberAxis<V>>,
-    /// Axis of the distal member ([`super::Leg::DISTAL`]).
+    /// Axis of the distal member (that which leads to the platform).
     pub distal: MemberAxis<V>,
     /// Distance of a slider's centre from the lower and the upper end of its rail \[m\].
     pub rail: Option<[V; 2]>,

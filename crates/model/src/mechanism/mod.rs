@@ -1,52 +1,170 @@
-//! Architectures and designs: joints, joint limits and inverse kinematics, one file per leg type.
+//! Architectures and designs: chains, driven joints, joint limits and inverse kinematics, one file per chain.
 //!
-//! To add an architecture, add a file with a type that implements [`Leg`] and one line in the `architectures!` list
-//! below. No other module of the library names an individual architecture: code that needs a leg type is generic over
-//! `L: Leg` and is called through `with_leg!` (docs/model.md, section 2).
+//! A leg is a chain of three joints of which one is driven ([`DrivenLeg`]). To add an architecture of a known chain, add a line to the
+//! list `architectures!` below; for a new chain, also add a file to `chains` with a type that implements [`Chain`]. No other module
+//! of the library names an individual chain: code that needs a leg is generic over `L: Leg`, and is called with [`AnyLeg`], or
+//! through `with_leg!` where its speed matters (docs/model.md, section 2).
 
+mod chain;
+mod chains;
 mod design;
+mod driven_leg;
+mod enclosed;
+mod geometry;
 mod leg;
 mod member;
-mod prr;
-mod rpr;
-mod rrr;
 mod text;
 
-pub use design::{DESIGN_VARIABLES, Design, DesignError, DesignVariable, WorkingMode};
+pub use chain::{
+    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
+    JointPoint, LockedKind, LockedLeg, ProximalEnclosure, ProximalLanes, REACH_FORMS, Solved,
+};
+pub use design::{DESIGN_VARIABLES, Design, DesignError, DesignVariable, FURTHER_VARIABLES, WorkingMode};
+pub use driven_leg::DrivenLeg;
+pub use enclosed::{EnclosedLoads, LegEnclosure, LegFrameEnclosure};
+pub use geometry::{Arrangement, Geometry, LegFrame};
 pub use leg::{
-    Actuator, BarLength, Guide, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, Manipulator,
-    Posture, ReachReason, Segment, Shortfall,
+    BarLength, BarLoads, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, LineLoads, Manipulator,
+    Posture, ReachReason, Shortfall, Travel, TravelKind,
 };
 pub use member::{MemberAxis, MemberKind, Members};
-pub use prr::PrrLeg;
-pub use rpr::RprLeg;
-pub use rrr::RrrLeg;
 pub use text::TextError;
 
+use glam::DVec2;
+
+use crate::enclosure::{MembersEnclosure, PlanarModel, PoseEnclosure};
+use crate::lanes::{LaneJob, Planar, Real};
+use chains::{PprChain, PrpChain, PrrChain, RppChain, RprChain, RrpChain, RrrChain};
+
 macro_rules! architectures {
-    // `$d` is a literal dollar sign: this macro defines a macro that has metavariables of its own.
-    ($d:tt; $($(#[$doc:meta])* $variant:ident => $leg:ident,)+) => {
-        /// Planar parallel architecture with three legs of one type; the paper underlines the actuated joint.
+    // `$d` is a literal dollar sign: this macro defines macros that have metavariables of their own.
+    (
+        $d:tt;
+        fast { $($(#[$fast_doc:meta])* $fast:ident $fast_name:literal $fast_chain:ident $fast_driven:literal,)+ }
+        others { $($(#[$doc:meta])* $variant:ident $name:literal $chain:ident $driven:literal,)+ }
+    ) => {
+        /// Planar parallel architecture with three legs of one type; the paper underlines the driven joint.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
         #[serde(try_from = "String", into = "String")]
         pub enum Architecture {
+            $($(#[$fast_doc])* $fast,)+
             $($(#[$doc])* $variant,)+
         }
 
         impl Architecture {
-            /// All architectures in the order of the paper.
-            pub const ALL: &[Architecture] = &[$(Architecture::$variant),+];
+            /// All architectures: those of the paper in its order, then the others.
+            pub const ALL: &[Architecture] = &[$(Architecture::$fast,)+ $(Architecture::$variant),+];
+
+            /// The architectures of the paper.
+            pub const PAPER: &[Architecture] = &[$(Architecture::$fast),+];
+
+            /// Returns the name, for example `3-PRR` or `3-P_RR`: `_` precedes the driven joint, except in the names of the paper.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Architecture::$fast => $fast_name,)+
+                    $(Architecture::$variant => $name,)+
+                }
+            }
+
+            /// Returns what is known of the chain without any lengths.
+            pub fn chain(self) -> &'static ChainDescription {
+                match self {
+                    $(Architecture::$fast => &<$fast_chain as Chain>::DESCRIPTION,)+
+                    $(Architecture::$variant => &<$chain as Chain>::DESCRIPTION,)+
+                }
+            }
+
+            /// Returns the place of the driven joint: 0, 1 or 2 from the base.
+            pub fn driven(self) -> usize {
+                match self {
+                    $(Architecture::$fast => $fast_driven,)+
+                    $(Architecture::$variant => $driven,)+
+                }
+            }
         }
 
-        /// Runs an expression with a type alias bound to the leg type of an architecture.
+        /// A leg of any architecture. It is slower than the leg itself, which matters only where many poses are evaluated.
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        #[allow(missing_docs, reason = "the variants are those of `Architecture`")]
+        pub enum AnyLeg {
+            $($fast(DrivenLeg<$fast_chain, $fast_driven>),)+
+            $($variant(DrivenLeg<$chain, $driven>),)+
+        }
+
+        /// Runs an expression with a name bound to the leg in a value of [`AnyLeg`].
+        macro_rules! visit {
+            ($d any:expr, $d leg:ident => $d body:expr) => {
+                match $d any {
+                    $(AnyLeg::$fast($d leg) => $d body,)+
+                    $(AnyLeg::$variant($d leg) => $d body,)+
+                }
+            };
+        }
+
+        impl AnyLeg {
+            /// Creates leg `index` of `design`.
+            fn of(design: &Design, settings: &LegSettings, index: usize) -> Self {
+                match design.architecture {
+                    $(Architecture::$fast => AnyLeg::$fast(Leg::new(design, settings, index)),)+
+                    $(Architecture::$variant => AnyLeg::$variant(Leg::new(design, settings, index)),)+
+                }
+            }
+
+            /// Encloses a leg of `design` over a box of poses.
+            fn enclosed(
+                frame: &LegFrameEnclosure,
+                design: &Design,
+                settings: &LegSettings,
+                pose: &PoseEnclosure,
+            ) -> LegEnclosure {
+                match design.architecture {
+                    $(Architecture::$fast =>
+                        DrivenLeg::<$fast_chain, $fast_driven>::enclose(frame, design, settings, pose),)+
+                    $(Architecture::$variant =>
+                        DrivenLeg::<$chain, $driven>::enclose(frame, design, settings, pose),)+
+                }
+            }
+
+            /// Encloses the members of a leg of `design` over a box of poses.
+            fn enclosed_members(
+                frame: &LegFrameEnclosure,
+                design: &Design,
+                settings: &LegSettings,
+                leg: &LegEnclosure,
+                anchor: PlanarModel,
+                tip: PlanarModel,
+            ) -> MembersEnclosure {
+                let chain = &leg.chain;
+                match design.architecture {
+                    $(Architecture::$fast =>
+                        $fast_chain::enclose_members(frame, design, settings, chain, anchor, tip),)+
+                    $(Architecture::$variant =>
+                        $chain::enclose_members(frame, design, settings, chain, anchor, tip),)+
+                }
+            }
+        }
+
+        /// The legs that are compiled into the loops over poses, because studies of the paper use them most.
+        pub mod fast {
+            $(
+                #[doc = concat!("Leg of a ", $fast_name, ".")]
+                pub type $fast = super::DrivenLeg<super::chains::$fast_chain, $fast_driven>;
+            )+
+        }
+
+        /// Runs an expression with a type alias bound to the leg type with which an architecture is evaluated fastest.
         #[macro_export]
         macro_rules! with_leg {
             ($d architecture:expr, $d alias:ident => $d body:expr) => {
                 match $d architecture {
-                    $($crate::mechanism::Architecture::$variant => {
-                        type $d alias = $crate::mechanism::$leg;
+                    $($crate::mechanism::Architecture::$fast => {
+                        type $d alias = $crate::mechanism::fast::$fast;
                         $d body
                     })+
+                    _ => {
+                        type $d alias = $crate::mechanism::AnyLeg;
+                        $d body
+                    }
                 }
             };
         }
@@ -54,43 +172,224 @@ macro_rules! architectures {
 }
 
 architectures! { $;
-    /// Actuated slider along a side of the base triangle, followed by a link.
-    Prr => PrrLeg,
-    /// Actuated telescopic leg between two passive revolute joints.
-    Rpr => RprLeg,
-    /// Actuated crank, followed by a link.
-    Rrr => RrrLeg,
+    fast {
+        /// Driven slider on a rail of the base, followed by a link.
+        Prr "3-PRR" PrrChain 0,
+        /// Driven telescopic leg between two passive revolute joints.
+        Rpr "3-RPR" RprChain 1,
+        /// Driven crank, followed by a link.
+        Rrr "3-RRR" RrrChain 0,
+    }
+    others {
+        /// Crank and link, driven between them.
+        RrrSecond "3-R_RR" RrrChain 1,
+        /// Crank and link, driven at the platform.
+        RrrThird "3-RR_R" RrrChain 2,
+        /// Driven crank with a carriage on a guide of the platform.
+        RrpFirst "3-_RRP" RrpChain 0,
+        /// Crank with a carriage on a guide of the platform, driven between them.
+        RrpSecond "3-R_RP" RrpChain 1,
+        /// Crank with a driven carriage on a guide of the platform.
+        RrpThird "3-RR_P" RrpChain 2,
+        /// Telescopic leg, turned at the base.
+        RprFirst "3-_RPR" RprChain 0,
+        /// Telescopic leg, turned at the platform.
+        RprThird "3-RP_R" RprChain 2,
+        /// Slider and link, driven between them.
+        PrrSecond "3-P_RR" PrrChain 1,
+        /// Slider and link, driven at the platform.
+        PrrThird "3-PR_R" PrrChain 2,
+        /// Guide that turns about the base joint, with a driven carriage that also runs on a guide of the platform.
+        RppSecond "3-R_PP" RppChain 1,
+        /// Guide that turns about the base joint, with a carriage that is driven along a guide of the platform.
+        RppThird "3-RP_P" RppChain 2,
+        /// Driven slider with a carriage on a guide of the platform.
+        PrpFirst "3-_PRP" PrpChain 0,
+        /// Slider with a carriage that is driven along a guide of the platform.
+        PrpThird "3-PR_P" PrpChain 2,
+        /// Driven slider that carries a guide.
+        PprFirst "3-_PPR" PprChain 0,
+        /// Slider that carries a guide with a driven carriage.
+        PprSecond "3-P_PR" PprChain 1,
+    }
 }
 
 impl Architecture {
-    /// Returns the name in the paper, for example `3-PRR`.
-    pub fn name(self) -> &'static str {
-        with_leg!(self, L => L::NAME)
+    /// Returns the letters of the joints, for example `PRR`.
+    pub fn chain_name(self) -> &'static str {
+        self.chain().name
+    }
+
+    /// Returns the name with `_` before the driven joint, for example `3-_PRR`.
+    pub fn marked_name(self) -> String {
+        let (before, after) = self.chain_name().split_at(self.driven());
+        format!("3-{before}_{after}")
+    }
+
+    /// Returns the name with the driven joint underlined by U+0332.
+    pub fn underlined_name(self) -> String {
+        let (before, after) = self.chain_name().split_at(self.driven() + 1);
+        format!("3-{before}\u{332}{after}")
     }
 
     /// Returns whether the inverse kinematics has two solutions per leg, so that a working mode has to be set.
     pub fn has_working_modes(self) -> bool {
-        with_leg!(self, L => L::HAS_WORKING_MODES)
+        self.chain().has_working_modes
     }
 
     /// Returns the number of moving bars per leg: one (`n` = 3 in the formula of the mass) or two (`n` = 6).
     pub fn bars_per_leg(self) -> usize {
-        with_leg!(self, L => L::BARS)
+        1 + usize::from(self.chain().has_proximal_bar)
     }
 
-    /// Returns a distance from `O` beyond which no point can be reached ([`Leg::farthest_reach`]).
-    pub fn farthest_reach(self, base: f64, platform: f64, link: f64) -> f64 {
-        with_leg!(self, L => L::farthest_reach(base, platform, link))
+    /// Returns the variables that the chain has beyond those of every architecture.
+    pub fn further_variables(self) -> &'static [DesignVariable] {
+        self.chain().variables
     }
 
-    /// Returns the kind of the actuated joint.
-    pub fn actuator(self) -> Actuator {
-        with_leg!(self, L => L::ACTUATOR)
+    /// Returns the kind of the driven joint.
+    pub fn actuator(self) -> JointKind {
+        self.chain().joints[self.driven()]
+    }
+
+    /// Returns the longest lever that a driven revolute joint may have \[m\]: the length of the bar next to it.
+    pub fn longest_lever(self, design: &Design) -> f64 {
+        let chain = self.chain();
+        let reaches = |point: JointPoint| chain.points[self.driven()] == point;
+        let is_proximal = reaches(JointPoint::A) || (chain.distal == MemberKind::Guide && reaches(JointPoint::B));
+        if chain.has_proximal_bar && is_proximal {
+            design.proximal_length
+        } else {
+            design.link_length
+        }
+    }
+
+    /// Returns a distance from `O` beyond which no point `P` can be reached by all legs of any design of the paper's geometry with a
+    /// base radius of at least `base`, and with platform radii and lengths of at most those given \[m\]. `lengths` holds `L_a` and
+    /// `L_b`.
+    pub fn farthest_reach(self, base: f64, platform: f64, lengths: [f64; 2]) -> f64 {
+        let chain = self.chain();
+        let of_proximal = if chain.has_proximal_bar { lengths[0] } else { 0.0 };
+        let reach = of_proximal + lengths[1] + platform;
+        if chain.joints[0] == JointKind::Prismatic {
+            // The rails are the sides of the base triangle; that farthest from `P` is at least (base + |OP|)/2 away.
+            return (2.0 * reach - base).max(0.0);
+        }
+        // The farthest of the three base joints is at least √(|OP|² + R² + |OP|·R) away.
+        (libm::sqrt((4.0 * reach * reach - 3.0 * base * base).max(0.0)) - base).max(0.0) * 0.5
     }
 }
 
 impl std::fmt::Display for Architecture {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.pad(self.name())
+    }
+}
+
+/// Inverse kinematics of a leg at several poses at once, as a function of its own.
+struct LegJob<'a, L, V> {
+    leg: &'a L,
+    position: Planar<V>,
+    arm: Planar<V>,
+}
+
+impl<L: Leg, V: Real> LaneJob for LegJob<'_, L, V> {
+    type Output = LegLanes<V>;
+
+    #[inline(always)]
+    fn run(self) -> LegLanes<V> {
+        self.leg.lanes(self.position, self.arm)
+    }
+}
+
+/// Members of a leg at several poses at once, as a function of its own.
+struct MembersJob<'a, L, V> {
+    leg: &'a L,
+    c: Planar<V>,
+    distal: DistalLanes<V>,
+}
+
+impl<L: Leg, V: Real> LaneJob for MembersJob<'_, L, V> {
+    type Output = Members<V>;
+
+    #[inline(always)]
+    fn run(self) -> Members<V> {
+        self.leg.members(self.c, &self.distal)
+    }
+}
+
+impl Leg for AnyLeg {
+    fn new(design: &Design, settings: &LegSettings, index: usize) -> Self {
+        Self::of(design, settings, index)
+    }
+
+    fn inverse(&self, c: DVec2, arm: DVec2) -> Result<LegPosture, Shortfall> {
+        visit!(self, leg => leg.inverse(c, arm))
+    }
+
+    fn solve(&self, c: DVec2, arm: DVec2) -> Result<(LegPosture, Option<Shortfall>), Shortfall> {
+        visit!(self, leg => leg.solve(c, arm))
+    }
+
+    fn locked(&self, value: f64) -> LockedLeg {
+        visit!(self, leg => leg.locked(value))
+    }
+
+    #[inline(always)]
+    fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> LegLanes<V> {
+        visit!(self, leg => position.x.call_apart(LegJob { leg, position, arm }))
+    }
+
+    fn enclose(
+        frame: &LegFrameEnclosure,
+        design: &Design,
+        settings: &LegSettings,
+        pose: &PoseEnclosure,
+    ) -> LegEnclosure {
+        Self::enclosed(frame, design, settings, pose)
+    }
+
+    fn enclose_members(
+        frame: &LegFrameEnclosure,
+        design: &Design,
+        settings: &LegSettings,
+        leg: &LegEnclosure,
+        anchor: PlanarModel,
+        tip: PlanarModel,
+    ) -> MembersEnclosure {
+        Self::enclosed_members(frame, design, settings, leg, anchor, tip)
+    }
+
+    #[inline(always)]
+    fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
+        visit!(self, leg => c.x.call_apart(MembersJob { leg, c, distal: *distal }))
+    }
+
+    fn joint_values(&self, posture: &LegPosture) -> [f64; 3] {
+        visit!(self, leg => leg.joint_values(posture))
+    }
+
+    fn joint_limits(&self) -> [Option<[f64; 2]>; 3] {
+        visit!(self, leg => leg.joint_limits())
+    }
+
+    fn bodies(&self, posture: &LegPosture) -> Vec<LegBody> {
+        visit!(self, leg => leg.bodies(posture))
+    }
+
+    fn travels(&self, posture: &LegPosture) -> Vec<Travel> {
+        visit!(self, leg => leg.travels(posture))
+    }
+
+    fn frame(&self) -> &LegFrame {
+        visit!(self, leg => leg.frame())
+    }
+
+    fn reach_box(&self) -> [DVec2; 2] {
+        visit!(self, leg => leg.reach_box())
+    }
+
+    fn assembly(&self) -> Assembly {
+        visit!(self, leg => leg.assembly())
     }
 }

@@ -1,9 +1,9 @@
-//! Text form of a design: `3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056`, optionally with `mode=++-`
-//! (docs/interfaces.md).
+//! Text form of a design: `3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056`, with `La`, `alpha_deg`, `beta_deg`, `gamma_deg` and
+//! `mode=++-` where they are not the default (docs/interfaces.md).
 
 use std::str::FromStr;
 
-use super::{Architecture, DESIGN_VARIABLES, Design, DesignError, WorkingMode};
+use super::{Architecture, DESIGN_VARIABLES, Design, DesignError, DesignVariable, FURTHER_VARIABLES, WorkingMode};
 
 /// Reason why a text is not a valid design, architecture or working mode.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -12,13 +12,33 @@ pub enum TextError {
     #[error("the design is empty; expected one like `3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056`")]
     Empty,
     /// The first word is not the name of an architecture.
-    #[error("unknown architecture `{0}`; expected one of {names}", names = architecture_names())]
+    #[error("unknown architecture `{0}`; expected one of {names}, where `_` precedes the driven joint", names = architecture_names())]
     UnknownArchitecture(String),
+    /// The name is that of a chain without its driven joint.
+    #[error(
+        "`{name}` does not tell which joint is driven; expected one of {of_chain}, where `_` precedes the driven joint"
+    )]
+    NoDrivenJoint {
+        /// The name.
+        name: String,
+        /// The legitimate names of the chain.
+        of_chain: String,
+    },
+    /// With the driven joint locked, such a leg could transmit no force.
+    #[error(
+        "`{name}` cannot be driven there: with this joint locked, two prismatic joints are left, so that the leg transmits no force \
+         and every pose is singular; expected one of {names}",
+        names = architecture_names()
+    )]
+    IdleLeg {
+        /// The name.
+        name: String,
+    },
     /// A word has no `=`.
     #[error("`{0}` is not of the form key=value")]
     NoEquals(String),
     /// A key is unknown.
-    #[error("unknown key `{0}`; expected R, r, Lb, rj, rp or mode")]
+    #[error("unknown key `{0}`; expected R, r, Lb, rj, rp, La, alpha_deg, beta_deg, gamma_deg or mode")]
     UnknownKey(String),
     /// A key is given twice.
     #[error("`{0}` is given twice")]
@@ -27,10 +47,12 @@ pub enum TextError {
     #[error("`{0}` is missing; a design needs R, r, Lb, rj and rp, in metres")]
     Missing(&'static str),
     /// A value is not a number.
-    #[error("`{text}` is not a number (key {key}, in metres)")]
+    #[error("`{text}` is not a number (key {key}, in {unit})")]
     NotANumber {
         /// Key of the value.
         key: &'static str,
+        /// Unit of the value.
+        unit: &'static str,
         /// Text of the value.
         text: String,
     },
@@ -43,20 +65,55 @@ pub enum TextError {
 }
 
 fn architecture_names() -> String {
-    let names: Vec<&str> = Architecture::ALL.iter().map(|a| a.name()).collect();
+    names(Architecture::ALL.iter().copied())
+}
+
+fn names(architectures: impl Iterator<Item = Architecture>) -> String {
+    let names: Vec<&str> = architectures.map(Architecture::name).collect();
     names.join(", ")
 }
 
 impl FromStr for Architecture {
     type Err = TextError;
 
+    /// Parses a name such as `3-PRR` or `3-P_RR`, where `_` precedes the driven joint. The names of the paper may be written
+    /// either way, and a driven joint may also be underlined by U+0332.
     fn from_str(text: &str) -> Result<Self, TextError> {
-        Architecture::ALL
-            .iter()
-            .copied()
-            .find(|architecture| architecture.name() == text)
-            .ok_or_else(|| TextError::UnknownArchitecture(text.to_owned()))
+        let name = with_leading_marks(text);
+        let mut all = Architecture::ALL.iter().copied();
+        if let Some(found) = all.find(|architecture| architecture.name() == name || architecture.marked_name() == name)
+        {
+            return Ok(found);
+        }
+        let chain = name.strip_prefix("3-").unwrap_or_default().replace('_', "");
+        let of_chain = || {
+            Architecture::ALL
+                .iter()
+                .copied()
+                .filter(|found| found.chain_name() == chain)
+        };
+        let marks = name.matches('_').count();
+        Err(match of_chain().next() {
+            Some(_) if marks == 0 => TextError::NoDrivenJoint {
+                name,
+                of_chain: names(of_chain()),
+            },
+            Some(_) if marks == 1 && !name.ends_with('_') => TextError::IdleLeg { name },
+            _ => TextError::UnknownArchitecture(text.to_owned()),
+        })
     }
+}
+
+/// Returns the text with `_` before each letter that U+0332 underlines.
+fn with_leading_marks(text: &str) -> String {
+    let mut marked = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match (letter, marked.pop()) {
+            ('\u{332}', Some(last)) => marked.extend(['_', last]),
+            (_, last) => marked.extend(last.into_iter().chain([letter])),
+        }
+    }
+    marked
 }
 
 impl FromStr for WorkingMode {
@@ -107,7 +164,7 @@ impl Design {
         let mut words = text.split_whitespace();
         let architecture: Architecture = words.next().ok_or(TextError::Empty)?.parse()?;
         let mut working_mode = None;
-        let mut values = [None; DESIGN_VARIABLES.len()];
+        let mut given: Vec<(DesignVariable, f64)> = Vec::new();
         for word in words {
             let (key, value) = word
                 .split_once('=')
@@ -118,28 +175,33 @@ impl Design {
                 }
                 continue;
             }
-            let index = DESIGN_VARIABLES
-                .iter()
-                .position(|variable| variable.key() == key)
+            let variable = DESIGN_VARIABLES
+                .into_iter()
+                .chain(FURTHER_VARIABLES)
+                .find(|variable| variable.key() == key)
                 .ok_or_else(|| TextError::UnknownKey(key.to_owned()))?;
-            let key = DESIGN_VARIABLES[index].key();
             let number: f64 = value.parse().map_err(|_| TextError::NotANumber {
-                key,
+                key: variable.key(),
+                unit: if variable.is_angle() { "degrees" } else { "metres" },
                 text: value.to_owned(),
             })?;
-            if values[index].replace(number).is_some() {
-                return Err(TextError::Repeated(key));
+            if given.iter().any(|(other, _)| *other == variable) {
+                return Err(TextError::Repeated(variable.key()));
             }
+            given.push((variable, number));
         }
         let mut numbers = [0.0; DESIGN_VARIABLES.len()];
-        for ((number, value), variable) in numbers.iter_mut().zip(values).zip(DESIGN_VARIABLES) {
-            *number = value.ok_or(TextError::Missing(variable.key()))?;
+        for (number, variable) in numbers.iter_mut().zip(DESIGN_VARIABLES) {
+            let found = given.iter().find(|(other, _)| *other == variable);
+            *number = found.ok_or(TextError::Missing(variable.key()))?.1;
         }
-        Ok(Design::new(
-            architecture,
-            working_mode.unwrap_or(default_mode),
-            numbers,
-        )?)
+        let mut design = Design::new(architecture, working_mode.unwrap_or(default_mode), numbers)?;
+        for (variable, number) in given {
+            if FURTHER_VARIABLES.contains(&variable) {
+                design = design.with(variable, number)?;
+            }
+        }
+        Ok(design)
     }
 }
 
@@ -156,6 +218,9 @@ impl std::fmt::Display for Design {
         write!(f, "{}", self.architecture)?;
         for (variable, value) in DESIGN_VARIABLES.into_iter().zip(self.values()) {
             write!(f, " {}={value}", variable.key())?;
+        }
+        for variable in self.given_variables() {
+            write!(f, " {}={}", variable.key(), self.value(variable))?;
         }
         if self.working_mode != WorkingMode::ALL_PLUS {
             write!(f, " mode={}", self.working_mode)?;
@@ -174,6 +239,42 @@ mod tests {
         let design: Design = text.parse().expect("a design");
         assert_eq!(design.to_string(), text);
         assert_eq!(design.working_mode.signs(), [1, -1, 1]);
+        for text in [
+            "3-R_RR R=1 r=0.25 Lb=1 rj=0.02 rp=0.03 La=0.75 mode=---",
+            "3-_PPR R=1 r=0.25 Lb=1 rj=0.02 rp=0.03 alpha_deg=30 beta_deg=75.5",
+            "3-RP_P R=1 r=0.25 Lb=1 rj=0.02 rp=0.03 La=2 beta_deg=60 gamma_deg=-12.5",
+        ] {
+            assert_eq!(text.parse::<Design>().expect("a design").to_string(), text);
+        }
+    }
+
+    #[test]
+    fn every_architecture_reads_its_names() {
+        for &architecture in Architecture::ALL {
+            for name in [
+                architecture.name().to_owned(),
+                architecture.marked_name(),
+                architecture.underlined_name(),
+            ] {
+                assert_eq!(name.parse(), Ok(architecture), "{name}");
+            }
+        }
+        assert_eq!(Architecture::ALL.len(), 18);
+        assert_eq!(Architecture::Prr.marked_name(), "3-_PRR");
+        assert_eq!(Architecture::PprFirst.underlined_name(), "3-P\u{332}PR");
+    }
+
+    #[test]
+    fn an_illegitimate_architecture_is_explained() {
+        let error = |text: &str| text.parse::<Architecture>().expect_err("a fault").to_string();
+        assert!(error("3-PPR").contains("expected one of 3-_PPR, 3-P_PR"));
+        for name in ["3-_RPP", "3-P_RP", "3-PP_R"] {
+            let found = error(name);
+            assert!(found.contains("no force") && found.contains("3-R_PP"), "{found}");
+        }
+        for name in ["3-PPP", "3-_P_PR", "PRR", "3-PRR_", "3-_PRRR", ""] {
+            assert!(error(name).contains("unknown architecture"), "{name}: {}", error(name));
+        }
     }
 
     #[test]
@@ -190,5 +291,12 @@ mod tests {
         assert!(error("3-PRR R=1 r=1 Lb=1 rj=-1 rp=1").contains("at least 0 m"));
         assert!(error("3-PRR R=1e-9 r=1 Lb=1 rj=1 rp=1").contains("times R"));
         assert!(error("3-PRR mode=++").contains("three signs"));
+        let further = |text: &str| error(&format!("{text} R=1 r=1 Lb=1 rj=1 rp=1"));
+        assert!(error("3-PRR R=1 r=1 Lb=1 rj=1 rp=1 La=1").contains("3-PRR has no La; only RRR, RRP and RPP"));
+        assert!(error("3-RPR R=1 r=1 Lb=1 rj=1 rp=1 alpha_deg=1").contains("no alpha_deg"));
+        assert!(error("3-_PPR R=1 r=1 Lb=1 rj=1 rp=1 beta_deg=180").contains("below 180°"));
+        assert!(error("3-_PRP R=1 r=1 Lb=1 rj=1 rp=1 gamma_deg=NaN").contains("within ±360°"));
+        assert!(error("3-RRR R=1 r=1 Lb=1 rj=1 rp=1 La=0").contains("above 0 m"));
+        assert!(further("3-PPR").contains("which joint is driven"));
     }
 }

@@ -8,61 +8,57 @@ use glam::DVec2;
 use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3, Vector6};
 
 use super::{BarCompliance, StiffnessModel};
-use crate::mechanism::{Leg, Manipulator, Posture};
-use crate::spatial::LEGS;
+use crate::mechanism::{Architecture, JointKind, JointPoint, LegPosture, Posture};
 
 /// Computes `K` of the manipulator at `P`, linear first, in base axes. Returns `None` if a leg's system is singular.
 ///
 /// The entries of the bordered system range in magnitude from L/(EA) to L³/(3EI). For bars with a radius below 5 mm the
 /// inverse loses digits, and the closed form is more accurate.
-pub fn stiffness<L: Leg>(
-    model: &StiffnessModel,
-    manipulator: &Manipulator<L>,
-    posture: &Posture,
-) -> Option<Matrix6<f64>> {
+pub fn stiffness(model: &StiffnessModel, architecture: Architecture, posture: &Posture) -> Option<Matrix6<f64>> {
     let mut total = Matrix6::zeros();
-    for i in 0..LEGS {
-        total += leg_stiffness(model, manipulator, posture, i)?;
+    for leg in &posture.legs {
+        total += leg_stiffness(model, architecture, leg)?;
     }
     Some(total)
 }
 
-/// Computes `K_i` of leg `index`, or returns `None` if its system is singular.
-pub fn leg_stiffness<L: Leg>(
-    model: &StiffnessModel,
-    manipulator: &Manipulator<L>,
-    posture: &Posture,
-    index: usize,
-) -> Option<Matrix6<f64>> {
-    let leg = &manipulator.legs[index];
-    let state = &posture.legs[index];
-    let p = DVec2::ZERO;
+/// Computes `K_i` of a leg from its chain alone: the springs of its bars, the driven joint as a spring, and the passive joints as
+/// free motions. Returns `None` if its system is singular.
+pub fn leg_stiffness(model: &StiffnessModel, architecture: Architecture, posture: &LegPosture) -> Option<Matrix6<f64>> {
+    let chain = &posture.chain;
     // All positions are relative to P.
-    let c = posture.arms[index];
-    let b = c - state.u * state.length;
+    let p = DVec2::ZERO;
+    let c = posture.arm;
+    let [a, b] = [chain.a, chain.b].map(|point| point - chain.c + c);
+    let twist = |joint: usize| {
+        let description = architecture.chain();
+        match (description.joints[joint], chain.guides[joint]) {
+            (JointKind::Prismatic, Some(d)) => Vector6::new(d.x, d.y, 0.0, 0.0, 0.0, 0.0),
+            _ => revolute(match description.points[joint] {
+                JointPoint::A => a,
+                JointPoint::B => b,
+                JointPoint::C => c,
+            }),
+        }
+    };
 
-    let mut s = Matrix6::zeros();
-    match leg.actuator_axis(state) {
-        Some(axis) => {
-            let twist = Vector6::new(axis.x, axis.y, 0.0, 0.0, 0.0, 0.0);
-            s += twist * twist.transpose() * model.actuator;
-        }
-        None => {
-            let proximal = leg.proximal_bar(state)?;
-            let twist = revolute(b - (proximal.to - proximal.from));
-            s += twist * twist.transpose() * model.actuator;
-        }
+    let driven = architecture.driven();
+    let mut s = twist(driven) * twist(driven).transpose() * model.actuator;
+    // A bar of length 0 is rigid.
+    if let Some(bar) = chain.proximal.filter(|bar| bar.offset != 0.0) {
+        s += spring(&model.leg_bar, bar.direction * bar.offset, bar.offset.abs(), b);
     }
-    if let Some(bar) = leg.proximal_bar(state) {
-        s += spring(&model.leg_bar, bar.to - bar.from, state.length, b);
+    if chain.beam > 0.0 {
+        let direction = chain.distal.direction * chain.distal.offset;
+        s += spring(&model.leg_bar, direction, chain.beam, c);
     }
-    s += spring(&model.leg_bar, state.u, leg.distal_length(state), c);
-    s += spring(&model.platform_bar, -c, model.platform_radius, p);
+    s += spring(&model.platform_bar, -c, c.length(), p);
 
     let mut bordered = SMatrix::<f64, 8, 8>::zeros();
     bordered.fixed_view_mut::<6, 6>(0, 0).copy_from(&s);
-    for (column, joint) in [b, c].into_iter().enumerate() {
-        let twist = revolute(joint);
+    let passive = (0..3).filter(|&joint| joint != driven);
+    for (column, joint) in passive.enumerate() {
+        let twist = twist(joint);
         bordered.fixed_view_mut::<6, 1>(0, 6 + column).copy_from(&twist);
         bordered
             .fixed_view_mut::<1, 6>(6 + column, 0)

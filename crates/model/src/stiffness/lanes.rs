@@ -1,16 +1,16 @@
 //! The closed form reduced to `k_xy`, `k_z` and `k_φz`, at several poses at once (docs/model.md, sections 4.3 to 4.5).
 //!
-//! The compliance along a leg's line depends only on the leg's transmission, on the moment of that line about `P` and,
-//! for a telescopic leg, on the length of the leg. Out of the plane, `K_zz` of a leg is `det S_φφ / det S`, where `S`
+//! Where a leg's line is that of its distal bar, the compliance along it depends only on the leg's transmission, on the moment of the
+//! line about `P` and, for a telescopic leg, on the length of the leg; otherwise also on the moments about the ends of the bars. Out of the plane, `K_zz` of a leg is `det S_φφ / det S`, where `S`
 //! is the sum of the compliances of its bars and `S_φφ` the block of the rotations. Neither determinant depends on the
-//! reference point or on the axes. They are therefore computed at `C_i` in axes along `u_i`; for a leg with two bars
+//! reference point or on the axes. They are therefore computed at `C_i` in axes along the distal bar; for a leg with two bars
 //! (platform bar included) they are polynomials in the cosine of the angle between the bars.
 
 use super::planar::{add_bar, in_plane_block, inverse, vertical_schur};
 use super::{BarCompliance, StiffnessDefinition, StiffnessModel};
 use crate::kinematics::Jacobian;
 use crate::lanes::{Planar, Real};
-use crate::mechanism::{Design, LegLanes};
+use crate::mechanism::{BarLoads, Design, Geometry, LegLanes};
 use crate::spatial::{LEGS, smaller_eigenvalue};
 
 /// Compliances of one design divided by two reference compliances, so that their products do not overflow or underflow.
@@ -22,81 +22,128 @@ pub(super) struct Reduced {
     actuator: f64,
     /// Axial compliance of a leg bar, per metre of its length.
     leg_axial: f64,
-    /// Axial compliance of a proximal bar, per square of its component along the line.
+    /// A third of the bending compliance of a leg bar, per metre of its length.
+    leg_bending: f64,
+    /// Axial compliance of a proximal bar of length `L_a`, per square of its component along the line.
     proximal_axial: f64,
-    /// Bending compliance of a proximal bar, per square of its component normal to the line.
+    /// Bending compliance of a proximal bar of length `L_a`, per square of its component normal to the line.
     proximal_bending: f64,
-    /// Compliance of the platform bar if the line passes through `P`.
-    platform_base: f64,
-    /// Additional compliance of the platform bar, per squared moment of the line about `P`.
-    platform_moment: f64,
     /// Reference for the bending and torsional compliances \[1/(N·m²)\].
     bend_unit: f64,
     /// Bending and torsional compliance of a leg bar, per metre of its length.
     leg: [f64; 2],
-    /// Bending and torsional compliance of the platform bar of length `r`.
-    platform: [f64; 2],
-    platform_radius: f64,
-    /// 1/L_b \[1/m\].
-    to_link: f64,
+    /// Platform bars of the legs.
+    platform: [ReducedPlatformBar; LEGS],
+    /// `L_a` \[m\].
+    proximal_length: f64,
+}
+
+/// Compliances of one platform bar, divided by the two reference compliances.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct ReducedPlatformBar {
+    /// Length `r_i` \[m\].
+    length: f64,
+    /// Axial compliance, divided by the length: per square of `u · (C − P)`.
+    axial: f64,
+    /// A third of the bending compliance.
+    bending: f64,
+    /// Compliance if the leg's line passes through `C` and `P`.
+    base: f64,
+    /// Additional compliance per squared moment about `P` of a line through `C`.
+    moment: f64,
+    /// Bending and torsional compliance out of the plane.
+    vertical: [f64; 2],
 }
 
 impl Reduced {
-    pub(super) fn new(design: &Design, leg: &BarCompliance, platform: &BarCompliance, actuator: f64) -> Self {
-        let (r, link) = (design.platform_radius, design.link_length);
+    pub(super) fn new(
+        design: &Design,
+        geometry: &Geometry,
+        leg: &BarCompliance,
+        platform: &BarCompliance,
+        actuator: f64,
+    ) -> Self {
+        let (r, link, proximal) = (design.platform_radius, design.link_length, design.proximal_length);
         let along_unit = actuator + link * leg.axial + r * platform.axial;
         let bend_unit = leg.bending.max(platform.bending);
         Self {
             along_unit,
             actuator: actuator / along_unit,
             leg_axial: leg.axial / along_unit,
-            proximal_axial: leg.axial / link / along_unit,
-            proximal_bending: leg.bending * link / 3.0 / along_unit,
-            platform_base: r * platform.axial / along_unit,
-            platform_moment: (r / 3.0 * platform.bending - platform.axial / r) / along_unit,
+            leg_bending: leg.bending / 3.0 / along_unit,
+            proximal_axial: leg.axial / proximal / along_unit,
+            proximal_bending: leg.bending * proximal / 3.0 / along_unit,
             bend_unit,
             leg: [leg.bending / bend_unit, leg.torsion / bend_unit],
-            platform: [r * platform.bending / bend_unit, r * platform.torsion / bend_unit],
-            platform_radius: r,
-            to_link: 1.0 / link,
+            platform: geometry.platform_radii.map(|multiple| {
+                let r = multiple * r;
+                ReducedPlatformBar {
+                    length: r,
+                    axial: platform.axial / r / along_unit,
+                    bending: r * platform.bending / 3.0 / along_unit,
+                    base: r * platform.axial / along_unit,
+                    moment: (r / 3.0 * platform.bending - platform.axial / r) / along_unit,
+                    vertical: [r * platform.bending / bend_unit, r * platform.torsion / bend_unit],
+                }
+            }),
+            proximal_length: proximal,
         }
     }
 
-    /// Computes the compliance along the line of a leg, in multiples of `along_unit`.
+    /// Computes the compliance along the line of leg `index`, in multiples of `along_unit`.
     #[inline(always)]
-    fn along_line<V: Real>(&self, leg: &LegLanes<V>) -> V {
+    fn along_line<V: Real>(&self, leg: &LegLanes<V>, index: usize) -> V {
         let like = leg.moment;
-        let compliance = leg.transmission * leg.transmission * like.splat(self.actuator)
-            + leg.distal * like.splat(self.leg_axial)
-            + like.splat(self.platform_base)
-            + leg.moment * leg.moment * like.splat(self.platform_moment);
-        match leg.proximal {
-            Some(bar) => {
-                compliance
-                    + bar.x * bar.x * like.splat(self.proximal_axial)
-                    + bar.y * bar.y * like.splat(self.proximal_bending)
-            }
+        let actuator = leg.transmission * leg.transmission * like.splat(self.actuator);
+        let (chain, platform) = (&leg.chain, &self.platform[index]);
+        let Some(loads) = &leg.loads else {
+            let compliance = actuator
+                + chain.beam * like.splat(self.leg_axial)
+                + like.splat(platform.base)
+                + leg.moment * leg.moment * like.splat(platform.moment);
+            return match chain.proximal {
+                Some(bar) => {
+                    compliance
+                        + bar.vector.x * bar.vector.x * like.splat(self.proximal_axial)
+                        + bar.vector.y * bar.vector.y * like.splat(self.proximal_bending)
+                }
+                None => compliance,
+            };
+        };
+        let squares = |[first, second]: [V; 2]| first * first + first * second + second * second;
+        let of_leg = |load: &BarLoads<V>, length: V| {
+            length
+                * (load.force * load.force * like.splat(self.leg_axial)
+                    + squares(load.moments) * like.splat(self.leg_bending))
+        };
+        let of_platform = loads.platform.force * loads.platform.force * like.splat(platform.axial)
+            + squares(loads.platform.moments) * like.splat(platform.bending);
+        let compliance = actuator + of_leg(&loads.distal, chain.beam) + of_platform;
+        match &chain.proximal {
+            Some(bar) => compliance + of_leg(&loads.proximal, bar.length),
             None => compliance,
         }
     }
 
-    /// Computes `det S_φφ` and `det S` of a leg, whose quotient is its `K_zz` in multiples of 1/`bend_unit`.
+    /// Computes `det S_φφ` and `det S` of leg `index`, whose quotient is its `K_zz` in multiples of 1/`bend_unit`.
     #[inline(always)]
-    fn vertical<V: Real>(&self, leg: &LegLanes<V>) -> [V; 2] {
+    fn vertical<V: Real>(&self, leg: &LegLanes<V>, index: usize) -> [V; 2] {
         let like = leg.moment;
-        let radius = self.platform_radius;
-        let ([b1, t1], [b2, t2]) = (self.leg, self.platform);
+        let chain = &leg.chain;
+        let platform = &self.platform[index];
+        let radius = platform.length;
+        let ([b1, t1], [b2, t2]) = (self.leg, platform.vertical);
         // Direction of the platform bar, from C to P, in the axes of the distal bar.
         let to_unit = like.splat(1.0 / radius);
-        let cosine = -(leg.along * to_unit);
-        let length = leg.distal;
+        let cosine = -(chain.along * to_unit);
+        let length = chain.beam;
         let (bend, twist) = (length * like.splat(b1), length * like.splat(t1));
         let half = like.splat(0.5);
         let lift = like.splat(b2 * radius * radius / 3.0) + bend * length * length * like.splat(1.0 / 3.0);
-        let (p, q) = (half * bend * length, like.splat(0.5 * b2 * radius));
+        let (p, q) = (half * bend * chain.signed_beam, like.splat(0.5 * b2 * radius));
         let (b2, t2) = (like.splat(b2), like.splat(t2));
         let square = cosine * cosine;
-        match leg.proximal {
+        match &chain.proximal {
             None => {
                 // Coefficients of the polynomials in the cosine, independent of the pose for bars of constant length.
                 let two = like.splat(2.0);
@@ -112,16 +159,23 @@ impl Reduced {
                 ]
             }
             Some(bar) => {
-                let sine = leg.moment * to_unit;
-                let to_unit = like.splat(self.to_link);
-                let (x, y) = (bar.x * to_unit, bar.y * to_unit);
-                let middle = x + half;
-                let lift = lift + length * length * (bend * (middle * middle + like.splat(1.0 / 12.0)) + twist * y * y);
-                let tilt_x = length * y * ((bend - twist) * x + half * bend) - q * sine;
-                let tilt_y = q * cosine - p - length * (twist * y * y + bend * middle * x);
-                let xx = twist * x * x + bend * y * y + twist + t2 * square + b2 * sine * sine;
-                let xy = (twist - bend) * x * y + (t2 - b2) * cosine * sine;
-                let yy = twist * y * y + bend * x * x + bend + t2 * sine * sine + b2 * square;
+                let sine = chain.across * to_unit;
+                let (x, y) = (bar.direction.x, bar.direction.y);
+                let unit = like.splat(self.proximal_length);
+                // Where the distal bar ends, as multiples of L_a in the axes of the proximal bar, and the middle of that bar.
+                let (ahead, aside) = (bar.distal_share * x, bar.distal_share * y);
+                let middle = ahead + half * bar.share;
+                let (bend_a, twist_a) = (bar.length * like.splat(b1), bar.length * like.splat(t1));
+                let lift = lift
+                    + unit
+                        * unit
+                        * (bend_a * (middle * middle + bar.share * bar.share * like.splat(1.0 / 12.0))
+                            + twist_a * aside * aside);
+                let tilt_x = unit * y * ((bend_a - twist_a) * ahead + half * bar.share * bend_a) - q * sine;
+                let tilt_y = q * cosine - p - unit * (twist_a * y * aside + bend_a * middle * x);
+                let xx = twist_a * x * x + bend_a * y * y + twist + t2 * square + b2 * sine * sine;
+                let xy = (twist_a - bend_a) * x * y + (t2 - b2) * cosine * sine;
+                let yy = twist_a * y * y + bend_a * x * x + bend + t2 * sine * sine + b2 * square;
                 let minor = xx * yy - xy * xy;
                 let tilt = tilt_x * tilt_x * yy - tilt_x * tilt_y * xy * like.splat(2.0) + tilt_y * tilt_y * xx;
                 [minor, lift * minor - tilt]
@@ -143,9 +197,9 @@ impl StiffnessModel {
         let like = jacobian.ux[0];
         let reduced = &self.reduced;
         let c = [
-            reduced.along_line(&legs[0]),
-            reduced.along_line(&legs[1]),
-            reduced.along_line(&legs[2]),
+            reduced.along_line(&legs[0], 0),
+            reduced.along_line(&legs[1], 1),
+            reduced.along_line(&legs[2], 2),
         ];
         // A single division gives the three reciprocals.
         let pairs = [c[1] * c[2], c[2] * c[0], c[0] * c[1]];
@@ -163,9 +217,9 @@ impl StiffnessModel {
                     yy = yy + y * ky;
                     mm = mm + m * m * stiffness[i];
                 }
-                let [n0, d0] = reduced.vertical(&legs[0]);
-                let [n1, d1] = reduced.vertical(&legs[1]);
-                let [n2, d2] = reduced.vertical(&legs[2]);
+                let [n0, d0] = reduced.vertical(&legs[0], 0);
+                let [n1, d1] = reduced.vertical(&legs[1], 1);
+                let [n2, d2] = reduced.vertical(&legs[2], 2);
                 // A single division gives the sum of the three quotients.
                 let sum = n0 * (d1 * d2) + d0 * (n1 * d2 + n2 * d1);
                 let k_z = like.splat(1.0 / reduced.bend_unit) * sum / (d0 * (d1 * d2));
@@ -174,9 +228,9 @@ impl StiffnessModel {
             StiffnessDefinition::Compliance => {
                 // The legs are written out, because an array indexed in a loop would be kept in memory.
                 let in_plane = in_plane_block(jacobian, &stiffness);
-                let k0 = inverse(&self.bending_lanes(&legs[0], arms[0]));
-                let k1 = inverse(&self.bending_lanes(&legs[1], arms[1]));
-                let k2 = inverse(&self.bending_lanes(&legs[2], arms[2]));
+                let k0 = inverse(&self.bending_lanes(&legs[0], arms[0], 0));
+                let k1 = inverse(&self.bending_lanes(&legs[1], arms[1], 1));
+                let k2 = inverse(&self.bending_lanes(&legs[2], arms[2], 2));
                 let mut k = k0;
                 for entry in 0..k.len() {
                     k[entry] = k0[entry] + k1[entry] + k2[entry];
@@ -195,9 +249,9 @@ impl StiffnessModel {
         let reduced = &self.reduced;
         let along = |compliance: V| like.splat(1.0 / reduced.along_unit) / compliance;
         let stiffness = [
-            along(reduced.along_line(&legs[0])),
-            along(reduced.along_line(&legs[1])),
-            along(reduced.along_line(&legs[2])),
+            along(reduced.along_line(&legs[0], 0)),
+            along(reduced.along_line(&legs[1], 1)),
+            along(reduced.along_line(&legs[2], 2)),
         ];
         let in_plane = in_plane_block(jacobian, &stiffness);
         Self::in_plane_stiffness_values(&in_plane, StiffnessDefinition::Compliance).0
@@ -205,26 +259,31 @@ impl StiffnessModel {
 
     /// Computes the upper triangle of the out-of-plane compliance of one leg at `P` in base axes.
     #[inline(always)]
-    fn bending_lanes<V: Real>(&self, leg: &LegLanes<V>, arm: Planar<V>) -> [V; 6] {
+    fn bending_lanes<V: Real>(&self, leg: &LegLanes<V>, arm: Planar<V>, index: usize) -> [V; 6] {
         let like = leg.moment;
         let zero = like.splat(0.0);
         let mut s = [zero; 6];
-        let radius = like.splat(self.platform_radius);
-        let platform_axis = arm.scaled(like.splat(-1.0 / self.platform_radius));
+        let chain = &leg.chain;
+        let platform = &self.reduced.platform[index];
+        let radius = like.splat(platform.length);
+        let platform_axis = arm.scaled(like.splat(-1.0 / platform.length));
         add_bar(
             &mut s,
             &self.platform_bar,
             platform_axis,
-            radius,
+            [radius; 2],
             Planar::new(zero, zero),
         );
         let to_p = Planar::new(-arm.x, -arm.y);
-        add_bar(&mut s, &self.leg_bar, leg.u, leg.distal, to_p);
-        if let Some(bar) = leg.proximal {
-            let axis = leg.u.scaled(bar.x).plus(leg.u.perp().scaled(bar.y));
-            let axis = axis.scaled(like.splat(self.reduced.to_link));
-            let to_p = leg.u.scaled(leg.distal).minus(arm);
-            add_bar(&mut s, &self.leg_bar, axis, leg.distal, to_p);
+        let tangent = chain.tangent;
+        let lengths = [chain.beam, chain.signed_beam];
+        add_bar(&mut s, &self.leg_bar, tangent, lengths, to_p);
+        if let Some(bar) = &chain.proximal {
+            let direction = bar.direction;
+            let axis = tangent.scaled(direction.x).plus(tangent.perp().scaled(direction.y));
+            let to_p = tangent.scaled(chain.signed_beam).minus(arm);
+            let signed = bar.share * like.splat(self.reduced.proximal_length);
+            add_bar(&mut s, &self.leg_bar, axis, [bar.length, signed], to_p);
         }
         s
     }

@@ -1,9 +1,9 @@
 //! The closed form, to which the general form reduces if every joint axis is normal to the plane (docs/model.md,
 //! sections 4.3 and 4.4).
 //!
-//! In the plane, a leg with two passive revolute joints transmits only a force along `u_i`, so its stiffness is
-//! `w wᵀ / c`, where `w = (u_i, (C_i − P) × u_i)` and `c` is the compliance along that line. Out of the plane, the
-//! revolute joints have no effect, and the stiffness of the leg is the inverse of the 3×3 sum of its bars' compliances.
+//! In the plane, a leg with two passive joints transmits only a force along one line, so its stiffness is `w wᵀ / c`, where `w`
+//! holds the direction `u_i` of the line and its moment about `P`, and `c` is the compliance along that line. Out of the plane, the
+//! joints have no effect, and the stiffness of the leg is the inverse of the 3×3 sum of its bars' compliances.
 
 use glam::DVec2;
 use nalgebra::{Matrix3, Matrix6};
@@ -12,7 +12,7 @@ use super::lanes::Reduced;
 use super::{BarCompliance, CrossSections, Material, StiffnessDefinition, StiffnessValues};
 use crate::kinematics::Jacobian;
 use crate::lanes::{Planar, Real};
-use crate::mechanism::{Actuator, Design, Leg, LegPosture, Manipulator, Posture};
+use crate::mechanism::{Design, Geometry, JointKind, LegPosture, Posture};
 use crate::spatial::{LEGS, cross, smaller_eigenvalue};
 
 /// Compliances of the bars and actuators of one design. An infinitely compliant design is represented by `None`.
@@ -20,7 +20,6 @@ use crate::spatial::{LEGS, cross, smaller_eigenvalue};
 pub struct StiffnessModel {
     pub(super) leg_bar: BarCompliance,
     pub(super) platform_bar: BarCompliance,
-    pub(super) platform_radius: f64,
     /// Compliance of the actuator \[m/N or rad/(N·m)\].
     pub(super) actuator: f64,
     /// Compliances in the form that the evaluation of several poses at once needs.
@@ -38,10 +37,10 @@ pub struct ActuatorStiffness {
 
 impl ActuatorStiffness {
     /// Returns the stiffness of the given kind of actuator \[N/m or N·m/rad\].
-    pub fn of(&self, actuator: Actuator) -> f64 {
+    pub fn of(&self, actuator: JointKind) -> f64 {
         match actuator {
-            Actuator::Prismatic => self.prismatic,
-            Actuator::Revolute => self.revolute,
+            JointKind::Prismatic => self.prismatic,
+            JointKind::Revolute => self.revolute,
         }
     }
 }
@@ -58,81 +57,89 @@ pub struct PlanarStiffness {
 /// Bar of a leg at a posture.
 pub(super) struct Bar<'a> {
     section: &'a BarCompliance,
-    /// Unit vector towards the tip of the bar.
+    /// Unit vector along the bar.
     axis: DVec2,
+    /// Distance from its proximal to its distal end along `axis`, in the beam model \[m\].
     length: f64,
-    /// Vector from the tip of the bar to `P` \[m\].
+    /// Vector from its distal end to `P` \[m\].
     to_p: DVec2,
+    /// Moments of the leg's line about both ends \[m\].
+    moments: [f64; 2],
 }
 
 impl Bar<'_> {
     /// Adds the out-of-plane compliance of the bar at `P` to `s`.
     #[inline]
     pub(super) fn add_to(&self, s: &mut [f64; 6]) {
-        add_bar(s, self.section, self.axis.into(), self.length, self.to_p.into());
+        let (length, signed) = (self.length.abs(), self.length);
+        add_bar(s, self.section, self.axis.into(), [length, signed], self.to_p.into());
+    }
+
+    /// Computes the compliance of the bar to a unit force along the line of its leg \[m/N\]: axial, and bending under moments that
+    /// vary linearly between its ends.
+    fn line_compliance(&self, u: DVec2) -> f64 {
+        let along = u.dot(self.axis);
+        let [first, second] = self.moments;
+        let bending = (first * first + first * second + second * second) / 3.0;
+        self.length.abs() * (along * along * self.section.axial + bending * self.section.bending)
     }
 }
 
 impl StiffnessModel {
     /// Creates the model of `design`. Returns `None` if a bar is infinitely compliant ([`BarCompliance::new`] returns
     /// `None`), which makes every stiffness 0.
-    pub fn new<L: Leg>(
+    pub fn new(
         design: &Design,
+        geometry: &Geometry,
         material: &Material,
         sections: &CrossSections,
         actuators: &ActuatorStiffness,
     ) -> Option<Self> {
         let leg_bar = BarCompliance::new(material, &sections.legs, design.leg_bar_radius)?;
         let platform_bar = BarCompliance::new(material, &sections.platform, design.platform_bar_radius)?;
-        let actuator = 1.0 / actuators.of(L::ACTUATOR);
+        let actuator = 1.0 / actuators.of(design.architecture.actuator());
         Some(Self {
             leg_bar,
             platform_bar,
-            platform_radius: design.platform_radius,
             actuator,
-            reduced: Reduced::new(design, &leg_bar, &platform_bar, actuator),
+            reduced: Reduced::new(design, geometry, &leg_bar, &platform_bar, actuator),
         })
     }
 
-    /// Computes `c_i`, the compliance along the line of a leg \[m/N\]: the sum of the actuator's compliance, the axial
-    /// compliance of the bars, and the bending compliance of the bars that are not parallel to the line.
+    /// Computes `c_i`, the compliance along the line of a leg \[m/N\]: the sum of the actuator's compliance, and of the axial and
+    /// bending compliance of the bars.
     #[inline]
-    fn line_compliance<L: Leg>(&self, leg: &L, posture: &LegPosture, arm: DVec2) -> f64 {
-        let [actuator, distal, platform, proximal] = self.line_compliances(leg, posture, arm);
+    fn line_compliance(&self, posture: &LegPosture) -> f64 {
+        let [actuator, distal, platform, proximal] = self.line_compliances(posture);
         actuator + distal + platform + proximal
     }
 
     /// Computes the terms of `c_i` \[m/N\]: actuator, distal bar, platform bar, and proximal bar (0 if there is none).
     #[inline]
-    pub(super) fn line_compliances<L: Leg>(&self, leg: &L, posture: &LegPosture, arm: DVec2) -> [f64; 4] {
-        let u = posture.u;
-        let proximal = leg.proximal_bar(posture).map_or(0.0, |bar| {
-            along_line(&self.leg_bar, u, bar.to - bar.from, posture.length)
-        });
+    pub(super) fn line_compliances(&self, posture: &LegPosture) -> [f64; 4] {
+        let [platform, distal, proximal] = self.bars(posture);
+        let of = |bar: &Bar<'_>| bar.line_compliance(posture.u);
         [
             posture.transmission * posture.transmission * self.actuator,
-            leg.distal_length(posture) * self.leg_bar.axial,
-            along_line(&self.platform_bar, u, arm, self.platform_radius),
-            proximal,
+            distal.as_ref().map_or(0.0, of),
+            platform.as_ref().map_or(0.0, of),
+            proximal.as_ref().map_or(0.0, of),
         ]
     }
 
     /// Computes the upper triangle of the in-plane block at a posture, ordered as in [`PlanarStiffness::in_plane`].
     #[inline]
-    pub fn in_plane<L: Leg>(&self, manipulator: &Manipulator<L>, posture: &Posture, jacobian: &Jacobian) -> [f64; 6] {
-        let stiffness = [0, 1, 2].map(|i| {
-            let compliance = self.line_compliance(&manipulator.legs[i], &posture.legs[i], posture.arms[i]);
-            1.0 / compliance
-        });
+    pub fn in_plane(&self, posture: &Posture, jacobian: &Jacobian) -> [f64; 6] {
+        let stiffness = posture.legs.map(|leg| 1.0 / self.line_compliance(&leg));
         in_plane_block(jacobian, &stiffness)
     }
 
     /// Computes the out-of-plane compliance of one leg at `P`, the sum over its bars; upper triangle, ordered as in
     /// [`PlanarStiffness::out_of_plane`].
     #[inline]
-    fn bending_compliance<L: Leg>(&self, leg: &L, posture: &LegPosture, arm: DVec2) -> [f64; 6] {
+    fn bending_compliance(&self, posture: &LegPosture) -> [f64; 6] {
         let mut s = [0.0; 6];
-        for bar in self.bars(leg, posture, arm).into_iter().flatten() {
+        for bar in self.bars(posture).into_iter().flatten() {
             bar.add_to(&mut s);
         }
         s
@@ -140,56 +147,57 @@ impl StiffnessModel {
 
     /// Returns the bars of one leg: the platform bar, the distal bar, and the proximal bar if there is one.
     #[inline]
-    pub(super) fn bars<L: Leg>(&self, leg: &L, posture: &LegPosture, arm: DVec2) -> [Option<Bar<'_>>; 3] {
+    pub(super) fn bars(&self, posture: &LegPosture) -> [Option<Bar<'_>>; 3] {
+        let (arm, chain) = (posture.arm, &posture.chain);
+        let [about_a, about_b, about_c] = posture.about;
+        let radius = arm.length();
+        let beam = chain.beam.copysign(chain.distal.offset);
         // The tip of the platform bar is P itself.
         let platform = Bar {
             section: &self.platform_bar,
-            axis: -arm / self.platform_radius,
-            length: self.platform_radius,
+            axis: -arm / radius,
+            length: radius,
             to_p: DVec2::ZERO,
+            moments: [about_c, posture.moment],
         };
         let distal = Bar {
             section: &self.leg_bar,
-            axis: posture.u,
-            length: leg.distal_length(posture),
+            axis: chain.distal.direction,
+            length: beam,
             to_p: -arm,
+            // A telescopic leg whose beam is longer than the leg begins behind `B_i`.
+            moments: [about_c + beam * cross(chain.distal.direction, posture.u), about_c],
         };
-        let proximal = leg.proximal_bar(posture).map(|bar| Bar {
+        let proximal = chain.proximal.map(|bar| Bar {
             section: &self.leg_bar,
-            axis: (bar.to - bar.from) / posture.length,
-            length: posture.length,
-            to_p: posture.u * posture.length - arm,
+            axis: bar.direction,
+            length: bar.offset,
+            to_p: chain.distal.direction * chain.distal.offset - arm,
+            moments: [about_a, about_b],
         });
         [Some(platform), Some(distal), proximal]
     }
 
     /// Computes `K_zz` alone \[N/m\], which is `k_z` in the default definition.
     #[inline]
-    pub fn vertical<L: Leg>(&self, manipulator: &Manipulator<L>, posture: &Posture) -> f64 {
-        let mut k_z = 0.0;
-        for i in 0..LEGS {
-            let s = self.bending_compliance(&manipulator.legs[i], &posture.legs[i], posture.arms[i]);
-            k_z += first_of_inverse(&s);
-        }
-        k_z
+    pub fn vertical(&self, posture: &Posture) -> f64 {
+        posture
+            .legs
+            .iter()
+            .fold(0.0, |sum, leg| sum + first_of_inverse(&self.bending_compliance(leg)))
     }
 
     /// Computes both blocks of the stiffness at a posture.
-    pub fn stiffness<L: Leg>(
-        &self,
-        manipulator: &Manipulator<L>,
-        posture: &Posture,
-        jacobian: &Jacobian,
-    ) -> PlanarStiffness {
+    pub fn stiffness(&self, posture: &Posture, jacobian: &Jacobian) -> PlanarStiffness {
         let mut out_of_plane = [0.0; 6];
-        for i in 0..LEGS {
-            let s = self.bending_compliance(&manipulator.legs[i], &posture.legs[i], posture.arms[i]);
+        for leg in &posture.legs {
+            let s = self.bending_compliance(leg);
             for (sum, entry) in out_of_plane.iter_mut().zip(inverse(&s)) {
                 *sum += entry;
             }
         }
         PlanarStiffness {
-            in_plane: self.in_plane(manipulator, posture, jacobian),
+            in_plane: self.in_plane(posture, jacobian),
             out_of_plane,
         }
     }
@@ -265,18 +273,16 @@ pub(super) fn in_plane_block<V: Real>(jacobian: &Jacobian<V>, stiffness: &[V; LE
     k
 }
 
-/// Computes the displacement along `u` per unit of force along `u` at one end of a bar whose other end is clamped.
-#[inline]
-fn along_line(section: &BarCompliance, u: DVec2, bar: DVec2, length: f64) -> f64 {
-    // The dot and cross products with the vector of the bar each contain its length as a factor.
-    let along = u.dot(bar);
-    let across = cross(u, bar);
-    (along * along * section.axial + across * across * (length * length / 3.0) * section.bending) / length
-}
-
-/// Adds the compliance of a bar with direction `axis` and tip at `P − to_p` to `s`, the out-of-plane compliance at `P`.
+/// Adds the compliance of a bar along `axis` with its distal end at `P − to_p` to `s`, the out-of-plane compliance at `P`. Of the
+/// two lengths, the second one has the sign of the way along `axis` to the distal end.
 #[inline(always)]
-pub(super) fn add_bar<V: Real>(s: &mut [V; 6], section: &BarCompliance, axis: Planar<V>, length: V, to_p: Planar<V>) {
+pub(super) fn add_bar<V: Real>(
+    s: &mut [V; 6],
+    section: &BarCompliance,
+    axis: Planar<V>,
+    [length, signed]: [V; 2],
+    to_p: Planar<V>,
+) {
     let (half, twelfth) = (length.splat(0.5), length.splat(1.0 / 12.0));
     let bend = length * length.splat(section.bending);
     let twist = length * length.splat(section.torsion);
@@ -287,7 +293,7 @@ pub(super) fn add_bar<V: Real>(s: &mut [V; 6], section: &BarCompliance, axis: Pl
     let lever_x = lever.dot(axis);
     let lever_y = lever.dot(normal);
     // At the middle of the bar, the bending compliances are decoupled: L/(EI) for rotation, L³/(12EI) along z.
-    let arm = lever_y - half * length;
+    let arm = lever_y - half * signed;
     s[0] = s[0] + bend * (length * length * twelfth + arm * arm) + twist * lever_x * lever_x;
     let (x, y) = (twist * lever_x, bend * arm);
     s[1] = s[1] + x * axis.x + y * normal.x;

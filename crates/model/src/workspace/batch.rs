@@ -135,13 +135,11 @@ impl<L: Leg> WithSimd for Smallest<'_, L> {
         for ((x, y), index) in xs.iter().zip(ys).zip(Lanes::<S>::column(self.indices)) {
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
             let index = Lanes::load(simd, index);
-            let (found, directions) = self.checker.lanes_without_clearance(position, &arms);
+            let (found, distals) = self.checker.lanes_without_clearance(position, &arms);
             let reachable = found.reachable;
             // Only a clearance below the smallest one so far matters, and none matters at an unreachable pose.
             let limit = values[6].select(reachable, sign.splat(f64::NEG_INFINITY));
-            let clearance = self
-                .checker
-                .compute_clearance_up_to(position, &arms, &directions, limit);
+            let clearance = self.checker.compute_clearance_up_to(position, &arms, &distals, limit);
             macro_rules! lower {
                 ($($k:literal: $value:expr,)+) => {$({
                     let smaller = values[$k].exceeds($value);

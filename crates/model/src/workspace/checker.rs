@@ -6,7 +6,7 @@ use super::further::{FurtherLanes, FurtherLimits, FurtherValues};
 use crate::clearance::{Bodies, Clearance, NUMBER_LIMIT};
 use crate::kinematics::Jacobian;
 use crate::lanes::{InstructionSet, Planar, Real};
-use crate::mechanism::{Leg, Manipulator, Posture};
+use crate::mechanism::{Assembly, DistalLanes, JointKind, Leg, Manipulator, Posture};
 use crate::spatial::LEGS;
 use crate::stiffness::{PlanarStiffness, StiffnessDefinition, StiffnessModel, StiffnessValues};
 
@@ -152,8 +152,12 @@ pub struct PoseChecker<L> {
     pub bodies: Bodies,
     /// `R` \[m\].
     pub base_radius: f64,
-    /// `L_b` \[m\].
-    pub link_length: f64,
+    /// Longest lever that the driven joints may have if they are revolute \[m\].
+    pub longest_lever: f64,
+    /// Kind of the driven joints.
+    pub actuator: JointKind,
+    /// What g1 compares.
+    pub assembly: Assembly,
     /// In-plane force under which the displacement is computed \[N\].
     pub in_plane_force: f64,
     /// Smallest values allowed at a feasible pose.
@@ -191,10 +195,10 @@ impl<L: Leg> PoseChecker<L> {
     /// only if g7 is required.
     #[inline(always)]
     pub fn lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS]) -> PoseLanes<V> {
-        let (mut values, directions) = self.lanes_without_clearance(position, arms);
+        let (mut values, distals) = self.lanes_without_clearance(position, arms);
         if self.thresholds.clearance.is_some() {
             let limit = position.x.splat(f64::INFINITY);
-            values.clearance = Some(self.compute_clearance_up_to(position, arms, &directions, limit));
+            values.clearance = Some(self.compute_clearance_up_to(position, arms, &distals, limit));
         }
         if self.thresholds.further.is_some() {
             values.further = Some(self.further_lanes(position, arms));
@@ -203,27 +207,27 @@ impl<L: Leg> PoseChecker<L> {
     }
 
     /// Returns the smallest clearance at several poses at once where it is below `limit`, otherwise `limit` \[m\].
-    /// `directions` are the directions of the legs as [`PoseChecker::lanes_without_clearance`] returns them. The result
+    /// `distals` are the distal bars of the legs as [`PoseChecker::lanes_without_clearance`] returns them. The result
     /// is meaningless where a leg does not reach the pose.
     #[inline(always)]
     pub(super) fn compute_clearance_up_to<V: Real>(
         &self,
         position: Planar<V>,
         arms: &[Planar<V>; LEGS],
-        directions: &[Planar<V>; LEGS],
+        distals: &[DistalLanes<V>; LEGS],
         limit: V,
     ) -> V {
         self.bodies
-            .compute_clearance_up_to(&self.manipulator.legs, position, arms, directions, limit)
+            .compute_clearance_up_to(&self.manipulator.legs, position, arms, distals, limit)
     }
 
-    /// Returns all values except the clearance at several poses at once, and the unit vectors `u_i` of the legs.
+    /// Returns all values except the clearance at several poses at once, and the distal bars of the legs.
     #[inline(always)]
     pub(super) fn lanes_without_clearance<V: Real>(
         &self,
         position: Planar<V>,
         arms: &[Planar<V>; LEGS],
-    ) -> (PoseLanes<V>, [Planar<V>; LEGS]) {
+    ) -> (PoseLanes<V>, [DistalLanes<V>; LEGS]) {
         let like = position.x;
         let legs = self.leg_lanes(position, arms);
         let jacobian = Jacobian::of_lanes(&legs);
@@ -231,11 +235,12 @@ impl<L: Leg> PoseChecker<L> {
             Some(model) => model.stiffness_value_lanes(self.definition, &legs, arms, &jacobian),
             None => [like.splat(0.0); 3],
         };
+        let [first, second, third] = [&legs[0].chain, &legs[1].chain, &legs[2].chain];
         let values = PoseLanes {
-            reachable: legs[0].reachable & legs[1].reachable & legs[2].reachable,
-            limit_margin: legs[0]
+            reachable: first.reachable & second.reachable & third.reachable,
+            limit_margin: first
                 .limit_margin
-                .smaller(legs[1].limit_margin.smaller(legs[2].limit_margin)),
+                .smaller(second.limit_margin.smaller(third.limit_margin)),
             determinant: jacobian.determinant() * like.splat(1.0 / self.length),
             inverse_condition: jacobian.inverse_condition(self.length),
             k_xy,
@@ -244,7 +249,7 @@ impl<L: Leg> PoseChecker<L> {
             clearance: None,
             further: None,
         };
-        (values, [legs[0].u, legs[1].u, legs[2].u])
+        (values, [legs[0].distal(), legs[1].distal(), legs[2].distal()])
     }
 
     /// Returns the mask of the feasible poses, at which `det A` has the given sign (±1). The limits of further values are examined
@@ -256,7 +261,7 @@ impl<L: Leg> PoseChecker<L> {
         arms: &[Planar<V>; LEGS],
         sign: V,
     ) -> V::Mask {
-        let (values, directions) = self.lanes_without_clearance(position, arms);
+        let (values, distals) = self.lanes_without_clearance(position, arms);
         let least = &self.thresholds;
         let good = values.reachable
             & (values.determinant * sign).exceeds(sign.splat(0.0))
@@ -277,7 +282,7 @@ impl<L: Leg> PoseChecker<L> {
                 let least = sign.splat(least);
                 let limit = least.select(good, sign.splat(f64::NEG_INFINITY));
                 good & self
-                    .compute_clearance_up_to(position, arms, &directions, limit)
+                    .compute_clearance_up_to(position, arms, &distals, limit)
                     .at_least(least)
             }
             _ => good,
@@ -330,7 +335,7 @@ impl<L: Leg> PoseChecker<L> {
     #[inline]
     pub fn in_plane(&self, posture: &Posture, jacobian: &Jacobian) -> [f64; 6] {
         match &self.stiffness {
-            Some(model) => model.in_plane(&self.manipulator, posture, jacobian),
+            Some(model) => model.in_plane(posture, jacobian),
             None => [0.0; 6],
         }
     }
@@ -346,9 +351,9 @@ impl<L: Leg> PoseChecker<L> {
     pub fn vertical_stiffness(&self, posture: &Posture, jacobian: &Jacobian) -> f64 {
         match (&self.stiffness, self.definition) {
             (None, _) => 0.0,
-            (Some(model), StiffnessDefinition::Stiffness) => model.vertical(&self.manipulator, posture),
+            (Some(model), StiffnessDefinition::Stiffness) => model.vertical(posture),
             (Some(model), definition) => {
-                let stiffness = model.stiffness(&self.manipulator, posture, jacobian);
+                let stiffness = model.stiffness(posture, jacobian);
                 stiffness.stiffness_values(definition).k_z
             }
         }
@@ -356,8 +361,8 @@ impl<L: Leg> PoseChecker<L> {
 
     /// Returns both stiffness blocks at a posture; they are zero for an infinitely compliant design.
     pub fn stiffness_at(&self, posture: &Posture, jacobian: &Jacobian) -> PlanarStiffness {
-        self.stiffness.as_ref().map_or(PlanarStiffness::ZERO, |model| {
-            model.stiffness(&self.manipulator, posture, jacobian)
-        })
+        self.stiffness
+            .as_ref()
+            .map_or(PlanarStiffness::ZERO, |model| model.stiffness(posture, jacobian))
     }
 }

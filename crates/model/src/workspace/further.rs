@@ -8,7 +8,7 @@ use super::batch::OrientationLanes;
 use super::columns::Positions;
 use crate::kinematics::Jacobian;
 use crate::lanes::{Lanes, Planar, Real};
-use crate::mechanism::{Actuator, Leg, LegLanes};
+use crate::mechanism::{JointKind, Leg, LegLanes};
 use crate::spatial::LEGS;
 
 /// Limits of values that the paper does not bound; `None` where a study states none.
@@ -83,10 +83,10 @@ impl<L: Leg> WithSimd for WriteFurther<'_, L> {
             found.displacement.store(&mut displacement[group]);
             let checker = self.checker;
             let legs = checker.leg_lanes(position, &arms);
-            let directions = [legs[0].u, legs[1].u, legs[2].u];
+            let distals = [legs[0].distal(), legs[1].distal(), legs[2].distal()];
             checker
                 .bodies
-                .outermost(&checker.manipulator.legs, position, &arms, &directions)
+                .outermost(&checker.manipulator.legs, position, &arms, &distals)
                 .store(&mut outermost[group]);
         }
     }
@@ -109,9 +109,9 @@ impl<L: Leg> PoseChecker<L> {
         let like = position.x;
         let legs = self.leg_lanes(position, arms);
         let jacobian = Jacobian::of_lanes(&legs);
-        let lever = match L::ACTUATOR {
-            Actuator::Prismatic => 1.0,
-            Actuator::Revolute => 1.0 / self.link_length,
+        let lever = match self.actuator {
+            JointKind::Prismatic => 1.0,
+            JointKind::Revolute => 1.0 / self.longest_lever,
         };
         let least = legs[0]
             .transmission

@@ -244,7 +244,7 @@ impl<L: Leg> PoseChecker<L> {
     /// leg does not reach the pose. Margins of lengths are divided by `base_radius`.
     #[inline(always)]
     fn margin_lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; 3], sign: V, base_radius: f64) -> V {
-        let (values, directions) = self.lanes_without_clearance(position, arms);
+        let (values, distals) = self.lanes_without_clearance(position, arms);
         let least = &self.thresholds;
         let none = sign.splat(-1.0);
         let per_length = sign.splat(1.0 / base_radius);
@@ -290,7 +290,7 @@ impl<L: Leg> PoseChecker<L> {
         if let Some(threshold) = least.clearance {
             let limit = worst * sign.splat(base_radius) + sign.splat(threshold);
             let limit = limit.select(values.reachable, sign.splat(f64::NEG_INFINITY));
-            let clearance = self.compute_clearance_up_to(position, arms, &directions, limit);
+            let clearance = self.compute_clearance_up_to(position, arms, &distals, limit);
             worst = worst.smaller(((clearance - sign.splat(threshold)) * per_length).larger(none));
         }
         worst.select(values.reachable, unreached)

@@ -245,8 +245,10 @@ proptest! {
             let of = values.iter().filter(|(constraint, _)| *constraint == wanted);
             of.map(|(_, value)| value.constant).fold(f64::INFINITY, f64::min)
         };
-        prop_assert_eq!(least(Constraint::Reach) > 0.0, is_reached, "{} {:?}", design, pose);
-        if !is_reached {
+        let reach = least(Constraint::Reach);
+        // At a joint limit, rounding tells.
+        prop_assert!(reach.abs() < 1e-12 || (reach > 0.0) == is_reached, "{} {:?}", design, pose);
+        if !is_reached || reach <= 0.0 {
             return Err(TestCaseError::reject("the legs do not reach"));
         }
         for constraint in AT_POSES {
@@ -277,7 +279,8 @@ proptest! {
             let is_proved = value.range()[0] > 0.0;
             *constraint == Constraint::Clearance && !is_proved
         };
-        if enclosed.len() < 12 || enclosed.iter().any(is_open) {
+        let may_be_unreached = enclosed.iter().all(|(constraint, _)| *constraint == Constraint::Reach);
+        if may_be_unreached || enclosed.iter().any(is_open) {
             return Err(TestCaseError::reject("the clearance is not proved"));
         }
         for (a, b, c) in places {

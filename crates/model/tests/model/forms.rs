@@ -1,17 +1,16 @@
 //! Compares the closed form of the stiffness with the general 6×6 form.
 
 use kinefront_model::kinematics::Jacobian;
-use kinefront_model::mechanism::{Design, Leg, LegSettings, Manipulator};
+use kinefront_model::mechanism::{AnyLeg, Design, LegPosture, LegSettings, Manipulator};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::{
     ActuatorStiffness, CrossSections, Material, PlanarStiffness, StiffnessDefinition, StiffnessModel, joint_model,
 };
-use kinefront_model::with_leg;
 use nalgebra::{Matrix2, Matrix6};
 use proptest::prelude::*;
 
 use super::reference::difference;
-use super::strategies::{applicable_cases, design, pose};
+use super::strategies::{applicable_cases, design, leg_settings, pose};
 
 const ACTUATORS: ActuatorStiffness = ActuatorStiffness {
     prismatic: 1e7,
@@ -19,27 +18,28 @@ const ACTUATORS: ActuatorStiffness = ActuatorStiffness {
 };
 
 /// Returns the stiffness in both forms at a pose, if the pose is reachable and not at the end of reach.
-fn both<L: Leg>(design: &Design, settings: &LegSettings, pose: &Pose) -> Option<(PlanarStiffness, Matrix6<f64>)> {
-    let manipulator = Manipulator::<L>::new(design, settings);
-    let posture = manipulator.posture(pose).ok()?;
-    let model = StiffnessModel::new::<L>(design, &Material::STEEL, &CrossSections::default(), &ACTUATORS)?;
-    let closed = model.stiffness(&manipulator, &posture, &Jacobian::new(&posture));
-    Some((closed, joint_model::stiffness(&model, &manipulator, &posture)?))
-}
-
 fn forms(design: &Design, settings: &LegSettings, pose: &Pose) -> Option<(PlanarStiffness, Matrix6<f64>)> {
-    with_leg!(design.architecture, L => both::<L>(design, settings, pose))
+    let manipulator = Manipulator::<AnyLeg>::new(design, settings);
+    let posture = manipulator.posture(pose).ok()?;
+    // Where a bar is nearly without length, the general form loses digits.
+    let is_short = |leg: &LegPosture| {
+        let proximal = leg.chain.proximal.map_or(1.0, |bar| bar.offset.abs());
+        leg.chain.beam.min(proximal) < 0.01
+    };
+    if posture.legs.iter().any(is_short) {
+        return None;
+    }
+    let sections = CrossSections::default();
+    let model = StiffnessModel::new(design, &settings.geometry, &Material::STEEL, &sections, &ACTUATORS)?;
+    let closed = model.stiffness(&posture, &Jacobian::new(&posture));
+    Some((closed, joint_model::stiffness(&model, design.architecture, &posture)?))
 }
 
 proptest! {
     #![proptest_config(applicable_cases(500))]
 
     #[test]
-    fn closed_form_equals_the_general_one(design in design(0.005), pose in pose(), longest in any::<bool>()) {
-        let mut settings = LegSettings::default();
-        if longest {
-            settings.telescopic_bar = kinefront_model::mechanism::BarLength::Longest;
-        }
+    fn closed_form_equals_the_general_one(design in design(0.005), pose in pose(), settings in leg_settings()) {
         let (closed, general) = forms(&design, &settings, &pose).ok_or_else(|| TestCaseError::reject("out of reach"))?;
         let off = difference(&closed.matrix(), &general);
         prop_assert!(off < 1e-10, "{design} at {pose:?}: {off:e}");

@@ -20,7 +20,9 @@ fn compare<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<(), Te
     match checker.manipulator.posture_at(pose.position, &arms) {
         Err((_, shortfall)) => {
             prop_assert!(!found.reachable);
-            prop_assert!((found.limit_margin - shortfall.limit_margin).abs() < 1e-13);
+            // Where a guide is nearly parallel to its rail, their intersection is far away, and digits of its place are lost.
+            let scale = 1.0 + shortfall.limit_margin * shortfall.limit_margin;
+            prop_assert!((found.limit_margin - shortfall.limit_margin).abs() < 1e-13 * scale);
         }
         Ok(posture) => {
             let jacobian = Jacobian::new(&posture);

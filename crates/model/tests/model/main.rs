@@ -1,11 +1,13 @@
 //! The model against identities and independent values: joints, Jacobians, stiffness, cross-sections, clearance, workspace, sizing.
 
+mod assembly;
 mod certify;
 mod clearance;
 mod enclosure;
 mod forms;
 mod joints;
 mod lanes;
+mod legs;
 mod oracle;
 mod quantities;
 mod reference;

@@ -2,7 +2,7 @@
 //! in space by `parry3d`.
 
 use kinefront_model::evaluation::{Model, PoseEvaluation};
-use kinefront_model::mechanism::{Architecture, Design};
+use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 use parry3d_f64::math::Vector;
 use parry3d_f64::query::details::closest_points_segment_segment_with_locations_nD;
@@ -63,31 +63,88 @@ fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluation) 
             layers.link,
             rj,
         );
-        match design.architecture {
-            Architecture::Prr => {
-                let half = (0.5 * model.bodies.slider_length - model.bodies.slider_half_width) * rj;
-                let next = anchor(design, leg + 1);
-                let way = [next[0] - at_a[0], next[1] - at_a[1]];
-                let length = way[0].hypot(way[1]);
-                let end = |by: f64| [at_b[0] + by * way[0] / length, at_b[1] + by * way[1] / length];
-                let thick = model.bodies.slider_half_width * rj;
-                all.push(body(
-                    format!("leg{number}_slider"),
-                    std::slice::from_ref(&b),
-                    [end(-half), end(half)],
-                    layers.slider,
-                    thick,
-                ));
-                all.push(link);
+        // The guide on the platform, or on a slider, and its two ends.
+        let turn = |[x, y]: [f64; 2], degrees: f64| {
+            let (sine, cosine) = degrees.to_radians().sin_cos();
+            [cosine * x - sine * y, sine * x + cosine * y]
+        };
+        let along = |from: [f64; 2], to: [f64; 2]| {
+            let way = [to[0] - from[0], to[1] - from[1]];
+            let length = way[0].hypot(way[1]);
+            way.map(|part| part / length)
+        };
+        let ends = |at: [f64; 2], way: [f64; 2], length: f64| {
+            let [low, high] = model.legs.geometry.guide;
+            let end = |share: f64| [at[0] + share * length * way[0], at[1] + share * length * way[1]];
+            [end(low.min(0.0)), end(high.max(0.0))]
+        };
+        let chain = design.architecture.chain_name();
+        let guide = if chain == "PPR" {
+            let rail = turn(along(at_a, anchor(design, leg + 1)), design.rail_angle_deg);
+            Some(ends(at_b, turn(rail, design.guide_angle_deg), design.link_length))
+        } else if chain.ends_with('P') {
+            let arm = along(pose.position.to_array(), at_c);
+            Some(ends(
+                at_c,
+                turn(arm, design.platform_guide_angle_deg),
+                design.link_length,
+            ))
+        } else {
+            None
+        };
+        let slider = || {
+            let half = (0.5 * model.bodies.slider_length - model.bodies.slider_half_width) * rj;
+            let rail = turn(along(at_a, anchor(design, leg + 1)), design.rail_angle_deg);
+            let end = |by: f64| [at_b[0] + by * rail[0], at_b[1] + by * rail[1]];
+            let thick = model.bodies.slider_half_width * rj;
+            body(
+                format!("leg{number}_slider"),
+                std::slice::from_ref(&b),
+                [end(-half), end(half)],
+                layers.slider,
+                thick,
+            )
+        };
+        let crank = || {
+            body(
+                format!("leg{number}_crank"),
+                &[a.clone(), b.clone()],
+                [at_a, at_b],
+                layers.crank,
+                rj,
+            )
+        };
+        let guide = guide.map(|ends| {
+            body(
+                format!("leg{number}_guide"),
+                &[b.clone(), c.clone()],
+                ends,
+                layers.guide,
+                rj,
+            )
+        });
+        match chain {
+            "PRR" => all.extend([slider(), link]),
+            "PRP" | "PPR" => all.extend([slider()].into_iter().chain(guide)),
+            "RRP" => all.extend([crank()].into_iter().chain(guide)),
+            "RRR" => all.extend([crank(), link]),
+            "RPP" => {
+                let arm = along(pose.position.to_array(), at_c);
+                let way = turn(arm, design.platform_guide_angle_deg + design.guide_angle_deg);
+                let turning = body(
+                    format!("leg{number}_turning_guide"),
+                    &[a, b.clone()],
+                    ends(at_a, way, design.proximal_length),
+                    layers.turning_guide,
+                    rj,
+                );
+                all.extend([turning].into_iter().chain(guide));
             }
-            Architecture::Rpr => {
+            _ => {
                 let shortest = model.legs.telescopic_shortest;
                 let rod = (1.0 - shortest.min(0.5)) * design.link_length;
-                let tail = if rod > report.actuators[leg] {
-                    toward(at_c, at_a, rod)
-                } else {
-                    at_a
-                };
+                let length = (at_c[0] - at_a[0]).hypot(at_c[1] - at_a[1]);
+                let tail = if rod > length { toward(at_c, at_a, rod) } else { at_a };
                 all.push(body(
                     format!("leg{number}_telescopic_leg"),
                     &[a, c.clone()],
@@ -95,16 +152,6 @@ fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluation) 
                     layers.telescopic_leg,
                     rj,
                 ));
-            }
-            Architecture::Rrr => {
-                all.push(body(
-                    format!("leg{number}_crank"),
-                    &[a, b.clone()],
-                    [at_a, at_b],
-                    layers.crank,
-                    rj,
-                ));
-                all.push(link);
             }
         }
         all.push(body(
@@ -173,10 +220,12 @@ pub fn oracle(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluati
             found.lower(distance(a, b), || [a.name.clone(), b.name.clone()]);
         }
     }
-    if design.architecture == Architecture::Prr && fault != Fault::NoRailEnds {
+    if design.architecture.chain_name().starts_with('P') && fault != Fault::NoRailEnds {
         let half = 0.5 * model.bodies.slider_length * design.leg_bar_radius;
         let travel = 3f64.sqrt() * design.base_radius;
-        for (leg, along) in report.actuators.iter().enumerate() {
+        for leg in 0..3 {
+            let (from, to) = (anchor(design, leg), report.b[leg]);
+            let along = (to[0] - from[0]).hypot(to[1] - from[1]);
             for (end, gap) in [along - half, travel - along - half].into_iter().enumerate() {
                 found.lower(gap, || {
                     let rail = format!("rail{}_end_A{}", leg + 1, (leg + end) % 3 + 1);

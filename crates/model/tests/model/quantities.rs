@@ -3,7 +3,7 @@
 use kinefront_model::evaluation::{
     Bound, Constraint, Evaluation, GridChoice, Model, Quantity, QuantityLimit, QuantitySet, Scope,
 };
-use kinefront_model::mechanism::{Actuator, Architecture, Design, MemberKind};
+use kinefront_model::mechanism::{Architecture, Design, JointKind, MemberKind};
 use kinefront_model::spatial::{Pose, unit};
 use kinefront_model::workspace::Region;
 use nalgebra::Matrix2;
@@ -159,7 +159,7 @@ fn the_transmission_is_that_of_the_joints() {
                         design.architecture.actuator(),
                         design.architecture == Architecture::ALL[0],
                     ) {
-                        (Actuator::Revolute, _) => {
+                        (JointKind::Revolute, _) => {
                             let [x, y] = unit(crank);
                             [-y, x]
                         }

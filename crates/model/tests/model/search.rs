@@ -61,7 +61,8 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
         .windows
         .iter()
         .position(|&radius| radius == wanted.radius && radius > 0.0);
-    let assembled = design.link_length + design.platform_radius >= 0.5 * design.base_radius;
+    let assembly = model.assembly(design);
+    let assembled = assembly.value >= assembly.threshold;
     for instructions in InstructionSet::available() {
         let found = model.evaluate_with(design, GridChoice::Reference, instructions);
         if !assembled {

@@ -1,8 +1,10 @@
-//! Strategies for random designs and poses over the whole design space of the paper.
+//! Strategies for random designs and poses over the whole design space: the bounds of the paper for every architecture.
 
 use kinefront_model::clearance::{BodySettings, Layers};
 use kinefront_model::evaluation::{Model, ModelSettings};
-use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
+use kinefront_model::mechanism::{
+    Architecture, Arrangement, BarLength, Design, DesignVariable, FURTHER_VARIABLES, LegSettings, WorkingMode,
+};
 use kinefront_model::spatial::Pose;
 use proptest::prelude::*;
 
@@ -23,19 +25,75 @@ pub fn model(change: impl FnOnce(&mut ModelSettings)) -> Model {
     Model::new(settings).expect("the grids fit the rotation range")
 }
 
-pub fn architecture() -> impl Strategy<Value = Architecture> {
-    prop::sample::select(Architecture::ALL)
-}
-
 pub fn working_mode() -> impl Strategy<Value = WorkingMode> {
     any::<[bool; 3]>().prop_map(WorkingMode::new)
 }
 
-/// Generates designs within the paper's bounds, with bar radii of at least `thinnest` \[m\].
+/// Generates designs of every architecture, half of them with further variables that are not the defaults.
 pub fn design(thinnest: f64) -> impl Strategy<Value = Design> {
+    let further = (0.5..4.0, -90.0..90.0, 30.0..150.0, -180.0..180.0);
+    (design_of(Architecture::ALL, thinnest), prop::option::of(further)).prop_map(|(design, further)| {
+        let Some((proximal, rail, between, platform)) = further else {
+            return design;
+        };
+        with_variables(design, [proximal, rail, between, platform])
+    })
+}
+
+/// Returns the design with those further variables that its chain has.
+pub fn with_variables(design: Design, values: [f64; 4]) -> Design {
+    let has = |variable: &DesignVariable| design.architecture.further_variables().contains(variable);
+    let given = FURTHER_VARIABLES
+        .into_iter()
+        .zip(values)
+        .filter(|(variable, _)| has(variable));
+    given.fold(design, |design, (variable, value)| {
+        design.with(variable, value).expect("a valid value")
+    })
+}
+
+fn design_of(architectures: &'static [Architecture], thinnest: f64) -> impl Strategy<Value = Design> {
     let lengths = (0.5..4.0, 0.1..4.0, 0.5..4.0, thinnest..0.1, thinnest..0.1);
-    (architecture(), working_mode(), lengths).prop_map(|(architecture, mode, (base, platform, link, leg, bar))| {
+    let architecture = prop::sample::select(architectures);
+    (architecture, working_mode(), lengths).prop_map(|(architecture, mode, (base, platform, link, leg, bar))| {
         Design::new(architecture, mode, [base, platform, link, leg, bar]).expect("a valid design")
+    })
+}
+
+/// Generates settings of the legs: the defaults, or any geometry of base and platform and any travel.
+pub fn leg_settings() -> impl Strategy<Value = LegSettings> {
+    let around = |middle: [f64; 3], by: f64| {
+        let [a, b, c] = middle;
+        [a - by..a + by, b - by..b + by, c - by..c + by]
+    };
+    let geometry = (
+        around([210.0, 330.0, 90.0], 25.0),
+        around([1.0; 3], 0.25),
+        around([210.0, 330.0, 90.0], 25.0),
+        around([1.0; 3], 0.25),
+        around([0.0; 3], 15.0),
+        (-0.4..0.0, 1.0..1.3),
+        (-0.6..0.0, 0.5..1.2),
+    );
+    let geometry = geometry.prop_map(
+        |(base_angles_deg, base_radii, platform_angles_deg, platform_radii, turn, rail, guide)| Arrangement {
+            base_angles_deg,
+            base_radii,
+            platform_angles_deg,
+            platform_radii,
+            rail_turn_deg: turn,
+            rail: [rail.0, rail.1],
+            guide: [guide.0, guide.1],
+        },
+    );
+    (prop::option::of(geometry), any::<bool>()).prop_map(|(geometry, longest)| LegSettings {
+        telescopic_bar: if longest {
+            BarLength::Longest
+        } else {
+            BarLength::Current
+        },
+        geometry: geometry.unwrap_or_default().into(),
+        ..LegSettings::default()
     })
 }
 
@@ -46,14 +104,18 @@ pub fn pose() -> impl Strategy<Value = Pose> {
 /// Generates sliders and layers: the default layers, all layers in one plane, or random layers.
 pub fn bodies() -> impl Strategy<Value = BodySettings> {
     let layer = || -2.0..2.0;
-    let any = (layer(), layer(), layer(), layer(), layer());
-    let any = any.prop_map(|(platform, link, telescopic_leg, crank, slider)| Layers {
-        platform,
-        link,
-        telescopic_leg,
-        crank,
-        slider,
-    });
+    let any = (layer(), layer(), layer(), layer(), layer(), layer(), layer());
+    let any = any.prop_map(
+        |(platform, link, telescopic_leg, crank, slider, turning_guide, guide)| Layers {
+            platform,
+            link,
+            telescopic_leg,
+            crank,
+            slider,
+            turning_guide,
+            guide,
+        },
+    );
     let layers = prop_oneof![Just(Layers::default()), Just(Layers::ONE_PLANE), any];
     (layers, 0.5..3.0, prop_oneof![Just(2.0), 2.0..6.0]).prop_map(|(layers, half_width, length)| BodySettings {
         slider_length: length * half_width,

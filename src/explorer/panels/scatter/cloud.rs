@@ -103,14 +103,18 @@ impl CloudImage {
                 }
                 let feasible = store.is_feasible(id);
                 let passes_filter = prepared.passes(id);
-                let index = theme::index(store.architecture(id)) % MARKS.len();
+                let index = theme::index(store.architecture(id));
                 let (rank, color) = match (passes_filter, feasible) {
                     (true, true) => (4, theme::mix(colors[index], ground, 0.85)),
                     (true, false) => (3, theme::infeasible(dark)),
                     (false, true) => (2, theme::mix(colors[index], ground, 0.16)),
                     (false, false) => (1, theme::mix(theme::infeasible(dark), ground, 0.22)),
                 };
-                let mark = if crowded || rank < 4 { &SMALL } else { &MARKS[index] };
+                let mark = if crowded || rank < 4 {
+                    &SMALL
+                } else {
+                    &MARKS[index % MARKS.len()]
+                };
                 self.stamp(mark, column as usize, row as usize, rank, color, id as u32);
             }
             self.drawn = end;

@@ -8,20 +8,15 @@
 use super::Enclosures;
 use crate::clearance::{DISTAL, PLATFORM, PROXIMAL, ROWS, kinds, pairs_not_joined};
 use crate::enclosure::{
-    AxisEnclosure, Interval, LegEnclosure, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, TurnedFrame,
-    difference, dot, sum,
+    AxisEnclosure, Interval, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, difference, dot, sum,
 };
 use crate::evaluation::{Constraint, Model};
-use crate::mechanism::{Design, Leg, LegSettings, MemberKind};
+use crate::mechanism::{AnyLeg, Design, Leg, LegEnclosure, LegFrameEnclosure, LegSettings, MemberKind};
 use crate::spatial::LEGS;
 
 /// What g7 needs of a design. Lengths are multiples of `L_b` unless stated otherwise.
 pub(super) struct Separations {
     settings: LegSettings,
-    /// `r`.
-    platform: Interval,
-    /// `A_i`.
-    anchors: [[Interval; 2]; LEGS],
     /// `1/L_b` \[1/m\].
     to_unit: Interval,
     /// Half the length of the axis of a slider.
@@ -51,43 +46,49 @@ pub(super) struct MemberBoxes {
 
 impl Separations {
     /// Returns `None` if the study requires no clearance.
-    pub fn new<L: Leg>(model: &Model, design: &Design) -> Option<Self> {
+    pub fn new(model: &Model, design: &Design) -> Option<Self> {
         let clearance = Interval::exactly(model.thresholds.clearance?);
         let exactly = Interval::exactly;
         let bodies = &model.bodies;
         let to_unit = exactly(1.0) / exactly(design.link_length);
-        let base = exactly(design.base_radius) * to_unit;
         let leg_bar = exactly(design.leg_bar_radius);
         let half_length = exactly(0.5) * exactly(bodies.slider_length) * leg_bar;
         let half_axis = half_length - exactly(bodies.slider_half_width) * leg_bar;
         Some(Self {
             settings: model.legs,
-            platform: exactly(design.platform_radius) * to_unit,
-            anchors: [0, 1, 2].map(|leg| TurnedFrame::of_leg(leg).axis().map(|part| part * base)),
             to_unit,
             slider: Interval {
                 lower: half_axis.lower.max(0.0),
                 upper: half_axis.upper.max(0.0),
             } * to_unit,
             from_rail_end: half_length + clearance,
-            pairs: pairs::<L>(model, design, clearance),
+            pairs: pairs(model, design, clearance),
         })
     }
 
     /// Lays the members out over a box of poses.
-    pub fn lay_out<L: Leg>(&self, pose: &PoseEnclosure, legs: &[LegEnclosure; LEGS]) -> MemberBoxes {
+    pub fn lay_out(
+        &self,
+        design: &Design,
+        frames: &[LegFrameEnclosure; LEGS],
+        pose: &PoseEnclosure,
+        legs: &[LegEnclosure; LEGS],
+    ) -> MemberBoxes {
         let mut boxes = MemberBoxes {
             axes: [None; ROWS * LEGS],
             rails: [None; LEGS],
         };
         let position = pose.position.map(|part| part.scaled(self.to_unit));
         for (index, leg) in legs.iter().enumerate() {
-            let arm = TurnedFrame::of_leg(index).direction(pose);
-            let tip = arm.map(|part| part.scaled(self.platform));
-            let anchor = difference(self.anchors[index].map(TaylorModel::constant), position);
+            let frame = &frames[index];
+            let arm = frame.arm(pose);
+            let length = frame.arm_length * frame.to_unit;
+            let tip = arm.map(|part| part.scaled(length));
+            let at_base = frame.anchor.map(|part| TaylorModel::constant(part * frame.to_unit));
+            let anchor = difference(at_base, position);
             let MembersEnclosure { proximal, distal, rail } =
-                L::enclose_members(&self.settings, index, leg, anchor, tip);
-            boxes.axes[LEGS * PROXIMAL + index] = proximal.map(|axis| match L::PROXIMAL {
+                AnyLeg::enclose_members(frame, design, &self.settings, leg, anchor, tip);
+            boxes.axes[LEGS * PROXIMAL + index] = proximal.map(|axis| match design.architecture.chain().proximal {
                 Some(MemberKind::Slider) => {
                     let half = axis.direction.map(|part| part.scaled(self.slider));
                     let [centre, ..] = axis.points;
@@ -144,14 +145,14 @@ impl Separations {
 }
 
 /// The pairs that their layers alone do not keep apart.
-fn pairs<L: Leg>(model: &Model, design: &Design, clearance: Interval) -> Vec<SeparatedPair> {
+fn pairs(model: &Model, design: &Design, clearance: Interval) -> Vec<SeparatedPair> {
     let bodies = &model.bodies;
     let (legs, platform) = (model.sections.legs.is_square(), model.sections.platform.is_square());
     let are_square = [legs, legs, platform];
     let exactly = Interval::exactly;
     let to_unit = exactly(1.0) / exactly(design.link_length);
     let thicker = exactly(2.0) * exactly(design.leg_bar_radius.max(design.platform_bar_radius));
-    let kinds = kinds::<L>();
+    let kinds = kinds(design.architecture);
     let radius = |kind| match kind {
         MemberKind::Slider => exactly(bodies.slider_half_width) * exactly(design.leg_bar_radius),
         kind => exactly(bodies.radius(kind, design)),

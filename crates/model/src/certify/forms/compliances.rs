@@ -3,17 +3,23 @@
 use crate::certify::CertifyError;
 use crate::enclosure::Interval;
 use crate::evaluation::Model;
-use crate::mechanism::{Actuator, Design, Leg};
+use crate::mechanism::{Design, JointKind};
+use crate::spatial::LEGS;
 use crate::stiffness::{CrossSection, Material};
 
 /// Compliances of a design, as multiples of two units.
 pub(super) struct Compliances {
     pub actuator: Interval,
-    pub distal_axial: Interval,
+    /// Axial compliance of a leg bar of length `L_b`.
+    pub leg_axial: Interval,
+    /// A third of its bending compliance, for moments as multiples of `L_b`.
+    pub leg_bending: Interval,
+    /// Compliances of a proximal bar of length `L_a` whose distal end is on the line, for the components of the bar along and across
+    /// the line as multiples of `L_b`.
     pub proximal_axial: Interval,
     pub proximal_bending: Interval,
-    pub platform_base: Interval,
-    pub platform_moment: Interval,
+    /// Platform bars of the legs.
+    pub platform: [PlatformCompliances; LEGS],
     /// `T`, as a multiple of the reciprocal of the unit; the threshold of `k_xy`.
     pub in_plane: Interval,
     /// `T_φ / r²`, likewise.
@@ -22,26 +28,41 @@ pub(super) struct Compliances {
     pub vertical: Interval,
     /// Bending and torsional compliance of a leg bar of length `L_b`.
     pub leg: [Interval; 2],
-    /// Bending and torsional compliance of the platform bar.
-    pub platform: [Interval; 2],
-    /// `r / L_b`.
+}
+
+/// Compliances of a platform bar, as multiples of the same units.
+pub(super) struct PlatformCompliances {
+    /// Axial compliance divided by `(r_i/r)²`.
+    pub axial: Interval,
+    /// A third of the bending compliance, for moments as multiples of `L_b`.
+    pub bending: Interval,
+    /// Compliance if the leg's line passes through `C_i` and `P`.
+    pub base: Interval,
+    /// Additional compliance per squared moment about `P` of a line through `C_i`, as a multiple of `r`.
+    pub moment: Interval,
+    /// Bending and torsional compliance out of the plane.
+    pub vertical: [Interval; 2],
+    /// `r_i / L_b`.
     pub radius: Interval,
+    /// `r / r_i`.
+    pub per_multiple: Interval,
 }
 
 impl Compliances {
-    pub fn new<L: Leg>(model: &Model, design: &Design) -> Result<Self, CertifyError> {
+    pub fn new(model: &Model, design: &Design) -> Result<Self, CertifyError> {
         let exactly = Interval::exactly;
         let one = exactly(1.0);
         let material = &model.material;
         let (radius, link) = (exactly(design.platform_radius), exactly(design.link_length));
+        let proximal = exactly(design.proximal_length);
         let sections = &model.sections;
         let leg = per_length(material, &sections.legs, design.leg_bar_radius);
         let platform = per_length(material, &sections.platform, design.platform_bar_radius);
-        let actuator = one / exactly(model.actuators.of(L::ACTUATOR));
+        let actuator = one / exactly(model.actuators.of(design.architecture.actuator()));
         // The transmission of a revolute actuator is a lever.
-        let actuator = match L::ACTUATOR {
-            Actuator::Prismatic => actuator,
-            Actuator::Revolute => actuator * link.square(),
+        let actuator = match design.architecture.actuator() {
+            JointKind::Prismatic => actuator,
+            JointKind::Revolute => actuator * link.square(),
         };
         // Units near the values, so that products neither overflow nor underflow. They are exact numbers.
         let unit = exactly((actuator + link * leg[0] + radius * platform[0]).upper);
@@ -53,17 +74,28 @@ impl Compliances {
         let thresholds = &model.thresholds;
         Ok(Self {
             actuator: actuator / unit,
-            distal_axial: link * leg[0] / unit,
-            proximal_axial: link * leg[0] / unit,
-            proximal_bending: link * link.square() * leg[1] / exactly(3.0) / unit,
-            platform_base: radius * platform[0] / unit,
-            platform_moment: (radius * radius.square() * platform[1] / exactly(3.0) - radius * platform[0]) / unit,
+            leg_axial: link * leg[0] / unit,
+            leg_bending: link * link.square() * leg[1] / exactly(3.0) / unit,
+            proximal_axial: link.square() / proximal * leg[0] / unit,
+            proximal_bending: proximal * link.square() * leg[1] / exactly(3.0) / unit,
+            platform: model.legs.geometry.platform_radii.map(|multiple| {
+                let multiple = exactly(multiple);
+                let length = radius * multiple;
+                PlatformCompliances {
+                    axial: radius / multiple * platform[0] / unit,
+                    bending: length * link.square() * platform[1] / exactly(3.0) / unit,
+                    base: length * platform[0] / unit,
+                    moment: (length * radius.square() * platform[1] / exactly(3.0) - radius / multiple * platform[0])
+                        / unit,
+                    vertical: [length * platform[1] / bend, length * platform[2] / bend],
+                    radius: length / link,
+                    per_multiple: one / multiple,
+                }
+            }),
             in_plane: exactly(thresholds.k_xy) * unit,
             rotation: exactly(thresholds.k_phi_z) * unit / radius.square(),
             vertical: exactly(thresholds.k_z) * bend * link.square(),
             leg: [link * leg[1] / bend, link * leg[2] / bend],
-            platform: [radius * platform[1] / bend, radius * platform[2] / bend],
-            radius: radius / link,
         })
     }
 }

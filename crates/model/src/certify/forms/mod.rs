@@ -11,10 +11,10 @@ use clearance::{MemberBoxes, Separations};
 use compliances::Compliances;
 
 use super::CertifyError;
-use crate::enclosure::{Interval, LegEnclosure, PoseEnclosure, TaylorModel, VARIABLES, cross, dot};
+use crate::enclosure::{Interval, PoseEnclosure, TaylorModel, VARIABLES, cross, dot};
 use crate::evaluation::{Constraint, Model};
 use crate::kinematics::CharacteristicLength;
-use crate::mechanism::{Design, Leg};
+use crate::mechanism::{AnyLeg, Design, Leg, LegEnclosure, LegFrameEnclosure};
 use crate::spatial::{LEGS, Pose};
 
 /// Which constraints are proved on a box, and therefore on every part of it.
@@ -113,30 +113,31 @@ impl Enclosures {
 }
 
 /// The constraints of one design, prepared for many boxes.
-pub(super) struct Forms<'a, L> {
+pub(super) struct Forms<'a> {
     /// Sign of `det A` at the home pose.
     sign: f64,
     design: &'a Design,
     model: &'a Model,
+    frames: [LegFrameEnclosure; LEGS],
     compliance: Compliances,
     /// `r / ℓ`.
     to_length: Interval,
     /// What g7 needs, if the study requires a clearance.
     separations: Option<Separations>,
-    leg: std::marker::PhantomData<L>,
 }
 
-impl<'a, L: Leg> Forms<'a, L> {
+impl<'a> Forms<'a> {
     /// Prepares the forms of a design; the sign of `det A` counts as positive.
     pub fn new(model: &'a Model, design: &'a Design) -> Result<Self, CertifyError> {
+        let frames = [0, 1, 2].map(|index| LegFrameEnclosure::new(design, &model.legs.geometry, index));
         Ok(Self {
             sign: 1.0,
             design,
             model,
-            compliance: Compliances::new::<L>(model, design)?,
-            to_length: Interval::exactly(design.platform_radius) / characteristic_length::<L>(model, design),
-            separations: Separations::new::<L>(model, design),
-            leg: std::marker::PhantomData,
+            compliance: Compliances::new(model, design)?,
+            to_length: Interval::exactly(design.platform_radius) / characteristic_length(model, design, &frames),
+            separations: Separations::new(model, design),
+            frames,
         })
     }
 
@@ -169,8 +170,8 @@ impl<'a, L: Leg> Forms<'a, L> {
         separate: fn(&Separations, &MemberBoxes, &mut Enclosures),
     ) -> Enclosures {
         let mut found = Enclosures::new(proved);
-        let legs: [LegEnclosure; LEGS] = [0, 1, 2].map(|index| L::enclose(self.design, &self.model.legs, index, pose));
-        for reach in legs.iter().flat_map(|leg| leg.reach) {
+        let legs = enclose_legs(self.model, self.design, &self.frames, pose);
+        for reach in legs.iter().flat_map(|leg| leg.chain.reach) {
             found.push(Constraint::Reach, reach);
             found.is_complete &= reach.is_positive();
         }
@@ -182,7 +183,11 @@ impl<'a, L: Leg> Forms<'a, L> {
             if let Some(separations) = &self.separations
                 && found.needs(Constraint::Clearance)
             {
-                separate(separations, &separations.lay_out::<L>(pose, &legs), &mut found);
+                separate(
+                    separations,
+                    &separations.lay_out(self.design, &self.frames, pose, &legs),
+                    &mut found,
+                );
             }
             let has_values = found.iter().all(|(_, value)| !value.range()[0].is_nan());
             found.is_complete = has_values;
@@ -227,6 +232,18 @@ impl<'a, L: Leg> Forms<'a, L> {
     }
 }
 
+/// Encloses the legs of a design over a box of poses.
+fn enclose_legs(
+    model: &Model,
+    design: &Design,
+    frames: &[LegFrameEnclosure; LEGS],
+    pose: &PoseEnclosure,
+) -> [LegEnclosure; LEGS] {
+    frames
+        .each_ref()
+        .map(|frame| AnyLeg::enclose(frame, design, &model.legs, pose))
+}
+
 /// The two legs after leg `i`, in turn.
 fn others(i: usize) -> [usize; 2] {
     [(i + 1) % LEGS, (i + 2) % LEGS]
@@ -242,7 +259,7 @@ fn turn(legs: &[LegEnclosure; LEGS], i: usize) -> TaylorModel {
 ///
 /// The isotropic length is the largest of a finite set: the moments at the orientations of the reference grid with `P` at `O`. An
 /// orientation of which it is not known whether it is reached may or may not count.
-fn characteristic_length<L: Leg>(model: &Model, design: &Design) -> Interval {
+fn characteristic_length(model: &Model, design: &Design, frames: &[LegFrameEnclosure; LEGS]) -> Interval {
     let platform = Interval::exactly(design.platform_radius);
     match model.characteristic_length {
         CharacteristicLength::PlatformRadius => platform,
@@ -255,8 +272,8 @@ fn characteristic_length<L: Leg>(model: &Model, design: &Design) -> Interval {
             for k in 0..grid.orientations() {
                 let phi = Interval::radians(k as f64 * grid.phi_step_deg());
                 let pose = PoseEnclosure::point([Interval::exactly(0.0); 2], phi);
-                let legs = [0, 1, 2].map(|index| L::enclose(design, &model.legs, index, &pose));
-                let mut limits = legs.iter().flat_map(|leg| leg.reach).map(|limit| limit.range());
+                let legs = enclose_legs(model, design, frames, &pose);
+                let mut limits = legs.iter().flat_map(|leg| leg.chain.reach).map(|limit| limit.range());
                 if limits.clone().any(|[_, upper]| upper < 0.0) {
                     continue;
                 }

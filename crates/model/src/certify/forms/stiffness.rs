@@ -1,9 +1,9 @@
 //! Forms of the constraints on stiffness, g4, g5 and g6 (docs/model.md, section 13.3).
 
 use super::{Enclosures, Forms, others, turn};
-use crate::enclosure::{Interval, LegEnclosure, PlanarModel, TaylorModel, dot};
+use crate::enclosure::{Interval, PlanarModel, TaylorModel, dot};
 use crate::evaluation::Constraint;
-use crate::mechanism::Leg;
+use crate::mechanism::LegEnclosure;
 use crate::spatial::LEGS;
 use crate::stiffness::StiffnessDefinition;
 
@@ -18,12 +18,12 @@ struct AlongLines {
     product: TaylorModel,
 }
 
-impl<L: Leg> Forms<'_, L> {
+impl Forms<'_> {
     /// g4, g5 and g6, as the study defines the stiffness values.
     pub(super) fn enclose_stiffness(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
         let definition = self.model.stiffness_definition;
         if self.is_required(Constraint::StiffnessXy, found) || self.is_required(Constraint::StiffnessPhiZ, found) {
-            let one = legs.map(|leg| self.along_line(&leg));
+            let one = [0, 1, 2].map(|i| self.along_line(&legs[i], i));
             let pairs = [one[1] * one[2], one[2] * one[0], one[0] * one[1]];
             let along = AlongLines {
                 one,
@@ -45,7 +45,7 @@ impl<L: Leg> Forms<'_, L> {
 
     /// Whether a stiffness value has a threshold that is not proved yet.
     fn is_required(&self, constraint: Constraint, found: &Enclosures) -> bool {
-        constraint.threshold(self.design, &self.model.thresholds) > 0.0 && found.needs(constraint)
+        constraint.least(&self.model.thresholds) > 0.0 && found.needs(constraint)
     }
 
     /// g4 and g6 for the entries of `K`. With `T` the threshold, `k_xy > T` where `(λ₁ − T)(λ₂ − T) > 0` and `λ₁ + λ₂ > 2T`.
@@ -99,12 +99,12 @@ impl<L: Leg> Forms<'_, L> {
     /// g5 for the entry of `K`, unless the stiffness of one leg alone suffices: those of the others are positive, and no quotient is
     /// needed for one.
     fn enclose_vertical(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
-        let first = self.vertical(&legs[0]);
+        let first = self.vertical(&legs[0], 0);
         if (first[0] - first[1].scaled(self.compliance.vertical)).is_positive() {
             return;
         }
         let mut stiffness = TaylorModel::constant(-self.compliance.vertical);
-        for [minor, determinant] in [first, self.vertical(&legs[1]), self.vertical(&legs[2])] {
+        for [minor, determinant] in [first, self.vertical(&legs[1], 1), self.vertical(&legs[2], 2)] {
             stiffness = stiffness + minor * determinant.reciprocal();
         }
         found.push(Constraint::StiffnessZ, stiffness);
@@ -115,8 +115,8 @@ impl<L: Leg> Forms<'_, L> {
     fn enclose_vertical_reciprocal(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
         if self.model.thresholds.k_z > 0.0 {
             let mut stiffness = [TaylorModel::exactly(0.0); 6];
-            for leg in legs {
-                let compliance = self.bending(leg);
+            for (index, leg) in legs.iter().enumerate() {
+                let compliance = self.bending(leg, index);
                 let cofactors = cofactors(&compliance);
                 let to_inverse = determinant(&compliance, &cofactors).reciprocal();
                 for (sum, cofactor) in stiffness.iter_mut().zip(cofactors) {
@@ -135,43 +135,46 @@ impl<L: Leg> Forms<'_, L> {
 
     /// Encloses the compliance of a leg out of the plane at `P` in base axes: displacement along z, then the rotations, with lengths
     /// in units of `L_b`.
-    fn bending(&self, leg: &LegEnclosure) -> Symmetric {
+    fn bending(&self, leg: &LegEnclosure, index: usize) -> Symmetric {
         let compliance = &self.compliance;
-        let radius = compliance.radius;
-        let (one, zero) = (TaylorModel::exactly(1.0), TaylorModel::exactly(0.0));
-        let normal = perp(leg.u);
+        let platform = &compliance.platform[index];
+        let zero = TaylorModel::exactly(0.0);
+        let chain = &leg.chain;
+        let normal = perp(chain.tangent);
         let from_leg = |along: TaylorModel, across: TaylorModel| -> PlanarModel {
-            [0, 1].map(|k| leg.u[k] * along + normal[k] * across)
+            [0, 1].map(|k| chain.tangent[k] * along + normal[k] * across)
         };
         let mut sum = [zero; 6];
-        // The platform bar runs from C to P, against the arm `along u − moment u⊥`.
+        // The platform bar runs from C to P, against the arm `along t − across t⊥`.
+        let [along, across] = [leg.along, leg.across].map(|part| part.scaled(platform.per_multiple));
         add_bar(
             &mut sum,
             &BentBar {
-                section: compliance.platform.map(TaylorModel::constant),
-                direction: from_leg(-leg.along, leg.moment),
-                length: TaylorModel::constant(radius),
+                section: platform.vertical.map(TaylorModel::constant),
+                direction: from_leg(-along, across),
+                length: TaylorModel::constant(platform.radius),
                 tip: [zero, zero],
             },
         );
-        let (along, across) = (leg.along.scaled(radius), -leg.moment.scaled(radius));
+        let (along, across) = (along.scaled(platform.radius), -across.scaled(platform.radius));
         add_bar(
             &mut sum,
             &BentBar {
-                section: compliance.leg.map(|part| leg.distal.scaled(part)),
-                direction: leg.u,
-                length: leg.distal,
+                section: compliance.leg.map(|part| chain.beam.scaled(part)),
+                direction: chain.tangent,
+                length: chain.signed_beam,
                 tip: from_leg(along, across),
             },
         );
-        if let Some([x, y]) = leg.proximal {
+        if let Some(bar) = &chain.proximal {
+            let [x, y] = bar.direction;
             add_bar(
                 &mut sum,
                 &BentBar {
-                    section: compliance.leg.map(TaylorModel::constant),
+                    section: compliance.leg.map(|part| bar.length.scaled(part)),
                     direction: from_leg(x, y),
-                    length: one,
-                    tip: from_leg(along - leg.distal, across),
+                    length: bar.offset,
+                    tip: from_leg(along - chain.offset, across),
                 },
             );
         }
@@ -179,43 +182,61 @@ impl<L: Leg> Forms<'_, L> {
     }
 
     /// Encloses the compliance along the line of a leg.
-    fn along_line(&self, leg: &LegEnclosure) -> TaylorModel {
+    fn along_line(&self, leg: &LegEnclosure, index: usize) -> TaylorModel {
         let compliance = &self.compliance;
-        let sum = leg.transmission_square.scaled(compliance.actuator)
-            + leg.distal.scaled(compliance.distal_axial)
-            + leg
-                .moment
-                .squared()
-                .scaled(compliance.platform_moment)
-                .plus(compliance.platform_base);
-        match leg.proximal {
-            Some([x, y]) => {
-                sum + x.squared().scaled(compliance.proximal_axial) + y.squared().scaled(compliance.proximal_bending)
-            }
+        let platform = &compliance.platform[index];
+        let chain = &leg.chain;
+        let actuator = leg.transmission_square.scaled(compliance.actuator);
+        let Some(loads) = &leg.loads else {
+            let sum = actuator
+                + chain.beam.scaled(compliance.leg_axial)
+                + leg.moment.squared().scaled(platform.moment).plus(platform.base);
+            return match &chain.proximal {
+                Some(bar) => {
+                    let [x, y] = bar.vector.map(|part| part.squared());
+                    sum + x.scaled(compliance.proximal_axial) + y.scaled(compliance.proximal_bending)
+                }
+                None => sum,
+            };
+        };
+        let of_bar = |[force, first, second]: [TaylorModel; 3], axial: Interval, bending: Interval| {
+            let squares = first.squared() + first * second + second.squared();
+            force.squared().scaled(axial) + squares.scaled(bending)
+        };
+        let of_leg = |load| of_bar(load, compliance.leg_axial, compliance.leg_bending);
+        let sum =
+            actuator + chain.beam * of_leg(loads.distal) + of_bar(loads.platform, platform.axial, platform.bending);
+        match &chain.proximal {
+            Some(bar) => sum + bar.length * of_leg(loads.proximal),
             None => sum,
         }
     }
 
-    /// Encloses `det S_φφ` and `det S` of a leg out of the plane, at `C_i` in axes along `u_i`, with lengths in units of `L_b`
-    /// (docs/model.md, section 4.4).
-    fn vertical(&self, leg: &LegEnclosure) -> [TaylorModel; 2] {
+    /// Encloses `det S_φφ` and `det S` of a leg out of the plane, at `C_i` in axes along the distal bar, with lengths in units of
+    /// `L_b` (docs/model.md, section 4.4).
+    fn vertical(&self, leg: &LegEnclosure, index: usize) -> [TaylorModel; 2] {
         let compliance = &self.compliance;
-        let ([b1, t1], [b2, t2], radius) = (compliance.leg, compliance.platform, compliance.radius);
+        let platform = &compliance.platform[index];
+        let chain = &leg.chain;
+        let ([b1, t1], [b2, t2], radius) = (compliance.leg, platform.vertical, platform.radius);
         let third = Interval::exactly(1.0) / Interval::exactly(3.0);
         let half = Interval::exactly(0.5);
         let constant = TaylorModel::constant;
         // Direction of the platform bar, from C to P, in the axes of the distal bar.
-        let (cosine, sine) = (-leg.along, leg.moment);
-        let length = leg.distal;
+        let (cosine, sine) = (
+            -leg.along.scaled(platform.per_multiple),
+            leg.across.scaled(platform.per_multiple),
+        );
+        let length = chain.beam;
         let (bend, twist) = (length.scaled(b1), length.scaled(t1));
         let lift = (bend * length.squared())
             .scaled(third)
             .plus(b2 * radius.square() * third);
-        let p = (bend * length).times(0.5);
+        let p = (bend * chain.signed_beam).times(0.5);
         let q = constant(half * b2 * radius);
         let square = cosine.squared();
         let (bend2, twist2) = (constant(b2), constant(t2));
-        match leg.proximal {
+        match &chain.proximal {
             None => {
                 let minor = [(twist + bend2) * (bend + twist2), (twist - bend) * (bend2 - twist2)];
                 let (pp, qq) = (p.squared(), q.squared());
@@ -229,17 +250,24 @@ impl<L: Leg> Forms<'_, L> {
                     lift * minor[0] - tilt[0] + cosine * tilt[1] + square * (lift * minor[1] - tilt[2]),
                 ]
             }
-            Some([x, y]) => {
-                let middle = x.plus(half);
+            Some(bar) => {
+                let [x, y] = bar.direction;
+                // Where the distal bar ends, in the axes of the proximal bar, and the middle of that bar.
+                let (ahead, aside) = (chain.signed_beam * x, chain.signed_beam * y);
+                let half_bar = bar.offset.times(0.5);
+                let middle = ahead + half_bar;
                 let twelfth = Interval::exactly(1.0) / Interval::exactly(12.0);
+                let (bend_a, twist_a) = (bar.length.scaled(b1), bar.length.scaled(t1));
                 let (xx_bar, yy_bar, xy_bar) = (x.squared(), y.squared(), x * y);
                 let (long, wide, both) = (square, sine.squared(), cosine * sine);
-                let lift = lift + length.squared() * (bend * middle.squared().plus(twelfth) + twist * yy_bar);
-                let tilt_x = length * y * ((bend - twist) * x + bend.times(0.5)) - q * sine;
-                let tilt_y = q * cosine - p - length * (twist * yy_bar + bend * middle * x);
-                let xx = twist * xx_bar + bend * yy_bar + twist + twist2 * long + bend2 * wide;
-                let xy = (twist - bend) * xy_bar + (twist2 - bend2) * both;
-                let yy = twist * yy_bar + bend * xx_bar + bend + twist2 * wide + bend2 * long;
+                let lift = lift
+                    + bend_a * (middle.squared() + bar.offset.squared().scaled(twelfth))
+                    + twist_a * aside.squared();
+                let tilt_x = y * ((bend_a - twist_a) * ahead + half_bar * bend_a) - q * sine;
+                let tilt_y = q * cosine - p - (twist_a * y * aside + bend_a * middle * x);
+                let xx = twist_a * xx_bar + bend_a * yy_bar + twist + twist2 * long + bend2 * wide;
+                let xy = (twist_a - bend_a) * xy_bar + (twist2 - bend2) * both;
+                let yy = twist_a * yy_bar + bend_a * xx_bar + bend + twist2 * wide + bend2 * long;
                 let minor = xx * yy - xy.squared();
                 let tilt = tilt_x.squared() * yy - (tilt_x * tilt_y * xy).times(2.0) + tilt_y.squared() * xx;
                 [minor, lift * minor - tilt]
@@ -252,8 +280,9 @@ impl<L: Leg> Forms<'_, L> {
 struct BentBar {
     /// Bending and torsional compliance, `L/(EI)` and `L/(GI_x)`.
     section: [TaylorModel; 2],
-    /// Unit vector towards its tip.
+    /// Unit vector along it.
     direction: PlanarModel,
+    /// Distance along this vector to its tip.
     length: TaylorModel,
     /// Tip, relative to `P`.
     tip: PlanarModel,

@@ -1,0 +1,323 @@
+//! The interface of a chain: three joints from the base to the platform, whichever of them is driven.
+
+use glam::DVec2;
+
+use super::{
+    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegSettings, MemberKind, Members, Shortfall, Travel,
+};
+use crate::enclosure::{MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel};
+use crate::lanes::{Planar, Real};
+use crate::spatial::{Pose, Rotation};
+
+/// Kind of a joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum JointKind {
+    /// Prismatic joint, with the joint value in metres and the stiffness of its actuator in N/m.
+    Prismatic,
+    /// Revolute joint about z, with the joint value in radians and the stiffness of its actuator in N·m/rad.
+    Revolute,
+}
+
+impl JointKind {
+    /// Returns the unit of the joint value.
+    pub fn unit(self) -> &'static str {
+        match self {
+            JointKind::Prismatic => "m",
+            JointKind::Revolute => "rad",
+        }
+    }
+}
+
+/// Point of a leg at which a revolute joint can be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum JointPoint {
+    /// `A_i`.
+    A,
+    /// `B_i`; a telescopic leg has `B_i = A_i`.
+    B,
+    /// `C_i`.
+    C,
+}
+
+/// What is known of a chain without any lengths.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChainDescription {
+    /// Letters of the joints from base to platform, for example `PRR`.
+    pub name: &'static str,
+    /// Kinds of the joints.
+    pub joints: [JointKind; 3],
+    /// Points at which the joints are; that of a prismatic joint is where its actuator is drawn.
+    pub points: [JointPoint; 3],
+    /// Whether the inverse kinematics has two solutions, so that a working mode has to be set.
+    pub has_working_modes: bool,
+    /// Whether a bar, which bends, leads from `A_i` to `B_i`.
+    pub has_proximal_bar: bool,
+    /// Kind of the proximal member (the one before the distal member), for chains that have one.
+    pub proximal: Option<MemberKind>,
+    /// Kind of the distal member, which leads to the platform.
+    pub distal: MemberKind,
+    /// Variables beyond the five that every architecture has, in the order of [`FURTHER_VARIABLES`](super::FURTHER_VARIABLES).
+    pub variables: &'static [DesignVariable],
+}
+
+/// A bar in the plane at a posture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BarPosture {
+    /// Unit vector along the bar.
+    pub direction: DVec2,
+    /// Distance from its proximal to its distal end along this vector \[m\], which is negative on the far side of a guide.
+    pub offset: f64,
+}
+
+/// Points and directions of a chain at a pose that it reaches, in the base frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChainPosture {
+    /// `A_i` \[m\].
+    pub a: DVec2,
+    /// `B_i` \[m\].
+    pub b: DVec2,
+    /// `C_i` \[m\].
+    pub c: DVec2,
+    /// Bar from `A_i` to `B_i`, for chains that have one.
+    pub proximal: Option<BarPosture>,
+    /// Bar from `B_i` to `C_i`.
+    pub distal: BarPosture,
+    /// Length of the distal bar in the beam model \[m\], ≥ 0.
+    pub beam: f64,
+    /// Unit vectors along which the prismatic joints move the platform.
+    pub guides: [Option<DVec2>; 3],
+    /// Limit margin: smallest distance to a joint limit or to the end of reach \[m\], ≥ 0.
+    pub limit_margin: f64,
+}
+
+/// A posture, and what is wrong with it if a joint is beyond a limit.
+pub type Solved = (ChainPosture, Option<Shortfall>);
+
+/// What a leg with a locked joint requires of the platform.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LockedLeg {
+    /// A point of the platform, in its frame \[m\].
+    pub platform: DVec2,
+    /// A point of the base \[m\].
+    pub base: DVec2,
+    /// How they are bound to each other.
+    pub kind: LockedKind,
+}
+
+/// How a point of the platform and a point of the base are bound to each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LockedKind {
+    /// They are this far apart \[m\].
+    Circle(f64),
+    /// The point of the platform stays on a line of the base through the other point; its normal in the base frame.
+    BaseLine(DVec2),
+    /// The point of the base stays on a line of the platform through the other point; its normal in the platform frame.
+    PlatformLine(DVec2),
+}
+
+impl LockedLeg {
+    /// Returns the radius of the circle, 0 for a line.
+    pub fn radius(&self) -> f64 {
+        match self.kind {
+            LockedKind::Circle(radius) => radius,
+            _ => 0.0,
+        }
+    }
+
+    /// Returns the normal of the line, zero for a circle.
+    pub fn normal(&self) -> DVec2 {
+        match self.kind {
+            LockedKind::BaseLine(normal) | LockedKind::PlatformLine(normal) => normal,
+            LockedKind::Circle(_) => DVec2::ZERO,
+        }
+    }
+
+    /// Returns by how much a pose misses the constraint, and the derivatives with respect to `x`, `y` and `φ`, with lengths in units
+    /// of `scale`; `turn` is the rotation of the pose.
+    pub fn constraint(&self, pose: &Pose, turn: &Rotation, scale: f64) -> (f64, [f64; 3]) {
+        let arm = turn.apply(self.platform) / scale;
+        let way = (pose.position - self.base) / scale;
+        match self.kind {
+            LockedKind::Circle(radius) => {
+                let apart = way + arm;
+                let error = apart.length_squared() - (radius / scale) * (radius / scale);
+                (error, [2.0 * apart.x, 2.0 * apart.y, 2.0 * apart.dot(arm.perp())])
+            }
+            LockedKind::BaseLine(normal) => (normal.dot(way + arm), [normal.x, normal.y, normal.dot(arm.perp())]),
+            LockedKind::PlatformLine(normal) => {
+                let turned = turn.apply(normal);
+                let error = -turned.dot(way) - normal.dot(self.platform) / scale;
+                (error, [-turned.x, -turned.y, -turned.perp().dot(way)])
+            }
+        }
+    }
+}
+
+/// Bar from `A_i` to `B_i` at several poses at once. Vectors are given in the leg's distal axes: the x axis leads from `B_i` to
+/// `C_i`.
+#[derive(Clone, Copy)]
+pub struct ProximalLanes<V> {
+    /// Vector from `A_i` to `B_i` \[m\].
+    pub vector: Planar<V>,
+    /// Unit vector along the bar.
+    pub direction: Planar<V>,
+    /// Length of the bar \[m\].
+    pub length: V,
+    /// Distance from `A_i` to `B_i` along `direction`, as a multiple of `L_a`.
+    pub share: V,
+    /// Length of the distal bar in the beam model with the sign of its offset, as a multiple of `L_a`.
+    pub distal_share: V,
+}
+
+/// A chain at several poses at once; valid in the lanes where it reaches the pose. The distal axes have their x axis along the
+/// distal bar, from `B_i` to `C_i`.
+#[derive(Clone, Copy)]
+pub struct ChainLanes<V: Real> {
+    /// Unit vector along the distal bar, in the base frame.
+    pub tangent: Planar<V>,
+    /// `(C_i − P) · tangent` \[m\].
+    pub along: V,
+    /// `(C_i − P) × tangent` \[m\].
+    pub across: V,
+    /// Distance from `B_i` to `C_i` along `tangent` \[m\].
+    pub offset: V,
+    /// Length of the distal bar in the beam model \[m\], ≥ 0.
+    pub beam: V,
+    /// The same length with the sign of `offset`.
+    pub signed_beam: V,
+    /// Bar from `A_i` to `B_i`, for chains that have one.
+    pub proximal: Option<ProximalLanes<V>>,
+    /// Unit vectors along which the prismatic joints move the platform, in the distal axes.
+    pub guides: [Option<Planar<V>>; 3],
+    /// Limit margin: smallest distance to a joint limit or to the end of reach \[m\]; not above 0 where the chain does not reach the
+    /// pose.
+    pub limit_margin: V,
+    /// Lanes where the chain reaches the pose.
+    pub reachable: V::Mask,
+}
+
+/// Largest number of functions that tell whether a chain reaches a pose.
+pub const REACH_FORMS: usize = 4;
+
+/// A bar from `A_i` to `B_i` over a box of poses, in the distal axes and in multiples of `L_b`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProximalEnclosure {
+    /// Vector from `A_i` to `B_i`.
+    pub vector: PlanarModel,
+    /// Unit vector along the bar.
+    pub direction: PlanarModel,
+    /// Length, ≥ 0.
+    pub length: TaylorModel,
+    /// Distance from `A_i` to `B_i` along `direction`.
+    pub offset: TaylorModel,
+}
+
+/// A chain over a box of poses; lengths are multiples of `L_b` unless stated otherwise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChainEnclosure {
+    /// Each of these is positive exactly where the chain reaches the pose within its limits; those that do not exist are 1.
+    pub reach: [TaylorModel; REACH_FORMS],
+    /// Unit vector along the distal bar, in base axes.
+    pub tangent: PlanarModel,
+    /// Distance from `B_i` to `C_i` along `tangent`.
+    pub offset: TaylorModel,
+    /// Length of the distal bar in the beam model, ≥ 0.
+    pub beam: TaylorModel,
+    /// The same length with the sign of `offset`.
+    pub signed_beam: TaylorModel,
+    /// Bar from `A_i` to `B_i`, for chains that have one.
+    pub proximal: Option<ProximalEnclosure>,
+    /// Unit vectors along which the prismatic joints move the platform, in the distal axes.
+    pub guides: [Option<PlanarModel>; 3],
+    /// Square of the lever of the first joint about the line of the distal bar, where it has a narrower form than the general one.
+    pub lever_square: Option<TaylorModel>,
+}
+
+/// Distal bar of a leg, as the members of the leg need it.
+#[derive(Clone, Copy)]
+pub struct DistalLanes<V> {
+    /// Unit vector along the bar, in the base frame.
+    pub tangent: Planar<V>,
+    /// Distance from `B_i` to `C_i` along it \[m\].
+    pub offset: V,
+}
+
+/// Two lengths of which the first must not be smaller than the second, or `P` cannot reach `O` (g1).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Assembly {
+    /// What the leg and the platform bridge together \[m\].
+    pub value: f64,
+    /// What they have to bridge \[m\].
+    pub threshold: f64,
+}
+
+/// A chain of three joints; a value holds the constants of one leg of one design.
+pub trait Chain: Copy + std::fmt::Debug + PartialEq + Send + Sync {
+    /// What is known of the chain without any lengths.
+    const DESCRIPTION: ChainDescription;
+
+    /// Creates the chain of a leg in its frame.
+    fn new(frame: LegFrame, design: &Design, settings: &LegSettings) -> Self;
+
+    /// Returns the frame.
+    fn frame(&self) -> &LegFrame;
+
+    /// Solves the inverse kinematics with `C_i` at `c` in the base frame and `arm` = `C_i − P` \[m\] (docs/model.md, section 2.5), and
+    /// tells which limit a joint is beyond, if one is.
+    ///
+    /// # Errors
+    /// Returns the [`Shortfall`] if the working mode has no real solution, or if a direction of the chain is undefined.
+    fn solve(&self, c: DVec2, arm: DVec2) -> Result<Solved, Shortfall>;
+
+    /// Returns what the leg requires of the platform while joint `driven` is locked at a value \[m or rad\]
+    /// (docs/model.md, section 2.9).
+    fn locked(&self, driven: usize, value: f64) -> LockedLeg;
+
+    /// Solves the inverse kinematics at several poses at once, with `C_i` at `position + arm`.
+    ///
+    /// It is optimized for speed and may work in the chain's own axes. It rounds differently from [`Chain::inverse`] and does not give
+    /// the reason why a pose is not reached.
+    fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> ChainLanes<V>;
+
+    /// Encloses the chain of a leg over a box of poses.
+    ///
+    /// The formulas are written apart from those of [`Chain::lanes`], so that each checks the other.
+    fn enclose(
+        frame: &LegFrameEnclosure,
+        design: &Design,
+        settings: &LegSettings,
+        pose: &PoseEnclosure,
+    ) -> ChainEnclosure;
+
+    /// Returns the axes of the members at several poses at once, with the end of the leg at `c`.
+    fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V>;
+
+    /// Encloses the axes of the members over a box of poses, relative to `P` and in multiples of `L_b`: `anchor` is `A_i`, and `tip`
+    /// is `C_i`.
+    fn enclose_members(
+        frame: &LegFrameEnclosure,
+        design: &Design,
+        settings: &LegSettings,
+        chain: &ChainEnclosure,
+        anchor: PlanarModel,
+        tip: PlanarModel,
+    ) -> MembersEnclosure;
+
+    /// Returns the values of the three joints \[m or rad\], angles in (−π, π].
+    fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3];
+
+    /// Returns the smallest and largest values of the three joints \[m\]; `None` for a joint without limits.
+    fn joint_limits(&self) -> [Option<[f64; 2]>; 3];
+
+    /// Returns the rigid bodies of the leg, from the base to the platform, with the `driven` joint marked.
+    fn bodies(&self, posture: &ChainPosture, arm: DVec2, driven: usize) -> Vec<LegBody>;
+
+    /// Returns the travels of the prismatic joints.
+    fn travels(&self, posture: &ChainPosture) -> Vec<Travel>;
+
+    /// Returns the lower and upper corner of an axis-aligned box that contains every point that the end of the leg can reach \[m\].
+    fn reach_box(&self) -> [DVec2; 2];
+
+    /// Returns what g1 compares.
+    fn assembly(&self) -> Assembly;
+}

@@ -1,0 +1,253 @@
+//! PPR: slider at `B_i = A_i + ρ_i e_i` on a rail of the base, which carries a guide: `C_i = B_i + σ_i e'_i` (docs/model.md,
+//! section 2.8).
+
+use glam::DVec2;
+
+use super::{
+    Within, absolute, angle_of, assembly_from_rail, enclosed_guide, enclosed_slider, farthest, guide_axis, guide_ends,
+    margin_within, or_far_off, pin, prismatic, slider_body, wrapped,
+};
+use crate::enclosure::{
+    Interval, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, cross as cross_models, difference,
+};
+use crate::lanes::{Planar, Real};
+use crate::mechanism::chain::{
+    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
+    JointPoint, LockedKind, LockedLeg, Solved,
+};
+use crate::mechanism::{
+    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegPart, LegSettings, MemberAxis, MemberKind,
+    Members, Shortfall, Travel,
+};
+use crate::spatial::{Rotation, cross};
+
+/// Chain of a leg with a slider that carries a guide.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PprChain {
+    frame: LegFrame,
+    /// `e'_i`, the direction of the guide on the slider.
+    guide: DVec2,
+    length: f64,
+    travel: [f64; 2],
+}
+
+impl Chain for PprChain {
+    const DESCRIPTION: ChainDescription = ChainDescription {
+        name: "PPR",
+        joints: [JointKind::Prismatic, JointKind::Prismatic, JointKind::Revolute],
+        points: [JointPoint::B, JointPoint::C, JointPoint::C],
+        has_working_modes: false,
+        has_proximal_bar: false,
+        proximal: Some(MemberKind::Slider),
+        distal: MemberKind::Guide,
+        variables: &[DesignVariable::RailAngle, DesignVariable::GuideAngle],
+    };
+
+    fn new(frame: LegFrame, design: &Design, settings: &LegSettings) -> Self {
+        Self {
+            guide: Rotation::by(frame.between_guides).apply(frame.rail),
+            frame,
+            length: design.link_length,
+            travel: settings.geometry.travel(design.link_length),
+        }
+    }
+
+    fn frame(&self) -> &LegFrame {
+        &self.frame
+    }
+
+    fn solve(&self, c: DVec2, _: DVec2) -> Result<Solved, Shortfall> {
+        let LegFrame { anchor, rail, .. } = self.frame;
+        let sine = self.frame.between_guides.y;
+        let chord = c - anchor;
+        let (first, second) = (cross(chord, self.guide) / sine, cross(rail, chord) / sine);
+        let within = Within::limits(first, self.frame.rail_travel).and(Within::limits(second, self.travel));
+        let posture = ChainPosture {
+            a: anchor,
+            b: anchor + rail * first,
+            c,
+            proximal: None,
+            distal: BarPosture {
+                direction: self.guide,
+                offset: second,
+            },
+            beam: second.abs(),
+            guides: [Some(rail), Some(self.guide), None],
+            limit_margin: within.margin,
+        };
+        Ok((posture, within.beyond))
+    }
+
+    fn locked(&self, driven: usize, value: f64) -> LockedLeg {
+        let LegFrame {
+            anchor,
+            rail,
+            platform_joint,
+            ..
+        } = self.frame;
+        let (base, normal) = match driven {
+            0 => (anchor + rail * value, self.guide.perp()),
+            _ => (anchor + self.guide * value, rail.perp()),
+        };
+        LockedLeg {
+            platform: platform_joint,
+            base,
+            kind: LockedKind::BaseLine(normal),
+        }
+    }
+
+    #[inline(always)]
+    fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> ChainLanes<V> {
+        let like = position.x;
+        let (zero, one) = (like.splat(0.0), like.splat(1.0));
+        let rail = Planar::splat(like, self.frame.rail);
+        let tangent = Planar::splat(like, self.guide);
+        let chord = position.plus(arm.minus(Planar::splat(like, self.frame.anchor)));
+        let per_sine = like.splat(1.0 / self.frame.between_guides.y);
+        let (first, second) = (chord.cross(tangent) * per_sine, rail.cross(chord) * per_sine);
+        let within = margin_within(first, self.frame.rail_travel).smaller(margin_within(second, self.travel));
+        let limit_margin = or_far_off(within);
+        let DVec2 { x, y } = self.frame.between_guides;
+        ChainLanes {
+            tangent,
+            along: arm.dot(tangent),
+            across: arm.cross(tangent),
+            offset: second,
+            beam: second.abs(),
+            signed_beam: second,
+            proximal: None,
+            guides: [
+                Some(Planar::splat(like, DVec2::new(x, -y))),
+                Some(Planar::new(one, zero)),
+                None,
+            ],
+            limit_margin,
+            reachable: limit_margin.at_least(zero),
+        }
+    }
+
+    fn enclose(frame: &LegFrameEnclosure, _: &Design, settings: &LegSettings, pose: &PoseEnclosure) -> ChainEnclosure {
+        let (one, zero) = (TaylorModel::exactly(1.0), TaylorModel::exactly(0.0));
+        let rail = frame.rail.map(TaylorModel::constant);
+        let guide = frame.turned_between_guides(rail);
+        let chord = frame.vector(pose);
+        let per_sine = Interval::exactly(1.0) / frame.between_guides[1];
+        let (first, second) = (
+            cross_models(chord, guide).scaled(per_sine),
+            cross_models(rail, chord).scaled(per_sine),
+        );
+        let [from_start, to_end] = frame.within_rail(first.scaled(frame.link));
+        let [lower, upper] = settings.geometry.guide.map(Interval::exactly);
+        let [cosine, sine] = frame.between_guides;
+        ChainEnclosure {
+            reach: [
+                from_start,
+                to_end,
+                second.plus(-lower),
+                TaylorModel::constant(upper) - second,
+            ],
+            tangent: guide,
+            offset: second,
+            beam: absolute(second),
+            signed_beam: second,
+            proximal: None,
+            guides: [
+                Some([TaylorModel::constant(cosine), TaylorModel::constant(-sine)]),
+                Some([one, zero]),
+                None,
+            ],
+            lever_square: None,
+        }
+    }
+
+    fn enclose_members(
+        frame: &LegFrameEnclosure,
+        _: &Design,
+        settings: &LegSettings,
+        chain: &ChainEnclosure,
+        _: PlanarModel,
+        tip: PlanarModel,
+    ) -> MembersEnclosure {
+        let centre = difference(tip, chain.tangent.map(|part| part * chain.offset));
+        let [from_start, to_end, ..] = chain.reach;
+        let travel = settings.geometry.guide.map(Interval::exactly);
+        MembersEnclosure {
+            proximal: Some(enclosed_slider(tip, chain.tangent, chain.offset, frame.rail)),
+            distal: enclosed_guide(centre, chain.tangent, travel),
+            rail: Some([from_start, to_end]),
+        }
+    }
+
+    #[inline(always)]
+    fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
+        let like = c.x;
+        let centre = c.minus(distal.tangent.scaled(distal.offset));
+        let rail = Planar::splat(like, self.frame.rail);
+        let along = centre.minus(Planar::splat(like, self.frame.anchor)).dot(rail);
+        let [lower, upper] = self.frame.rail_travel;
+        Members {
+            proximal: Some(MemberAxis {
+                from: centre,
+                direction: rail,
+                length: like.splat(0.0),
+            }),
+            distal: guide_axis(centre, distal.tangent, self.travel),
+            rail: Some([along - like.splat(lower), like.splat(upper) - along]),
+        }
+    }
+
+    fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3] {
+        [
+            (posture.b - posture.a).dot(self.frame.rail),
+            posture.distal.offset,
+            wrapped(self.frame.orientation(arm) - angle_of(self.frame.rail)),
+        ]
+    }
+
+    fn joint_limits(&self) -> [Option<[f64; 2]>; 3] {
+        [Some(self.frame.rail_travel), Some(self.travel), None]
+    }
+
+    fn bodies(&self, posture: &ChainPosture, arm: DVec2, driven: usize) -> Vec<LegBody> {
+        let [first, second, _] = self.joint_values(posture, arm);
+        let [from, to] = guide_ends(posture.b, self.guide, self.travel);
+        let mut slider = slider_body(&self.frame, posture.b, first, driven == 0);
+        slider.parts.push(LegPart::GuideBar {
+            from,
+            to,
+            kind: MemberKind::Guide,
+        });
+        vec![
+            slider,
+            LegBody {
+                name: "carriage",
+                kind: MemberKind::Guide,
+                origin: posture.c,
+                axis: self.guide,
+                joint: prismatic(second, self.travel, driven == 1),
+                parts: vec![
+                    LegPart::Carriage {
+                        at: posture.c,
+                        axis: self.guide,
+                        on: MemberKind::Guide,
+                        actuated: driven == 1,
+                    },
+                    pin(posture.c, driven == 2, [MemberKind::Guide, MemberKind::PlatformBar]),
+                ],
+            },
+        ]
+    }
+
+    fn travels(&self, _: &ChainPosture) -> Vec<Travel> {
+        vec![Travel::of_rail(&self.frame)]
+    }
+
+    fn reach_box(&self) -> [DVec2; 2] {
+        super::box_about(self.frame.rail_ends(), farthest(self.travel))
+    }
+
+    fn assembly(&self) -> Assembly {
+        let reach = self.length.max(farthest(self.travel)) * self.frame.between_guides.y;
+        assembly_from_rail(&self.frame, reach)
+    }
+}

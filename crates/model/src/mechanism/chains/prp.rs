@@ -1,0 +1,244 @@
+//! PRP: slider at `B_i = A_i + ρ_i e_i` on a rail of the base, with a carriage that runs on a guide of the platform:
+//! `B_i = C_i + σ_i g_i` (docs/model.md, section 2.8).
+
+use glam::DVec2;
+
+use super::{
+    Within, absolute, angle_of, assembly_from_rail, box_about, carriage_body, enclosed_guide, enclosed_slider,
+    farthest, guide_axis, margin_within, or_far_off, platform_guide_body, slider_body, turned, wrapped,
+};
+use crate::enclosure::{
+    Interval, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, cross as cross_models, dot,
+};
+use crate::lanes::{Planar, Real};
+use crate::mechanism::chain::{
+    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
+    JointPoint, LockedKind, LockedLeg, Solved,
+};
+use crate::mechanism::{
+    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegSettings, MemberAxis, MemberKind, Members,
+    ReachReason, Shortfall, Travel,
+};
+use crate::spatial::cross;
+
+/// Chain of a leg with a slider and a guide on the platform.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PrpChain {
+    frame: LegFrame,
+    guide: f64,
+    travel: [f64; 2],
+}
+
+impl Chain for PrpChain {
+    const DESCRIPTION: ChainDescription = ChainDescription {
+        name: "PRP",
+        joints: [JointKind::Prismatic, JointKind::Revolute, JointKind::Prismatic],
+        points: [JointPoint::B, JointPoint::B, JointPoint::B],
+        has_working_modes: false,
+        has_proximal_bar: false,
+        proximal: Some(MemberKind::Slider),
+        distal: MemberKind::Guide,
+        variables: &[DesignVariable::RailAngle, DesignVariable::PlatformGuideAngle],
+    };
+
+    fn new(frame: LegFrame, design: &Design, settings: &LegSettings) -> Self {
+        Self {
+            frame,
+            guide: design.link_length,
+            travel: settings.geometry.travel(design.link_length),
+        }
+    }
+
+    fn frame(&self) -> &LegFrame {
+        &self.frame
+    }
+
+    fn solve(&self, c: DVec2, arm: DVec2) -> Result<Solved, Shortfall> {
+        let LegFrame { anchor, rail, .. } = self.frame;
+        let guide = self.frame.platform_guide(arm);
+        let turn = cross(guide, rail);
+        if turn == 0.0 {
+            return Err(Shortfall {
+                limit_margin: 0.0,
+                reason: ReachReason::Degenerate,
+            });
+        }
+        let chord = c - anchor;
+        let (first, second) = (cross(guide, chord) / turn, cross(rail, chord) / turn);
+        let within = Within::limits(first, self.frame.rail_travel).and(Within::limits(second, self.travel));
+        let posture = ChainPosture {
+            a: anchor,
+            b: anchor + rail * first,
+            c,
+            proximal: None,
+            distal: BarPosture {
+                direction: -guide,
+                offset: second,
+            },
+            beam: second.abs(),
+            guides: [Some(rail), None, Some(-guide)],
+            limit_margin: within.margin,
+        };
+        Ok((posture, within.beyond))
+    }
+
+    fn locked(&self, driven: usize, value: f64) -> LockedLeg {
+        let LegFrame {
+            anchor,
+            rail,
+            platform_joint,
+            ..
+        } = self.frame;
+        let guide = self.frame.platform_guide(platform_joint);
+        let (platform, base, kind) = match driven {
+            0 => (
+                platform_joint,
+                anchor + rail * value,
+                LockedKind::PlatformLine(guide.perp()),
+            ),
+            _ => (
+                platform_joint + guide * value,
+                anchor,
+                LockedKind::BaseLine(rail.perp()),
+            ),
+        };
+        LockedLeg { platform, base, kind }
+    }
+
+    #[inline(always)]
+    fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> ChainLanes<V> {
+        let like = position.x;
+        let (zero, one) = (like.splat(0.0), like.splat(1.0));
+        let to_unit = like.splat(1.0 / self.frame.arm_length);
+        let guide = turned(arm, self.frame.platform_guide).scaled(to_unit);
+        let rail = Planar::splat(like, self.frame.rail);
+        let chord = position.plus(arm.minus(Planar::splat(like, self.frame.anchor)));
+        let turn = guide.cross(rail);
+        let per_turn = one / turn;
+        let (first, second) = (guide.cross(chord) * per_turn, rail.cross(chord) * per_turn);
+        let within = margin_within(first, self.frame.rail_travel).smaller(margin_within(second, self.travel));
+        let limit_margin = or_far_off(within);
+        let tangent = Planar::new(-guide.x, -guide.y);
+        ChainLanes {
+            tangent,
+            along: arm.dot(tangent),
+            across: arm.cross(tangent),
+            offset: second,
+            beam: second.abs(),
+            signed_beam: second,
+            proximal: None,
+            guides: [
+                Some(Planar::new(tangent.dot(rail), -turn)),
+                None,
+                Some(Planar::new(one, zero)),
+            ],
+            limit_margin,
+            reachable: limit_margin.at_least(zero),
+        }
+    }
+
+    fn enclose(frame: &LegFrameEnclosure, _: &Design, settings: &LegSettings, pose: &PoseEnclosure) -> ChainEnclosure {
+        let (one, zero) = (TaylorModel::exactly(1.0), TaylorModel::exactly(0.0));
+        let guide = frame.guide(pose);
+        let chord = frame.vector(pose);
+        let rail = frame.rail.map(TaylorModel::constant);
+        let turn = cross_models(guide, rail);
+        // A reciprocal is enclosed for positive values only.
+        let per_turn = if turn.constant < 0.0 {
+            -(-turn).reciprocal()
+        } else {
+            turn.reciprocal()
+        };
+        let (first, second) = (
+            cross_models(guide, chord) * per_turn,
+            cross_models(rail, chord) * per_turn,
+        );
+        let [from_start, to_end] = frame.within_rail(first.scaled(frame.link));
+        let [lower, upper] = settings.geometry.guide.map(Interval::exactly);
+        ChainEnclosure {
+            reach: [
+                from_start,
+                to_end,
+                second.plus(-lower),
+                TaylorModel::constant(upper) - second,
+            ],
+            tangent: guide.map(|part| -part),
+            offset: second,
+            beam: absolute(second),
+            signed_beam: second,
+            proximal: None,
+            guides: [Some([-dot(guide, rail), -turn]), None, Some([one, zero])],
+            lever_square: None,
+        }
+    }
+
+    fn enclose_members(
+        frame: &LegFrameEnclosure,
+        _: &Design,
+        settings: &LegSettings,
+        chain: &ChainEnclosure,
+        _: PlanarModel,
+        tip: PlanarModel,
+    ) -> MembersEnclosure {
+        let guide = chain.tangent.map(|part| -part);
+        let [from_start, to_end, ..] = chain.reach;
+        MembersEnclosure {
+            proximal: Some(enclosed_slider(tip, chain.tangent, chain.offset, frame.rail)),
+            distal: enclosed_guide(tip, guide, settings.geometry.guide.map(Interval::exactly)),
+            rail: Some([from_start, to_end]),
+        }
+    }
+
+    #[inline(always)]
+    fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
+        let like = c.x;
+        let guide = Planar::new(-distal.tangent.x, -distal.tangent.y);
+        let centre = c.plus(guide.scaled(distal.offset));
+        let rail = Planar::splat(like, self.frame.rail);
+        let along = centre.minus(Planar::splat(like, self.frame.anchor)).dot(rail);
+        let [lower, upper] = self.frame.rail_travel;
+        Members {
+            proximal: Some(MemberAxis {
+                from: centre,
+                direction: rail,
+                length: like.splat(0.0),
+            }),
+            distal: guide_axis(c, guide, self.travel),
+            rail: Some([along - like.splat(lower), like.splat(upper) - along]),
+        }
+    }
+
+    fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3] {
+        [
+            (posture.b - posture.a).dot(self.frame.rail),
+            wrapped(self.frame.orientation(arm) - angle_of(self.frame.rail)),
+            posture.distal.offset,
+        ]
+    }
+
+    fn joint_limits(&self) -> [Option<[f64; 2]>; 3] {
+        [Some(self.frame.rail_travel), None, Some(self.travel)]
+    }
+
+    fn bodies(&self, posture: &ChainPosture, arm: DVec2, driven: usize) -> Vec<LegBody> {
+        let [first, turn, second] = self.joint_values(posture, arm);
+        let guide = -posture.distal.direction;
+        vec![
+            slider_body(&self.frame, posture.b, first, driven == 0),
+            carriage_body(posture.b, guide, MemberKind::Slider, turn, driven),
+            platform_guide_body(posture.c, guide, second, self.travel, driven == 2),
+        ]
+    }
+
+    fn travels(&self, _: &ChainPosture) -> Vec<Travel> {
+        vec![Travel::of_rail(&self.frame)]
+    }
+
+    fn reach_box(&self) -> [DVec2; 2] {
+        box_about(self.frame.rail_ends(), farthest(self.travel))
+    }
+
+    fn assembly(&self) -> Assembly {
+        assembly_from_rail(&self.frame, self.guide.max(farthest(self.travel)))
+    }
+}
