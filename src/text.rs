@@ -1,6 +1,7 @@
-//! Formatting of numbers for display.
+//! Formatting of numbers and names for display.
 
 use kinefront_model::clearance::Clearance;
+use kinefront_model::mechanism::Architecture;
 
 /// Formats a number with four significant digits: in decimal notation from 0.001 up to 100 000, otherwise in scientific
 /// notation. A number that is not finite becomes a dash.
@@ -42,6 +43,15 @@ pub fn clearance(clearance: &Clearance) -> String {
         format!("overlap of {size} mm between {member} and {neighbour}")
     } else {
         format!("{size} mm from {member} to {neighbour}")
+    }
+}
+
+/// Returns the name of an architecture for people: as in the paper, or with the driven joint underlined.
+pub fn architecture(architecture: Architecture) -> String {
+    if Architecture::PAPER.contains(&architecture) {
+        architecture.name().to_owned()
+    } else {
+        architecture.underlined_name()
     }
 }
 

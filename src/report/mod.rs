@@ -316,10 +316,10 @@ fn is_paper(study: &Study) -> bool {
     })
 }
 
-/// Converts a name to a file name: its alphanumeric parts in lower case, joined by hyphens.
+/// Converts a name to a file name: its alphanumeric parts in lower case, joined by hyphens; the mark of a driven joint stays.
 fn slug(name: &str) -> String {
     let parts = name
-        .split(|c: char| !c.is_alphanumeric())
+        .split(|c: char| !c.is_alphanumeric() && c != '_')
         .filter(|part| !part.is_empty());
     parts.collect::<Vec<_>>().join("-").to_lowercase()
 }

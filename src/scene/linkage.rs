@@ -173,12 +173,20 @@ pub fn linkage(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage, U
         }
         if has_mounts {
             let value = leg.joint_values(state)[2];
-            bodies.push(mount(&sizes, index, state.chain.c, pose.phi, value, bodies.len() - 1));
+            let mut mount = mount(&sizes, index, state.chain.c, pose.phi, value, bodies.len() - 1);
+            let bar = (&model.sections.platform, design.platform_bar_radius);
+            let ends = [state.chain.c, pose.position];
+            let fraction = platform_fraction(model, has_mounts);
+            mount.bars.push(mass_bar(model, &mount.frame, ends, bar, fraction));
+            bodies.push(mount);
             last[index] = bodies.len() - 1;
+        }
+        if let [.., before, end] = bodies.as_mut_slice() {
+            share_mass(before, end, &sizes);
         }
     }
     let ends = posture.arms.map(|arm| pose.position + arm);
-    bodies.push(platform_body(model, design, &sizes, pose, ends));
+    bodies.push(platform_body(model, design, &sizes, pose, ends, has_mounts));
     let closures = [0, 1, 2].map(|index| {
         let on = |frame: &Frame| Rotation::new(-frame.angle).apply(ends[index] - frame.origin);
         Closure {
@@ -264,14 +272,45 @@ fn mount(sizes: &Sizes, index: usize, at: DVec2, phi: f64, value: f64, parent: u
     }
 }
 
+/// Fraction of the mass of a platform bar that its body has. The study may count fewer platform bars than the three that exist
+/// (docs/model.md, section 11), and a mount on which the bar is fixed has half of it: a body that a motor turns needs inertia.
+fn platform_fraction(model: &Model, has_mounts: bool) -> f64 {
+    let fraction = f64::from(model.platform_bars) / LEGS as f64;
+    if has_mounts { 0.5 * fraction } else { fraction }
+}
+
+/// Gives a driven body without mass at the end of a leg, a carriage on the guide of the body before it, half the mass of that guide: a
+/// body that a motor moves needs inertia.
+fn share_mass(before: &mut Body, end: &mut Body, sizes: &Sizes) {
+    if !end.bars.is_empty() || !end.joint.is_some_and(|joint| joint.actuated) {
+        return;
+    }
+    let Some(guide) = before.bars.first_mut().filter(|_| end.parent.is_some()) else {
+        return;
+    };
+    guide.mass *= 0.5;
+    let half = DVec2::X * sizes.carriage_half_length();
+    end.bars.push(MassBar {
+        from: -half,
+        to: half,
+        ..*guide
+    });
+}
+
 /// The platform, with its joints `C_i` at `ends`.
-fn platform_body(model: &Model, design: &Design, sizes: &Sizes, pose: &Pose, ends: [DVec2; LEGS]) -> Body {
+fn platform_body(
+    model: &Model,
+    design: &Design,
+    sizes: &Sizes,
+    pose: &Pose,
+    ends: [DVec2; LEGS],
+    has_mounts: bool,
+) -> Body {
     let frame = Frame {
         origin: pose.position,
         angle: pose.phi,
     };
-    // The study may count fewer platform bars than the three that exist (docs/model.md, section 11).
-    let fraction = f64::from(model.platform_bars) / LEGS as f64;
+    let fraction = platform_fraction(model, has_mounts);
     let bars = ends.map(|end| {
         let bar = (&model.sections.platform, design.platform_bar_radius);
         mass_bar(model, &frame, [end, pose.position], bar, fraction)

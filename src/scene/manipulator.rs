@@ -149,6 +149,12 @@ impl<'a> Sizes<'a> {
         }
     }
 
+    /// Returns half the length of a carriage on a guide that moves.
+    pub(super) fn carriage_half_length(&self) -> f64 {
+        let half_width = self.bodies.radius(MemberKind::Slider, self.design);
+        (self.bodies.slider_half_length(self.design) / 3.0).max(half_width)
+    }
+
     /// Returns the pin of a joint: it passes through the members it joins and is as thick as the thinner one, or
     /// thicker if it would otherwise be too thin to see.
     fn pin(&self, at: DVec2, joins: [MemberKind; 2]) -> SolidShape {
@@ -186,12 +192,11 @@ impl<'a> Sizes<'a> {
             // The rod slides inside the tube, so it is drawn thinner.
             LegPart::Rod { from, to } => (Part::Rod, self.bar(MemberKind::TelescopicLeg, from, to, ROD)),
             LegPart::Carriage { at, axis, on, actuated } => {
-                // As wide as a slider, and a third as long, so that carriages on crossing guides stay apart to the eye.
+                // As wide as a slider, and shorter, so that carriages on crossing guides stay apart to the eye.
                 let half_width = self.bodies.radius(MemberKind::Slider, self.design);
-                let half_length = self.bodies.slider_half_length(self.design) / 3.0;
                 let shape = SolidShape::Block {
                     centre: at.extend(self.height(on)),
-                    half_size: DVec3::new(half_length.max(half_width), half_width, half_width),
+                    half_size: DVec3::new(self.carriage_half_length(), half_width, half_width),
                     angle: libm::atan2(axis.y, axis.x),
                     inner: 0.0,
                 };

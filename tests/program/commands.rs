@@ -107,6 +107,55 @@ fn a_stream_answers_line_by_line_and_survives_bad_lines() {
 }
 
 #[test]
+fn pose_lists_all_assembly_modes() {
+    let design = "3-RPR R=1 r=0.4 Lb=1.4 rj=0.02 rp=0.02";
+    let run = |actuators: &str| {
+        let mut command = kinefront();
+        command.args(["pose", "--design", design, "--actuators", actuators, "--json"]);
+        command
+    };
+    let output = run("q1=0.9 q2=1.0 q3=1.1")
+        .assert()
+        .success()
+        .get_output()
+        .stdout
+        .clone();
+    let found: Value = serde_json::from_slice(&output).expect("JSON");
+    let modes = found["modes"].as_array().expect("modes");
+    assert_eq!(modes.len(), 2);
+    for mode in modes {
+        let (pose, number) = (&mode["pose"], |value: &Value| value.as_f64().expect("a number"));
+        let text = format!(
+            "x={} y={} phi_deg={}",
+            number(&pose["x_m"]),
+            number(&pose["y_m"]),
+            number(&pose["phi_deg"])
+        );
+        let output = kinefront()
+            .args(["pose", "--design", design, "--pose", &text, "--json"])
+            .assert()
+            .success()
+            .get_output()
+            .stdout
+            .clone();
+        let report: Value = serde_json::from_slice(&output).expect("JSON");
+        for (leg, wanted) in [0.9, 1.0, 1.1].into_iter().enumerate() {
+            assert!((number(&report["actuators"][leg]) - wanted).abs() < 1e-9, "{report}");
+        }
+        assert_eq!(mode["of_this_design"], true);
+        assert_eq!(mode["working_mode"], serde_json::json!([1, 1, 1]));
+    }
+    run("q1=0.9 q2=1.0")
+        .assert()
+        .code(2)
+        .stderr(contains("`q3` is missing"));
+    run("q1=0.9 q2=1.0 rho=1")
+        .assert()
+        .code(2)
+        .stderr(contains("expected q1, q2 and q3"));
+}
+
+#[test]
 fn pose_tells_joints_and_stiffness() {
     let found = json(["pose", "--design", DESIGN, "--pose", "x=0.1 y=0.2 phi_deg=30", "--json"]);
     assert_eq!(found["reachable"], true);

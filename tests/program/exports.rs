@@ -7,11 +7,30 @@ use serde_json::Value;
 
 use super::support::{DESIGN, folder, json, kinefront, node, optimize, python, script, small_study};
 
-/// A design of each architecture, with the stiffness of its actuators.
+/// A design of each of the paper's architectures, with the stiffness of its actuators.
 const DESIGNS: [(&str, f64); 3] = [
     (DESIGN, 1e7),
     ("3-RPR R=2.0 r=0.5 Lb=3.0 rj=0.03 rp=0.03", 1e7),
     ("3-RRR R=2.0 r=0.6 Lb=1.6 rj=0.05 rp=0.04", 1e7),
+];
+
+/// A design of each other architecture.
+const OTHERS: [&str; 15] = [
+    "3-R_RR R=2.25 r=0.74 Lb=1.52 rj=0.040 rp=0.060",
+    "3-_RRP R=1.03 r=0.87 Lb=1.59 rj=0.048 rp=0.069",
+    "3-R_RP R=1.35 r=0.87 Lb=1.50 rj=0.054 rp=0.068",
+    "3-RR_P R=2.21 r=0.86 Lb=3.37 rj=0.056 rp=0.041",
+    "3-_RPR R=1.03 r=0.84 Lb=2.30 rj=0.052 rp=0.051",
+    "3-P_RR R=1.17 r=0.62 Lb=1.68 rj=0.055 rp=0.044",
+    "3-R_PP R=1.13 r=0.86 Lb=3.12 rj=0.046 rp=0.047",
+    "3-RP_P R=1.68 r=0.82 Lb=1.68 rj=0.054 rp=0.061",
+    "3-_PRP R=2.37 r=0.82 Lb=1.52 rj=0.055 rp=0.041",
+    "3-PR_P R=2.08 r=0.81 Lb=0.94 rj=0.057 rp=0.045",
+    "3-_PPR R=2.12 r=0.85 Lb=0.90 rj=0.047 rp=0.058",
+    "3-P_PR R=2.22 r=0.79 Lb=1.17 rj=0.041 rp=0.042",
+    "3-RR_R R=1.64 r=0.77 Lb=1.42 rj=0.051 rp=0.058",
+    "3-RP_R R=1.00 r=0.84 Lb=1.63 rj=0.053 rp=0.052",
+    "3-PR_R R=1.09 r=0.78 Lb=1.61 rj=0.058 rp=0.051",
 ];
 
 /// Exports a design to `NAME.EXTENSION` in `folder`; the format follows from the extension.
@@ -65,13 +84,56 @@ fn mujoco_follows_the_tour_with_the_loops_closed() {
     });
 }
 
+/// Every architecture is a mechanism that MuJoCo moves along the tour: passive and driven joints, guides and motors at the platform
+/// are where the design has them.
+#[test]
+fn mujoco_moves_every_other_architecture() {
+    let Some(_) = python(&["mujoco", "numpy"]) else { return };
+    let folder = folder();
+    let check = |design: &str| {
+        let name = design.split(' ').next().expect("a name");
+        let file = |extension: &str| export(design, folder.path(), &format!("{name}.{extension}"));
+        let (model, json, urdf) = (file("xml"), file("json"), file("urdf"));
+        let python = python(&["mujoco", "numpy"]).expect("Python, which was found before");
+        let found: Value =
+            serde_json::from_str(&script(python, "mujoco_tour.py", &[&model, &json, &urdf])).expect("JSON");
+        let exported = read_json(&json);
+        let number = |value: &Value| value.as_f64().expect("a number");
+        assert!(number(&found["farthest_m"]) < 1e-4, "{design}: {found}");
+        assert!(number(&found["turned_rad"]) < 1e-4, "{design}: {found}");
+        let radius = number(&exported["evaluation"]["workspace_radius_m"]);
+        assert!(number(&found["travelled_m"]) > 0.9 * radius, "{design}: {found}");
+        assert_eq!(
+            [&found["closures"], &found["actuators"], &found["warnings"]],
+            [3, 3, 0],
+            "{design}"
+        );
+        let mass = number(&exported["evaluation"]["mass_kg"]);
+        // Each slider and each carriage without mass has one gram.
+        for key in ["mass_kg", "urdf_mass_kg"] {
+            let more = number(&found[key]) - mass;
+            assert!((-1e-6..0.006_001).contains(&more), "{design}: {more} kg too much");
+        }
+        // One joint per body but the platform, and that at C_1 unless the platform is fixed there.
+        let bodies = exported["bodies"].as_array().expect("bodies").len() as u64 - 1;
+        let is_fixed = exported["closures"][0]["rigid"].as_bool().expect("a flag");
+        assert_eq!(found["urdf_joints"], bodies + u64::from(!is_fixed), "{design}");
+    };
+    let (first, second) = OTHERS.split_at(OTHERS.len() / 2);
+    std::thread::scope(|scope| {
+        for designs in [first, second] {
+            scope.spawn(|| designs.iter().for_each(|design| check(design)));
+        }
+    });
+}
+
 #[test]
 fn gltf_passes_the_validator() {
     let folder = folder();
-    let files: Vec<PathBuf> = DESIGNS
-        .iter()
+    let designs = DESIGNS.iter().map(|(design, _)| *design).chain(OTHERS);
+    let files: Vec<PathBuf> = designs
         .enumerate()
-        .map(|(index, (design, _))| export(design, folder.path(), &format!("{index}.glb")))
+        .map(|(index, design)| export(design, folder.path(), &format!("{index}.glb")))
         .collect();
     let Some(mut node) = node("gltf-validator") else { return };
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/node/validate_gltf.js");

@@ -14,7 +14,7 @@ pub(super) fn layout() -> Tree<Panel> {
         let panes = panels.iter().map(|&panel| tiles.insert_pane(panel)).collect();
         tiles.insert_tab_tile(panes)
     };
-    let run = tabs(&[Panel::Run, Panel::Study]);
+    let run = tabs(&[Panel::Run, Panel::Study, Panel::Mechanisms]);
     let scatter = tabs(&[Panel::Scatter, Panel::Space]);
     let scene = tabs(&[Panel::Scene]);
     let below = tabs(&[Panel::Front, Panel::Parallel, Panel::Compare]);

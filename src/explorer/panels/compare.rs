@@ -4,6 +4,7 @@ use egui::{Color32, Grid, RichText, ScrollArea, Ui};
 
 use crate::explorer::{Named, Session, theme};
 use crate::study::Column;
+use crate::text;
 use kinefront_model::evaluation::{Constraint, Evaluation};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable, FURTHER_VARIABLES};
 
@@ -83,7 +84,7 @@ fn names(ui: &mut Ui, pins: &[Named]) -> Vec<Option<PinClick>> {
     ui.end_row();
     ui.label("architecture");
     for pin in pins {
-        ui.label(pin.design.architecture.to_string());
+        ui.label(text::architecture(pin.design.architecture));
     }
     ui.end_row();
     clicks

@@ -1,6 +1,7 @@
 //! The front panel: a table of the front, which can be sorted and searched, with stars and notes.
 
 use crate::study::{Column, Study};
+use crate::text;
 use egui::{Align, Label, RichText, Sense, Ui};
 use egui_extras::{TableBuilder, TableRow};
 
@@ -294,7 +295,7 @@ fn cell(entry: &FrontEntry, key: Key) -> String {
     match key {
         Key::Star => String::new(),
         Key::Id => format!("#{}", entry.id),
-        Key::Architecture => entry.row.design.architecture.to_string(),
+        Key::Architecture => text::architecture(entry.row.design.architecture),
         Key::Number(quantity) => theme::number(entry.row.number(quantity).unwrap_or(f64::NAN)),
     }
 }

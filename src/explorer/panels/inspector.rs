@@ -44,7 +44,7 @@ fn heading(ui: &mut Ui, session: &mut Session) {
         return;
     };
     ui.horizontal_wrapped(|ui| {
-        ui.heading(format!("{} {name}", selected.design.architecture));
+        ui.heading(format!("{} {name}", text::architecture(selected.design.architecture)));
         if session.is_modified() {
             ui.colored_label(theme::MODIFIED, "modified design");
             if ui

@@ -5,6 +5,8 @@ mod compare;
 mod front;
 mod inspector;
 mod layers;
+mod mechanisms;
+mod modes;
 mod parallel;
 mod plan;
 mod pose;
@@ -22,6 +24,7 @@ use self::compare::ComparePanel;
 use self::front::FrontPanel;
 use self::inspector::Inspector;
 use self::layers::LayersPanel;
+use self::mechanisms::MechanismsPanel;
 use self::parallel::ParallelPanel;
 use self::pose::PosePanel;
 use self::run::RunPanel;
@@ -38,6 +41,8 @@ pub enum Panel {
     Run,
     /// The study's settings.
     Study,
+    /// The architectures, and which of them the study searches.
+    Mechanisms,
     /// The scatter plot.
     Scatter,
     /// The designs in three quantities.
@@ -64,9 +69,10 @@ pub enum Panel {
 
 impl Panel {
     /// All panels.
-    pub const ALL: [Panel; 12] = [
+    pub const ALL: [Panel; 13] = [
         Panel::Run,
         Panel::Study,
+        Panel::Mechanisms,
         Panel::Scatter,
         Panel::Space,
         Panel::Scene,
@@ -84,6 +90,7 @@ impl Panel {
         match self {
             Panel::Run => "Run",
             Panel::Study => "Study",
+            Panel::Mechanisms => "Mechanisms",
             Panel::Scatter => "Scatter",
             Panel::Space => "Space",
             Panel::Scene => "3-D",
@@ -103,6 +110,7 @@ impl Panel {
 pub struct Panels {
     run: RunPanel,
     study: StudyPanel,
+    mechanisms: MechanismsPanel,
     /// The scatter panel.
     pub scatter: Scatter,
     space: SpacePanel,
@@ -121,6 +129,7 @@ impl Panels {
         match panel {
             Panel::Run => self.run.ui(ui, session),
             Panel::Study => return self.study.ui(ui, session).then_some(Purpose::SaveStudy),
+            Panel::Mechanisms => self.mechanisms.ui(ui, session),
             Panel::Scatter => self.scatter.ui(ui, session),
             Panel::Space => self.space.ui(ui, session),
             Panel::Inspector => self.inspector.ui(ui, session),

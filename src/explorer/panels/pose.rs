@@ -4,6 +4,7 @@ use crate::text;
 use egui::{Align2, Color32, FontId, Grid, Sense, Slider, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 use glam::DVec2;
 
+use super::modes::ModesView;
 use super::plan::{Plan, card, paint};
 use crate::explorer::{Session, theme};
 use crate::scene::{Tour, manipulator, region_corners, regular_workspace, tour};
@@ -37,6 +38,7 @@ pub struct PosePanel {
     grip: Option<Grip>,
     stopped: Option<String>,
     playing: Option<Playing>,
+    modes: ModesView,
 }
 
 impl PosePanel {
@@ -47,7 +49,10 @@ impl PosePanel {
             return;
         };
         let evaluation = &known.evaluation;
-        self.tour(ui, session, &known);
+        ui.horizontal_wrapped(|ui| {
+            self.tour(ui, session, &known);
+            self.modes.ui(ui, session, &evaluation.design, pose);
+        });
         self.sliders(ui, session, pose, home, evaluation.design.base_radius);
         match &self.stopped {
             Some(reason) => ui.colored_label(theme::BAD, format!("stopped: {reason}")),
@@ -152,6 +157,12 @@ impl PosePanel {
             return;
         };
         self.drag(&response, session, &plan, design, pose);
+        if response.clicked()
+            && let Some(pointer) = response.interact_pointer_pos()
+            && let Some(mode) = self.modes.pointed_at(&plan, pointer)
+        {
+            session.jump_to(&mode);
+        }
         let workspace = session
             .known()
             .and_then(|known| regular_workspace(&known.evaluation, session.model().workspace.rotation_range_deg));
@@ -172,6 +183,7 @@ impl PosePanel {
                 Stroke::new(1.2, theme::GOOD),
             );
         }
+        self.modes.ghosts(&painter, &plan, session, design, theme::ink(ui));
         paint(ui, &painter, &plan, &scene);
         let rim = (design.platform_radius * plan.scale) as f32;
         painter.circle_stroke(

@@ -1,7 +1,9 @@
 //! The pose of the selected design.
 
 use super::Session;
+use crate::scene::AssemblyMode;
 use kinefront_model::evaluation::Constraint;
+use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 
 impl Session {
@@ -43,6 +45,25 @@ impl Session {
             self.staging.pose = Some(between(low));
         }
         Some(stopped.to_string())
+    }
+
+    /// Moves the platform to an assembly mode, in the working mode that it needs.
+    pub fn jump_to(&mut self, mode: &AssemblyMode) {
+        let Some(selected) = self.document().selected.clone() else {
+            return;
+        };
+        if let Some(needed) = mode
+            .working_mode
+            .filter(|&needed| needed != selected.design.working_mode)
+        {
+            self.modify_with("mode", |design| {
+                Ok(Design {
+                    working_mode: needed,
+                    ..*design
+                })
+            });
+        }
+        self.staging.pose = Some(mode.pose);
     }
 
     /// Moves the manipulator to the worst pose of a constraint.

@@ -3,7 +3,7 @@
 use super::{MOST_PINS, Session};
 use crate::explorer::data::{Named, Origin, Selected};
 use crate::recording::Picked;
-use kinefront_model::mechanism::{Design, DesignVariable};
+use kinefront_model::mechanism::{Design, DesignError, DesignVariable};
 
 impl Session {
     /// Selects a design of the run.
@@ -92,10 +92,19 @@ impl Session {
 
     /// Changes one variable of the selected design, as part of a gesture.
     pub fn modify(&mut self, variable: DesignVariable, value: f64) {
+        self.modify_with(variable.key(), |design| design.with(variable, value));
+    }
+
+    /// Changes the selected design, as part of a gesture of the given name.
+    pub(super) fn modify_with(
+        &mut self,
+        gesture: &'static str,
+        change: impl FnOnce(&Design) -> Result<Design, DesignError>,
+    ) {
         let Some(selected) = self.document().selected.clone() else {
             return;
         };
-        match selected.design.with(variable, value) {
+        match change(&selected.design) {
             Ok(design) => {
                 let from = match selected.origin {
                     Origin::Evaluated(id) => Some(id),
@@ -104,7 +113,6 @@ impl Session {
                 };
                 self.following = false;
                 self.staging.pose = None;
-                let gesture = variable.key();
                 self.history.drag(gesture, |document| {
                     document.selected = Some(Selected {
                         design,

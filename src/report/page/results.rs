@@ -5,9 +5,9 @@ use maud::{Markup, html};
 use super::references::active;
 use super::{cell, figures, image, paper, percent};
 use crate::report::{AT_BOUND, Fit, Front, Report, Trend, lightest_intervals};
-use crate::text::{number, short};
+use crate::text::{self, number, short};
 use kinefront_model::evaluation::{Constraint, Evaluation};
-use kinefront_model::mechanism::DESIGN_VARIABLES;
+use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, JointKind};
 
 /// Workspace radii at which architectures are compared, as fractions of the largest radius.
 const LEVELS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95];
@@ -21,6 +21,9 @@ pub(super) fn levels(largest: f64) -> Vec<f64> {
     levels
 }
 
+/// Largest number of architectures each of which has a fact of its own.
+const FEW: usize = 4;
+
 pub(super) fn comparison(report: &Report) -> Markup {
     let fronts = &report.fronts;
     let intervals = lightest_intervals(fronts);
@@ -31,10 +34,30 @@ pub(super) fn comparison(report: &Report) -> Markup {
         (*architecture, width / total)
     });
     let levels = levels(total);
+    let fractions: Vec<(Architecture, f64)> = fractions.collect();
+    // Of many architectures, most are nowhere the lightest.
+    let is_shown = |(_, fraction): &&(Architecture, f64)| fractions.len() <= FEW || *fraction > 0.0;
+    let shown: Vec<(Architecture, f64)> = fractions.iter().filter(is_shown).copied().collect();
+    let is_on_rails = |architecture: &Architecture| architecture.chain().joints[0] == JointKind::Prismatic;
+    let (on_rails, others): (Vec<Architecture>, Vec<Architecture>) = fractions
+        .iter()
+        .map(|(architecture, _)| *architecture)
+        .partition(is_on_rails);
     html! {
         ul.facts {
-            @for (architecture, fraction) in fractions {
-                li { b { (percent(fraction)) } span { "of the range of workspace radii up to " (number(total)) " m: the " (architecture) " is the lightest" } }
+            @for (architecture, fraction) in &shown {
+                li { b { (percent(*fraction)) } span { "of the range of workspace radii up to " (number(total)) " m: the " (text::architecture(*architecture)) " is the lightest" } }
+            }
+        }
+        @if shown.len() < fractions.len() {
+            p { "The other " (fractions.len() - shown.len()) " architectures are nowhere the lightest." }
+        }
+        @if !on_rails.is_empty() && !others.is_empty() {
+            p {
+                "Rails weigh nothing and do not yield in this model, as in the paper. This flatters the architectures whose "
+                "first joint is prismatic ("
+                @for (index, architecture) in on_rails.iter().enumerate() { @if index > 0 { ", " } (text::architecture(*architecture)) }
+                ") in a comparison with the others."
             }
         }
         @if intervals.len() <= 12 {
@@ -42,7 +65,7 @@ pub(super) fn comparison(report: &Report) -> Markup {
                 "The lightest architecture, from the smallest workspace radius to the largest: "
                 @for (index, (architecture, [from, to])) in intervals.iter().enumerate() {
                     @if index > 0 { "; " }
-                    (architecture) " from " (number(*from)) " to " (number(*to)) " m"
+                    (text::architecture(*architecture)) " from " (number(*from)) " to " (number(*to)) " m"
                 }
                 "."
             }
@@ -54,7 +77,7 @@ pub(super) fn comparison(report: &Report) -> Markup {
             }
             thead { tr {
                 th.number { "R_w [m]" }
-                @for (architecture, _) in &fronts.alone { th.number { (architecture) } }
+                @for (architecture, _) in &fronts.alone { th.number { (text::architecture(*architecture)) } }
                 th { "lightest architecture" }
             } }
             tbody { @for level in levels {
@@ -69,7 +92,7 @@ pub(super) fn comparison(report: &Report) -> Markup {
                             None => "–",
                         } }
                     }
-                    td { @if let Some(best) = fronts.together.lightest(level) { (best.design.architecture) } }
+                    td { @if let Some(best) = fronts.together.lightest(level) { (text::architecture(best.design.architecture)) } }
                 }
             } }
         } }

@@ -5,6 +5,7 @@ mod cloud;
 mod marks;
 
 use crate::study::Column;
+use crate::text;
 use kinefront_model::evaluation::Better;
 use kinefront_model::mechanism::DesignVariable;
 use std::time::Duration;
@@ -234,7 +235,7 @@ impl Scatter {
                     theme::architecture(architecture, dark)
                 };
                 let mark = ["●", "■", "▲", "◆"][theme::index(architecture) % 4];
-                let text = egui::RichText::new(format!("{mark} {architecture}")).color(color);
+                let text = egui::RichText::new(format!("{mark} {}", text::architecture(architecture))).color(color);
                 let text = if hidden { text.strikethrough() } else { text };
                 let hover = "click to exclude this architecture (dimmed in all panels) or to include it again";
                 let button = ui.add(egui::Button::new(text).frame(false)).on_hover_text(hover);
