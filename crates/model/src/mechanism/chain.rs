@@ -275,7 +275,7 @@ pub trait Chain: Copy + std::fmt::Debug + PartialEq + Send + Sync {
 
     /// Solves the inverse kinematics at several poses at once, with `C_i` at `position + arm`.
     ///
-    /// It is optimized for speed and may work in the chain's own axes. It rounds differently from [`Chain::inverse`] and does not give
+    /// It is optimized for speed and may work in the chain's own axes. It rounds differently from [`Chain::solve`] and does not give
     /// the reason why a pose is not reached.
     fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> ChainLanes<V>;
 
