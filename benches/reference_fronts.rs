@@ -59,7 +59,7 @@ fn main() {
     fs::create_dir_all(&directory).expect("the folder can be made");
     let study = BUILTIN[0].study().expect("the built-in study is valid");
     let mut combined = Front::default();
-    for &architecture in Architecture::ALL {
+    for &architecture in Architecture::PAPER {
         let path = directory.join(format!("{architecture}.csv"));
         let mut front = Front::read(&path, &study);
         Search::new(&study, architecture).improve(&mut front, &path);
@@ -76,7 +76,7 @@ impl Front {
     fn take(&mut self, evaluation: &Evaluation) {
         let design = &evaluation.design;
         let mut x = vec![
-            Architecture::ALL
+            Architecture::PAPER
                 .iter()
                 .position(|known| *known == design.architecture)
                 .unwrap_or(0) as f64,
@@ -103,7 +103,7 @@ impl Front {
                     unreachable!("six values")
                 };
                 let lengths: [f64; 5] = lengths.try_into().expect("five lengths");
-                let design = Design::new(Architecture::ALL[*architecture as usize], study.working_mode, lengths);
+                let design = Design::new(Architecture::PAPER[*architecture as usize], study.working_mode, lengths);
                 (design.expect("it was evaluated"), member.objectives)
             })
             .collect()
@@ -146,7 +146,7 @@ impl Front {
             let member = &self.0[place];
             let [mass, negative_radius] = [member.objectives[0], member.objectives[1]];
             let numbers = member.x[1..].iter().copied().chain([mass, -negative_radius]);
-            let architecture = Architecture::ALL[member.x[0] as usize];
+            let architecture = Architecture::PAPER[member.x[0] as usize];
             row([architecture.to_string()]
                 .into_iter()
                 .chain(numbers.map(|number| number.to_string()))

@@ -160,7 +160,7 @@ fn poses_of<L: Leg>(criterion: &mut Criterion, architecture: Architecture) {
 }
 
 fn poses(criterion: &mut Criterion) {
-    for &architecture in Architecture::ALL {
+    for &architecture in Architecture::PAPER {
         with_leg!(architecture, L => poses_of::<L>(criterion, architecture));
     }
 }
@@ -203,7 +203,7 @@ fn designs(criterion: &mut Criterion) {
     let model = Model::default();
     let mut group = criterion.benchmark_group("design");
     group.sample_size(10);
-    let mut workloads: Vec<(String, Vec<Design>)> = Architecture::ALL
+    let mut workloads: Vec<(String, Vec<Design>)> = Architecture::PAPER
         .iter()
         .map(|&architecture| (format!("sobol {architecture}"), sample(architecture, 32)))
         .collect();
@@ -255,7 +255,7 @@ fn clearance(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("clearance");
     group.sample_size(10);
     group.throughput(Throughput::Elements(EVALUATIONS as u64));
-    for &architecture in Architecture::ALL {
+    for &architecture in Architecture::PAPER {
         for (name, least, layers) in [
             ("may collide", None, Layers::default()),
             ("5 mm", Some(0.005), Layers::default()),
