@@ -107,7 +107,7 @@ fn card(ui: &mut Ui, sketch: &Sketch, is_chosen: bool) -> bool {
     };
     painter.rect_stroke(inner, 6.0, outline, StrokeKind::Inside);
     if !is_chosen {
-        painter.rect_filled(inner, 6.0, theme::ground(dark).gamma_multiply(0.45));
+        painter.rect_filled(inner, 6.0, theme::ground(dark).gamma_multiply(0.3));
     }
     response
         .on_hover_ui(|ui| {
