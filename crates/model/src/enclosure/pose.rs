@@ -97,6 +97,11 @@ impl TurnedFrame {
         Self { cosine, sine }
     }
 
+    /// The frame whose x axis is a unit vector in the frame from which it is turned.
+    pub fn along([cosine, sine]: [Interval; 2]) -> Self {
+        Self { cosine, sine }
+    }
+
     /// The x axis, in the frame from which this one is turned.
     pub fn axis(&self) -> [Interval; 2] {
         [self.cosine, self.sine]

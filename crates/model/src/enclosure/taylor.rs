@@ -140,6 +140,10 @@ impl TaylorModel {
     /// Multiplies by a constant.
     #[inline]
     pub fn scaled(&self, factor: Interval) -> Self {
+        // Multiples of lengths are often exactly 1, and nothing is rounded then.
+        if factor == Interval::exactly(1.0) {
+            return *self;
+        }
         let (middle, radius) = factor.middle_and_radius();
         let mut product = self.times(middle);
         product.remainder = remainder(product.remainder + radius * (self.size() + self.remainder), 0.0);

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::{
     Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegSettings, MemberKind, Members, Shortfall, Travel,
 };
-use crate::enclosure::{MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel};
+use crate::enclosure::{MembersEnclosure, PlanarModel, TaylorModel};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{Pose, Rotation};
 
@@ -279,14 +279,15 @@ pub trait Chain: Copy + std::fmt::Debug + PartialEq + Send + Sync {
     /// the reason why a pose is not reached.
     fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> ChainLanes<V>;
 
-    /// Encloses the chain of a leg over a box of poses.
+    /// Encloses the chain of a leg over a box of poses, with `P` at `position` \[m\] and `arm` the unit vector from `P` to `C_i`.
     ///
     /// The formulas are written apart from those of [`Chain::lanes`], so that each checks the other.
     fn enclose(
         frame: &LegFrameEnclosure,
         design: &Design,
         settings: &LegSettings,
-        pose: &PoseEnclosure,
+        position: PlanarModel,
+        arm: PlanarModel,
     ) -> ChainEnclosure;
 
     /// Returns the axes of the members at several poses at once, with the end of the leg at `c`.

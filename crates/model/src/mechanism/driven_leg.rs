@@ -321,8 +321,8 @@ impl<C: Chain, const DRIVEN: usize> Leg for DrivenLeg<C, DRIVEN> {
         settings: &LegSettings,
         pose: &PoseEnclosure,
     ) -> LegEnclosure {
-        let chain = C::enclose(frame, design, settings, pose);
         let arm = frame.arm(pose);
+        let chain = C::enclose(frame, design, settings, pose.position, arm);
         // As multiples of r: along the distal bar, and the moment of its line.
         let multiple = frame.arm_multiple;
         let (along, across) = (
@@ -343,6 +343,7 @@ impl<C: Chain, const DRIVEN: usize> Leg for DrivenLeg<C, DRIVEN> {
                 across,
                 transmission_square,
                 loads: None,
+                arm,
                 chain,
             };
         }
@@ -379,6 +380,7 @@ impl<C: Chain, const DRIVEN: usize> Leg for DrivenLeg<C, DRIVEN> {
                 ],
                 platform: [x * along - y * across, about_c, about_p],
             }),
+            arm,
             chain,
         }
     }

@@ -1,8 +1,8 @@
 //! Enclosures of what a leg is over a box of poses.
 
-use super::chain::ChainEnclosure;
+use super::chain::{ChainEnclosure, ProximalEnclosure};
 use super::{Design, DesignVariable, Geometry};
-use crate::enclosure::{Interval, PlanarModel, PoseEnclosure, TaylorModel, TurnedFrame, cross, dot};
+use crate::enclosure::{Interval, PlanarModel, PoseEnclosure, TaylorModel, TurnedFrame};
 use crate::spatial::LEGS;
 
 /// The place of a leg in the manipulator as intervals: angles in degrees, lengths and multiples are the doubles given, and all that
@@ -11,8 +11,8 @@ use crate::spatial::LEGS;
 pub struct LegFrameEnclosure {
     /// `A_i` \[m\].
     pub anchor: [Interval; 2],
-    /// `e_i`.
-    pub rail: [Interval; 2],
+    /// Frame whose x axis is `e_i`.
+    pub rail: TurnedFrame,
     /// Smallest and largest distance of a slider from `A_i` \[m\].
     pub rail_travel: [Interval; 2],
     /// Direction of `c_i` in the platform frame.
@@ -25,10 +25,12 @@ pub struct LegFrameEnclosure {
     pub platform_radius: Interval,
     /// `L_b/r`.
     pub per_platform_radius: Interval,
-    /// Cosine and sine of `γ`.
+    /// Frame that is turned by `γ`.
     pub platform_guide: TurnedFrame,
-    /// Cosine and sine of `β`.
-    pub between_guides: [Interval; 2],
+    /// Frame that is turned by `β`.
+    pub between_guides: TurnedFrame,
+    /// Smallest and largest distance along a guide of length `L_b`, as multiples of it.
+    pub guide_travel: [Interval; 2],
     /// `L_b` \[m\].
     pub link: Interval,
     /// `1/L_b` \[1/m\].
@@ -43,10 +45,10 @@ impl LegFrameEnclosure {
     /// Encloses the frame of leg `index` (0, 1, 2) of `design`.
     pub fn new(design: &Design, geometry: &Geometry, index: usize) -> Self {
         let exactly = Interval::exactly;
-        let direction = |angle: f64| TurnedFrame::by_degrees(angle).axis();
         let joint = |index: usize| {
             let radius = exactly(geometry.base_radii[index]);
-            direction(geometry.base_angles_deg[index]).map(|part| part * radius)
+            let direction = TurnedFrame::by_degrees(geometry.base_angles_deg[index]).axis();
+            direction.map(|part| part * radius)
         };
         let (base, platform, link) = (
             exactly(design.base_radius),
@@ -56,15 +58,16 @@ impl LegFrameEnclosure {
         let (own, next) = (joint(index), joint((index + 1) % LEGS));
         let side = [next[0] - own[0], next[1] - own[1]];
         let length = (side[0].square() + side[1].square()).sqrt();
-        let turn = direction(design.value(DesignVariable::RailAngle) + geometry.rail_turn_deg[index]);
+        let turn = design.value(DesignVariable::RailAngle) + geometry.rail_turn_deg[index];
+        let [cosine, sine] = TurnedFrame::by_degrees(turn).axis();
         let one = exactly(1.0);
         let arm_multiple = exactly(geometry.platform_radii[index]);
         Self {
             anchor: own.map(|part| part * base),
-            rail: [
-                (turn[0] * side[0] - turn[1] * side[1]) / length,
-                (turn[1] * side[0] + turn[0] * side[1]) / length,
-            ],
+            rail: TurnedFrame::along([
+                (cosine * side[0] - sine * side[1]) / length,
+                (sine * side[0] + cosine * side[1]) / length,
+            ]),
             rail_travel: geometry.rail.map(|share| exactly(share) * length * base),
             arm_frame: TurnedFrame::by_degrees(geometry.platform_angles_deg[index]),
             arm_multiple,
@@ -72,7 +75,8 @@ impl LegFrameEnclosure {
             platform_radius: platform / link,
             per_platform_radius: link / platform,
             platform_guide: TurnedFrame::by_degrees(design.value(DesignVariable::PlatformGuideAngle)),
-            between_guides: direction(design.value(DesignVariable::GuideAngle)),
+            between_guides: TurnedFrame::by_degrees(design.value(DesignVariable::GuideAngle)),
+            guide_travel: geometry.guide.map(exactly),
             link,
             to_unit: one / link,
             proximal: exactly(design.proximal_length) / link,
@@ -85,49 +89,29 @@ impl LegFrameEnclosure {
         self.arm_frame.direction(pose)
     }
 
-    /// Encloses the vector from `A_i` to `C_i`, in units of `L_b`.
-    pub fn vector(&self, pose: &PoseEnclosure) -> PlanarModel {
-        let arm = self.arm(pose);
+    /// Encloses the vector from `A_i` to `C_i`, in units of `L_b`, for a position of `P` \[m\] and the direction of its arm.
+    pub fn vector(&self, position: PlanarModel, arm: PlanarModel) -> PlanarModel {
         [0, 1].map(|k| {
-            (pose.position[k] + arm[k].scaled(self.arm_length))
+            (position[k] + arm[k].scaled(self.arm_length))
                 .plus(-self.anchor[k])
                 .scaled(self.to_unit)
         })
     }
 
-    /// Encloses `g_i`, the direction of the guide on the platform.
-    pub fn guide(&self, pose: &PoseEnclosure) -> PlanarModel {
-        self.platform_guide.leave(self.arm(pose))
-    }
-
-    /// Turns a vector by `β`.
-    pub fn turned_between_guides(&self, [x, y]: PlanarModel) -> PlanarModel {
-        let [cosine, sine] = self.between_guides;
-        [x.scaled(cosine) - y.scaled(sine), x.scaled(sine) + y.scaled(cosine)]
-    }
-
-    /// Returns the components of a vector along the rail and to its left.
-    pub fn enter_rail(&self, vector: PlanarModel) -> PlanarModel {
-        let rail = self.rail.map(TaylorModel::constant);
-        [dot(rail, vector), cross(rail, vector)]
-    }
-
-    /// Returns a vector that is given along the rail and to its left.
-    pub fn leave_rail(&self, [along, across]: PlanarModel) -> PlanarModel {
-        let [x, y] = self.rail;
-        [along.scaled(x) - across.scaled(y), along.scaled(y) + across.scaled(x)]
+    /// Encloses the bar from `A_i` to `B_i` of length `L_a`, for the vector along it.
+    pub fn crank(&self, vector: PlanarModel) -> ProximalEnclosure {
+        ProximalEnclosure {
+            vector,
+            direction: self.along_crank(vector),
+            length: TaylorModel::constant(self.proximal),
+            offset: TaylorModel::constant(self.proximal),
+        }
     }
 
     /// Returns a vector of the length `L_a` as a unit vector.
-    pub fn along_proximal(&self, vector: PlanarModel) -> PlanarModel {
+    pub fn along_crank(&self, vector: PlanarModel) -> PlanarModel {
         let to_unit = Interval::exactly(1.0) / self.proximal;
         vector.map(|part| part.scaled(to_unit))
-    }
-
-    /// Encloses the distances of a slider from both ends of its travel \[m\].
-    pub fn within_rail(&self, value: TaylorModel) -> [TaylorModel; 2] {
-        let [lower, upper] = self.rail_travel;
-        [value.plus(-lower), TaylorModel::constant(upper) - value]
     }
 }
 
@@ -148,6 +132,8 @@ pub struct EnclosedLoads {
 pub struct LegEnclosure {
     /// The chain.
     pub chain: ChainEnclosure,
+    /// Unit vector from `P` to `C_i`.
+    pub arm: PlanarModel,
     /// `u_i` in base axes.
     pub u: PlanarModel,
     /// Moment of the leg's line about `P`, as a multiple of `r`.

@@ -81,7 +81,7 @@ impl Separations {
         let position = pose.position.map(|part| part.scaled(self.to_unit));
         for (index, leg) in legs.iter().enumerate() {
             let frame = &frames[index];
-            let arm = frame.arm(pose);
+            let arm = leg.arm;
             let length = frame.arm_length * frame.to_unit;
             let tip = arm.map(|part| part.scaled(length));
             let at_base = frame.anchor.map(|part| TaylorModel::constant(part * frame.to_unit));

@@ -19,8 +19,10 @@ pub use rrr::RrrChain;
 use glam::DVec2;
 
 use super::chain::{Assembly, JointKind};
-use super::{LegBody, LegFrame, LegJoint, LegPart, MemberAxis, MemberKind, ReachReason, Shortfall};
-use crate::enclosure::{AxisEnclosure, Interval, PlanarModel, TaylorModel, difference};
+use super::{
+    LegBody, LegFrame, LegFrameEnclosure, LegJoint, LegPart, MemberAxis, MemberKind, Members, ReachReason, Shortfall,
+};
+use crate::enclosure::{AxisEnclosure, Interval, MembersEnclosure, PlanarModel, TaylorModel, difference};
 use crate::lanes::{Planar, Real};
 use crate::spatial::cross;
 
@@ -125,10 +127,72 @@ fn enclosed_guide(joint: PlanarModel, direction: PlanarModel, travel: [Interval;
     AxisEnclosure::between(at(from), at(to), direction)
 }
 
-/// Encloses the axis of a slider, a point with the direction of its rail.
-fn enclosed_slider(tip: PlanarModel, tangent: PlanarModel, offset: TaylorModel, rail: [Interval; 2]) -> AxisEnclosure {
-    let centre = difference(tip, tangent.map(|part| part * offset));
-    AxisEnclosure::between(centre, centre, rail.map(TaylorModel::constant))
+/// Encloses the distances of a value from two limits.
+fn enclosed_within(value: TaylorModel, [lower, upper]: [Interval; 2]) -> [TaylorModel; 2] {
+    [value.plus(-lower), TaylorModel::constant(upper) - value]
+}
+
+/// Returns the members of a leg on a rail: a slider, whose axis is a point with the direction of the rail, and a distal member.
+#[inline(always)]
+fn members_on_slider<V: Real>(frame: &LegFrame, centre: Planar<V>, distal: MemberAxis<V>) -> Members<V> {
+    let like = centre.x;
+    let rail = Planar::splat(like, frame.rail);
+    let along = centre.minus(Planar::splat(like, frame.anchor)).dot(rail);
+    let [lower, upper] = frame.rail_travel;
+    Members {
+        proximal: Some(MemberAxis {
+            from: centre,
+            direction: rail,
+            length: like.splat(0.0),
+        }),
+        distal,
+        rail: Some([along - like.splat(lower), like.splat(upper) - along]),
+    }
+}
+
+/// Encloses the same, with the distances of the slider from the ends of its rail.
+fn enclosed_members_on_slider(
+    frame: &LegFrameEnclosure,
+    centre: PlanarModel,
+    from_ends: [TaylorModel; 2],
+    distal: AxisEnclosure,
+) -> MembersEnclosure {
+    let rail = frame.rail.axis().map(TaylorModel::constant);
+    MembersEnclosure {
+        proximal: Some(AxisEnclosure::between(centre, centre, rail)),
+        distal,
+        rail: Some(from_ends),
+    }
+}
+
+/// Returns the members of a leg with a crank of length `crank` from `A_i` to `elbow`, and a distal member.
+#[inline(always)]
+fn members_on_crank<V: Real>(frame: &LegFrame, crank: f64, elbow: Planar<V>, distal: MemberAxis<V>) -> Members<V> {
+    let like = elbow.x;
+    let anchor = Planar::splat(like, frame.anchor);
+    Members {
+        proximal: Some(MemberAxis {
+            from: anchor,
+            direction: elbow.minus(anchor).scaled(like.splat(1.0 / crank)),
+            length: like.splat(crank),
+        }),
+        distal,
+        rail: None,
+    }
+}
+
+/// Encloses the same, for a crank between two points.
+fn enclosed_members_on_crank(
+    frame: &LegFrameEnclosure,
+    [anchor, elbow]: [PlanarModel; 2],
+    distal: AxisEnclosure,
+) -> MembersEnclosure {
+    let direction = frame.along_crank(difference(elbow, anchor));
+    MembersEnclosure {
+        proximal: Some(AxisEnclosure::between(anchor, elbow, direction)),
+        distal,
+        rail: None,
+    }
 }
 
 /// Encloses the absolute value.

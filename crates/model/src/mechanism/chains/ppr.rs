@@ -4,20 +4,19 @@
 use glam::DVec2;
 
 use super::{
-    Within, absolute, angle_of, assembly_from_rail, enclosed_guide, enclosed_slider, farthest, guide_axis, guide_ends,
-    margin_within, or_far_off, pin, prismatic, slider_body, wrapped,
+    Within, absolute, angle_of, assembly_from_rail, box_about, enclosed_guide, enclosed_members_on_slider,
+    enclosed_within, farthest, guide_axis, guide_ends, margin_within, members_on_slider, or_far_off, pin, prismatic,
+    slider_body, wrapped,
 };
-use crate::enclosure::{
-    Interval, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, cross as cross_models, difference,
-};
+use crate::enclosure::{Interval, MembersEnclosure, PlanarModel, TaylorModel, difference};
 use crate::lanes::{Planar, Real};
 use crate::mechanism::chain::{
     Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
     JointPoint, LockedKind, LockedLeg, Solved,
 };
 use crate::mechanism::{
-    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegPart, LegSettings, MemberAxis, MemberKind,
-    Members, Shortfall, Travel,
+    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegPart, LegSettings, MemberKind, Members, Shortfall,
+    Travel,
 };
 use crate::spatial::{Rotation, cross};
 
@@ -126,27 +125,23 @@ impl Chain for PprChain {
         }
     }
 
-    fn enclose(frame: &LegFrameEnclosure, _: &Design, settings: &LegSettings, pose: &PoseEnclosure) -> ChainEnclosure {
+    fn enclose(
+        frame: &LegFrameEnclosure,
+        _: &Design,
+        _: &LegSettings,
+        position: PlanarModel,
+        arm: PlanarModel,
+    ) -> ChainEnclosure {
         let (one, zero) = (TaylorModel::exactly(1.0), TaylorModel::exactly(0.0));
-        let rail = frame.rail.map(TaylorModel::constant);
-        let guide = frame.turned_between_guides(rail);
-        let chord = frame.vector(pose);
-        let per_sine = Interval::exactly(1.0) / frame.between_guides[1];
-        let (first, second) = (
-            cross_models(chord, guide).scaled(per_sine),
-            cross_models(rail, chord).scaled(per_sine),
-        );
-        let [from_start, to_end] = frame.within_rail(first.scaled(frame.link));
-        let [lower, upper] = settings.geometry.guide.map(Interval::exactly);
-        let [cosine, sine] = frame.between_guides;
+        let [along, height] = frame.rail.enter(frame.vector(position, arm));
+        let [cosine, sine] = frame.between_guides.axis();
+        let second = height.scaled(Interval::exactly(1.0) / sine);
+        let first = along - second.scaled(cosine);
+        let [from_start, to_end] = enclosed_within(first.scaled(frame.link), frame.rail_travel);
+        let [from_lower, to_upper] = enclosed_within(second, frame.guide_travel);
         ChainEnclosure {
-            reach: [
-                from_start,
-                to_end,
-                second.plus(-lower),
-                TaylorModel::constant(upper) - second,
-            ],
-            tangent: guide,
+            reach: [from_start, to_end, from_lower, to_upper],
+            tangent: frame.between_guides.leave(frame.rail.axis().map(TaylorModel::constant)),
             offset: second,
             beam: absolute(second),
             signed_beam: second,
@@ -163,37 +158,21 @@ impl Chain for PprChain {
     fn enclose_members(
         frame: &LegFrameEnclosure,
         _: &Design,
-        settings: &LegSettings,
+        _: &LegSettings,
         chain: &ChainEnclosure,
         _: PlanarModel,
         tip: PlanarModel,
     ) -> MembersEnclosure {
         let centre = difference(tip, chain.tangent.map(|part| part * chain.offset));
         let [from_start, to_end, ..] = chain.reach;
-        let travel = settings.geometry.guide.map(Interval::exactly);
-        MembersEnclosure {
-            proximal: Some(enclosed_slider(tip, chain.tangent, chain.offset, frame.rail)),
-            distal: enclosed_guide(centre, chain.tangent, travel),
-            rail: Some([from_start, to_end]),
-        }
+        let guide = enclosed_guide(centre, chain.tangent, frame.guide_travel);
+        enclosed_members_on_slider(frame, centre, [from_start, to_end], guide)
     }
 
     #[inline(always)]
     fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
-        let like = c.x;
         let centre = c.minus(distal.tangent.scaled(distal.offset));
-        let rail = Planar::splat(like, self.frame.rail);
-        let along = centre.minus(Planar::splat(like, self.frame.anchor)).dot(rail);
-        let [lower, upper] = self.frame.rail_travel;
-        Members {
-            proximal: Some(MemberAxis {
-                from: centre,
-                direction: rail,
-                length: like.splat(0.0),
-            }),
-            distal: guide_axis(centre, distal.tangent, self.travel),
-            rail: Some([along - like.splat(lower), like.splat(upper) - along]),
-        }
+        members_on_slider(&self.frame, centre, guide_axis(centre, distal.tangent, self.travel))
     }
 
     fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3] {
@@ -243,7 +222,7 @@ impl Chain for PprChain {
     }
 
     fn reach_box(&self) -> [DVec2; 2] {
-        super::box_about(self.frame.rail_ends(), farthest(self.travel))
+        box_about(self.frame.rail_ends(), farthest(self.travel))
     }
 
     fn assembly(&self) -> Assembly {

@@ -4,20 +4,19 @@
 use glam::DVec2;
 
 use super::{
-    Within, absolute, angle_of, assembly_from_rail, box_about, carriage_body, enclosed_guide, enclosed_slider,
-    farthest, guide_axis, margin_within, or_far_off, platform_guide_body, slider_body, turned, wrapped,
+    Within, absolute, angle_of, assembly_from_rail, box_about, carriage_body, enclosed_guide,
+    enclosed_members_on_slider, enclosed_within, farthest, guide_axis, margin_within, members_on_slider, or_far_off,
+    platform_guide_body, slider_body, turned, wrapped,
 };
-use crate::enclosure::{
-    Interval, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, cross as cross_models, dot,
-};
+use crate::enclosure::{MembersEnclosure, PlanarModel, TaylorModel, cross as cross_models, difference};
 use crate::lanes::{Planar, Real};
 use crate::mechanism::chain::{
     Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
     JointPoint, LockedKind, LockedLeg, Solved,
 };
 use crate::mechanism::{
-    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegSettings, MemberAxis, MemberKind, Members,
-    ReachReason, Shortfall, Travel,
+    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegSettings, MemberKind, Members, ReachReason,
+    Shortfall, Travel,
 };
 use crate::spatial::cross;
 
@@ -137,12 +136,18 @@ impl Chain for PrpChain {
         }
     }
 
-    fn enclose(frame: &LegFrameEnclosure, _: &Design, settings: &LegSettings, pose: &PoseEnclosure) -> ChainEnclosure {
+    fn enclose(
+        frame: &LegFrameEnclosure,
+        _: &Design,
+        _: &LegSettings,
+        position: PlanarModel,
+        arm: PlanarModel,
+    ) -> ChainEnclosure {
         let (one, zero) = (TaylorModel::exactly(1.0), TaylorModel::exactly(0.0));
-        let guide = frame.guide(pose);
-        let chord = frame.vector(pose);
-        let rail = frame.rail.map(TaylorModel::constant);
-        let turn = cross_models(guide, rail);
+        let guide = frame.platform_guide.leave(arm);
+        let chord = frame.vector(position, arm);
+        let [along_rail, to_guide] = frame.rail.enter(guide);
+        let turn = -to_guide;
         // A reciprocal is enclosed for positive values only.
         let per_turn = if turn.constant < 0.0 {
             -(-turn).reciprocal()
@@ -151,23 +156,18 @@ impl Chain for PrpChain {
         };
         let (first, second) = (
             cross_models(guide, chord) * per_turn,
-            cross_models(rail, chord) * per_turn,
+            frame.rail.enter(chord)[1] * per_turn,
         );
-        let [from_start, to_end] = frame.within_rail(first.scaled(frame.link));
-        let [lower, upper] = settings.geometry.guide.map(Interval::exactly);
+        let [from_start, to_end] = enclosed_within(first.scaled(frame.link), frame.rail_travel);
+        let [from_lower, to_upper] = enclosed_within(second, frame.guide_travel);
         ChainEnclosure {
-            reach: [
-                from_start,
-                to_end,
-                second.plus(-lower),
-                TaylorModel::constant(upper) - second,
-            ],
+            reach: [from_start, to_end, from_lower, to_upper],
             tangent: guide.map(|part| -part),
             offset: second,
             beam: absolute(second),
             signed_beam: second,
             proximal: None,
-            guides: [Some([-dot(guide, rail), -turn]), None, Some([one, zero])],
+            guides: [Some([-along_rail, to_guide]), None, Some([one, zero])],
             lever_square: None,
         }
     }
@@ -175,37 +175,23 @@ impl Chain for PrpChain {
     fn enclose_members(
         frame: &LegFrameEnclosure,
         _: &Design,
-        settings: &LegSettings,
+        _: &LegSettings,
         chain: &ChainEnclosure,
         _: PlanarModel,
         tip: PlanarModel,
     ) -> MembersEnclosure {
         let guide = chain.tangent.map(|part| -part);
+        let centre = difference(tip, chain.tangent.map(|part| part * chain.offset));
         let [from_start, to_end, ..] = chain.reach;
-        MembersEnclosure {
-            proximal: Some(enclosed_slider(tip, chain.tangent, chain.offset, frame.rail)),
-            distal: enclosed_guide(tip, guide, settings.geometry.guide.map(Interval::exactly)),
-            rail: Some([from_start, to_end]),
-        }
+        let guide = enclosed_guide(tip, guide, frame.guide_travel);
+        enclosed_members_on_slider(frame, centre, [from_start, to_end], guide)
     }
 
     #[inline(always)]
     fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
-        let like = c.x;
         let guide = Planar::new(-distal.tangent.x, -distal.tangent.y);
         let centre = c.plus(guide.scaled(distal.offset));
-        let rail = Planar::splat(like, self.frame.rail);
-        let along = centre.minus(Planar::splat(like, self.frame.anchor)).dot(rail);
-        let [lower, upper] = self.frame.rail_travel;
-        Members {
-            proximal: Some(MemberAxis {
-                from: centre,
-                direction: rail,
-                length: like.splat(0.0),
-            }),
-            distal: guide_axis(c, guide, self.travel),
-            rail: Some([along - like.splat(lower), like.splat(upper) - along]),
-        }
+        members_on_slider(&self.frame, centre, guide_axis(c, guide, self.travel))
     }
 
     fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3] {

@@ -2,8 +2,11 @@
 
 use glam::DVec2;
 
-use super::{Within, angle_of, assembly_from_rail, box_about, enclosed_slider, link_body, slider_body, wrapped};
-use crate::enclosure::{AxisEnclosure, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, difference};
+use super::{
+    Within, angle_of, assembly_from_rail, box_about, enclosed_members_on_slider, enclosed_within, link_body,
+    members_on_slider, slider_body, wrapped,
+};
+use crate::enclosure::{AxisEnclosure, MembersEnclosure, PlanarModel, TaylorModel, difference};
 use crate::lanes::{Planar, Real};
 use crate::mechanism::chain::{
     Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
@@ -140,16 +143,22 @@ impl Chain for PrrChain {
 
     /// In axes along `e_i` and to its left, `C_i` lies at the height `h L_b` above the rail, and `u_i = (−σ f, h)` with
     /// `f = √(1 − h²)`.
-    fn enclose(frame: &LegFrameEnclosure, _: &Design, _: &LegSettings, pose: &PoseEnclosure) -> ChainEnclosure {
+    fn enclose(
+        frame: &LegFrameEnclosure,
+        _: &Design,
+        _: &LegSettings,
+        position: PlanarModel,
+        arm: PlanarModel,
+    ) -> ChainEnclosure {
         let one = TaylorModel::exactly(1.0);
-        let [along, height] = frame.enter_rail(frame.vector(pose));
+        let [along, height] = frame.rail.enter(frame.vector(position, arm));
         let square = one - height.squared();
         let foot = square.sqrt().times(frame.sign);
         let value = (along + foot).scaled(frame.link);
-        let [from_start, to_end] = frame.within_rail(value);
+        let [from_start, to_end] = enclosed_within(value, frame.rail_travel);
         ChainEnclosure {
             reach: [square, from_start, to_end, one],
-            tangent: frame.leave_rail([-foot, height]),
+            tangent: frame.rail.leave([-foot, height]),
             offset: one,
             beam: one,
             signed_beam: one,
@@ -169,29 +178,14 @@ impl Chain for PrrChain {
     ) -> MembersEnclosure {
         let centre = difference(tip, chain.tangent);
         let [_, from_start, to_end, _] = chain.reach;
-        MembersEnclosure {
-            proximal: Some(enclosed_slider(tip, chain.tangent, chain.offset, frame.rail)),
-            distal: AxisEnclosure::between(centre, tip, chain.tangent),
-            rail: Some([from_start, to_end]),
-        }
+        let link = AxisEnclosure::between(centre, tip, chain.tangent);
+        enclosed_members_on_slider(frame, centre, [from_start, to_end], link)
     }
 
     #[inline(always)]
     fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
-        let like = c.x;
-        let link = MemberAxis::back_from(c, distal.tangent, like.splat(self.link));
-        let axis = Planar::splat(like, self.frame.rail);
-        let along = link.from.minus(Planar::splat(like, self.frame.anchor)).dot(axis);
-        let [lower, upper] = self.frame.rail_travel;
-        Members {
-            proximal: Some(MemberAxis {
-                from: link.from,
-                direction: axis,
-                length: like.splat(0.0),
-            }),
-            distal: link,
-            rail: Some([along - like.splat(lower), like.splat(upper) - along]),
-        }
+        let link = MemberAxis::back_from(c, distal.tangent, c.x.splat(self.link));
+        members_on_slider(&self.frame, link.from, link)
     }
 
     fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3] {

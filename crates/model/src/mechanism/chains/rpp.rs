@@ -4,10 +4,10 @@
 use glam::DVec2;
 
 use super::{
-    Within, absolute, box_about, enclosed_guide, farthest, guide_axis, guide_ends, margin_within, or_far_off, pin,
-    platform_guide_body, prismatic, revolute, turned, wrapped,
+    Within, absolute, box_about, enclosed_guide, enclosed_within, farthest, guide_axis, guide_ends, margin_within,
+    or_far_off, pin, platform_guide_body, prismatic, revolute, turned, wrapped,
 };
-use crate::enclosure::{Interval, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, cross as cross_models};
+use crate::enclosure::{Interval, MembersEnclosure, PlanarModel, TaylorModel, cross as cross_models};
 use crate::lanes::{Planar, Real};
 use crate::mechanism::chain::{
     Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
@@ -32,6 +32,11 @@ impl RppChain {
     fn base_guide(&self, guide: DVec2) -> DVec2 {
         Rotation::by(self.frame.between_guides).apply(guide)
     }
+}
+
+/// Encloses the travel of the guide at the base, in units of `L_b`.
+fn base_travel(frame: &LegFrameEnclosure) -> [Interval; 2] {
+    frame.guide_travel.map(|share| share * frame.proximal)
 }
 
 impl Chain for RppChain {
@@ -140,22 +145,25 @@ impl Chain for RppChain {
         }
     }
 
-    fn enclose(frame: &LegFrameEnclosure, _: &Design, settings: &LegSettings, pose: &PoseEnclosure) -> ChainEnclosure {
+    fn enclose(
+        frame: &LegFrameEnclosure,
+        _: &Design,
+        _: &LegSettings,
+        position: PlanarModel,
+        arm: PlanarModel,
+    ) -> ChainEnclosure {
         let (one, zero) = (TaylorModel::exactly(1.0), TaylorModel::exactly(0.0));
-        let guide = frame.guide(pose);
-        let chord = frame.vector(pose);
-        let per_sine = Interval::exactly(1.0) / frame.between_guides[1];
+        let guide = frame.platform_guide.leave(arm);
+        let chord = frame.vector(position, arm);
+        let [cosine, sine] = frame.between_guides.axis();
+        let per_sine = Interval::exactly(1.0) / sine;
         let first = cross_models(guide, chord).scaled(per_sine);
-        let second = cross_models(frame.turned_between_guides(guide), chord).scaled(per_sine);
-        let [lower, upper] = settings.geometry.guide.map(Interval::exactly);
-        let direction = frame.between_guides.map(|part| TaylorModel::constant(-part));
+        let second = cross_models(frame.between_guides.leave(guide), chord).scaled(per_sine);
+        let [first_lower, first_upper] = enclosed_within(first, base_travel(frame));
+        let [second_lower, second_upper] = enclosed_within(second, frame.guide_travel);
+        let direction = [cosine, sine].map(|part| TaylorModel::constant(-part));
         ChainEnclosure {
-            reach: [
-                first.plus(-(lower * frame.proximal)),
-                TaylorModel::constant(upper * frame.proximal) - first,
-                second.plus(-lower),
-                TaylorModel::constant(upper) - second,
-            ],
+            reach: [first_lower, first_upper, second_lower, second_upper],
             tangent: guide.map(|part| -part),
             offset: second,
             beam: absolute(second),
@@ -174,20 +182,19 @@ impl Chain for RppChain {
     fn enclose_members(
         frame: &LegFrameEnclosure,
         _: &Design,
-        settings: &LegSettings,
+        _: &LegSettings,
         chain: &ChainEnclosure,
         anchor: PlanarModel,
         tip: PlanarModel,
     ) -> MembersEnclosure {
         let guide = chain.tangent.map(|part| -part);
-        let travel = settings.geometry.guide.map(Interval::exactly);
         MembersEnclosure {
             proximal: Some(enclosed_guide(
                 anchor,
-                frame.turned_between_guides(guide),
-                travel.map(|share| share * frame.proximal),
+                frame.between_guides.leave(guide),
+                base_travel(frame),
             )),
-            distal: enclosed_guide(tip, guide, travel),
+            distal: enclosed_guide(tip, guide, frame.guide_travel),
             rail: None,
         }
     }

@@ -3,9 +3,7 @@
 use glam::DVec2;
 
 use super::{Within, angle_of, box_about, pin, prismatic, revolute, wrapped};
-use crate::enclosure::{
-    AxisEnclosure, Interval, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, difference, dot,
-};
+use crate::enclosure::{AxisEnclosure, Interval, MembersEnclosure, PlanarModel, TaylorModel, difference, dot};
 use crate::lanes::{Planar, Real};
 use crate::mechanism::chain::{
     Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
@@ -128,8 +126,14 @@ impl Chain for RprChain {
     }
 
     /// The leg is the vector `v` from `A_i` to `C_i`.
-    fn enclose(frame: &LegFrameEnclosure, _: &Design, settings: &LegSettings, pose: &PoseEnclosure) -> ChainEnclosure {
-        let leg = frame.vector(pose);
+    fn enclose(
+        frame: &LegFrameEnclosure,
+        _: &Design,
+        settings: &LegSettings,
+        position: PlanarModel,
+        arm: PlanarModel,
+    ) -> ChainEnclosure {
+        let leg = frame.vector(position, arm);
         let (one, zero) = (TaylorModel::exactly(1.0), TaylorModel::exactly(0.0));
         let square = dot(leg, leg);
         let shortest = Interval::exactly(settings.telescopic_shortest);

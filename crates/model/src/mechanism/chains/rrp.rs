@@ -4,21 +4,19 @@
 use glam::DVec2;
 
 use super::{
-    Within, absolute, angle_of, box_about, carriage_body, crank_body, enclosed_guide, farthest, guide_axis,
-    margin_within, or_far_off, platform_guide_body, turned, wrapped,
+    Within, absolute, angle_of, box_about, carriage_body, crank_body, enclosed_guide, enclosed_members_on_crank,
+    enclosed_within, farthest, guide_axis, margin_within, members_on_crank, or_far_off, platform_guide_body, turned,
+    wrapped,
 };
-use crate::enclosure::{
-    AxisEnclosure, Interval, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, cross as cross_models,
-    difference, dot,
-};
+use crate::enclosure::{MembersEnclosure, PlanarModel, TaylorModel, cross as cross_models, difference, dot};
 use crate::lanes::{Planar, Real};
 use crate::mechanism::chain::{
     Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
-    JointPoint, LockedKind, LockedLeg, ProximalEnclosure, ProximalLanes, Solved,
+    JointPoint, LockedKind, LockedLeg, ProximalLanes, Solved,
 };
 use crate::mechanism::{
-    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegSettings, MemberAxis, MemberKind, Members,
-    ReachReason, Shortfall, Travel,
+    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegSettings, MemberKind, Members, ReachReason,
+    Shortfall, Travel,
 };
 use crate::spatial::{cross, unit};
 
@@ -140,29 +138,28 @@ impl Chain for RrpChain {
     }
 
     /// With lengths in units of `L_b`, `h = g × v` and `w = √(λ² − h²)`: `σ = −v · g + s w`.
-    fn enclose(frame: &LegFrameEnclosure, _: &Design, settings: &LegSettings, pose: &PoseEnclosure) -> ChainEnclosure {
+    fn enclose(
+        frame: &LegFrameEnclosure,
+        _: &Design,
+        _: &LegSettings,
+        position: PlanarModel,
+        arm: PlanarModel,
+    ) -> ChainEnclosure {
         let (one, zero) = (TaylorModel::exactly(1.0), TaylorModel::exactly(0.0));
-        let guide = frame.guide(pose);
-        let chord = frame.vector(pose);
+        let guide = frame.platform_guide.leave(arm);
+        let chord = frame.vector(position, arm);
         let height = cross_models(guide, chord);
         let square = TaylorModel::constant(frame.proximal.square()) - height.squared();
         let foot = square.sqrt().times(frame.sign);
         let value = foot - dot(chord, guide);
-        let [lower, upper] = settings.geometry.guide.map(Interval::exactly);
-        let vector = [-foot, -height];
-        let to_unit = Interval::exactly(1.0) / frame.proximal;
+        let [from_lower, to_upper] = enclosed_within(value, frame.guide_travel);
         ChainEnclosure {
-            reach: [square, value.plus(-lower), TaylorModel::constant(upper) - value, one],
+            reach: [square, from_lower, to_upper, one],
             tangent: guide.map(|part| -part),
             offset: value,
             beam: absolute(value),
             signed_beam: value,
-            proximal: Some(ProximalEnclosure {
-                vector,
-                direction: vector.map(|part| part.scaled(to_unit)),
-                length: TaylorModel::constant(frame.proximal),
-                offset: TaylorModel::constant(frame.proximal),
-            }),
+            proximal: Some(frame.crank([-foot, -height])),
             guides: [None, None, Some([one, zero])],
             lever_square: None,
         }
@@ -171,39 +168,21 @@ impl Chain for RrpChain {
     fn enclose_members(
         frame: &LegFrameEnclosure,
         _: &Design,
-        settings: &LegSettings,
+        _: &LegSettings,
         chain: &ChainEnclosure,
         anchor: PlanarModel,
         tip: PlanarModel,
     ) -> MembersEnclosure {
         let elbow = difference(tip, chain.tangent.map(|part| part * chain.offset));
         let guide = chain.tangent.map(|part| -part);
-        MembersEnclosure {
-            proximal: Some(AxisEnclosure::between(
-                anchor,
-                elbow,
-                frame.along_proximal(difference(elbow, anchor)),
-            )),
-            distal: enclosed_guide(tip, guide, settings.geometry.guide.map(Interval::exactly)),
-            rail: None,
-        }
+        enclosed_members_on_crank(frame, [anchor, elbow], enclosed_guide(tip, guide, frame.guide_travel))
     }
 
     #[inline(always)]
     fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
-        let like = c.x;
         let guide = Planar::new(-distal.tangent.x, -distal.tangent.y);
-        let anchor = Planar::splat(like, self.frame.anchor);
         let elbow = c.plus(guide.scaled(distal.offset));
-        Members {
-            proximal: Some(MemberAxis {
-                from: anchor,
-                direction: elbow.minus(anchor).scaled(like.splat(1.0 / self.crank)),
-                length: like.splat(self.crank),
-            }),
-            distal: guide_axis(c, guide, self.travel),
-            rail: None,
-        }
+        members_on_crank(&self.frame, self.crank, elbow, guide_axis(c, guide, self.travel))
     }
 
     fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3] {

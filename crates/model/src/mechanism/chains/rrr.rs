@@ -2,14 +2,12 @@
 
 use glam::DVec2;
 
-use super::{angle_of, box_about, crank_body, link_body, wrapped};
-use crate::enclosure::{
-    AxisEnclosure, Interval, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, difference, dot,
-};
+use super::{angle_of, box_about, crank_body, enclosed_members_on_crank, link_body, members_on_crank, wrapped};
+use crate::enclosure::{AxisEnclosure, Interval, MembersEnclosure, PlanarModel, TaylorModel, difference, dot};
 use crate::lanes::{Planar, Real};
 use crate::mechanism::chain::{
     Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
-    JointPoint, LockedKind, LockedLeg, ProximalEnclosure, ProximalLanes, Solved,
+    JointPoint, LockedKind, LockedLeg, ProximalLanes, Solved,
 };
 use crate::mechanism::{
     Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegSettings, MemberAxis, MemberKind, Members,
@@ -170,26 +168,23 @@ impl Chain for RrrChain {
 
     /// With lengths in units of `L_b`, `v` leads from `A_i` to `C_i`, `S = |v|²`, `λ = L_a/L_b`, and `f = 1/2 + (λ² − 1)/(2S)` is
     /// the foot of `B_i`: `u = (1 − f) v − τ v⊥` with `τ = σ √(λ²/S − f²)`.
-    fn enclose(frame: &LegFrameEnclosure, design: &Design, _: &LegSettings, pose: &PoseEnclosure) -> ChainEnclosure {
-        let [x, y] = frame.vector(pose);
+    fn enclose(
+        frame: &LegFrameEnclosure,
+        design: &Design,
+        _: &LegSettings,
+        position: PlanarModel,
+        arm: PlanarModel,
+    ) -> ChainEnclosure {
+        let [x, y] = frame.vector(position, arm);
         let one = TaylorModel::exactly(1.0);
         let square = dot([x, y], [x, y]);
-        let proximal = |vector: PlanarModel| {
-            let to_unit = Interval::exactly(1.0) / frame.proximal;
-            Some(ProximalEnclosure {
-                vector,
-                direction: vector.map(|part| part.scaled(to_unit)),
-                length: TaylorModel::constant(frame.proximal),
-                offset: TaylorModel::constant(frame.proximal),
-            })
-        };
         let chain = |reach, tangent, vector, lever_square| ChainEnclosure {
             reach,
             tangent,
             offset: one,
             beam: one,
             signed_beam: one,
-            proximal: proximal(vector),
+            proximal: Some(frame.crank(vector)),
             guides: [None; 3],
             lever_square: Some(lever_square),
         };
@@ -235,31 +230,14 @@ impl Chain for RrrChain {
         tip: PlanarModel,
     ) -> MembersEnclosure {
         let elbow = difference(tip, chain.tangent);
-        MembersEnclosure {
-            proximal: Some(AxisEnclosure::between(
-                anchor,
-                elbow,
-                frame.along_proximal(difference(elbow, anchor)),
-            )),
-            distal: AxisEnclosure::between(elbow, tip, chain.tangent),
-            rail: None,
-        }
+        let link = AxisEnclosure::between(elbow, tip, chain.tangent);
+        enclosed_members_on_crank(frame, [anchor, elbow], link)
     }
 
     #[inline(always)]
     fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
-        let like = c.x;
-        let link = MemberAxis::back_from(c, distal.tangent, like.splat(self.link));
-        let anchor = Planar::splat(like, self.frame.anchor);
-        Members {
-            proximal: Some(MemberAxis {
-                from: anchor,
-                direction: link.from.minus(anchor).scaled(like.splat(1.0 / self.crank)),
-                length: like.splat(self.crank),
-            }),
-            distal: link,
-            rail: None,
-        }
+        let link = MemberAxis::back_from(c, distal.tangent, c.x.splat(self.link));
+        members_on_crank(&self.frame, self.crank, link.from, link)
     }
 
     fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3] {
