@@ -1,5 +1,7 @@
 //! The colours of architectures, parts, constraints and clearances in every view, as red, green and blue.
 
+use std::sync::LazyLock;
+
 use crate::scene::Part;
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::Architecture;
@@ -16,22 +18,27 @@ pub fn architecture(architecture: Architecture) -> [u8; 3] {
         [60, 125, 205],
         [224, 102, 40],
     ];
-    let mut chains: Vec<&str> = Vec::new();
-    for other in Architecture::ALL {
-        if !chains.contains(&other.chain_name()) {
-            chains.push(other.chain_name());
-        }
-    }
-    let own = architecture.chain_name();
-    let chain = chains.iter().position(|&name| name == own).unwrap_or(0);
-    let of_chain = Architecture::ALL.iter().filter(|other| other.chain_name() == own);
-    let shade = of_chain.take_while(|&&other| other != architecture).count();
-    HUES[chain % HUES.len()].map(|part| match shade {
-        0 => part,
-        // Lighter, then darker.
-        1 => part + (255 - part) / 2,
-        _ => (u16::from(part) * 11 / 20) as u8,
-    })
+    // A plot asks for the colour of every design.
+    static COLORS: LazyLock<Vec<[u8; 3]>> = LazyLock::new(|| {
+        let mut chains: Vec<&str> = Vec::new();
+        let color = |&architecture: &Architecture| {
+            let own = architecture.chain_name();
+            let chain = chains.iter().position(|&name| name == own).unwrap_or_else(|| {
+                chains.push(own);
+                chains.len() - 1
+            });
+            let of_chain = Architecture::ALL.iter().filter(|other| other.chain_name() == own);
+            let shade = of_chain.take_while(|&&other| other != architecture).count();
+            HUES[chain % HUES.len()].map(|part| match shade {
+                0 => part,
+                // Lighter, then darker.
+                1 => part + (255 - part) / 2,
+                _ => (u16::from(part) * 11 / 20) as u8,
+            })
+        };
+        Architecture::ALL.iter().map(color).collect()
+    });
+    COLORS[architecture as usize]
 }
 
 /// Returns the colour of a part: orange for actuated parts, darker grey for fixed parts, steel grey for other moving

@@ -1,7 +1,7 @@
 //! Formatting of numbers and names for display.
 
 use kinefront_model::clearance::Clearance;
-use kinefront_model::mechanism::Architecture;
+use kinefront_model::mechanism::{Architecture, DesignVariable};
 
 /// Formats a number with four significant digits: in decimal notation from 0.001 up to 100 000, otherwise in scientific
 /// notation. A number that is not finite becomes a dash.
@@ -43,6 +43,17 @@ pub fn clearance(clearance: &Clearance) -> String {
         format!("overlap of {size} mm between {member} and {neighbour}")
     } else {
         format!("{size} mm from {member} to {neighbour}")
+    }
+}
+
+/// Writes the value of a variable: an angle in degrees, the radius of a bar in millimetres, any other length in metres.
+pub fn variable_value(variable: DesignVariable, value: f64) -> String {
+    if variable.is_angle() {
+        format!("{value:.2}°")
+    } else if variable.may_be_zero() {
+        format!("{:.2} mm", 1e3 * value)
+    } else {
+        format!("{value:.4} m")
     }
 }
 

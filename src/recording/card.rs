@@ -44,14 +44,7 @@ pub(super) fn card(
     card += &"---|".repeat(variables.len());
     card += "\n|";
     for variable in variables {
-        let value = design.value(variable);
-        card += &if variable.is_angle() {
-            format!(" {value:.2}° |")
-        } else if variable.may_be_zero() {
-            format!(" {:.2} mm |", 1e3 * value)
-        } else {
-            format!(" {value:.4} m |")
-        };
+        card += &format!(" {} |", text::variable_value(variable, design.value(variable)));
     }
     card += "\n\n| | constraint | smallest value | threshold | margin | |\n|---|---|---|---|---|---|\n";
     for report in evaluation.constraints.iter().filter(|report| report.required) {

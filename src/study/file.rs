@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::settings::{
     ActuatorSection, AlgorithmName, Bounds, GeometrySection, Grids, HypervolumeSection, LengthChoice, Limits,
-    MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, ReferenceDesign, RequirementSection,
+    MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, RailSection, ReferenceDesign, RequirementSection,
     SectionsSection, StiffnessChoice, TelescopicBar, Variables, WorkspaceSection,
 };
 use kinefront_model::clearance::BodySettings;
@@ -42,6 +42,8 @@ pub struct Study {
     pub material: MaterialSection,
     /// The section `[sections]`.
     pub sections: SectionsSection,
+    /// The section `[rails]`.
+    pub rails: RailSection,
     /// The section `[actuators]`.
     pub actuators: ActuatorSection,
     /// The section `[requirements]`.
@@ -81,6 +83,7 @@ impl Default for Study {
             constraints: Limits::new(),
             material: MaterialSection::default(),
             sections: SectionsSection::default(),
+            rails: RailSection::default(),
             actuators: ActuatorSection::default(),
             requirements: RequirementSection::default(),
             workspace: WorkspaceSection::default(),
@@ -112,6 +115,9 @@ impl Study {
                 density: self.material.density_kg_per_m3,
             },
             sections: self.sections.cross_sections(),
+            rails: self
+                .rails
+                .rails(self.sections.rails.cross_section().unwrap_or_default()),
             actuators: ActuatorStiffness {
                 prismatic: self.actuators.prismatic_stiffness_n_per_m,
                 revolute: self.actuators.revolute_stiffness_nm_per_rad,

@@ -88,7 +88,7 @@ impl DesignProblem {
             .iter()
             .enumerate()
             .map(move |(place, (variable, _))| (first + place, *variable));
-        all.filter(move |(_, variable)| architecture.further_variables().contains(variable))
+        all.filter(move |(_, variable)| architecture.has(*variable))
     }
 
     /// Returns the values of the variables with the listed ones at the nearest value of their list and the tied ones as they

@@ -3,9 +3,9 @@
 use kinefront::study::{
     BUILTIN, Builtin, Check, DesignProblem, Initial, Setting, Stagnation, Study, StudyError, settings,
 };
-use kinefront_model::evaluation::Model;
+use kinefront_model::evaluation::{GridChoice, Model};
 use kinefront_model::kinematics::CharacteristicLength;
-use kinefront_model::mechanism::BarLength;
+use kinefront_model::mechanism::{BarLength, Design};
 use kinefront_model::stiffness::StiffnessDefinition;
 use kinefront_optimize::Variable;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
@@ -165,6 +165,7 @@ fn other(setting: &Setting, value: &toml::Value) -> toml::Value {
             names[(index + 1) % names.len()].into()
         }
         (_, Value::Float(number)) => (if *number == 0.0 { 0.5 } else { 0.5 * number }).into(),
+        (_, Value::Integer(1)) => 2.into(),
         (_, Value::Integer(number)) => (number / 2 + number % 2).into(),
         (_, Value::Array(items)) => {
             // A bound of 0 stays, so that the other bound stays above it.
@@ -245,12 +246,7 @@ fn every_setting_has_an_effect() {
     for setting in settings().filter(|setting| !is_alternative(setting) && !is_kind(setting)) {
         let mut table = toml::Table::try_from(&complete).expect("TOML");
         let value = setting.value(&table).expect("a value").clone();
-        let value = if setting.key == "seed" {
-            7.into()
-        } else {
-            other(setting, &value)
-        };
-        insert(&mut table, setting, value);
+        insert(&mut table, setting, other(setting, &value));
         match setting.key {
             // A length counts only if it is fixed.
             "characteristic_length" => {
@@ -279,7 +275,7 @@ fn every_setting_has_an_effect() {
         match setting.section.split('.').next().expect("a section") {
             // The run proves the front or does not; the model is the same.
             _ if setting.key == "certify" => assert_ne!(changed, complete, "{path}"),
-            "material" | "actuators" | "workspace" | "model" | "bodies" | "grid" => {
+            "material" | "rails" | "actuators" | "workspace" | "model" | "bodies" | "grid" => {
                 assert_ne!(found, model, "{path} does not reach the model");
             }
             "requirements" => {
@@ -330,6 +326,18 @@ fn every_alternative_has_an_effect() {
              catalogue = [{ name = \"40 x 2\", outer_mm = 40.0, wall_mm = 2.0 }]",
         ),
         (
+            "sections.rails.wall_ratio",
+            "[rails]\nradius_m = 0.03\n[sections.rails]\nkind = \"tube\"\nwall_ratio = 0.2",
+        ),
+        (
+            "sections.rails.wall_m",
+            "[rails]\nradius_m = 0.03\n[sections.rails]\nkind = \"square_tube\"\nwall_m = 0.004",
+        ),
+        (
+            "sections.rails.catalogue",
+            "[rails]\nradius_m = 0.03\n[sections.rails]\nkind = \"tube\"\ncatalogue = \"en-10255-medium\"",
+        ),
+        (
             "workspace.region.radius_m",
             "objectives = [{ minimize = \"mass_kg\" }]\nworkspace.region = { kind = \"disc\", radius_m = 0.3 }",
         ),
@@ -366,6 +374,39 @@ fn every_alternative_has_an_effect() {
             assert_ne!(study.model(), paper.model(), "{path} does not reach the model");
         }
     }
+}
+
+/// Rails with a section weigh what their travel says, and yield the more the thinner and the less supported they are.
+#[test]
+fn rails_weigh_and_bend_as_a_study_says() {
+    let evaluated = |rails: &str, design: &str| {
+        let study = Study::parse(rails, "rails").expect("a study");
+        let design: Design = design.parse().expect("a design");
+        study.model().expect("a model").evaluate(&design, GridChoice::Reference)
+    };
+    let on_rails = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056";
+    let rigid = evaluated("", on_rails);
+    let radius_of = |rails: &str| evaluated(rails, on_rails).workspace_radius;
+    let clamped = evaluated("[rails]\nradius_m = 0.08", on_rails);
+    let rails = 3.0 * 3f64.sqrt() * 3.066 * std::f64::consts::PI * 0.08 * 0.08 * 7850.0;
+    assert!((clamped.mass / (rigid.mass + rails) - 1.0).abs() < 1e-12);
+
+    // Which is stiffer shows in the size of the workspace.
+    let spans = radius_of("[rails]\nradius_m = 0.08\nspans = 3");
+    let thick = radius_of("[rails]\nradius_m = 5");
+    let pinned = radius_of("[rails]\nradius_m = 0.08\nsupports = \"pinned\"");
+    let tube = radius_of("[rails]\nradius_m = 0.08\n[sections.rails]\nkind = \"tube\"\nwall_ratio = 0.1");
+    let order = [pinned, clamped.workspace_radius, spans, rigid.workspace_radius];
+    assert!(
+        order.is_sorted() && order[0] < order[1] && order[1] < order[2],
+        "{order:?}"
+    );
+    assert!(tube < clamped.workspace_radius, "{tube}");
+    assert!((thick / rigid.workspace_radius - 1.0).abs() < 1e-3, "{thick}");
+
+    // A chain without rails has nothing to do with them.
+    let without = "3-RPR R=2.0 r=0.6 Lb=2.5 rj=0.04 rp=0.04";
+    assert_eq!(evaluated("[rails]\nradius_m = 0.02", without), evaluated("", without));
 }
 
 /// Variables that are fixed, listed, tied or of a catalogue take their values before a candidate is evaluated.
@@ -525,7 +566,7 @@ fn studies_of_one_problem_may_differ_in_the_search_only() {
 #[test]
 fn wrong_files_are_refused_with_file_line_and_key() {
     // Text of the study, and what the report must show.
-    let cases: [(&str, &[&str]); 12] = [
+    let cases: [(&str, &[&str]); 15] = [
         (
             "name = \"x\"\n[material]\ndensty = 1.0",
             &["mine.toml:3", "densty", "density_kg_per_m3"],
@@ -560,6 +601,18 @@ fn wrong_files_are_refused_with_file_line_and_key() {
         (
             "[grid.fine]\nphi_step_deg = 7\ndirections = 36\nray_steps = 50\nhalvings = 12",
             &["mine.toml:2", "grid.fine.phi_step_deg", "whole steps"],
+        ),
+        (
+            "[rails]\nradius_m = 0.03\nsupports = \"pinned\"\nspans = 2",
+            &["mine.toml:4", "rails.spans", "one span", "clamped"],
+        ),
+        (
+            "[rails]\nspans = 3",
+            &["mine.toml:2", "rails.spans", "no effect", "rails.radius_m"],
+        ),
+        (
+            "[sections.rails]\nkind = \"square_tube\"\nwall_ratio = 0.1",
+            &["mine.toml:2", "sections.rails.kind", "no effect", "rails.radius_m"],
         ),
         ("name = \"x\"\nbroken", &["mine.toml:2", "expected"]),
     ];

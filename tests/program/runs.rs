@@ -186,7 +186,11 @@ fn a_run_stops_by_the_rules_of_its_study() {
         let report = optimize(&study, &out, &[]);
         assert_eq!(report["outcome"], outcome);
         let done = report["evaluations"].as_u64().expect("a number");
-        assert_eq!(done == 900, outcome == "completed", "{done} evaluations");
+        match outcome {
+            "completed" => assert_eq!(done, 900),
+            "stagnated" => assert!(done < 2000, "{done} evaluations"),
+            _ => assert!(done < 100_000_000, "{done} evaluations"),
+        }
         if outcome == "completed" {
             let verified = report["front_verified"].as_u64().expect("a number");
             assert!(verified > 7 && report["front_size"] == 7, "7 of {verified}");

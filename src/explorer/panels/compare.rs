@@ -6,7 +6,7 @@ use crate::explorer::{Named, Session, theme};
 use crate::study::Column;
 use crate::text;
 use kinefront_model::evaluation::{Constraint, Evaluation};
-use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable, FURTHER_VARIABLES};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, FURTHER_VARIABLES};
 
 /// The panel that compares the pinned designs.
 #[derive(Default)]
@@ -91,16 +91,15 @@ fn names(ui: &mut Ui, pins: &[Named]) -> Vec<Option<PinClick>> {
 }
 
 fn dimensions(ui: &mut Ui, pins: &[Named]) {
-    let has = |pin: &Named, variable: DesignVariable| {
-        let further = pin.design.architecture.further_variables();
-        DESIGN_VARIABLES.contains(&variable) || further.contains(&variable)
-    };
     for variable in DESIGN_VARIABLES.into_iter().chain(FURTHER_VARIABLES) {
         let is_given = |pin: &Named| pin.design.given_variables().any(|given| given == variable);
         if !DESIGN_VARIABLES.contains(&variable) && !pins.iter().any(is_given) {
             continue;
         }
-        let of_pin = |pin: &Named| has(pin, variable).then(|| pin.design.value(variable));
+        let of_pin = |pin: &Named| {
+            let has_it = pin.design.architecture.has(variable);
+            has_it.then(|| pin.design.value(variable))
+        };
         let values = pins.iter().map(of_pin).collect();
         row(ui, &Column::Dimension(variable).title(), values, None);
     }

@@ -127,15 +127,7 @@ fn sliders(ui: &mut Ui, session: &mut Session, design: &Design) {
             ui.add_sized([34.0, 18.0], egui::Label::new(variable.symbol()));
             ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(60.0);
             let slider = Slider::new(&mut value, range)
-                .custom_formatter(move |value, _| {
-                    if variable.is_angle() {
-                        format!("{value:.2}°")
-                    } else if thin {
-                        format!("{:.2} mm", 1e3 * value)
-                    } else {
-                        format!("{value:.4} m")
-                    }
-                })
+                .custom_formatter(move |value, _| text::variable_value(variable, value))
                 .custom_parser(move |text| {
                     let text = text.trim();
                     if variable.is_angle() {

@@ -137,19 +137,17 @@ fn distance(at: DVec2, member: &MemberReport) -> f64 {
 
 /// Shows the data of a member.
 pub(super) fn card(ui: &mut Ui, report: &MemberReport) {
+    let is_slider = report.member.kind == MemberKind::Slider;
     ui.strong(name(&report.member));
     ui.label(format!(
         "length {} m, {} {} mm",
         theme::number(report.length),
-        if report.member.kind == MemberKind::Slider {
-            "half width"
-        } else {
-            "radius"
-        },
+        if is_slider { "half width" } else { "radius" },
         theme::number(1e3 * report.radius)
     ));
     if report.mass > 0.0 {
-        ui.label(format!("mass {} kg", theme::number(report.mass)));
+        let of = if is_slider { "mass of its rail" } else { "mass" };
+        ui.label(format!("{of} {} kg", theme::number(report.mass)));
     } else {
         ui.weak("no mass in this model");
     }
@@ -162,8 +160,14 @@ pub(super) fn card(ui: &mut Ui, report: &MemberReport) {
             percent(contribution.rotation)
         )
     };
-    if let Some(contribution) = report.contribution.filter(|_| report.member.kind != MemberKind::Slider) {
-        ui.label(of_all("contribution", contribution));
+    let yields = |contribution: &Contribution| !is_slider || *contribution != Contribution::default();
+    if let Some(contribution) = report.contribution.filter(yields) {
+        let what = if is_slider {
+            "contribution of its rail"
+        } else {
+            "contribution"
+        };
+        ui.label(of_all(what, contribution));
     }
     if let Some(contribution) = report.actuator {
         ui.label(of_all("contribution of its actuator", contribution));

@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use super::{optional, paper};
 use crate::report::Report;
+use crate::text;
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES};
 
 pub(super) fn made(report: &Report) -> Markup {
@@ -40,12 +41,12 @@ pub(super) fn made(report: &Report) -> Markup {
         div.scroll { table {
             caption {
                 "The flexible model of each leg: a chain of springs from the base to the centre of the platform, "
-                "connected by rigid bodies, with two passive revolute joints."
+                "connected by rigid bodies, with two passive joints."
             }
             thead { tr { th { "architecture" } th { "actuator" } th { "leg" } th { "platform" } } }
             tbody { @for (architecture, _) in &report.fronts.alone { tr {
-                td { (architecture) } td { (actuator(*architecture)) }
-                td { (bars(*architecture)) } td { "bar of length r and radius r_p: 6 springs" }
+                td { (text::architecture(*architecture)) } td { (actuator(*architecture)) }
+                td { (bars(*architecture, report.model.rails.is_some())) } td { "bar of length r and radius r_p: 6 springs" }
             } } }
         } }
         details {
@@ -63,9 +64,14 @@ fn actuator(architecture: Architecture) -> String {
     format!("{kind}: 1 spring")
 }
 
-fn bars(architecture: Architecture) -> String {
-    match architecture.bars_per_leg() {
+fn bars(architecture: Architecture, rails_bend: bool) -> String {
+    let bars = match architecture.bars_per_leg() {
         1 => "bar of radius r_j: 6 springs".to_owned(),
-        count => format!("{count} bars of length L_b and radius r_j: 6 springs each"),
+        count => format!("{count} bars of radius r_j: 6 springs each"),
+    };
+    if rails_bend && architecture.chain().is_on_rails() {
+        format!("rail: 5 springs; {bars}")
+    } else {
+        bars
     }
 }

@@ -7,7 +7,7 @@ use super::{cell, figures, image, paper, percent};
 use crate::report::{AT_BOUND, Fit, Front, Report, Trend, lightest_intervals};
 use crate::text::{self, number, short};
 use kinefront_model::evaluation::{Constraint, Evaluation};
-use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, JointKind};
+use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES};
 
 /// Workspace radii at which architectures are compared, as fractions of the largest radius.
 const LEVELS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95];
@@ -38,7 +38,8 @@ pub(super) fn comparison(report: &Report) -> Markup {
     // Of many architectures, most are nowhere the lightest.
     let is_shown = |(_, fraction): &&(Architecture, f64)| fractions.len() <= FEW || *fraction > 0.0;
     let shown: Vec<(Architecture, f64)> = fractions.iter().filter(is_shown).copied().collect();
-    let is_on_rails = |architecture: &Architecture| architecture.chain().joints[0] == JointKind::Prismatic;
+    let rails_are_rigid = report.model.rails.is_none();
+    let is_on_rails = |architecture: &Architecture| architecture.chain().is_on_rails();
     let (on_rails, others): (Vec<Architecture>, Vec<Architecture>) = fractions
         .iter()
         .map(|(architecture, _)| *architecture)
@@ -54,10 +55,15 @@ pub(super) fn comparison(report: &Report) -> Markup {
         }
         @if !on_rails.is_empty() && !others.is_empty() {
             p {
-                "Rails weigh nothing and do not yield in this model, as in the paper. This flatters the architectures whose "
-                "first joint is prismatic ("
+                @if rails_are_rigid {
+                    "Rails weigh nothing and do not yield in this study, as in the paper. This flatters the architectures whose "
+                    "first joint is prismatic ("
+                } @else {
+                    "The mass contains the rails, which do not move, and the stiffness their bending (the architectures whose first "
+                    "joint is prismatic: "
+                }
                 @for (index, architecture) in on_rails.iter().enumerate() { @if index > 0 { ", " } (text::architecture(*architecture)) }
-                ") in a comparison with the others."
+                @if rails_are_rigid { ") in a comparison with the others." } @else { ")." }
             }
         }
         @if intervals.len() <= 12 {

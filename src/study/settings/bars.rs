@@ -45,7 +45,7 @@ pub enum CatalogueChoice {
     Rows(Vec<CatalogueRow>),
 }
 
-/// Cross-section of the bars of the legs or of the platform.
+/// Cross-section of the bars of the legs or of the platform, or of the rails.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SectionChoice {
@@ -70,6 +70,8 @@ pub struct SectionsSection {
     pub legs: SectionChoice,
     /// Bars of the platform.
     pub platform: SectionChoice,
+    /// Rails of the base, if they bend.
+    pub rails: SectionChoice,
 }
 
 /// A catalogue that comes with the program.
@@ -157,7 +159,7 @@ impl SectionChoice {
     ///
     /// # Errors
     /// The key of this section at fault, and a message.
-    pub(super) fn cross_section(&self) -> Result<CrossSection, (&'static str, String)> {
+    pub(in crate::study) fn cross_section(&self) -> Result<CrossSection, (&'static str, String)> {
         let stated = [
             ("wall_ratio", self.wall_ratio.is_some()),
             ("wall_m", self.wall_m.is_some()),
@@ -211,7 +213,7 @@ impl SectionChoice {
 }
 
 impl SectionsSection {
-    /// Returns the cross-sections of a study without faults; one at fault is taken as solid.
+    /// Returns the cross-sections of the bars of a study without faults; one at fault is taken as solid.
     pub fn cross_sections(&self) -> CrossSections {
         CrossSections {
             legs: self.legs.cross_section().unwrap_or_default(),
@@ -224,6 +226,7 @@ impl SectionsSection {
         [
             ("sections.legs.catalogue", &mut self.legs),
             ("sections.platform.catalogue", &mut self.platform),
+            ("sections.rails.catalogue", &mut self.rails),
         ]
         .into_iter()
         .filter_map(|(key, choice)| Some((key, choice.catalogue.as_mut()?)))

@@ -1,10 +1,13 @@
 //! Invalid values of a study.
 
 use super::question::unknown_quantity;
-use super::{Bounds, LengthChoice, LimitChoice, ObjectiveChoice, SectionChoice, settings, variables};
+use super::{
+    Bounds, LengthChoice, LimitChoice, ObjectiveChoice, RailSection, RailSupportChoice, SectionChoice, settings,
+    variables,
+};
 use crate::study::{AlgorithmName, Study};
 use kinefront_model::evaluation::{Quantity, Scope};
-use kinefront_model::mechanism::{Architecture, Arrangement, Design, DesignVariable, Geometry, JointKind};
+use kinefront_model::mechanism::{Architecture, Arrangement, Design, DesignVariable, Geometry};
 use kinefront_model::spatial::LEGS;
 use kinefront_model::workspace::{Grid, GridError};
 
@@ -27,7 +30,7 @@ impl Fault {
 }
 
 /// Rules about several settings at once, each of which adds what it finds.
-const RULES: [fn(&Study, &mut Vec<Fault>); 14] = [
+const RULES: [fn(&Study, &mut Vec<Fault>); 15] = [
     check_characteristic_length,
     check_slider,
     check_bounds,
@@ -38,6 +41,7 @@ const RULES: [fn(&Study, &mut Vec<Fault>); 14] = [
     check_moga2,
     check_references,
     check_sections,
+    check_rails,
     check_variables,
     check_region,
     check_objectives,
@@ -124,7 +128,7 @@ fn check_further_bounds(study: &Study, faults: &mut Vec<Fault>) {
             let message = format!("has its lower bound {lower} above its upper bound {upper}");
             faults.push(Fault::new(&*key, message));
         }
-        let has_it = |architecture: &Architecture| architecture.further_variables().contains(&variable);
+        let has_it = |architecture: &Architecture| architecture.has(variable);
         if !study.architectures.iter().any(has_it) {
             let names: Vec<&str> = Architecture::ALL
                 .iter()
@@ -149,8 +153,8 @@ fn check_geometry(study: &Study, faults: &mut Vec<Fault>) {
             faults.push(Fault::new(key, message));
         }
     }
-    let on_rails = |architecture: &&Architecture| architecture.chain().joints[0] == JointKind::Prismatic;
-    let Some(architecture) = study.architectures.iter().find(on_rails) else {
+    let mut architectures = study.architectures.iter();
+    let Some(architecture) = architectures.find(|architecture| architecture.chain().is_on_rails()) else {
         return;
     };
     for leg in 0..LEGS {
@@ -249,6 +253,32 @@ fn check_sections(study: &Study, faults: &mut Vec<Fault>) {
     };
     faults.extend(of("legs", &study.sections.legs));
     faults.extend(of("platform", &study.sections.platform));
+    faults.extend(of("rails", &study.sections.rails));
+}
+
+fn check_rails(study: &Study, faults: &mut Vec<Fault>) {
+    let rails = &study.rails;
+    if rails.supports == RailSupportChoice::Pinned && rails.spans > 1 {
+        let message = format!(
+            "is {}, but a rail on pinned supports has one span; set supports = \"clamped\", or omit it",
+            rails.spans
+        );
+        faults.push(Fault::new("rails.spans", message));
+    }
+    let without_radius = "has no effect, because rails are rigid; set rails.radius_m, or omit it";
+    if rails.radius_m.is_some() {
+        return;
+    }
+    let defaults = RailSection::default();
+    for (key, is_stated) in [
+        ("rails.supports", rails.supports != defaults.supports),
+        ("rails.spans", rails.spans != defaults.spans),
+        ("sections.rails.kind", study.sections.rails != SectionChoice::default()),
+    ] {
+        if is_stated {
+            faults.push(Fault::new(key, without_radius));
+        }
+    }
 }
 
 fn check_variables(study: &Study, faults: &mut Vec<Fault>) {

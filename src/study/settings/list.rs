@@ -5,7 +5,7 @@ use kinefront_model::mechanism::Architecture;
 use super::declare::{Check, Initial, Setting, settings};
 use super::{
     ActuatorSection, AlgorithmName, Bounds, GeometrySection, HypervolumeSection, MaterialSection, ModelSection,
-    RegionKind, RequirementSection, Variables, WorkspaceSection,
+    RailSection, RegionKind, RequirementSection, Variables, WorkspaceSection,
 };
 
 const MOST: i64 = 100_000_000;
@@ -13,7 +13,7 @@ const PROBABILITY: Check = Check::Within(0.0, 1.0, "");
 const LAYER: Check = Check::Within(-1e3, 1e3, " diameters of the thicker bar");
 const PHI_STEP: Check = Check::Within(0.01, 120.0, "");
 
-const SECTIONS: [&[Setting]; 23] = [
+const SECTIONS: [&[Setting]; 25] = [
     settings!("" {
         name: Check::Name, "Short name, which appears in run folders and recordings.";
         description: Check::Any, "Description of the study in one or two sentences.";
@@ -37,6 +37,13 @@ const SECTIONS: [&[Setting]; 23] = [
         wall_m: Check::Any, "Thickness of the wall.";
         catalogue: Check::Any, "Catalogue that the bars are selected from: a built-in name, or the path of a CSV file.";
     }),
+    settings!("sections.rails" {
+        kind: Check::Choice(&["round", "tube", "square_tube"]), "Cross-section of the rails, if they have a radius.";
+        wall_ratio: Check::Any, "Thickness of the wall as a fraction of the outer radius; 1 is a solid rail.";
+        wall_m: Check::Any, "Thickness of the wall.";
+        catalogue: Check::Any, "Catalogue that the rails are selected from: a built-in name, or the path of a CSV file.";
+    }),
+    RailSection::SETTINGS,
     ActuatorSection::SETTINGS,
     RequirementSection::SETTINGS,
     WorkspaceSection::SETTINGS,

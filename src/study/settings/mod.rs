@@ -24,6 +24,7 @@ pub use question::{LimitChoice, Limits, ObjectiveChoice};
 pub use region::{RegionKind, RegionSection};
 pub use sections::{
     ActuatorSection, Bounds, GeometrySection, GridSection, Grids, LengthChoice, MaterialSection, ModelSection,
-    ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
+    RailSection, RailSupportChoice, ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar,
+    WorkspaceSection,
 };
 pub use variables::{Tie, VariableChoice, Variables};

@@ -8,7 +8,7 @@ use kinefront_model::mechanism::{
     Arrangement, DESIGN_VARIABLES, Design, DesignVariable, FURTHER_VARIABLES, TextError, WorkingMode,
 };
 use kinefront_model::spatial::LEGS;
-use kinefront_model::stiffness::Material;
+use kinefront_model::stiffness::{CrossSection, Material, RailSettings, RailSupports};
 use kinefront_model::workspace::{Grid, GridError};
 
 section! {
@@ -20,6 +20,30 @@ section! {
         shear_modulus_pa: f64 = Material::STEEL.shear_modulus, Check::Positive;
         /// Density `ν`.
         density_kg_per_m3: f64 = Material::STEEL.density, Check::Positive;
+    }
+}
+
+/// Support of the rails of the base.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RailSupportChoice {
+    /// Supports that hold position and slope.
+    Clamped,
+    /// Supports that hold the position alone, at both ends.
+    Pinned,
+}
+
+section! {
+    /// Rails of the base, on which the sliders of PRR, PRP and PPR legs move.
+    pub struct RailSection in "rails" {
+        /// What the supports of a rail hold: position and slope (`clamped`), or the position alone (`pinned`).
+        supports: RailSupportChoice = RailSupportChoice::Clamped, Check::Choice(&["clamped", "pinned"]);
+        /// Number of equally long spans between the supports of a rail.
+        spans: u32 = 1, Check::Count(1, 100);
+        optional {
+            /// Outer radius of a rail, or half of its outer width; if omitted, rails are rigid and have no mass.
+            radius_m: f64, Check::Within(1e-4, 10.0, ", or be omitted if rails are rigid"), Initial::Number(0.03);
+        }
     }
 }
 
@@ -181,6 +205,20 @@ section! {
         rail: [f64; 2] = Arrangement::PAPER.rail, Check::Within(-100.0, 100.0, "");
         /// Travel on every other guide, as shares of `L_b`, or of `L_a` on the guide at the base of an RPP leg.
         guide: [f64; 2] = Arrangement::PAPER.guide, Check::Within(-100.0, 100.0, "");
+    }
+}
+
+impl RailSection {
+    /// Returns the rails of a study without faults; `None` if they are rigid.
+    pub fn rails(&self, section: CrossSection) -> Option<RailSettings> {
+        self.radius_m.map(|radius| RailSettings {
+            section,
+            radius,
+            supports: match self.supports {
+                RailSupportChoice::Clamped => RailSupports::Clamped { spans: self.spans },
+                RailSupportChoice::Pinned => RailSupports::Pinned,
+            },
+        })
     }
 }
 

@@ -138,8 +138,7 @@ impl Row {
     pub fn number(&self, column: Column) -> Option<f64> {
         match column {
             Column::Dimension(variable) => {
-                let has_it = DESIGN_VARIABLES.contains(&variable)
-                    || self.design.architecture.further_variables().contains(&variable);
+                let has_it = self.design.architecture.has(variable);
                 has_it.then(|| self.design.value(variable))
             }
             Column::Mass => Some(self.mass),

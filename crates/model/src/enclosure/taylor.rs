@@ -137,6 +137,19 @@ impl TaylorModel {
         }
     }
 
+    /// Multiplies by `factor ± radius`, where `size` is that of `self`.
+    #[inline]
+    fn multiple(&self, factor: f64, radius: f64, size: f64) -> Self {
+        let carried = self.remainder * (factor.abs() + radius) + radius * size;
+        Self {
+            constant: self.constant * factor,
+            linear: self.linear.map(|a| a * factor),
+            square: self.square.map(|b| b * factor),
+            mixed: self.mixed.map(|b| b * factor),
+            remainder: remainder(carried, size * factor.abs()),
+        }
+    }
+
     /// Multiplies by a constant.
     #[inline]
     pub fn scaled(&self, factor: Interval) -> Self {
@@ -337,6 +350,15 @@ impl Mul for TaylorModel {
     fn mul(self, other: Self) -> Self {
         let (c, d) = (self.constant, other.constant);
         let (a, b) = (&self.linear, &other.linear);
+        let (a1, b1) = (self.linear_size(), self.quadratic_size());
+        let (a2, b2) = (other.linear_size(), other.quadratic_size());
+        // Lengths of bars are often constants, whose products are simpler and the same.
+        if a1 + b1 == 0.0 {
+            return other.multiple(c, self.remainder, d.abs() + a2 + b2);
+        }
+        if a2 + b2 == 0.0 {
+            return self.multiple(d, other.remainder, c.abs() + a1 + b1);
+        }
         let mut product = Self::exactly(c * d);
         for k in 0..VARIABLES {
             product.linear[k] = c * b[k] + a[k] * d;
@@ -345,8 +367,6 @@ impl Mul for TaylorModel {
         for (k, [i, j]) in PAIRS.into_iter().enumerate() {
             product.mixed[k] = c * other.mixed[k] + self.mixed[k] * d + a[i] * b[j] + a[j] * b[i];
         }
-        let (a1, a2) = (self.linear_size(), other.linear_size());
-        let (b1, b2) = (self.quadratic_size(), other.quadratic_size());
         let (m1, m2) = (c.abs() + a1 + b1, d.abs() + a2 + b2);
         let dropped = a1 * b2 + a2 * b1 + b1 * b2;
         let carried = self.remainder * (m2 + other.remainder) + other.remainder * m1;

@@ -23,7 +23,7 @@ pub struct MemberReport {
     pub radius: f64,
     /// Length of the bar between its joints at the pose, or length of the slider \[m\].
     pub length: f64,
-    /// Mass \[kg\]; a slider has none in this model.
+    /// Mass \[kg\]; that of a slider is the mass of its rail.
     pub mass: f64,
     /// Fraction of the compliance at the pose that the member contributes; `None` if the platform is infinitely
     /// compliant.
@@ -80,7 +80,7 @@ impl Model {
                     _ => capsule.from.distance(capsule.to),
                 },
                 mass: match kind {
-                    MemberKind::Slider => 0.0,
+                    MemberKind::Slider => self.rail_mass(design, leg),
                     MemberKind::PlatformBar => of_platform,
                     kind if kind == chain.distal => of_leg(design.link_length),
                     _ => of_leg(design.proximal_length),

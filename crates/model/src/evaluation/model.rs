@@ -9,7 +9,7 @@ use crate::lanes::InstructionSet;
 use crate::mechanism::{AnyLeg, Assembly, Design, Geometry, Leg, LegSettings, Manipulator};
 use crate::spatial::{LEGS, Pose, Rotation};
 use crate::stiffness::planar::ActuatorStiffness;
-use crate::stiffness::{CrossSection, CrossSections, Material, StiffnessDefinition, StiffnessModel};
+use crate::stiffness::{CrossSection, CrossSections, Material, RailSettings, StiffnessDefinition, StiffnessModel};
 use crate::workspace::{Grid, GridError, PoseChecker, Region, Thresholds, WorkspaceSampling, WorkspaceSpec};
 
 /// All inputs of an evaluation other than the design. The default is the model of the paper, with the choices of this
@@ -22,6 +22,8 @@ pub struct ModelSettings {
     pub sections: CrossSections,
     /// Actuator stiffness.
     pub actuators: ActuatorStiffness,
+    /// Rails of the base; `None` if they are rigid and have no mass, as in the paper.
+    pub rails: Option<RailSettings>,
     /// Settings of the legs.
     pub legs: LegSettings,
     /// Sizes of sliders and layers of members.
@@ -106,6 +108,7 @@ impl Default for ModelSettings {
                 prismatic: 1e7,
                 revolute: 1e7,
             },
+            rails: None,
             legs: LegSettings::default(),
             bodies: BodySettings::default(),
             platform_bars: 3,
@@ -172,16 +175,36 @@ impl Model {
         }
     }
 
-    /// Returns the objective `f1`, the mass in motion \[kg\]: `ν·π·(n·r_j²·L_b + 3·r_p²·r)` for solid round bars, where 3 is the
-    /// default number of platform bars.
+    /// Returns the objective `f1` \[kg\], the mass in motion: `ν·π·(n·r_j²·L_b + 3·r_p²·r)` for solid round bars, where 3 is the
+    /// default number of platform bars. Rails with a cross-section add their mass, although they do not move.
     pub fn mass(&self, design: &Design) -> f64 {
         self.legs_mass(design) + self.platform_mass(design)
     }
 
-    /// Returns the mass of the bars of all legs \[kg\].
+    /// Returns the mass of all legs \[kg\]: their bars, and their rails if these have a cross-section.
     pub fn legs_mass(&self, design: &Design) -> f64 {
+        let bars = self.leg_bars_mass(design);
+        match &self.rails {
+            Some(_) => (0..LEGS).fold(bars, |sum, leg| sum + self.rail_mass(design, leg)),
+            None => bars,
+        }
+    }
+
+    /// Returns the mass of the bars of all legs \[kg\].
+    pub fn leg_bars_mass(&self, design: &Design) -> f64 {
         let section = &self.sections.legs;
         LEGS as f64 * self.bar_mass(section, design.leg_bar_radius, design.leg_bars_length())
+    }
+
+    /// Returns the mass of the rail of a leg (0, 1, 2) over the travel of its slider \[kg\]; 0 if the chain has none, or if rails have
+    /// no cross-section.
+    pub fn rail_mass(&self, design: &Design, leg: usize) -> f64 {
+        let has_rails = design.architecture.chain().is_on_rails();
+        let Some(rails) = self.rails.as_ref().filter(|_| has_rails) else {
+            return 0.0;
+        };
+        let [lower, upper] = self.legs.geometry.rail_travel(leg, design.base_radius);
+        self.bar_mass(&rails.section, rails.radius, upper - lower)
     }
 
     /// Returns the mass of the platform bars \[kg\].
@@ -240,6 +263,7 @@ impl Model {
             &self.material,
             &self.sections,
             &self.actuators,
+            self.rails.as_ref(),
         )
     }
 

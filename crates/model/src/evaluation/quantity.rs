@@ -26,7 +26,7 @@ pub enum Quantity {
     Reach,
     /// Least determinant.
     Determinant,
-    /// Mass of the bars of all legs.
+    /// Mass of the bars and rails of all legs.
     LegsMass,
     /// Mass of the platform bars.
     PlatformMass,
@@ -119,7 +119,7 @@ quantities! {
     Determinant "determinant" [""] "det A" Poses Higher Some(Constraint::DeterminantSign),
         "Least determinant of the direct Jacobian, divided by the characteristic length.";
     LegsMass "legs_mass_kg" ["kg"] "mass of the legs" Design Lower None,
-        "Mass of the bars of all legs.";
+        "Mass of the bars and rails of all legs.";
     PlatformMass "platform_mass_kg" ["kg"] "mass of the platform" Design Lower None,
         "Mass of the platform bars.";
     Height "height_m" ["m"] "height" Design Lower None,

@@ -174,7 +174,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
     fn bar_masses(&self) -> [BarMass; 2] {
         let unit = self.with_bars([1.0, 1.0]);
         let sections = &self.model.sections;
-        let squared = [self.model.legs_mass(&unit), self.model.platform_mass(&unit)];
+        let squared = [self.model.leg_bars_mass(&unit), self.model.platform_mass(&unit)];
         let legs = LEGS as f64 * self.design.leg_bars_length();
         let mean = self.model.legs.geometry.mean_platform_radius();
         let platform = f64::from(self.model.platform_bars) * mean * self.design.platform_radius;

@@ -60,6 +60,13 @@ pub struct ChainDescription {
     pub variables: &'static [DesignVariable],
 }
 
+impl ChainDescription {
+    /// Returns whether the first joint is a slider on a rail of the base.
+    pub const fn is_on_rails(&self) -> bool {
+        matches!(self.joints[0], JointKind::Prismatic)
+    }
+}
+
 /// A bar in the plane at a posture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BarPosture {
@@ -78,6 +85,8 @@ pub struct ChainPosture {
     pub b: DVec2,
     /// `C_i` \[m\].
     pub c: DVec2,
+    /// Distances of the slider from the two ends of its rail, for chains on rails \[m\]; negative beyond an end.
+    pub slider: Option<[f64; 2]>,
     /// Bar from `A_i` to `B_i`, for chains that have one.
     pub proximal: Option<BarPosture>,
     /// Bar from `B_i` to `C_i`.
@@ -225,6 +234,8 @@ pub struct ChainEnclosure {
     pub beam: TaylorModel,
     /// The same length with the sign of `offset`.
     pub signed_beam: TaylorModel,
+    /// Distances of the slider from the two ends of its rail, for chains on rails \[m\].
+    pub slider: Option<[TaylorModel; 2]>,
     /// Bar from `A_i` to `B_i`, for chains that have one.
     pub proximal: Option<ProximalEnclosure>,
     /// Unit vectors along which the prismatic joints move the platform, in the distal axes.

@@ -307,7 +307,7 @@ impl Design {
             }
         };
         *place = value;
-        if !self.architecture.further_variables().contains(&variable) {
+        if !self.architecture.has(variable) {
             return Err(DesignError::NotOfChain {
                 architecture: self.architecture,
                 key: variable.key(),

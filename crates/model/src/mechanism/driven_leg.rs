@@ -178,6 +178,8 @@ impl<C: Chain, const DRIVEN: usize> DrivenLeg<C, DRIVEN> {
 }
 
 impl<C: Chain, const DRIVEN: usize> Leg for DrivenLeg<C, DRIVEN> {
+    const MAY_BE_ON_RAILS: bool = Self::CHAIN.is_on_rails();
+
     fn new(design: &Design, settings: &LegSettings, index: usize) -> Self {
         let frame = LegFrame::new(design, &settings.geometry, index);
         Self {

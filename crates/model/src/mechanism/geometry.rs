@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Design;
+use crate::lanes::{Planar, Real};
 use crate::spatial::{LEGS, Rotation, direction_deg};
 
 /// Arrangement of the joints and travel of the guides. The default is the paper's: both triangles equilateral, rails along the
@@ -133,6 +134,11 @@ impl Geometry {
         (self.platform_radii[0] + self.platform_radii[1] + self.platform_radii[2]) / LEGS as f64
     }
 
+    /// Returns the smallest and the largest distance of the slider of leg `index` from `A_i` for the base radius `R` \[m\].
+    pub fn rail_travel(&self, index: usize, base_radius: f64) -> [f64; 2] {
+        self.rail_travels[index].map(|value| value * base_radius)
+    }
+
     /// Returns the smallest and the largest distance along a guide of length `length` \[m\].
     pub(super) fn travel(&self, length: f64) -> [f64; 2] {
         self.guide.map(|share| share * length)
@@ -178,7 +184,7 @@ impl LegFrame {
             anchor: geometry.base_joint(index, design.base_radius),
             anchor_distance: geometry.base_radii[index] * design.base_radius,
             rail: turned(design.rail_angle_deg, geometry.rails[index]),
-            rail_travel: geometry.rail_travels[index].map(|value| value * design.base_radius),
+            rail_travel: geometry.rail_travel(index, design.base_radius),
             arm_length: geometry.platform_radii[index] * design.platform_radius,
             arm_angle: geometry.platform_angles_deg[index].to_radians(),
             platform_joint: geometry.platform_joint(index, design.platform_radius),
@@ -195,6 +201,17 @@ impl LegFrame {
     /// Returns the unit vector `g_i` along the guide on the platform, for `arm` = `C_i − P`.
     pub fn platform_guide(&self, arm: DVec2) -> DVec2 {
         Rotation::by(self.platform_guide).apply(arm) / self.arm_length
+    }
+
+    /// Returns the distances of a slider at `b` from both ends of its rail, negative beyond them \[m\].
+    #[inline(always)]
+    pub fn from_rail_ends<V: Real>(&self, b: Planar<V>) -> [V; 2] {
+        let like = b.x;
+        let along = b
+            .minus(Planar::splat(like, self.anchor))
+            .dot(Planar::splat(like, self.rail));
+        let [lower, upper] = self.rail_travel;
+        [along - like.splat(lower), like.splat(upper) - along]
     }
 
     /// Returns the ends of the rail.

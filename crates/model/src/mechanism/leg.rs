@@ -259,6 +259,9 @@ pub enum TravelKind {
 
 /// Leg of a manipulator; a value holds the constants of one leg of one design.
 pub trait Leg: Copy + Send + Sync {
+    /// Whether the first joint of the leg can be a slider on a rail of the base.
+    const MAY_BE_ON_RAILS: bool;
+
     /// Creates leg `index` (0, 1, 2) of `design`.
     fn new(design: &Design, settings: &LegSettings, index: usize) -> Self;
 

@@ -247,6 +247,11 @@ impl Architecture {
         self.chain().variables
     }
 
+    /// Returns whether the designs of this architecture have a variable: the five dimensions, or one of its chain.
+    pub fn has(self, variable: DesignVariable) -> bool {
+        !FURTHER_VARIABLES.contains(&variable) || self.further_variables().contains(&variable)
+    }
+
     /// Returns the kind of the driven joint.
     pub fn actuator(self) -> JointKind {
         self.chain().joints[self.driven()]
@@ -271,7 +276,7 @@ impl Architecture {
         let chain = self.chain();
         let of_proximal = if chain.has_proximal_bar { lengths[0] } else { 0.0 };
         let reach = of_proximal + lengths[1] + platform;
-        if chain.joints[0] == JointKind::Prismatic {
+        if chain.is_on_rails() {
             // The rails are the sides of the base triangle; that farthest from `P` is at least (base + |OP|)/2 away.
             return (2.0 * reach - base).max(0.0);
         }
@@ -319,6 +324,8 @@ impl<L: Leg, V: Real> LaneJob for MembersJob<'_, L, V> {
 }
 
 impl Leg for AnyLeg {
+    const MAY_BE_ON_RAILS: bool = true;
+
     fn new(design: &Design, settings: &LegSettings, index: usize) -> Self {
         Self::of(design, settings, index)
     }

@@ -29,7 +29,7 @@ pub struct Contribution {
 pub struct LegContributions {
     /// Contribution of the actuator.
     pub actuator: Contribution,
-    /// Contribution of the proximal bar; zero if there is none.
+    /// Contribution of the proximal bar, or of the rail; zero if there is neither.
     pub proximal: Contribution,
     /// Contribution of the distal bar.
     pub distal: Contribution,
@@ -87,6 +87,11 @@ impl StiffnessModel {
                     bar.add_to(&mut s);
                 }
                 *part = symmetric(&s);
+            }
+            if let Some(rail) = self.loaded_rail(&posture.legs[index]) {
+                let mut s = [0.0; 6];
+                rail.add_to(&mut s);
+                parts[index][2] = symmetric(&s);
             }
             stiffness[index] = parts[index].iter().sum::<Matrix3<f64>>().try_inverse()?;
         }

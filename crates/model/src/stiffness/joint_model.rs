@@ -53,6 +53,9 @@ pub fn leg_stiffness(model: &StiffnessModel, architecture: Architecture, posture
         s += spring(&model.leg_bar, direction, chain.beam, c);
     }
     s += spring(&model.platform_bar, -c, c.length(), p);
+    if let (Some(rail), Some(slider), Some(axis)) = (&model.rail, chain.slider, chain.guides[0]) {
+        s += moved_to_p(rail.at(slider).matrix(), axis, b);
+    }
 
     let mut bordered = SMatrix::<f64, 8, 8>::zeros();
     bordered.fixed_view_mut::<6, 6>(0, 0).copy_from(&s);
@@ -70,7 +73,11 @@ pub fn leg_stiffness(model: &StiffnessModel, architecture: Architecture, posture
 
 /// Returns the compliance at `P` of a bar along `direction` whose tip is at `tip` (relative to `P`).
 fn spring(section: &BarCompliance, direction: DVec2, length: f64, tip: DVec2) -> Matrix6<f64> {
-    let x = direction / direction.length();
+    moved_to_p(section.matrix(length), direction / direction.length(), tip)
+}
+
+/// Returns a compliance in axes along the unit vector `x`, at `tip` (relative to `P`), as one at `P` in base axes.
+fn moved_to_p(compliance: Matrix6<f64>, x: DVec2, tip: DVec2) -> Matrix6<f64> {
     let rotation = Matrix3::from_columns(&[Vector3::new(x.x, x.y, 0.0), Vector3::new(-x.y, x.x, 0.0), Vector3::z()]);
     // The Jacobian gives the twist at P of a rigid body whose point `tip` moves with the spring:
     // v_P = v + ω × (P − tip).
@@ -81,7 +88,7 @@ fn spring(section: &BarCompliance, direction: DVec2, length: f64, tip: DVec2) ->
     jacobian
         .fixed_view_mut::<3, 3>(0, 3)
         .copy_from(&(-lever.cross_matrix() * rotation));
-    jacobian * section.matrix(length) * jacobian.transpose()
+    jacobian * compliance * jacobian.transpose()
 }
 
 /// Returns the twist at `P` of a unit rotation about the z axis through `joint` (relative to `P`).

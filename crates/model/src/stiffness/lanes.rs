@@ -1,10 +1,11 @@
 //! The closed form reduced to `k_xy`, `k_z` and `k_φz`, at several poses at once (docs/model.md, sections 4.3 to 4.5).
 //!
 //! Where a leg's line is that of its distal bar, the compliance along it depends only on the leg's transmission, on the moment of the
-//! line about `P` and, for a telescopic leg, on the length of the leg; otherwise also on the moments about the ends of the bars. Out of the plane, `K_zz` of a leg is `det S_φφ / det S`, where `S`
-//! is the sum of the compliances of its bars and `S_φφ` the block of the rotations. Neither determinant depends on the
-//! reference point or on the axes. They are therefore computed at `C_i` in axes along the distal bar; for a leg with two bars
-//! (platform bar included) they are polynomials in the cosine of the angle between the bars.
+//! line about `P` and, for a telescopic leg, on the length of the leg; otherwise also on the moments about the ends of the bars. Out of
+//! the plane, `K_zz` of a leg is `det S_φφ / det S`, where `S` is the sum of the compliances of its bars and `S_φφ` the block of the
+//! rotations. Neither determinant depends on the reference point or on the axes. They are therefore computed at `C_i` in axes along the
+//! distal bar; for a leg with two bars (platform bar included) they are polynomials in the cosine of the angle between the bars. On
+//! rails that bend, they are computed from the matrix.
 
 use super::planar::{add_bar, in_plane_block, inverse, vertical_schur};
 use super::{BarCompliance, StiffnessDefinition, StiffnessModel};
@@ -185,21 +186,30 @@ impl Reduced {
 }
 
 impl StiffnessModel {
-    /// Computes `k_xy`, `k_z` and `k_φz` according to `definition`; valid in the lanes where all legs reach the pose.
+    /// Returns whether the legs are on rails that bend.
+    #[inline(always)]
+    pub(crate) fn is_on_bending_rails(&self) -> bool {
+        self.rail.is_some()
+    }
+
+    /// Computes `k_xy`, `k_z` and `k_φz` according to `definition`; valid in the lanes where all legs reach the pose. `sliders`
+    /// are the distances of the sliders from both ends of their rails \[m\], if rails bend.
     #[inline(always)]
     pub(crate) fn stiffness_value_lanes<V: Real>(
         &self,
         definition: StiffnessDefinition,
         legs: &[LegLanes<V>; LEGS],
         arms: &[Planar<V>; LEGS],
+        sliders: Option<[[V; 2]; LEGS]>,
         jacobian: &Jacobian<V>,
     ) -> [V; 3] {
+        let slider = |leg: usize| sliders.map(|sliders| sliders[leg]);
         let like = jacobian.ux[0];
         let reduced = &self.reduced;
         let c = [
-            reduced.along_line(&legs[0], 0),
-            reduced.along_line(&legs[1], 1),
-            reduced.along_line(&legs[2], 2),
+            self.along_line(&legs[0], slider(0), 0),
+            self.along_line(&legs[1], slider(1), 1),
+            self.along_line(&legs[2], slider(2), 2),
         ];
         // A single division gives the three reciprocals.
         let pairs = [c[1] * c[2], c[2] * c[0], c[0] * c[1]];
@@ -217,9 +227,9 @@ impl StiffnessModel {
                     yy = yy + y * ky;
                     mm = mm + m * m * stiffness[i];
                 }
-                let [n0, d0] = reduced.vertical(&legs[0], 0);
-                let [n1, d1] = reduced.vertical(&legs[1], 1);
-                let [n2, d2] = reduced.vertical(&legs[2], 2);
+                let [n0, d0] = self.vertical_lanes(&legs[0], arms[0], slider(0), 0);
+                let [n1, d1] = self.vertical_lanes(&legs[1], arms[1], slider(1), 1);
+                let [n2, d2] = self.vertical_lanes(&legs[2], arms[2], slider(2), 2);
                 // A single division gives the sum of the three quotients.
                 let sum = n0 * (d1 * d2) + d0 * (n1 * d2 + n2 * d1);
                 let k_z = like.splat(1.0 / reduced.bend_unit) * sum / (d0 * (d1 * d2));
@@ -228,9 +238,9 @@ impl StiffnessModel {
             StiffnessDefinition::Compliance => {
                 // The legs are written out, because an array indexed in a loop would be kept in memory.
                 let in_plane = in_plane_block(jacobian, &stiffness);
-                let k0 = inverse(&self.bending_lanes(&legs[0], arms[0], 0));
-                let k1 = inverse(&self.bending_lanes(&legs[1], arms[1], 1));
-                let k2 = inverse(&self.bending_lanes(&legs[2], arms[2], 2));
+                let k0 = inverse(&self.bending_lanes(&legs[0], arms[0], slider(0), 0));
+                let k1 = inverse(&self.bending_lanes(&legs[1], arms[1], slider(1), 1));
+                let k2 = inverse(&self.bending_lanes(&legs[2], arms[2], slider(2), 2));
                 let mut k = k0;
                 for entry in 0..k.len() {
                     k[entry] = k0[entry] + k1[entry] + k2[entry];
@@ -244,22 +254,77 @@ impl StiffnessModel {
     /// Computes `k_xy` by compliance, whatever definition the study uses: the reciprocal of the largest displacement per unit of
     /// force in the plane \[N/m\].
     #[inline(always)]
-    pub(crate) fn compliant_k_xy_lanes<V: Real>(&self, legs: &[LegLanes<V>; LEGS], jacobian: &Jacobian<V>) -> V {
+    pub(crate) fn compliant_k_xy_lanes<V: Real>(
+        &self,
+        legs: &[LegLanes<V>; LEGS],
+        sliders: Option<[[V; 2]; LEGS]>,
+        jacobian: &Jacobian<V>,
+    ) -> V {
+        let slider = |leg: usize| sliders.map(|sliders| sliders[leg]);
         let like = jacobian.ux[0];
         let reduced = &self.reduced;
         let along = |compliance: V| like.splat(1.0 / reduced.along_unit) / compliance;
         let stiffness = [
-            along(reduced.along_line(&legs[0], 0)),
-            along(reduced.along_line(&legs[1], 1)),
-            along(reduced.along_line(&legs[2], 2)),
+            along(self.along_line(&legs[0], slider(0), 0)),
+            along(self.along_line(&legs[1], slider(1), 1)),
+            along(self.along_line(&legs[2], slider(2), 2)),
         ];
         let in_plane = in_plane_block(jacobian, &stiffness);
         Self::in_plane_stiffness_values(&in_plane, StiffnessDefinition::Compliance).0
     }
 
+    /// Computes the compliance along the line of leg `index`, in multiples of `along_unit`.
+    #[inline(always)]
+    fn along_line<V: Real>(&self, leg: &LegLanes<V>, slider: Option<[V; 2]>, index: usize) -> V {
+        let of_bars = self.reduced.along_line(leg, index);
+        let chain = &leg.chain;
+        match (&self.rail, slider, chain.guides[0]) {
+            (Some(rail), Some(slider), Some(axis)) => {
+                // In the distal axes the line of the leg has the direction (1, 0), unless it is not that of the distal bar.
+                let (across, moment) = match &leg.loads {
+                    Some(loads) => {
+                        let u = Planar::new(chain.tangent.dot(leg.u), chain.tangent.cross(leg.u));
+                        (axis.cross(u), loads.proximal.moments[1])
+                    }
+                    None => (-axis.y, of_bars.splat(0.0)),
+                };
+                let of_rail = rail.at(slider).under(across, moment);
+                of_bars + of_rail * of_bars.splat(1.0 / self.reduced.along_unit)
+            }
+            _ => of_bars,
+        }
+    }
+
+    /// Computes `det S_φφ` and `det S` of leg `index`, whose quotient is its `K_zz` in multiples of 1/`bend_unit`.
+    #[inline(always)]
+    fn vertical_lanes<V: Real>(
+        &self,
+        leg: &LegLanes<V>,
+        arm: Planar<V>,
+        slider: Option<[V; 2]>,
+        index: usize,
+    ) -> [V; 2] {
+        if slider.is_none() {
+            return self.reduced.vertical(leg, index);
+        }
+        let scale = leg.moment.splat(1.0 / self.reduced.bend_unit);
+        let s = self.bending_lanes(leg, arm, slider, index);
+        let [zz, zx, zy] = [s[0] * scale, s[1] * scale, s[2] * scale];
+        let [xx, xy, yy] = [s[3] * scale, s[4] * scale, s[5] * scale];
+        let minor = xx * yy - xy * xy;
+        let tilt = zx * (zx * yy - xy * zy) - zy * (zx * xy - xx * zy);
+        [minor, zz * minor - tilt]
+    }
+
     /// Computes the upper triangle of the out-of-plane compliance of one leg at `P` in base axes.
     #[inline(always)]
-    fn bending_lanes<V: Real>(&self, leg: &LegLanes<V>, arm: Planar<V>, index: usize) -> [V; 6] {
+    fn bending_lanes<V: Real>(
+        &self,
+        leg: &LegLanes<V>,
+        arm: Planar<V>,
+        slider: Option<[V; 2]>,
+        index: usize,
+    ) -> [V; 6] {
         let like = leg.moment;
         let zero = like.splat(0.0);
         let mut s = [zero; 6];
@@ -284,6 +349,11 @@ impl StiffnessModel {
             let to_p = tangent.scaled(chain.signed_beam).minus(arm);
             let signed = bar.share * like.splat(self.reduced.proximal_length);
             add_bar(&mut s, &self.leg_bar, axis, [bar.length, signed], to_p);
+        }
+        if let (Some(rail), Some(slider), Some(axis)) = (&self.rail, slider, chain.guides[0]) {
+            let axis = tangent.scaled(axis.x).plus(tangent.perp().scaled(axis.y));
+            let to_p = tangent.scaled(chain.offset).minus(arm);
+            rail.at(slider).add_to(&mut s, axis, to_p);
         }
         s
     }

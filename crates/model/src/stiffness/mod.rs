@@ -10,11 +10,13 @@ mod contributions;
 pub mod joint_model;
 mod lanes;
 pub mod planar;
+mod rail;
 mod section;
 
 pub use bar::{BarCompliance, Material};
 pub use contributions::{Contribution, LegContributions};
 pub use planar::{ActuatorStiffness, PlanarStiffness, StiffnessModel};
+pub use rail::{RailSettings, RailSupports};
 pub use section::{Catalogue, CatalogueEntry, CatalogueError, CrossSection, CrossSections, Wall};
 
 /// Definition of the stiffness along and about an axis (docs/model.md, section 4.5).

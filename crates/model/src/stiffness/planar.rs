@@ -9,7 +9,8 @@ use glam::DVec2;
 use nalgebra::{Matrix3, Matrix6};
 
 use super::lanes::Reduced;
-use super::{BarCompliance, CrossSections, Material, StiffnessDefinition, StiffnessValues};
+use super::rail::{LoadedRail, RailBeam};
+use super::{BarCompliance, CrossSections, Material, RailSettings, StiffnessDefinition, StiffnessValues};
 use crate::kinematics::Jacobian;
 use crate::lanes::{Planar, Real};
 use crate::mechanism::{Design, Geometry, JointKind, LegPosture, Posture};
@@ -22,6 +23,8 @@ pub struct StiffnessModel {
     pub(super) platform_bar: BarCompliance,
     /// Compliance of the actuator \[m/N or rad/(N·m)\].
     pub(super) actuator: f64,
+    /// Rails of the base; `None` if they are rigid, or if the chain has none.
+    pub(super) rail: Option<RailBeam>,
     /// Compliances in the form that the evaluation of several poses at once needs.
     pub(super) reduced: Reduced,
 }
@@ -86,7 +89,7 @@ impl Bar<'_> {
 }
 
 impl StiffnessModel {
-    /// Creates the model of `design`. Returns `None` if a bar is infinitely compliant ([`BarCompliance::new`] returns
+    /// Creates the model of `design`. Returns `None` if a bar or a rail is infinitely compliant ([`BarCompliance::new`] returns
     /// `None`), which makes every stiffness 0.
     pub fn new(
         design: &Design,
@@ -94,27 +97,36 @@ impl StiffnessModel {
         material: &Material,
         sections: &CrossSections,
         actuators: &ActuatorStiffness,
+        rails: Option<&RailSettings>,
     ) -> Option<Self> {
         let leg_bar = BarCompliance::new(material, &sections.legs, design.leg_bar_radius)?;
         let platform_bar = BarCompliance::new(material, &sections.platform, design.platform_bar_radius)?;
         let actuator = 1.0 / actuators.of(design.architecture.actuator());
+        let rail = match rails.filter(|_| design.architecture.chain().is_on_rails()) {
+            Some(rails) => Some(RailBeam {
+                section: BarCompliance::new(material, &rails.section, rails.radius)?,
+                supports: rails.supports,
+            }),
+            None => None,
+        };
         Some(Self {
             leg_bar,
             platform_bar,
             actuator,
+            rail,
             reduced: Reduced::new(design, geometry, &leg_bar, &platform_bar, actuator),
         })
     }
 
-    /// Computes `c_i`, the compliance along the line of a leg \[m/N\]: the sum of the actuator's compliance, and of the axial and
-    /// bending compliance of the bars.
+    /// Computes `c_i`, the compliance along the line of a leg \[m/N\]: the sum of the actuator's compliance, of the axial and bending
+    /// compliance of the bars, and of the bending compliance of the rail.
     #[inline]
     fn line_compliance(&self, posture: &LegPosture) -> f64 {
         let [actuator, distal, platform, proximal] = self.line_compliances(posture);
         actuator + distal + platform + proximal
     }
 
-    /// Computes the terms of `c_i` \[m/N\]: actuator, distal bar, platform bar, and proximal bar (0 if there is none).
+    /// Computes the terms of `c_i` \[m/N\]: actuator, distal bar, platform bar, and proximal bar or rail (0 if there is neither).
     #[inline]
     pub(super) fn line_compliances(&self, posture: &LegPosture) -> [f64; 4] {
         let [platform, distal, proximal] = self.bars(posture);
@@ -123,7 +135,10 @@ impl StiffnessModel {
             posture.transmission * posture.transmission * self.actuator,
             distal.as_ref().map_or(0.0, of),
             platform.as_ref().map_or(0.0, of),
-            proximal.as_ref().map_or(0.0, of),
+            match self.loaded_rail(posture) {
+                Some(rail) => rail.line_compliance(posture.u),
+                None => proximal.as_ref().map_or(0.0, of),
+            },
         ]
     }
 
@@ -134,13 +149,16 @@ impl StiffnessModel {
         in_plane_block(jacobian, &stiffness)
     }
 
-    /// Computes the out-of-plane compliance of one leg at `P`, the sum over its bars; upper triangle, ordered as in
+    /// Computes the out-of-plane compliance of one leg at `P`, the sum over its bars and its rail; upper triangle, ordered as in
     /// [`PlanarStiffness::out_of_plane`].
     #[inline]
     fn bending_compliance(&self, posture: &LegPosture) -> [f64; 6] {
         let mut s = [0.0; 6];
         for bar in self.bars(posture).into_iter().flatten() {
             bar.add_to(&mut s);
+        }
+        if let Some(rail) = self.loaded_rail(posture) {
+            rail.add_to(&mut s);
         }
         s
     }
@@ -176,6 +194,19 @@ impl StiffnessModel {
             moments: [about_a, about_b],
         });
         [Some(platform), Some(distal), proximal]
+    }
+
+    /// Returns the rail of one leg, if it bends.
+    #[inline]
+    pub(super) fn loaded_rail(&self, posture: &LegPosture) -> Option<LoadedRail> {
+        let chain = &posture.chain;
+        let (rail, slider, axis) = (self.rail.as_ref()?, chain.slider?, chain.guides[0]?);
+        Some(LoadedRail {
+            compliance: rail.at(slider),
+            axis,
+            to_p: chain.c - posture.arm - chain.b,
+            moment: posture.about[1],
+        })
     }
 
     /// Computes `K_zz` alone \[N/m\], which is `k_z` in the default definition.

@@ -5,8 +5,8 @@ use glam::DVec2;
 use super::further::{FurtherLanes, FurtherLimits, FurtherValues};
 use crate::clearance::{Bodies, Clearance, NUMBER_LIMIT};
 use crate::kinematics::Jacobian;
-use crate::lanes::{InstructionSet, Planar, Real};
-use crate::mechanism::{Assembly, DistalLanes, JointKind, Leg, Manipulator, Posture};
+use crate::lanes::{InstructionSet, LaneJob, Planar, Real};
+use crate::mechanism::{Assembly, DistalLanes, JointKind, Leg, LegLanes, Manipulator, Posture};
 use crate::spatial::LEGS;
 use crate::stiffness::{PlanarStiffness, StiffnessDefinition, StiffnessModel, StiffnessValues};
 
@@ -166,6 +166,30 @@ pub struct PoseChecker<L> {
     pub instructions: InstructionSet,
 }
 
+/// The stiffness on rails that bend, as a job of its own: few studies have them, and the loop over the poses stays short.
+struct StiffnessOnRails<'a, L, V> {
+    checker: &'a PoseChecker<L>,
+    position: Planar<V>,
+    arms: [Planar<V>; LEGS],
+}
+
+impl<L: Leg, V: Real> LaneJob for StiffnessOnRails<'_, L, V> {
+    type Output = [V; 3];
+
+    #[inline(always)]
+    fn run(self) -> [V; 3] {
+        let legs = self.checker.leg_lanes(self.position, &self.arms);
+        let jacobian = Jacobian::of_lanes(&legs);
+        let sliders = self.checker.slider_lanes(self.position, &self.arms, &legs);
+        match &self.checker.stiffness {
+            Some(model) => {
+                model.stiffness_value_lanes(self.checker.definition, &legs, &self.arms, Some(sliders), &jacobian)
+            }
+            None => [self.position.x.splat(0.0); 3],
+        }
+    }
+}
+
 impl<L: Leg> PoseChecker<L> {
     /// Returns the sign of `det A` with `P` at `position`, if the pose is feasible in every other respect.
     ///
@@ -221,6 +245,22 @@ impl<L: Leg> PoseChecker<L> {
             .compute_clearance_up_to(&self.manipulator.legs, position, arms, distals, limit)
     }
 
+    /// Returns the distances of the sliders from both ends of their rails \[m\], for chains on rails.
+    #[inline(always)]
+    pub(super) fn slider_lanes<V: Real>(
+        &self,
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
+        legs: &[LegLanes<V>; LEGS],
+    ) -> [[V; 2]; LEGS] {
+        let slider = |leg: usize| {
+            let chain = &legs[leg].chain;
+            let b = position.plus(arms[leg]).minus(chain.tangent.scaled(chain.offset));
+            self.manipulator.legs[leg].frame().from_rail_ends(b)
+        };
+        [slider(0), slider(1), slider(2)]
+    }
+
     /// Returns all values except the clearance at several poses at once, and the distal bars of the legs.
     #[inline(always)]
     pub(super) fn lanes_without_clearance<V: Real>(
@@ -232,7 +272,16 @@ impl<L: Leg> PoseChecker<L> {
         let legs = self.leg_lanes(position, arms);
         let jacobian = Jacobian::of_lanes(&legs);
         let [k_xy, k_z, k_phi_z] = match &self.stiffness {
-            Some(model) => model.stiffness_value_lanes(self.definition, &legs, arms, &jacobian),
+            Some(model) if L::MAY_BE_ON_RAILS && model.is_on_bending_rails() => {
+                let arms = *arms;
+                let checker = self;
+                like.call_apart(StiffnessOnRails {
+                    checker,
+                    position,
+                    arms,
+                })
+            }
+            Some(model) => model.stiffness_value_lanes(self.definition, &legs, arms, None, &jacobian),
             None => [like.splat(0.0); 3],
         };
         let [first, second, third] = [&legs[0].chain, &legs[1].chain, &legs[2].chain];

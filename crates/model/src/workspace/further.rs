@@ -118,7 +118,15 @@ impl<L: Leg> PoseChecker<L> {
             .abs()
             .smaller(legs[1].transmission.abs().smaller(legs[2].transmission.abs()));
         let k_xy = match &self.stiffness {
-            Some(model) => model.compliant_k_xy_lanes(&legs, &jacobian),
+            Some(model) => {
+                let bends = L::MAY_BE_ON_RAILS && model.is_on_bending_rails();
+                let sliders = if bends {
+                    Some(self.slider_lanes(position, arms, &legs))
+                } else {
+                    None
+                };
+                model.compliant_k_xy_lanes(&legs, sliders, &jacobian)
+            }
             None => like.splat(0.0),
         };
         let force = like.splat(self.in_plane_force);

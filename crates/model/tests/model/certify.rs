@@ -7,7 +7,7 @@ use kinefront_model::evaluation::{Constraint, GridChoice, Model};
 use kinefront_model::kinematics::CharacteristicLength;
 use kinefront_model::mechanism::{Design, WorkingMode};
 use kinefront_model::spatial::Pose;
-use kinefront_model::stiffness::StiffnessDefinition;
+use kinefront_model::stiffness::{CrossSection, RailSettings, RailSupports, StiffnessDefinition};
 use proptest::prelude::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -205,7 +205,29 @@ fn other_models() -> Vec<(&'static str, Model)> {
                 settings.bodies.layers = Layers::ONE_PLANE;
             }),
         ),
+        (
+            "rails in three clamped spans",
+            on_rails(RailSupports::Clamped { spans: 3 }),
+        ),
+        (
+            "stiffness as the reciprocal of a compliance, on rails that are pinned at their ends",
+            model(|settings| {
+                settings.stiffness_definition = StiffnessDefinition::Compliance;
+                settings.rails = on_rails(RailSupports::Pinned).rails.clone();
+            }),
+        ),
     ]
+}
+
+/// The paper's model with rails that bend.
+fn on_rails(supports: RailSupports) -> Model {
+    model(|settings| {
+        settings.rails = Some(RailSettings {
+            section: CrossSection::Round,
+            radius: 0.06,
+            supports,
+        });
+    })
 }
 
 /// A box of poses about a point `(r/R, θ, φ)`, and its half widths.
@@ -233,7 +255,7 @@ proptest! {
         x in -1.0..1.0f64,
         y in -1.0..1.0f64,
         phi in -3.0..3.0f64,
-        place in 0..5usize,
+        place in 0..7usize,
     ) {
         let (name, model) = other_models().swap_remove(place);
         let scale = 0.4 * design.base_radius;
@@ -299,7 +321,7 @@ proptest! {
         middle in (0.0..0.3f64, -3.0..3.0f64, -3.0..3.0f64),
         width in 0.001..0.2f64,
         places in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64), 20),
-        place in 0..3usize,
+        place in prop::sample::select(vec![0, 1, 2, 5, 6]),
     ) {
         let (_, model) = other_models().swap_remove(place);
         let radius = middle.0 * design.base_radius;

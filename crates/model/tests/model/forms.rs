@@ -4,13 +4,14 @@ use kinefront_model::kinematics::Jacobian;
 use kinefront_model::mechanism::{AnyLeg, Design, LegPosture, LegSettings, Manipulator};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::{
-    ActuatorStiffness, CrossSections, Material, PlanarStiffness, StiffnessDefinition, StiffnessModel, joint_model,
+    ActuatorStiffness, CrossSections, Material, PlanarStiffness, RailSettings, StiffnessDefinition, StiffnessModel,
+    joint_model,
 };
 use nalgebra::{Matrix2, Matrix6};
 use proptest::prelude::*;
 
 use super::reference::difference;
-use super::strategies::{applicable_cases, design, leg_settings, pose};
+use super::strategies::{applicable_cases, design, leg_settings, pose, rails};
 
 const ACTUATORS: ActuatorStiffness = ActuatorStiffness {
     prismatic: 1e7,
@@ -18,7 +19,12 @@ const ACTUATORS: ActuatorStiffness = ActuatorStiffness {
 };
 
 /// Returns the stiffness in both forms at a pose, if the pose is reachable and not at the end of reach.
-fn forms(design: &Design, settings: &LegSettings, pose: &Pose) -> Option<(PlanarStiffness, Matrix6<f64>)> {
+fn forms(
+    design: &Design,
+    settings: &LegSettings,
+    rails: Option<&RailSettings>,
+    pose: &Pose,
+) -> Option<(PlanarStiffness, Matrix6<f64>)> {
     let manipulator = Manipulator::<AnyLeg>::new(design, settings);
     let posture = manipulator.posture(pose).ok()?;
     // Where a bar is nearly without length, the general form loses digits.
@@ -30,7 +36,14 @@ fn forms(design: &Design, settings: &LegSettings, pose: &Pose) -> Option<(Planar
         return None;
     }
     let sections = CrossSections::default();
-    let model = StiffnessModel::new(design, &settings.geometry, &Material::STEEL, &sections, &ACTUATORS)?;
+    let model = StiffnessModel::new(
+        design,
+        &settings.geometry,
+        &Material::STEEL,
+        &sections,
+        &ACTUATORS,
+        rails,
+    )?;
     let closed = model.stiffness(&posture, &Jacobian::new(&posture));
     Some((closed, joint_model::stiffness(&model, design.architecture, &posture)?))
 }
@@ -39,15 +52,17 @@ proptest! {
     #![proptest_config(applicable_cases(500))]
 
     #[test]
-    fn closed_form_equals_the_general_one(design in design(0.005), pose in pose(), settings in leg_settings()) {
-        let (closed, general) = forms(&design, &settings, &pose).ok_or_else(|| TestCaseError::reject("out of reach"))?;
+    fn closed_form_equals_the_general_one(
+        design in design(0.005), pose in pose(), settings in leg_settings(), rails in rails(),
+    ) {
+        let (closed, general) = forms(&design, &settings, rails.as_ref(), &pose).ok_or_else(|| TestCaseError::reject("out of reach"))?;
         let off = difference(&closed.matrix(), &general);
         prop_assert!(off < 1e-10, "{design} at {pose:?}: {off:e}");
     }
 
     #[test]
     fn rigidities_are_what_their_definition_says(design in design(0.01), pose in pose()) {
-        let (closed, general) = forms(&design, &LegSettings::default(), &pose)
+        let (closed, general) = forms(&design, &LegSettings::default(), None, &pose)
             .ok_or_else(|| TestCaseError::reject("out of reach"))?;
         let values = closed.stiffness_values(StiffnessDefinition::Stiffness);
         let block = Matrix2::new(general[(0, 0)], general[(0, 1)], general[(1, 0)], general[(1, 1)]);

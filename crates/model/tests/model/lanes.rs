@@ -11,7 +11,7 @@ use kinefront_model::with_leg;
 use kinefront_model::workspace::PoseChecker;
 use proptest::prelude::*;
 
-use super::strategies::{design, model, pose};
+use super::strategies::{design, model, pose, rails};
 
 fn compare<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Result<(), TestCaseError> {
     let checker: PoseChecker<L> = model.checker(design);
@@ -82,9 +82,10 @@ proptest! {
 
     #[test]
     fn every_instruction_set_gives_the_same_bits(
-        design in design(0.0), compliance: bool, x in -0.1..0.1, isotropic: bool,
+        design in design(0.0), compliance: bool, x in -0.1..0.1, isotropic: bool, rails in rails(),
     ) {
         let model = model(|settings| {
+            settings.rails = rails;
             if compliance {
                 settings.stiffness_definition = StiffnessDefinition::Compliance;
             }
@@ -125,8 +126,10 @@ proptest! {
     #[test]
     fn the_reduced_form_gives_the_values_of_the_plain_one(
         design in design(1e-3), pose in pose(), compliance: bool, longest: bool, shortest in 0.0..0.6,
+        rails in rails(),
     ) {
         let model = model(|settings| {
+            settings.rails = rails;
             settings.legs.telescopic_shortest = if shortest < 0.1 { 0.0 } else { shortest };
             if longest {
                 settings.legs.telescopic_bar = BarLength::Longest;

@@ -26,9 +26,7 @@ pub fn design(case: &Value) -> Design {
     let design = Design::new(architecture, mode, values).expect("a valid design");
     FURTHER_VARIABLES.into_iter().fold(design, |design, variable| {
         match case["design"][variable.key()].as_f64() {
-            Some(value) if architecture.further_variables().contains(&variable) => {
-                design.with(variable, value).expect("a valid value")
-            }
+            Some(value) if architecture.has(variable) => design.with(variable, value).expect("a valid value"),
             _ => design,
         }
     })

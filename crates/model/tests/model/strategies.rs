@@ -3,9 +3,10 @@
 use kinefront_model::clearance::{BodySettings, Layers};
 use kinefront_model::evaluation::{Model, ModelSettings};
 use kinefront_model::mechanism::{
-    Architecture, Arrangement, BarLength, Design, DesignVariable, FURTHER_VARIABLES, LegSettings, WorkingMode,
+    Architecture, Arrangement, BarLength, Design, FURTHER_VARIABLES, LegSettings, WorkingMode,
 };
 use kinefront_model::spatial::Pose;
+use kinefront_model::stiffness::{CrossSection, RailSettings, RailSupports, Wall};
 use proptest::prelude::*;
 
 /// A property over the part of the design space where it applies: `cases` designs and poses that it applies to, or the test
@@ -42,11 +43,10 @@ pub fn design(thinnest: f64) -> impl Strategy<Value = Design> {
 
 /// Returns the design with those further variables that its chain has.
 pub fn with_variables(design: Design, values: [f64; 4]) -> Design {
-    let has = |variable: &DesignVariable| design.architecture.further_variables().contains(variable);
     let given = FURTHER_VARIABLES
         .into_iter()
         .zip(values)
-        .filter(|(variable, _)| has(variable));
+        .filter(|(variable, _)| design.architecture.has(*variable));
     given.fold(design, |design, (variable, value)| {
         design.with(variable, value).expect("a valid value")
     })
@@ -95,6 +95,24 @@ pub fn leg_settings() -> impl Strategy<Value = LegSettings> {
         geometry: geometry.unwrap_or_default().into(),
         ..LegSettings::default()
     })
+}
+
+/// Generates rails: rigid ones, or round and square ones with any supports.
+pub fn rails() -> impl Strategy<Value = Option<RailSettings>> {
+    let supports = prop_oneof![
+        Just(RailSupports::Pinned),
+        (1..6u32).prop_map(|spans| RailSupports::Clamped { spans }),
+    ];
+    let section = prop_oneof![
+        Just(CrossSection::Round),
+        Just(CrossSection::SquareTube(Wall::Ratio(0.3))),
+    ];
+    let rails = (section, 0.01..0.1, supports).prop_map(|(section, radius, supports)| RailSettings {
+        section,
+        radius,
+        supports,
+    });
+    prop::option::of(rails)
 }
 
 pub fn pose() -> impl Strategy<Value = Pose> {

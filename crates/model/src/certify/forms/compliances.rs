@@ -1,5 +1,6 @@
 //! Compliances of a design as intervals.
 
+use super::rails::RailCompliances;
 use crate::certify::CertifyError;
 use crate::enclosure::Interval;
 use crate::evaluation::Model;
@@ -28,6 +29,8 @@ pub(super) struct Compliances {
     pub vertical: Interval,
     /// Bending and torsional compliance of a leg bar of length `L_b`.
     pub leg: [Interval; 2],
+    /// Rails of the base, if they bend.
+    pub rail: Option<RailCompliances>,
 }
 
 /// Compliances of a platform bar, as multiples of the same units.
@@ -96,12 +99,13 @@ impl Compliances {
             rotation: exactly(thresholds.k_phi_z) * unit / radius.square(),
             vertical: exactly(thresholds.k_z) * bend * link.square(),
             leg: [link * leg[1] / bend, link * leg[2] / bend],
+            rail: RailCompliances::new(model, design, [unit, bend]),
         })
     }
 }
 
 /// Returns the axial, bending and torsional compliance per length of a bar, with the wall ratio as the double that the model uses.
-fn per_length(material: &Material, section: &CrossSection, radius: f64) -> [Interval; 3] {
+pub(super) fn per_length(material: &Material, section: &CrossSection, radius: f64) -> [Interval; 3] {
     let exactly = Interval::exactly;
     let (one, squared) = (exactly(1.0), exactly(radius).square());
     let [e, g] = [material.youngs_modulus, material.shear_modulus].map(exactly);

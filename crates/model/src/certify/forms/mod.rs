@@ -5,6 +5,7 @@
 
 mod clearance;
 mod compliances;
+mod rails;
 mod stiffness;
 
 use clearance::{MemberBoxes, Separations};
@@ -208,7 +209,8 @@ impl<'a> Forms<'a> {
     /// `det A` takes its place, with the sign that it has at the home pose.
     fn enclose_dexterity(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
         let one = TaylorModel::exactly(1.0);
-        let moments = legs.map(|leg| leg.moment.scaled(self.to_length));
+        // Legs are large, and `map` would copy them.
+        let moments = [0, 1, 2].map(|i| legs[i].moment.scaled(self.to_length));
         let squares = moments.map(|moment| moment.squared());
         let mut determinant = TaylorModel::exactly(0.0);
         let (mut forward, mut inverse) = (TaylorModel::exactly(0.0), TaylorModel::exactly(0.0));
@@ -239,9 +241,8 @@ fn enclose_legs(
     frames: &[LegFrameEnclosure; LEGS],
     pose: &PoseEnclosure,
 ) -> [LegEnclosure; LEGS] {
-    frames
-        .each_ref()
-        .map(|frame| AnyLeg::enclose(frame, design, &model.legs, pose))
+    let leg = |index: usize| AnyLeg::enclose(&frames[index], design, &model.legs, pose);
+    [leg(0), leg(1), leg(2)]
 }
 
 /// The two legs after leg `i`, in turn.
@@ -279,7 +280,7 @@ fn characteristic_length(model: &Model, design: &Design, frames: &[LegFrameEnclo
                 }
                 let is_reached = limits.all(|[lower, _]| lower > 0.0);
                 is_certain |= is_reached;
-                for [lower, upper] in legs.map(|leg| leg.moment.range()) {
+                for [lower, upper] in legs.iter().map(|leg| leg.moment.range()) {
                     if lower.is_nan() || upper.is_nan() {
                         return Interval::exactly(f64::NAN);
                     }

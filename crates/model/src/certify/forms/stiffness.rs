@@ -1,5 +1,6 @@
 //! Forms of the constraints on stiffness, g4, g5 and g6 (docs/model.md, section 13.3).
 
+use super::rails::{RailCompliances, RailForms};
 use super::{Enclosures, Forms, others, turn};
 use crate::enclosure::{Interval, PlanarModel, TaylorModel, dot};
 use crate::evaluation::Constraint;
@@ -178,11 +179,46 @@ impl Forms<'_> {
                 },
             );
         }
+        if let Some((rail, forms)) = self.rail(leg, index) {
+            let axis = self.frames[index].rail.axis().map(TaylorModel::constant);
+            add_rail(
+                &mut sum,
+                &RailForms {
+                    moment: forms.moment.scaled(rail.vertical[0]),
+                    coupling: forms.coupling.scaled(rail.vertical[0]),
+                    force: forms.force.scaled(rail.vertical[0]),
+                    torsion: forms.torsion.scaled(rail.vertical[1]),
+                },
+                axis,
+                from_leg(along - chain.offset, across),
+            );
+        }
         sum
     }
 
     /// Encloses the compliance along the line of a leg.
     fn along_line(&self, leg: &LegEnclosure, index: usize) -> TaylorModel {
+        let of_bars = self.along_bars(leg, index);
+        let Some((rail, forms)) = self.rail(leg, index) else {
+            return of_bars;
+        };
+        let across = self.frames[index].rail.enter(leg.u)[1];
+        let mut of_rail = across.squared() * forms.force;
+        if let Some(loads) = &leg.loads {
+            let [_, _, moment] = loads.proximal;
+            of_rail = of_rail + (across * moment * forms.coupling).times(2.0) + moment.squared() * forms.moment;
+        }
+        of_bars + of_rail.scaled(rail.in_plane)
+    }
+
+    /// Returns the rail of a leg and what a unit load does to it, if it bends.
+    fn rail(&self, leg: &LegEnclosure, index: usize) -> Option<(&RailCompliances, RailForms)> {
+        let (rail, slider) = (self.compliance.rail.as_ref()?, leg.chain.slider?);
+        Some((rail, rail.forms(&self.frames[index], slider)))
+    }
+
+    /// Encloses the part of the actuator and the bars.
+    fn along_bars(&self, leg: &LegEnclosure, index: usize) -> TaylorModel {
         let compliance = &self.compliance;
         let platform = &compliance.platform[index];
         let chain = &leg.chain;
@@ -215,6 +251,11 @@ impl Forms<'_> {
     /// Encloses `det S_φφ` and `det S` of a leg out of the plane, at `C_i` in axes along the distal bar, with lengths in units of
     /// `L_b` (docs/model.md, section 4.4).
     fn vertical(&self, leg: &LegEnclosure, index: usize) -> [TaylorModel; 2] {
+        if self.compliance.rail.is_some() {
+            let compliance = self.bending(leg, index);
+            let cofactors = cofactors(&compliance);
+            return [cofactors[0], determinant(&compliance, &cofactors)];
+        }
         let compliance = &self.compliance;
         let platform = &compliance.platform[index];
         let chain = &leg.chain;
@@ -307,6 +348,30 @@ fn add_bar(sum: &mut Symmetric, bar: &BentBar) {
         twist * x.squared() + bend * nx.squared(),
         twist * (x * y) + bend * (nx * ny),
         twist * y.squared() + bend * ny.squared(),
+    ];
+    for (entry, part) in sum.iter_mut().zip(parts) {
+        *entry = *entry + part;
+    }
+}
+
+/// Adds the compliance of a rail with the direction `axis` under a slider at `tip` (relative to `P`). A force `F` along z and a moment
+/// `m` at `P` twist it by the part of `m + F tip⊥` along it, and bend it by the part across it, against the slope under the force.
+fn add_rail(sum: &mut Symmetric, rail: &RailForms, axis: PlanarModel, tip: PlanarModel) {
+    let [x, y] = axis;
+    let normal = perp(axis);
+    let lever = perp(tip);
+    let (along, across) = (dot(lever, axis), dot(lever, normal));
+    let lift = rail.force - (rail.coupling * across).times(2.0)
+        + rail.moment * across.squared()
+        + rail.torsion * along.squared();
+    let (twisted, bent) = (rail.torsion * along, rail.moment * across - rail.coupling);
+    let parts = [
+        lift,
+        twisted * x + bent * normal[0],
+        twisted * y + bent * normal[1],
+        rail.torsion * x.squared() + rail.moment * normal[0].squared(),
+        rail.torsion * (x * y) + rail.moment * (normal[0] * normal[1]),
+        rail.torsion * y.squared() + rail.moment * normal[1].squared(),
     ];
     for (entry, part) in sum.iter_mut().zip(parts) {
         *entry = *entry + part;

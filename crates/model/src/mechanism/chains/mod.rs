@@ -18,7 +18,7 @@ pub use rrr::RrrChain;
 
 use glam::DVec2;
 
-use super::chain::{Assembly, JointKind};
+use super::chain::{Assembly, ChainEnclosure, JointKind};
 use super::{
     LegBody, LegFrame, LegFrameEnclosure, LegJoint, LegPart, MemberAxis, MemberKind, Members, ReachReason, Shortfall,
 };
@@ -137,8 +137,6 @@ fn enclosed_within(value: TaylorModel, [lower, upper]: [Interval; 2]) -> [Taylor
 fn members_on_slider<V: Real>(frame: &LegFrame, centre: Planar<V>, distal: MemberAxis<V>) -> Members<V> {
     let like = centre.x;
     let rail = Planar::splat(like, frame.rail);
-    let along = centre.minus(Planar::splat(like, frame.anchor)).dot(rail);
-    let [lower, upper] = frame.rail_travel;
     Members {
         proximal: Some(MemberAxis {
             from: centre,
@@ -146,22 +144,22 @@ fn members_on_slider<V: Real>(frame: &LegFrame, centre: Planar<V>, distal: Membe
             length: like.splat(0.0),
         }),
         distal,
-        rail: Some([along - like.splat(lower), like.splat(upper) - along]),
+        rail: Some(frame.from_rail_ends(centre)),
     }
 }
 
-/// Encloses the same, with the distances of the slider from the ends of its rail.
+/// Encloses the same, for a chain on rails.
 fn enclosed_members_on_slider(
     frame: &LegFrameEnclosure,
+    chain: &ChainEnclosure,
     centre: PlanarModel,
-    from_ends: [TaylorModel; 2],
     distal: AxisEnclosure,
 ) -> MembersEnclosure {
     let rail = frame.rail.axis().map(TaylorModel::constant);
     MembersEnclosure {
         proximal: Some(AxisEnclosure::between(centre, centre, rail)),
         distal,
-        rail: Some(from_ends),
+        rail: chain.slider,
     }
 }
 

@@ -61,10 +61,12 @@ impl Chain for PprChain {
         let chord = c - anchor;
         let (first, second) = (cross(chord, self.guide) / sine, cross(rail, chord) / sine);
         let within = Within::limits(first, self.frame.rail_travel).and(Within::limits(second, self.travel));
+        let b = anchor + rail * first;
         let posture = ChainPosture {
             a: anchor,
-            b: anchor + rail * first,
+            b,
             c,
+            slider: Some(self.frame.from_rail_ends(b.into())),
             proximal: None,
             distal: BarPosture {
                 direction: self.guide,
@@ -145,6 +147,7 @@ impl Chain for PprChain {
             offset: second,
             beam: absolute(second),
             signed_beam: second,
+            slider: Some([from_start, to_end]),
             proximal: None,
             guides: [
                 Some([TaylorModel::constant(cosine), TaylorModel::constant(-sine)]),
@@ -164,9 +167,8 @@ impl Chain for PprChain {
         tip: PlanarModel,
     ) -> MembersEnclosure {
         let centre = difference(tip, chain.tangent.map(|part| part * chain.offset));
-        let [from_start, to_end, ..] = chain.reach;
         let guide = enclosed_guide(centre, chain.tangent, frame.guide_travel);
-        enclosed_members_on_slider(frame, centre, [from_start, to_end], guide)
+        enclosed_members_on_slider(frame, chain, centre, guide)
     }
 
     #[inline(always)]

@@ -65,10 +65,12 @@ impl Chain for PrpChain {
         let chord = c - anchor;
         let (first, second) = (cross(guide, chord) / turn, cross(rail, chord) / turn);
         let within = Within::limits(first, self.frame.rail_travel).and(Within::limits(second, self.travel));
+        let b = anchor + rail * first;
         let posture = ChainPosture {
             a: anchor,
-            b: anchor + rail * first,
+            b,
             c,
+            slider: Some(self.frame.from_rail_ends(b.into())),
             proximal: None,
             distal: BarPosture {
                 direction: -guide,
@@ -166,6 +168,7 @@ impl Chain for PrpChain {
             offset: second,
             beam: absolute(second),
             signed_beam: second,
+            slider: Some([from_start, to_end]),
             proximal: None,
             guides: [Some([-along_rail, to_guide]), None, Some([one, zero])],
             lever_square: None,
@@ -182,9 +185,8 @@ impl Chain for PrpChain {
     ) -> MembersEnclosure {
         let guide = chain.tangent.map(|part| -part);
         let centre = difference(tip, chain.tangent.map(|part| part * chain.offset));
-        let [from_start, to_end, ..] = chain.reach;
         let guide = enclosed_guide(tip, guide, frame.guide_travel);
-        enclosed_members_on_slider(frame, centre, [from_start, to_end], guide)
+        enclosed_members_on_slider(frame, chain, centre, guide)
     }
 
     #[inline(always)]

@@ -68,6 +68,7 @@ impl Chain for PrrChain {
             a: anchor,
             b,
             c,
+            slider: Some(self.frame.from_rail_ends(b.into())),
             proximal: None,
             distal: BarPosture {
                 direction: (c - b) / self.link,
@@ -162,6 +163,7 @@ impl Chain for PrrChain {
             offset: one,
             beam: one,
             signed_beam: one,
+            slider: Some([from_start, to_end]),
             proximal: None,
             guides: [Some([-foot, -height]), None, None],
             lever_square: Some(square),
@@ -177,9 +179,8 @@ impl Chain for PrrChain {
         tip: PlanarModel,
     ) -> MembersEnclosure {
         let centre = difference(tip, chain.tangent);
-        let [_, from_start, to_end, _] = chain.reach;
         let link = AxisEnclosure::between(centre, tip, chain.tangent);
-        enclosed_members_on_slider(frame, centre, [from_start, to_end], link)
+        enclosed_members_on_slider(frame, chain, centre, link)
     }
 
     #[inline(always)]

@@ -79,6 +79,7 @@ impl Chain for RppChain {
             a: self.frame.anchor,
             b: self.frame.anchor + base_guide * first,
             c,
+            slider: None,
             proximal: Some(BarPosture {
                 direction: base_guide,
                 offset: first,
@@ -168,6 +169,7 @@ impl Chain for RppChain {
             offset: second,
             beam: absolute(second),
             signed_beam: second,
+            slider: None,
             proximal: Some(ProximalEnclosure {
                 vector: direction.map(|part| part * first),
                 direction,

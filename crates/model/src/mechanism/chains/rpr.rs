@@ -72,6 +72,7 @@ impl Chain for RprChain {
             a: self.frame.anchor,
             b: self.frame.anchor,
             c,
+            slider: None,
             proximal: None,
             distal: BarPosture {
                 direction,
@@ -154,6 +155,7 @@ impl Chain for RprChain {
             offset: length,
             beam,
             signed_beam: beam,
+            slider: None,
             proximal: None,
             guides: [None, Some([one, zero]), None],
             lever_square: Some(one),

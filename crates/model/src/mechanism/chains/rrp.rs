@@ -73,6 +73,7 @@ impl Chain for RrpChain {
             a: self.frame.anchor,
             b,
             c,
+            slider: None,
             proximal: Some(BarPosture {
                 direction: (guide * foot + guide.perp() * height) / self.crank,
                 offset: self.crank,
@@ -159,6 +160,7 @@ impl Chain for RrpChain {
             offset: value,
             beam: absolute(value),
             signed_beam: value,
+            slider: None,
             proximal: Some(frame.crank([-foot, -height])),
             guides: [None, None, Some([one, zero])],
             lever_square: None,

@@ -82,6 +82,7 @@ impl Chain for RrrChain {
             a: self.frame.anchor,
             b,
             c,
+            slider: None,
             proximal: Some(BarPosture {
                 direction: crank / self.crank,
                 offset: self.crank,
@@ -184,6 +185,7 @@ impl Chain for RrrChain {
             offset: one,
             beam: one,
             signed_beam: one,
+            slider: None,
             proximal: Some(frame.crank(vector)),
             guides: [None; 3],
             lever_square: Some(lever_square),
