@@ -16,7 +16,9 @@
 mod app;
 mod data;
 mod files;
+mod overlay;
 mod panels;
+mod pointing;
 mod script;
 mod session;
 mod study_editor;
@@ -30,6 +32,7 @@ pub use data::{Document, Filter, FilterError, FrontEntry, History, Named, Origin
 pub use files::{OpenError, Opened, Purpose, open};
 pub use panels::scatter::{ScatterAxis, axes};
 pub use panels::{Panel, Panels};
+pub use pointing::{Description, Pointed, describe};
 pub use script::{Script, ScriptError};
 pub use session::{MOST_PINS, Notice, Phase, ReferenceMark, Session, Staging, Wake};
 pub use study_editor::StudyEditor;

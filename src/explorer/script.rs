@@ -19,6 +19,8 @@
 //! | `show PANEL` | brings a panel to the front, by its title |
 //! | `compare on`, `compare off` | shows or hides the pinned designs in 3-D |
 //! | `theme dark`, `theme light` | sets the colours |
+//! | `look VIEWPOINT` | looks at the manipulator from `oblique`, `top`, `front` or `side` |
+//! | `point X Y`, `click X Y` | moves the pointer, and clicks, at a place of the window \[points\] |
 //! | `pause`, `resume`, `stop` | control the run |
 //! | `filter KEY LOW HIGH` | sets a range of the filter |
 //! | `picture FILE.png`, `save FILE.rrd` | writes a file and waits until it is written |
@@ -29,11 +31,12 @@ use crate::study::Column;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use egui::{Context, ViewportCommand};
+use egui::{Context, Event, Modifiers, PointerButton, Pos2, ViewportCommand};
 
 use super::files::Purpose;
 use super::panels::Panel;
 use super::{Explorer, Phase};
+use crate::recording::Viewpoint;
 use crate::scene::{EllipsoidKind, Field};
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable, FURTHER_VARIABLES};
@@ -73,6 +76,9 @@ enum Step {
     Show(Panel),
     Compare(bool),
     Dark(bool),
+    Look(Viewpoint),
+    Point(Pos2),
+    Click(Pos2),
     Pause,
     Resume,
     Stop,
@@ -215,6 +221,18 @@ impl Script {
             Step::Show(panel) => explorer.show(*panel),
             Step::Compare(on) => session.staging.comparing = *on,
             Step::Dark(dark) => ctx.set_theme(if *dark { egui::Theme::Dark } else { egui::Theme::Light }),
+            Step::Look(viewpoint) => session.look_from(*viewpoint),
+            Step::Point(at) => explorer.pointer.extend([Event::PointerMoved(*at)]),
+            Step::Click(at) => {
+                let button = |pressed| Event::PointerButton {
+                    pos: *at,
+                    button: PointerButton::Primary,
+                    pressed,
+                    modifiers: Modifiers::NONE,
+                };
+                let click = [Event::PointerMoved(*at), button(true), button(false)];
+                explorer.pointer.extend(click);
+            }
             Step::Pause => session.pause(),
             Step::Resume => session.resume(),
             Step::Stop => session.stop(),
@@ -244,6 +262,12 @@ impl Script {
             }
         }
     }
+}
+
+/// Reads a place of the window.
+fn place(text: &str) -> Option<Pos2> {
+    let (x, y) = text.split_once(' ')?;
+    Some(Pos2::new(x.parse().ok()?, y.trim().parse().ok()?))
 }
 
 fn step(line: &str) -> Option<Step> {
@@ -285,6 +309,13 @@ fn step(line: &str) -> Option<Step> {
         "show" => Step::Show(Panel::ALL.into_iter().find(|panel| panel.title() == rest)?),
         "compare" => Step::Compare(rest == "on"),
         "theme" => Step::Dark(rest != "light"),
+        "look" => Step::Look(
+            Viewpoint::ALL
+                .into_iter()
+                .find(|viewpoint| viewpoint.name().eq_ignore_ascii_case(rest))?,
+        ),
+        "point" => Step::Point(place(rest)?),
+        "click" => Step::Click(place(rest)?),
         "pause" => Step::Pause,
         "resume" => Step::Resume,
         "stop" => Step::Stop,

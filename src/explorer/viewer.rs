@@ -8,14 +8,21 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::App as _;
 use egui::{Context, Event, Ui};
+use glam::DVec2;
+use re_viewer::external::re_chunk_store::MissingChunkReporter;
 use re_viewer::external::re_log_types::Instance;
 use re_viewer::external::re_sdk_types::blueprint::components::PanelState;
+use re_viewer::external::re_viewer_context::{
+    IdentifiedViewSystem, Item, ItemContext, ViewContext, ViewContextSystem, ViewContextSystemOncePerFrameResult,
+    ViewQuery, ViewSystemIdentifier, ViewerContext,
+};
 use re_viewer::external::{re_memory, tokio};
 use re_viewer::{
     AppEnvironment, AsyncRuntimeHandle, MainThreadToken, SelectionChangeItem, StartupOptions, ViewerEvent,
     ViewerEventKind,
 };
 
+use super::pointing::Pointed;
 use crate::recording::{APPLICATION_ID, LiveScene, Picked};
 use crate::study::Study;
 
@@ -119,6 +126,9 @@ impl Viewer {
             AsyncRuntimeHandle::new_native(runtime.handle().clone()),
         );
         put_keys_back(cc, aside);
+        app.extend_view_class("3D".into(), |registrator| {
+            registrator.register_context_system::<PointerProbe>()
+        })?;
         let settings = app.app_options_mut();
         settings.custom_window_decorations = false;
         settings.show_notification_toasts = false;
@@ -149,9 +159,18 @@ impl Viewer {
         self.app.logic(ctx, frame);
     }
 
+    /// Returns what the pointer is over in a 3-D view.
+    pub fn pointed(&self) -> Option<Pointed> {
+        POINTED.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
     /// Draws the viewer into a pane.
     pub fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let pane = ui.max_rect();
+        // The viewer's tooltips show the components of an entity, which mean nothing to a designer.
+        let delay = ui.ctx().global_style().interaction.tooltip_delay;
+        ui.ctx()
+            .global_style_mut(|style| style.interaction.tooltip_delay = f32::INFINITY);
         if let Some(press) = ui.input(|input| input.pointer.press_origin()) {
             self.owns_keys.store(pane.contains(press), Ordering::Relaxed);
         }
@@ -159,9 +178,11 @@ impl Viewer {
         let keys = take_keys(ui.ctx());
         ui.push_id("scene", |ui| self.app.ui(ui, frame));
         ui.ctx().input_mut(|input| input.events.extend(keys));
+        ui.ctx()
+            .global_style_mut(|style| style.interaction.tooltip_delay = delay);
     }
 
-    /// Returns the design that was clicked since the last call, if there is one.
+    /// Returns what was clicked since the last call, if anything was.
     pub fn picked(&mut self) -> Option<Picked> {
         let mut picked = None;
         for event in self.events.borrow_mut().drain(..) {
@@ -171,15 +192,70 @@ impl Viewer {
                     SelectionChangeItem::Entity {
                         entity_path,
                         instance_id,
-                        position: Some(_),
+                        position: Some(at),
                         ..
-                    } => LiveScene::picked(&entity_path.to_string(), instance_of(*instance_id)),
+                    } => {
+                        let at = DVec2::new(f64::from(at.x), f64::from(at.y));
+                        LiveScene::picked(&entity_path.to_string(), instance_of(*instance_id), at)
+                    }
                     _ => None,
                 });
             }
         }
         picked
     }
+}
+
+/// What the pointer is over. The viewer makes the systems of its views itself, so that they can be given nothing; there is one window.
+static POINTED: Mutex<Option<Pointed>> = Mutex::new(None);
+
+/// System of the 3-D views that draws nothing: once per frame it notes what the pointer is over.
+#[derive(Default)]
+struct PointerProbe;
+
+impl IdentifiedViewSystem for PointerProbe {
+    fn identifier() -> ViewSystemIdentifier {
+        "KinefrontPointer".into()
+    }
+}
+
+impl ViewContextSystem for PointerProbe {
+    fn execute_once_per_frame(ctx: &ViewerContext<'_>) -> ViewContextSystemOncePerFrameResult {
+        let selection = ctx.selection_state();
+        let position = match selection.hovered_item_context() {
+            Some(ItemContext::ThreeD { pos, .. }) => *pos,
+            _ => None,
+        };
+        let pointed = selection.hovered_items().iter_items().next().and_then(|item| {
+            let at = position?;
+            let instance = match item {
+                Item::InstancePath(path) => path,
+                Item::DataResult(result) => &result.instance_path,
+                _ => return None,
+            };
+            Some(Pointed {
+                entity: instance.entity_path.to_string(),
+                instance: instance_of(instance.instance),
+                at: DVec2::new(f64::from(at.x), f64::from(at.y)),
+            })
+        });
+        *POINTED.lock().unwrap_or_else(PoisonError::into_inner) = pointed;
+        Box::new(())
+    }
+
+    fn execute(
+        &mut self,
+        _: &ViewContext<'_>,
+        _: &MissingChunkReporter,
+        _: &ViewQuery<'_>,
+        _: &ViewContextSystemOncePerFrameResult,
+    ) {
+    }
+}
+
+/// Returns the memory that the program occupies \[bytes\], if the system tells it.
+pub fn resident_memory() -> Option<u64> {
+    re_memory::MemoryUse::capture().resident
 }
 
 /// Returns the index of the instance: 0 for a whole batch, because a batch of one is selected as a whole.

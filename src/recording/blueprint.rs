@@ -11,7 +11,7 @@ use rerun::external::uuid::Uuid;
 use rerun::log::{Chunk, ChunkError, LogMsg, RowId};
 use rerun::{AsComponents, EntityPath, RecordingStream, StoreId, StoreKind, TimePoint, Timeline};
 
-use super::{APPLICATION_ID, paths, timelines};
+use super::{APPLICATION_ID, Viewpoint, paths, timelines};
 use crate::scene::Field;
 
 /// Sends the layout of a run's recording; `clouds` are the entities whose rows together form the cloud of designs; `plot`
@@ -126,15 +126,28 @@ pub(super) fn send_design_layout(
 }
 
 /// Sends the layout of a window's scene; `extent` \[m\] sets the scale of its 3-D views. If `comparing` is given, the
-/// pinned designs are in front, and `comparing` \[m\] sets the scale of their view.
+/// pinned designs are in front, and `comparing` \[m\] sets the scale of their view. The background is light if `light` is true, and the lines of
+/// the ground grid are `grid_spacing` \[m\] apart.
 pub(super) fn send_live_layout(
     recording: &RecordingStream,
     scatter_bounds: Range2D,
     extent: f64,
     comparing: Option<f64>,
+    viewpoint: Viewpoint,
+    light: bool,
+    grid_spacing: f64,
 ) -> Result<(), ChunkError> {
     let mut layout = ViewLayout::new();
-    let manipulator = layout.space("Manipulator", paths::DESIGN, &["+ $origin/**"], extent)?;
+    layout.light = light;
+    let manipulator = layout.view("3D", "Manipulator", paths::DESIGN, &["+ $origin/**"])?;
+    layout.eye(&manipulator, viewpoint.eye(), [0.0, 0.0, 0.0], extent)?;
+    let gray: [u8; 4] = if light { [90, 96, 108, 70] } else { [150, 156, 168, 45] };
+    let grid = parts::LineGrid3D::new()
+        .with_visible(true)
+        .with_spacing(grid_spacing as f32)
+        .with_stroke_width(1.0)
+        .with_color(gray);
+    layout.property(&manipulator, "LineGrid3D", &grid)?;
     let configuration = layout.configuration(extent)?;
     let scatter = layout.view("2D", "Front", paths::SCATTER, &["+ $origin/**"])?;
     layout.property(&scatter, "VisualBounds2D", &parts::VisualBounds2D::new(scatter_bounds))?;
@@ -167,6 +180,8 @@ struct ViewLayout {
     id: StoreId,
     messages: Vec<LogMsg>,
     at: TimePoint,
+    /// Whether 3-D views have a light background.
+    light: bool,
 }
 
 /// A view or container of the layout.
@@ -195,6 +210,7 @@ impl ViewLayout {
             ],
             id,
             at: TimePoint::default().with(Timeline::new_sequence("blueprint"), 0_i64),
+            light: false,
         }
     }
 
@@ -270,7 +286,8 @@ impl ViewLayout {
             .with_look_target(place(target))
             .with_eye_up([0.0_f32, 0.0, 1.0]);
         self.property(view, "EyeControls3D", &controls)?;
-        let background = parts::Background::new(BackgroundKind::SolidColor).with_color([17_u8, 19, 24]);
+        let color: [u8; 3] = if self.light { [236, 238, 241] } else { [17, 19, 24] };
+        let background = parts::Background::new(BackgroundKind::SolidColor).with_color(color);
         self.property(view, "Background", &background)?;
         self.property(view, "LineGrid3D", &parts::LineGrid3D::new().with_visible(false))
     }

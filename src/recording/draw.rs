@@ -9,12 +9,13 @@ use rerun::{
     RotationAxisAngle,
 };
 
-use super::colors::{self, ColorMap, rgb};
+use super::colors::{self, rgb};
 use super::stage::Rows;
 use super::writer::{Moment, RecordingError, RecordingWriter};
 use crate::palette;
 use crate::scene::{
-    ConfigurationSpace, EllipsoidSet, Field, Heatmap, Nearest, Part, RegularCylinder, Scene, Solid, SolidShape,
+    ColorMap, ConfigurationSpace, EllipsoidSet, FieldLegend, Heatmap, Nearest, Part, RegularCylinder, Scene, Solid,
+    SolidShape,
 };
 use crate::text::short;
 use kinefront_model::evaluation::{ConstraintResult, Evaluation};
@@ -54,6 +55,16 @@ enum CanvasTarget<'a> {
     },
 }
 
+/// Entities of the solids of a manipulator below its root, each with the parts that it holds.
+pub(super) const GROUPS: [(&str, &[Part]); 6] = [
+    ("legs", &[Part::Tube, Part::Rod, Part::Crank, Part::Link, Part::Guide]),
+    ("platform", &[Part::PlatformBar]),
+    ("joints/passive", &[Part::PassiveJoint]),
+    ("joints/actuated", &[Part::ActuatedJoint]),
+    ("joints/sliders", &[Part::Slider]),
+    ("joints/carriages", &[Part::Carriage]),
+];
+
 impl<'a> Canvas<'a> {
     /// Creates a canvas that writes at one moment.
     pub(super) fn at(writer: &'a RecordingWriter, moment: Moment<'a>) -> Self {
@@ -77,23 +88,19 @@ impl<'a> Canvas<'a> {
 
     /// Draws the manipulator below `root`.
     pub(super) fn manipulator(&self, root: &str, scene: &Scene) -> DrawResult {
-        let groups: [(&str, &[Part]); 4] = [
-            ("legs", &[Part::Tube, Part::Rod, Part::Crank, Part::Link, Part::Guide]),
-            ("platform", &[Part::PlatformBar]),
-            ("joints/passive", &[Part::PassiveJoint]),
-            ("joints/actuated", &[Part::ActuatedJoint]),
-        ];
-        for (name, parts) in groups {
+        for (name, parts) in GROUPS {
             let solids: Vec<&Solid> = scene
                 .solids
                 .iter()
                 .filter(|solid| parts.contains(&solid.part))
                 .collect();
-            self.bars(&format!("{root}/{name}"), &solids)?;
-        }
-        for (name, part) in [("sliders", Part::Slider), ("carriages", Part::Carriage)] {
-            let blocks: Vec<&Solid> = scene.solids_of(part).collect();
-            self.blocks(&format!("{root}/joints/{name}"), &blocks)?;
+            let entity = format!("{root}/{name}");
+            // Sliders and carriages are blocks, all other solids bars.
+            if parts.contains(&Part::Slider) || parts.contains(&Part::Carriage) {
+                self.blocks(&entity, &solids)?;
+            } else {
+                self.bars(&entity, &solids)?;
+            }
         }
         for (name, parts, width) in [
             ("base", &[Part::Base, Part::Rail][..], 1.6),
@@ -245,7 +252,7 @@ impl<'a> Canvas<'a> {
         }
         let mesh = Mesh3D::new(heatmap.vertices.iter().map(|&p| point(place(p))))
             .with_triangle_indices(heatmap.triangles.iter().copied())
-            .with_vertex_colors(heatmap.values.iter().map(|&value| map.color(value)));
+            .with_vertex_colors(heatmap.values.iter().map(|&value| rgb(map.color(value))));
         self.row(&format!("{root}/field"), &mesh)?;
         self.outlines(root, heatmap, place)
     }
@@ -275,22 +282,15 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws the legend of a colour map below `root`, as a strip beside the base.
-    pub(super) fn legend(
-        &self,
-        root: &str,
-        field: Field,
-        threshold: f64,
-        map: &ColorMap,
-        corner: DVec3,
-        size: DVec2,
-    ) -> DrawResult {
+    pub(super) fn legend(&self, root: &str, legend: &FieldLegend, corner: DVec3, size: DVec2) -> DrawResult {
+        let FieldLegend { field, map, threshold } = *legend;
         const STEPS: u32 = 64;
         let at = |x: f64, fraction: f64| corner + DVec3::new(x * size.x, fraction * size.y, 0.0);
         let rows = (0..=STEPS).map(|k| f64::from(k) / f64::from(STEPS));
         let vertices = rows
             .clone()
             .flat_map(|fraction| [point(at(0.0, fraction)), point(at(1.0, fraction))]);
-        let colors = rows.flat_map(|fraction| [ColorMap::at(fraction); 2]);
+        let colors = rows.flat_map(|fraction| [rgb(ColorMap::at(fraction)); 2]);
         let triangles = (0..STEPS).flat_map(|k| [[2 * k, 2 * k + 1, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 2]]);
         let mesh = Mesh3D::new(vertices)
             .with_triangle_indices(triangles)

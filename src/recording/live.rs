@@ -11,9 +11,9 @@ use super::plot::{FrontPoint, Plot, PlotPoint};
 use super::stage::{Rows, Stage};
 use super::subject::DrawnDesign;
 use super::writer::{RecordingError, RecordingWriter};
-use super::{blueprint, colors, paths};
+use super::{SceneTarget, blueprint, colors, paths};
 use crate::scene::{
-    EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Scene, WorkspaceProof, ellipsoids, manipulator,
+    EllipsoidKind, Field, FieldLegend, Heatmap, HeatmapSettings, Part, Scene, WorkspaceProof, ellipsoids, manipulator,
 };
 use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, Model};
@@ -102,13 +102,55 @@ pub struct Pinned<'a> {
     pub name: &'a str,
 }
 
-/// A design of the scene that the user clicked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Direction from which the manipulator is seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Viewpoint {
+    /// From the front and above, so low that the layers of the members can be told apart.
+    #[default]
+    Oblique,
+    /// Along z, with y upwards, as in a drawing.
+    Top,
+    /// Along y, which shows the layers of the members.
+    Front,
+    /// Along −x.
+    Side,
+}
+
+impl Viewpoint {
+    /// All viewpoints.
+    pub const ALL: [Viewpoint; 4] = [Viewpoint::Oblique, Viewpoint::Top, Viewpoint::Front, Viewpoint::Side];
+
+    /// Returns the name for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Viewpoint::Oblique => "Oblique",
+            Viewpoint::Top => "Top",
+            Viewpoint::Front => "Front",
+            Viewpoint::Side => "Side",
+        }
+    }
+
+    /// Returns the place of the eye, as a multiple of the size of the scene.
+    pub(super) fn eye(self) -> [f64; 3] {
+        match self {
+            Viewpoint::Oblique => [0.35, -1.75, 1.55],
+            // From exactly above, the viewer would turn the picture upside down.
+            Viewpoint::Top => [0.0, -0.08, 2.4],
+            Viewpoint::Front => [0.0, -2.4, 0.02],
+            Viewpoint::Side => [2.4, 0.0, 0.02],
+        }
+    }
+}
+
+/// What the user clicked in the scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Picked {
     /// The design with this index in the front last shown.
     Front(usize),
     /// The pinned design with this index.
     Pin(usize),
+    /// A position of the platform \[m\], on the heatmap.
+    Position(DVec2),
 }
 
 /// The scene, as sent to a viewer.
@@ -120,6 +162,7 @@ pub struct LiveScene {
     /// Size for which the view of the pinned designs is set up \[m\].
     pins_extent: f64,
     comparing: bool,
+    viewpoint: Viewpoint,
     /// Whether text is dark: the viewer draws it on a light background.
     light: bool,
     design: Stage,
@@ -139,6 +182,7 @@ impl LiveScene {
             extent: VIEW * study.bounds.R_m[1],
             pins_extent: 1.0,
             comparing: false,
+            viewpoint: Viewpoint::default(),
             light: false,
             design: Stage::default(),
             pins: Stage::default(),
@@ -175,7 +219,27 @@ impl LiveScene {
             self.frame.bounds(),
             self.extent,
             comparing,
+            self.viewpoint,
+            self.light,
+            self.grid_spacing(),
         )?)
+    }
+
+    /// Returns the distance between the lines of the ground grid \[m\]: 1, 2 or 5 times a power of ten.
+    pub fn grid_spacing(&self) -> f64 {
+        let wanted = 0.25 * self.extent.max(1e-6);
+        let decade = libm::pow(10.0, libm::floor(libm::log10(wanted)));
+        let steps = [5.0, 2.0, 1.0].map(|step| step * decade);
+        steps.into_iter().find(|step| *step <= wanted).unwrap_or(decade)
+    }
+
+    /// Looks at the manipulator from another side, with the whole of it in view.
+    ///
+    /// # Errors
+    /// [`RecordingError::Encode`] when the layout cannot be encoded.
+    pub fn look_from(&mut self, viewpoint: Viewpoint) -> Result<(), RecordingError> {
+        self.viewpoint = viewpoint;
+        self.layout()
     }
 
     /// Sets the views up again if the size of the design differs greatly from that for which they are set up; otherwise
@@ -190,18 +254,23 @@ impl LiveScene {
         self.layout()
     }
 
-    /// Shows a design, or none.
+    /// Shows a design, or none, and returns the legend of its heatmap, if it has one. The window draws the legend beside the scene.
     ///
     /// # Errors
     /// [`RecordingError::Encode`] when the scene cannot be encoded.
-    pub fn design(&mut self, shown: Option<&Shown<'_>>) -> Result<(), RecordingError> {
+    pub fn design(&mut self, shown: Option<&Shown<'_>>) -> Result<Option<FieldLegend>, RecordingError> {
         let rows = RefCell::new(Rows::default());
+        let mut legend = None;
         if let Some(shown) = shown {
             self.fit(shown.evaluation)?;
-            self.light = shown.light;
-            draw(&Canvas::collecting(&rows, shown.light), shown)?;
+            if self.light != shown.light {
+                self.light = shown.light;
+                self.layout()?;
+            }
+            legend = draw(&Canvas::collecting(&rows, shown.light), shown)?;
         }
-        self.design.show(&self.writer, rows.into_inner())
+        self.design.show(&self.writer, rows.into_inner())?;
+        Ok(legend)
     }
 
     /// Shows the pinned designs side by side, each at its home pose with its regular workspace.
@@ -288,8 +357,11 @@ impl LiveScene {
         self.front.show(&self.writer, rows)
     }
 
-    /// Returns the design that an entity of the scene represents, if it represents one.
-    pub fn picked(entity: &str, instance: Option<u64>) -> Option<Picked> {
+    /// Returns what a click at `at` on an entity of the scene selects, if it selects anything.
+    pub fn picked(entity: &str, instance: Option<u64>, at: DVec2) -> Option<Picked> {
+        if let Some(SceneTarget::Field(_)) = Self::target(entity, instance) {
+            return Some(Picked::Position(at));
+        }
         let entity = entity.strip_prefix('/').unwrap_or(entity);
         if entity == &paths::FRONT_DESIGNS[1..] {
             return Some(Picked::Front(instance? as usize));
@@ -300,7 +372,9 @@ impl LiveScene {
     }
 }
 
-fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<(), RecordingError> {
+/// Draws a design, and returns the legend of its heatmap.
+fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<Option<FieldLegend>, RecordingError> {
+    let mut legend = None;
     let Shown {
         model,
         evaluation,
@@ -323,7 +397,7 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<(), RecordingError> {
             heatmap.edges.clear();
         }
         if layers.heatmap.is_some() {
-            subject.heatmap(canvas, &heatmap, subject.floor())?;
+            legend = subject.field(canvas, &heatmap, subject.floor())?;
         } else {
             heatmap.threshold.clear();
             let floor = subject.floor();
@@ -358,7 +432,7 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<(), RecordingError> {
         let at = subject.space().place(pose.position, pose.phi);
         canvas.mark(&format!("{}/pose", paths::CONFIGURATION), at, "P", colors::ELLIPSOID)?;
     }
-    Ok(())
+    Ok(legend)
 }
 
 /// Removes the parts that `layers` excludes.

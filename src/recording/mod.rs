@@ -34,6 +34,7 @@ mod draw;
 mod live;
 mod objective_plot;
 mod plot;
+mod pointed;
 mod proof;
 mod read;
 mod recorder;
@@ -47,8 +48,9 @@ mod writer;
 
 pub use apart::{RecordedRunError, UNPACK_COMMAND, read_apart, unpack, unpack_with};
 pub use design::record_design;
-pub use live::{LiveScene, Picked, Pinned, Shown, VisibleLayers};
+pub use live::{LiveScene, Picked, Pinned, Shown, Viewpoint, VisibleLayers};
 pub use plot::FrontPoint;
+pub use pointed::SceneTarget;
 pub use read::{CopyError, ReadError, RecordedDesign, RecordedRun, read_run, save_copy};
 pub use recorder::{Recorder, is_recorded};
 pub use run_files::{RunFileError, RunFiles};

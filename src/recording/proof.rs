@@ -4,11 +4,11 @@ use glam::{DVec2, DVec3};
 use rerun::components::FillMode;
 use rerun::{Boxes3D, Color, LineStrips3D, Mesh3D, Radius};
 
-use super::colors::{self, ColorMap, rgb};
+use super::colors::{self, rgb};
 use super::draw::{Canvas, about_z, point};
 use super::writer::RecordingError;
 use crate::palette;
-use crate::scene::{ConfigurationSpace, WorkspaceProof};
+use crate::scene::{ColorMap, ConfigurationSpace, WorkspaceProof};
 use kinefront_model::certify::BoxOutcome;
 use kinefront_model::evaluation::Constraint;
 
@@ -53,7 +53,7 @@ impl Canvas<'_> {
             // The inner arc and the outer one, which runs back, have the same number of corners.
             let corners = (outline.len() as u32 - 1) / 2;
             vertices.extend(outline.iter().take(2 * corners as usize).map(lift));
-            let shade = ColorMap::at((f64::from(part.depth) / DEEPEST).min(1.0));
+            let shade = rgb(ColorMap::at((f64::from(part.depth) / DEEPEST).min(1.0)));
             shades.extend(std::iter::repeat_n(shade, 2 * corners as usize));
             for corner in 0..corners - 1 {
                 let (inner, outer) = (first + corner, first + 2 * corners - 1 - corner);

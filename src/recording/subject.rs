@@ -2,13 +2,12 @@
 
 use glam::{DVec2, DVec3};
 
-use super::colors::ColorMap;
 use super::draw::Canvas;
 use super::paths;
 use super::writer::RecordingError;
 use crate::scene::{
-    ConfigurationSpace, Field, Heatmap, HeatmapSettings, RegularCylinder, SolidShape, WorkspaceProof, manipulator,
-    region_corners, regular_workspace,
+    ColorMap, ConfigurationSpace, Field, FieldLegend, Heatmap, HeatmapSettings, RegularCylinder, SolidShape,
+    WorkspaceProof, manipulator, region_corners, regular_workspace,
 };
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Design;
@@ -88,23 +87,29 @@ impl DrawnDesign<'_> {
         ConfigurationSpace::new(self.home().phi, self.design().base_radius)
     }
 
-    pub(super) fn map(&self, heatmap: &Heatmap) -> Option<(ColorMap, f64)> {
-        let threshold = heatmap.field.threshold(self.model);
-        Some((
-            ColorMap::new(heatmap.field.scale(), heatmap.range()?, threshold),
-            threshold,
-        ))
+    /// Draws a heatmap at height `z` below the manipulator, and returns its legend; `None` if no position is reachable.
+    pub(super) fn field(
+        &self,
+        canvas: &Canvas<'_>,
+        heatmap: &Heatmap,
+        z: f64,
+    ) -> Result<Option<FieldLegend>, RecordingError> {
+        let Some(range) = heatmap.range() else {
+            return Ok(None);
+        };
+        let field = heatmap.field;
+        let threshold = field.threshold(self.model);
+        let map = ColorMap::new(field.scale(), range, threshold);
+        let root = format!("{}/{}", paths::HEATMAP, field.key());
+        canvas.heatmap(&root, heatmap, &map, &|p: DVec2| p.extend(z))?;
+        Ok(Some(FieldLegend { field, map, threshold }))
     }
 
     /// Draws a heatmap at height `z` below the manipulator, and its legend beside it.
     pub(super) fn heatmap(&self, canvas: &Canvas<'_>, heatmap: &Heatmap, z: f64) -> Result<(), RecordingError> {
-        let Some((map, threshold)) = self.map(heatmap) else {
+        let Some(legend) = self.field(canvas, heatmap, z)? else {
             return Ok(());
         };
-        let key = heatmap.field.key();
-        canvas.heatmap(&format!("{}/{key}", paths::HEATMAP), heatmap, &map, &|p: DVec2| {
-            p.extend(z)
-        })?;
         let right = heatmap
             .vertices
             .iter()
@@ -112,15 +117,8 @@ impl DrawnDesign<'_> {
             .fold(0.9 * self.design().base_radius, f64::max);
         let size = self.design().base_radius;
         let corner = DVec3::new(right + 0.55 * size, -0.5 * size, z);
-        let legend = format!("{}/{key}", paths::HEATMAP_LEGEND);
-        canvas.legend(
-            &legend,
-            heatmap.field,
-            threshold,
-            &map,
-            corner,
-            DVec2::new(0.08, 1.2) * size,
-        )
+        let root = format!("{}/{}", paths::HEATMAP_LEGEND, heatmap.field.key());
+        canvas.legend(&root, &legend, corner, DVec2::new(0.08, 1.2) * size)
     }
 
     /// Draws the regular workspace below the manipulator, and the poses that limit it.

@@ -91,7 +91,20 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
         }
         label(c, format!("C{number}"));
     }
+    join_labels(&mut scene.labels, 0.015 * design.base_radius);
     Ok(scene)
+}
+
+/// Joins labels that are nearer to each other than `distance` \[m\], because they would cover each other: "C1 C2 C3".
+fn join_labels(labels: &mut Vec<Label>, distance: f64) {
+    let mut joined: Vec<Label> = Vec::with_capacity(labels.len());
+    for label in labels.drain(..) {
+        match joined.iter_mut().find(|other| other.at.distance(label.at) < distance) {
+            Some(other) => other.text = format!("{} {}", other.text, label.text),
+            None => joined.push(label),
+        }
+    }
+    *labels = joined;
 }
 
 /// Returns the part that a slider or carriage is.

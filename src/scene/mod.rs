@@ -5,6 +5,7 @@
 //! | [`manipulator`] | base, rails, legs, platform, joints, frames and labels, to scale |
 //! | [`regular_workspace`] | the cylinder, on the manipulator and in the configuration space |
 //! | [`WorkspaceProof`] | the boxes of the proof of a workspace |
+//! | [`FieldLegend`] | the colours of a field and its threshold |
 //! | [`Heatmap`] | a field over the reachable workspace at one φ: triangles, contours, edges of reach, singularities |
 //! | [`ellipsoids`] | stiffness or displacement ellipsoids at points of the regular workspace |
 //! | [`linkage`] | the manipulator as rigid bodies with joints and masses |
@@ -14,6 +15,7 @@
 //! Lengths are in metres in the base frame; z points out of the plane. A shape states which part of the manipulator it
 //! is ([`Part`]), not how it looks.
 
+mod color_map;
 mod ellipsoid;
 mod field;
 mod heatmap;
@@ -26,6 +28,7 @@ mod shape;
 mod tour;
 mod workspace;
 
+pub use color_map::{ColorMap, FieldLegend};
 pub use ellipsoid::{Ellipsoid, EllipsoidKind, EllipsoidSet, ellipsoids};
 pub use field::{Field, Scale};
 pub use heatmap::{Edge, Heatmap, HeatmapSettings};

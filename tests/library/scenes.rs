@@ -141,7 +141,8 @@ fn the_manipulator_is_complete_and_to_scale() {
             count(&[Part::PlatformBar]),
             count(&[Part::ActuatedJoint, Part::Slider]),
             count(&[Part::PassiveJoint]),
-            scene.labels.len(),
+            // One label names points that coincide.
+            scene.labels.iter().map(|label| label.text.split(' ').count()).sum(),
         ];
         let (_, wanted) = wanted
             .iter()
@@ -158,6 +159,22 @@ fn the_manipulator_is_complete_and_to_scale() {
             }
         }
     }
+}
+
+/// Labels that would cover each other are one label.
+#[test]
+fn labels_of_coincident_points_are_joined() {
+    let model = Model::default();
+    let texts = |design: &str| -> Vec<String> {
+        let design: Design = design.parse().expect("a design");
+        let pose = Pose::new(0.0, 0.0, 0.4);
+        let scene = manipulator(&model, &design, &pose).expect("reachable");
+        scene.labels.into_iter().map(|label| label.text).collect()
+    };
+    let small = texts("3-RPR R=2 r=0.01 Lb=3 rj=0.02 rp=0.02");
+    assert!(small.contains(&"C1 C2 C3".to_owned()), "{small:?}");
+    let large = texts("3-RPR R=2 r=0.5 Lb=3 rj=0.02 rp=0.02");
+    assert!(large.iter().all(|text| !text.contains(' ')), "{large:?}");
 }
 
 /// Members are drawn as they are modelled for the clearance: each in its layer, with its radius. The line between the

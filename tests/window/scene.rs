@@ -3,14 +3,19 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
+use egui_kittest::kittest::Queryable as _;
+use glam::DVec2;
+use kinefront::explorer::{Pointed, describe};
 use kinefront::recording::{LiveScene, Picked, Pinned, Shown, VisibleLayers};
-use kinefront::scene::{EllipsoidKind, workspace_proof};
+use kinefront::scene::{EllipsoidKind, Field, Heatmap, workspace_proof};
 use kinefront::study::BUILTIN;
 use kinefront_model::evaluation::{GridChoice, Model};
 use kinefront_model::mechanism::{Design, WorkingMode};
 use rerun::external::arrow::array::Array as _;
 use rerun::log::{Chunk, LogMsg};
 use rerun::sink::CallbackSink;
+
+use super::support::{Window, opened_window};
 
 /// Number of instances in the largest component of each entity, as sent last.
 type Standing = BTreeMap<String, usize>;
@@ -147,13 +152,90 @@ fn pins_stand_side_by_side_and_what_is_picked_is_known() {
     assert!(!shown(&standing, "/pins/0/manipulator").is_empty());
     assert_eq!(shown(&standing, "/pins/1"), Vec::<String>::new());
 
+    let at = DVec2::new(0.1, -0.2);
     assert_eq!(
-        LiveScene::picked("/scatter/plot/front/designs", Some(7)),
+        LiveScene::picked("/scatter/plot/front/designs", Some(7), at),
         Some(Picked::Front(7))
     );
     assert_eq!(
-        LiveScene::picked("/pins/1/manipulator/legs", None),
+        LiveScene::picked("/pins/1/manipulator/legs", None, at),
         Some(Picked::Pin(1))
     );
-    assert_eq!(LiveScene::picked("/design/manipulator/legs", Some(2)), None);
+    assert_eq!(LiveScene::picked("/design/manipulator/legs", Some(2), at), None);
+    assert_eq!(
+        LiveScene::picked("/design/heatmap/k_xy/field", Some(0), at),
+        Some(Picked::Position(at))
+    );
+}
+
+/// Pointing at the scene tells what is there, with its numbers; a click on the heatmap moves the platform.
+#[test]
+fn what_the_pointer_is_over_is_told_in_words_and_numbers() {
+    let mut window = opened_window();
+    let told = |window: &Window, entity: &str, instance: u64, at: DVec2| {
+        let pointed = Pointed {
+            entity: entity.to_owned(),
+            instance: Some(instance),
+            at,
+        };
+        describe(window.state().session(), &pointed)
+    };
+    let session = window.state().session();
+    let (model, known) = (session.model().clone(), session.known().expect("a design").clone());
+    let (design, home) = (known.evaluation.design, session.home().expect("a home"));
+
+    let at = DVec2::new(0.02, -0.01);
+    let field = told(&window, "/design/heatmap/inverse_condition/field", 0, at).expect("a field");
+    let pose = kinefront_model::spatial::Pose {
+        position: at,
+        phi: home.phi,
+    };
+    let value = Heatmap::value_at(&model, &design, Field::InverseCondition, &pose).expect("reached");
+    let found = model.pose(&design, &pose).expect("reached").inverse_condition;
+    assert!((value - found).abs() < 1e-12);
+    assert_eq!(field.passes, Some(value >= model.thresholds.inverse_condition));
+    assert!(
+        field.title.ends_with(&kinefront::text::number(value)),
+        "{}",
+        field.title
+    );
+    assert!(field.lines[0].contains("threshold 0.1"), "{:?}", field.lines);
+    assert_eq!(told(&window, "/design/heatmap/k_xy/field", 0, DVec2::splat(1e3)), None);
+
+    // Each bar that is drawn is a member, with its own leg.
+    let mut legs = Vec::new();
+    for instance in 0..3 {
+        let bar = told(&window, "/design/manipulator/platform", instance, at).expect("a bar");
+        assert!(bar.lines.iter().any(|line| line.contains("radius")), "{bar:?}");
+        legs.push(bar.title);
+    }
+    assert_eq!(legs, [1, 2, 3].map(|leg| format!("platform bar of leg {leg}")));
+    assert_eq!(told(&window, "/design/manipulator/platform", 3, at), None);
+    let workspace = told(&window, "/design/workspace/outline", 0, at).expect("the workspace");
+    let radius = kinefront::text::number(known.evaluation.workspace_radius);
+    assert!(workspace.lines[0].contains(&radius), "{workspace:?}");
+    let ellipsoid = told(&window, "/design/ellipsoids/stiffness/bodies", 0, at).expect("an ellipsoid");
+    assert!(ellipsoid.lines[0].contains("N/m"), "{ellipsoid:?}");
+    assert!(told(&window, "/design/heatmap/k_xy/singular", 0, at).is_some());
+    assert_eq!(told(&window, "/design/manipulator/labels", 0, at), None);
+
+    window.state_mut().session_mut().select_picked(Picked::Position(at));
+    let moved = window.state().session().pose().expect("a pose");
+    assert!((moved.position - at).length() < 1e-12 && moved.phi == home.phi);
+}
+
+/// The status bar tells the study, the designs and the selected one; the window's actions are buttons with names.
+#[test]
+fn the_status_bar_tells_what_is_shown() {
+    let window = opened_window();
+    let session = window.state().session();
+    let designs = format!(
+        "{} designs, {} on the front",
+        session.store().len(),
+        session.front().len()
+    );
+    window.get_by_label(&designs);
+    let study = format!("{}: opened", session.study().name);
+    window.get_by_label(&study);
+    window.get_by_label_contains("selected: #");
 }

@@ -4,6 +4,8 @@ use egui::Ui;
 use egui_tiles::{Linear, LinearDir, SimplificationOptions, TileId, Tiles, Tree, UiResponse};
 
 use super::super::files::Purpose;
+use super::super::overlay;
+use super::super::pointing::describe;
 use super::super::viewer::Viewer;
 use super::super::{Panel, Panels, Session};
 
@@ -47,7 +49,13 @@ impl egui_tiles::Behavior<Panel> for Drawing<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _: TileId, panel: &mut Panel) -> UiResponse {
         if *panel == Panel::Scene {
             match &mut self.viewer {
-                Some(viewer) => viewer.ui(ui, self.frame),
+                Some(viewer) => {
+                    let pane = ui.max_rect();
+                    viewer.ui(ui, self.frame);
+                    let pointed = viewer.pointed();
+                    let pointed = pointed.and_then(|pointed| describe(self.session, &pointed));
+                    overlay::ui(ui, pane, self.session, pointed.as_ref());
+                }
                 None => drop(ui.weak("the 3-D viewer is not available")),
             }
             return UiResponse::None;

@@ -30,12 +30,14 @@ impl Explorer {
             let requested = ui.menu_button("File", |ui| self.file_menu(ui)).inner.flatten();
             ui.menu_button("Edit", |ui| self.edit_menu(ui));
             ui.menu_button("View", |ui| self.view_menu(ui));
-            if ui.button("?").on_hover_text("keyboard shortcuts").clicked() {
-                self.help = !self.help;
-            }
-            ui.separator();
-            ui.strong(&self.session.study().name);
-            ui.weak(phase_name(self.session.phase()));
+            ui.menu_button("Help", |ui| {
+                if ui.button("Keyboard shortcuts").clicked() {
+                    self.help = true;
+                }
+                if ui.button("What you see").clicked() {
+                    self.introduction = true;
+                }
+            });
             if self.jobs > 0 {
                 ui.weak("writing a file…");
             }
@@ -114,7 +116,11 @@ impl Explorer {
                 if ui.small_button("×").clicked() {
                     away = Some(index);
                 }
-                let color = if notice.is_error { theme::BAD } else { theme::GOOD };
+                let color = if notice.is_error {
+                    theme::bad(ui)
+                } else {
+                    theme::good(ui)
+                };
                 ui.colored_label(color, &notice.text);
             });
         }
@@ -169,6 +175,55 @@ impl Explorer {
         }
     }
 
+    /// Says at the first start what the window shows, until it is closed.
+    pub(super) fn introduction(&mut self, ui: &mut Ui) {
+        const LINES: [(&str, &str); 6] = [
+            (
+                "Run",
+                "chooses a study and starts its search; Mechanisms and Study change what is asked",
+            ),
+            (
+                "Scatter",
+                "shows every design as it is evaluated; a click selects one, and the line is the front",
+            ),
+            (
+                "3-D",
+                "shows the selected design; pointing tells what is there, and a click on the heatmap moves it",
+            ),
+            (
+                "Inspector",
+                "shows its dimensions, which the sliders change, its workspace and its constraints",
+            ),
+            ("Pose", "moves the platform; Layers chooses what is drawn"),
+            (
+                "Front",
+                "lists the designs to choose from; File saves, exports and reports",
+            ),
+        ];
+        let mut is_open = self.introduction;
+        let mut done = false;
+        egui::Window::new("What you see")
+            .open(&mut is_open)
+            .resizable(false)
+            .collapsible(false)
+            .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO)
+            .show(ui.ctx(), |ui| {
+                egui::Grid::new("introduction")
+                    .num_columns(2)
+                    .spacing([18.0, 6.0])
+                    .show(ui, |ui| {
+                        for (panel, words) in LINES {
+                            ui.strong(panel);
+                            ui.label(words);
+                            ui.end_row();
+                        }
+                    });
+                ui.separator();
+                done = ui.button("Close").clicked();
+            });
+        self.introduction = is_open && !done;
+    }
+
     pub(super) fn help(&mut self, ui: &mut Ui) {
         egui::Window::new("Keyboard shortcuts")
             .open(&mut self.help)
@@ -191,7 +246,7 @@ impl Explorer {
     }
 }
 
-fn phase_name(phase: &Phase) -> &'static str {
+pub(super) fn phase_name(phase: &Phase) -> &'static str {
     match phase {
         Phase::Ready => "ready",
         Phase::Searching => "searching",

@@ -4,8 +4,10 @@ mod deliveries;
 mod layout;
 mod menu;
 mod shortcuts;
+mod status;
 
 use crate::AnyError;
+use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -48,6 +50,9 @@ struct Remembered {
     axes: [ScatterAxis; 2],
     recent: Vec<PathBuf>,
     dark: bool,
+    /// Whether the introduction was closed.
+    #[serde(default)]
+    introduced: bool,
 }
 
 /// Result of a file job: the message to show on success or on failure.
@@ -70,6 +75,12 @@ pub struct Explorer {
     recent: Vec<PathBuf>,
     dark: bool,
     help: bool,
+    /// Whether the introduction is open.
+    introduction: bool,
+    /// Events of the pointer that a script still has to send, one per frame.
+    pub(super) pointer: VecDeque<egui::Event>,
+    /// Title that the window has.
+    title: String,
     /// Purpose of the requested file, and its path as typed so far. The system's dialog may be open as well.
     requested: Option<(Purpose, String)>,
     dialog: Option<Dialog>,
@@ -102,6 +113,7 @@ impl Explorer {
             theme::dress(&cc.egui_ctx);
             (None, None)
         };
+        theme::refine(&cc.egui_ctx);
         let ctx = cc.egui_ctx.clone();
         // Updates that arrive within this interval share a frame. The interval grows with the time that a frame takes:
         // where frames are drawn by the processor, they would take its time from the search.
@@ -119,6 +131,9 @@ impl Explorer {
             .storage
             .filter(|_| script.is_none())
             .and_then(|storage| eframe::get_value(storage, eframe::APP_KEY));
+        let introduce = cc.storage.is_some()
+            && script.is_none()
+            && !remembered.as_ref().is_some_and(|remembered| remembered.introduced);
         let mut panels = Panels::default();
         let (tree, recent, dark) = match remembered {
             Some(remembered) => {
@@ -138,6 +153,9 @@ impl Explorer {
             recent,
             dark,
             help: false,
+            introduction: introduce,
+            pointer: VecDeque::new(),
+            title: String::new(),
             requested: None,
             dialog: None,
             ended: channel(),
@@ -246,6 +264,8 @@ impl eframe::App for Explorer {
         if !self.session.notices.is_empty() {
             egui::Panel::bottom("notices").show(ui, |ui| self.notices(ui));
         }
+        egui::Panel::bottom("status").show(ui, |ui| self.status(ui));
+        self.retitle(&ctx);
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let mut drawing = Drawing {
                 session: &mut self.session,
@@ -261,6 +281,7 @@ impl eframe::App for Explorer {
         });
         self.path_field(ui);
         self.help(ui);
+        self.introduction(ui);
         if self.session.is_running() && *self.session.phase() != Phase::Paused {
             // The rate and the remaining time change even while no message arrives.
             ctx.request_repaint_after(Duration::from_millis(250));
@@ -279,6 +300,7 @@ impl eframe::App for Explorer {
             axes: self.panels.scatter.axes(),
             recent: self.recent.clone(),
             dark: self.dark,
+            introduced: !self.introduction,
         };
         eframe::set_value(storage, eframe::APP_KEY, &remembered);
     }
@@ -289,6 +311,7 @@ impl eframe::App for Explorer {
             input
                 .events
                 .retain(|event| !matches!(event, egui::Event::PointerMoved(_)));
+            input.events.extend(self.pointer.pop_front());
         }
     }
 

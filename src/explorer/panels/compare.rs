@@ -154,7 +154,7 @@ fn row(ui: &mut Ui, name: &str, values: Vec<Option<f64>>, best: Option<Best>) {
         let text = value.map_or_else(|| "…".to_owned(), theme::number);
         let text = RichText::new(text).monospace();
         let text = if several && value.is_some() && value == target {
-            text.color(theme::GOOD).strong()
+            text.color(theme::good(ui)).strong()
         } else {
             text.color(Color32::PLACEHOLDER)
         };

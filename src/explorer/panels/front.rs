@@ -255,7 +255,7 @@ fn draw_row(
                 Key::Number(Column::Value(Constraint::Clearance))
                     if entry.row.clearance().is_some_and(|clearance| clearance < 0.0) =>
                 {
-                    text.color(theme::BAD)
+                    text.color(theme::bad(ui))
                 }
                 _ if !state.passes => text.weak(),
                 Key::Architecture if !state.selected => text.color(theme::architecture(
@@ -270,9 +270,9 @@ fn draw_row(
     row.col(|ui| {
         if let Some(certified) = &entry.certified {
             let color = if certified.is_proved {
-                theme::GOOD
+                theme::good(ui)
             } else {
-                theme::ACTIVE
+                theme::active(ui)
             };
             let upper = certified.upper.map_or("∞".to_owned(), |upper| format!("{upper:.4}"));
             let words = format!("{} [{:.4}, {upper}]", certified.state(), certified.lower);

@@ -46,7 +46,7 @@ fn heading(ui: &mut Ui, session: &mut Session) {
     ui.horizontal_wrapped(|ui| {
         ui.heading(format!("{} {name}", text::architecture(selected.design.architecture)));
         if session.is_modified() {
-            ui.colored_label(theme::MODIFIED, "modified design");
+            ui.colored_label(theme::modified(ui.visuals().dark_mode), "modified design");
             if ui
                 .button("Keep")
                 .on_hover_text("adds the modified design to the kept designs")
@@ -175,11 +175,11 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
                 let radius = certified.map_or(evaluation.workspace_radius, |certified| certified.lower);
                 ui.strong(format!("{} m", theme::number(radius)));
             } else {
-                ui.colored_label(theme::BAD, "infeasible: no regular workspace");
+                ui.colored_label(theme::bad(ui), "infeasible: no regular workspace");
             }
             if let Some(limit) = evaluation.limits.iter().find(|limit| limit.margin < 0.0) {
                 let entry = limit.limit.quantity.entry();
-                ui.colored_label(theme::BAD, format!("infeasible: {} beyond its limit", entry.label));
+                ui.colored_label(theme::bad(ui), format!("infeasible: {} beyond its limit", entry.label));
             }
             ui.weak(match (certified, known.verified) {
                 (Some(certified), _) => certified.state(),
@@ -239,10 +239,10 @@ fn proof(ui: &mut Ui, session: &mut Session) {
     let certificate = &proof.certificate;
     let (color, verdict) = match certificate.verdict {
         // What the front reports is the proved radius, whatever the fine grid gave.
-        _ if session.certified().is_some_and(|certified| certified.is_proved) => (theme::GOOD, "proved"),
-        Verdict::Proved => (theme::GOOD, "proved"),
-        Verdict::Refuted => (theme::BAD, "refuted"),
-        Verdict::OpenBudget | Verdict::OpenPrecision => (theme::ACTIVE, "open"),
+        _ if session.certified().is_some_and(|certified| certified.is_proved) => (theme::good(ui), "proved"),
+        Verdict::Proved => (theme::good(ui), "proved"),
+        Verdict::Refuted => (theme::bad(ui), "refuted"),
+        Verdict::OpenBudget | Verdict::OpenPrecision => (theme::active(ui), "open"),
     };
     let mut has_asked = false;
     ui.horizontal_wrapped(|ui| {
@@ -275,8 +275,8 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
                     ui.weak(report.constraint.id());
                     ui.weak(format!("{name}, not required"));
                 } else if report.active {
-                    ui.colored_label(theme::ACTIVE, report.constraint.id());
-                    ui.colored_label(theme::ACTIVE, format!("{name}, active"));
+                    ui.colored_label(theme::active(ui), report.constraint.id());
+                    ui.colored_label(theme::active(ui), format!("{name}, active"));
                 } else {
                     ui.label(report.constraint.id());
                     ui.label(name);
@@ -292,7 +292,7 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
     if let Some(nearest) = known.evaluation.nearest {
         let words = format!("nearest pair of members: {}", text::clearance(&nearest));
         if nearest.distance < 0.0 {
-            ui.colored_label(theme::BAD, words);
+            ui.colored_label(theme::bad(ui), words);
         } else {
             ui.weak(words);
         }
@@ -314,11 +314,11 @@ fn margin_bar(ui: &mut Ui, report: &ConstraintResult) {
     let color = if !report.required {
         Color32::from_gray(128)
     } else if report.margin < 0.0 {
-        theme::BAD
+        theme::bad(ui)
     } else if report.active {
-        theme::ACTIVE
+        theme::active(ui)
     } else {
-        theme::GOOD
+        theme::good(ui)
     };
     let bar = if report.margin < 0.0 {
         rect.with_max_x(middle)

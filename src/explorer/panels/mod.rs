@@ -10,6 +10,7 @@ mod modes;
 mod parallel;
 mod plan;
 mod pose;
+mod progress;
 mod question;
 mod run;
 pub mod scatter;

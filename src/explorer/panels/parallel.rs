@@ -92,7 +92,7 @@ impl ParallelPanel {
             Pos2::new(left_of(index, axes, plot), self.height(index, *axis, value, plot))
         };
         let color = if session.is_modified() {
-            theme::MODIFIED
+            theme::modified(painter.ctx().theme() == egui::Theme::Dark)
         } else {
             theme::SELECTED
         };
@@ -120,8 +120,13 @@ impl ParallelPanel {
         if let Some([from, to]) = session.document().filter.range(axis) {
             let (top, bottom) = (self.height(index, axis, to, plot), self.height(index, axis, from, plot));
             let brush = Rect::from_min_max(Pos2::new(x - 6.0, top), Pos2::new(x + 6.0, bottom));
-            painter.rect_filled(brush, 2.0, theme::ACTIVE.gamma_multiply(0.45));
-            painter.rect_stroke(brush, 2.0, Stroke::new(1.0, theme::ACTIVE), egui::StrokeKind::Middle);
+            painter.rect_filled(brush, 2.0, theme::active(ui).gamma_multiply(0.45));
+            painter.rect_stroke(
+                brush,
+                2.0,
+                Stroke::new(1.0, theme::active(ui)),
+                egui::StrokeKind::Middle,
+            );
         }
     }
 

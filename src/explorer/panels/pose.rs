@@ -55,7 +55,7 @@ impl PosePanel {
         });
         self.sliders(ui, session, pose, home, evaluation.design.base_radius);
         match &self.stopped {
-            Some(reason) => ui.colored_label(theme::BAD, format!("stopped: {reason}")),
+            Some(reason) => ui.colored_label(theme::bad(ui), format!("stopped: {reason}")),
             None => ui.weak("drag the platform to move it, its rim to turn it; point at a member to see its data"),
         };
         let pose = session.pose().unwrap_or(pose);
@@ -152,7 +152,7 @@ impl PosePanel {
                 Align2::CENTER_CENTER,
                 "the manipulator cannot reach this pose",
                 FontId::proportional(14.0),
-                theme::BAD,
+                theme::bad(ui),
             );
             return;
         };
@@ -172,15 +172,15 @@ impl PosePanel {
         if let Some(corners) = corners {
             // The outline may be concave, so that it is not filled.
             let outline: Vec<_> = corners.into_iter().map(|corner| plan.screen(corner)).collect();
-            painter.add(egui::Shape::closed_line(outline, Stroke::new(1.2, theme::GOOD)));
+            painter.add(egui::Shape::closed_line(outline, Stroke::new(1.2, theme::good(ui))));
         } else if let Some(cylinder) = workspace {
             let centre = plan.screen(cylinder.centre);
             let radius = (cylinder.radius * plan.scale) as f32;
             painter.circle(
                 centre,
                 radius,
-                theme::GOOD.gamma_multiply(0.12),
-                Stroke::new(1.2, theme::GOOD),
+                theme::good(ui).gamma_multiply(0.12),
+                Stroke::new(1.2, theme::good(ui)),
             );
         }
         self.modes.ghosts(&painter, &plan, session, design, theme::ink(ui));
@@ -256,7 +256,7 @@ fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
         .show(ui, |ui| {
             for (index, (name, value, least, unit)) in values.into_iter().enumerate() {
                 ui.label(name);
-                let color = if value < least { theme::BAD } else { theme::GOOD };
+                let color = if value < least { theme::bad(ui) } else { theme::good(ui) };
                 ui.colored_label(color, format!("{} {unit}", theme::number(value)));
                 if index % 2 == 1 {
                     ui.end_row();
@@ -265,9 +265,9 @@ fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
         });
     let least = thresholds.clearance.unwrap_or(0.0);
     let color = if report.clearance.distance < least {
-        theme::BAD
+        theme::bad(ui)
     } else {
-        theme::GOOD
+        theme::good(ui)
     };
     ui.colored_label(color, format!("clearance: {}", text::clearance(&report.clearance)));
     let unit = design.architecture.actuator().unit();

@@ -1,14 +1,16 @@
 //! The run panel: the study and the optimizer's settings, the run's controls, and its progress.
 
 use egui::{ComboBox, DragValue, Grid, ProgressBar, Ui};
-use egui_plot::{Line, Plot, PlotPoints};
 
+use super::progress::ProgressPlot;
 use crate::explorer::{Phase, Session, StudyEditor, theme};
 use crate::study::{AlgorithmName, BUILTIN, EndReason};
 
 /// The run panel.
 #[derive(Default)]
-pub struct RunPanel;
+pub struct RunPanel {
+    plot: ProgressPlot,
+}
 
 impl RunPanel {
     /// Draws the panel.
@@ -19,7 +21,7 @@ impl RunPanel {
         buttons(ui, session);
         ui.add_space(4.0);
         progress(ui, session);
-        curve(ui, session);
+        self.plot.ui(ui, session);
     }
 }
 
@@ -106,7 +108,7 @@ fn settings(ui: &mut Ui, session: &mut Session) {
     });
     session.editor.change(|edited| *edited = study);
     for fault in session.editor.faults() {
-        ui.colored_label(theme::BAD, format!("`{}` {}", fault.key, fault.message));
+        ui.colored_label(theme::bad(ui), format!("`{}` {}", fault.key, fault.message));
     }
 }
 
@@ -136,7 +138,10 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
                 ui.add_enabled(false, egui::Button::new("⏸ Pause"));
             }
             _ => {
-                if ui.add_enabled(valid, egui::Button::new("▶ Start")).clicked() {
+                let start = egui::Button::new(egui::RichText::new("▶ Start").strong().color(egui::Color32::WHITE))
+                    .fill(theme::PRIMARY);
+                let why = "the study has faults, which the panel Study tells";
+                if ui.add_enabled(valid, start).on_disabled_hover_text(why).clicked() {
                     session.start();
                 }
                 if session.continuable().is_some()
@@ -153,6 +158,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
         if ui
             .add_enabled(can_step, egui::Button::new("⏭ Step"))
             .on_hover_text("runs one generation, then pauses")
+            .on_disabled_hover_text("only while a search runs or is paused")
             .clicked()
         {
             session.step();
@@ -160,6 +166,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
         if ui
             .add_enabled(can_step, egui::Button::new("⏹ Stop"))
             .on_hover_text("ends the search; its front is verified and all designs are kept")
+            .on_disabled_hover_text("only while a search runs or is paused")
             .clicked()
         {
             session.stop();
@@ -167,6 +174,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
         if ui
             .add_enabled(valid && session.is_running(), egui::Button::new("⟲ Restart"))
             .on_hover_text("discards the current run and starts again with the study as edited here")
+            .on_disabled_hover_text("only during a run, and with a study without faults")
             .clicked()
         {
             session.start();
@@ -188,7 +196,8 @@ fn progress(ui: &mut Ui, session: &Session) {
             format!("{done} of {budget} evaluations"),
         ),
     };
-    let bar = ui.add(ProgressBar::new(fraction).text(text.clone()));
+    // Beside the bar, because text in it would lie on two grounds.
+    let bar = ui.add(ProgressBar::new(fraction).desired_height(8.0));
     bar.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::ProgressIndicator, true, "Progress"));
     let words = match session.phase() {
         Phase::Ready => "ready".to_owned(),
@@ -210,7 +219,7 @@ fn progress(ui: &mut Ui, session: &Session) {
             path.file_name().unwrap_or(path.as_os_str()).to_string_lossy()
         ),
     };
-    ui.label(words);
+    ui.label(format!("{text}, {words}"));
     if let Some(last) = session.generations().last() {
         ui.weak(format!(
             "generation {}, {} feasible, {} on the front{}",
@@ -222,36 +231,4 @@ fn progress(ui: &mut Ui, session: &Session) {
                 .map_or(String::new(), |threads| format!(", {threads} threads")),
         ));
     }
-}
-
-fn curve(ui: &mut Ui, session: &Session) {
-    let generations = session.generations();
-    // About as many points as a screen can show.
-    let every = generations.len().div_ceil(600).max(1);
-    let points: Vec<[f64; 2]> = generations
-        .iter()
-        .step_by(every)
-        .chain(generations.last())
-        .map(|generation| [generation.evaluations as f64, generation.hypervolume])
-        .collect();
-    let color = theme::GOOD;
-    let shown = Plot::new("hypervolume")
-        .height(ui.available_height().clamp(70.0, 160.0))
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .include_y(0.0)
-        .x_axis_label("evaluations")
-        .y_axis_label("hypervolume [kg·m]")
-        .show(ui, |plot| {
-            plot.line(
-                Line::new("hypervolume", PlotPoints::from(points))
-                    .color(color)
-                    .width(1.6),
-            );
-        });
-    shown
-        .response
-        .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, "Hypervolume over evaluations"));
 }

@@ -30,10 +30,10 @@ impl StudyPanel {
         });
         let faults: Vec<Fault> = session.editor.faults().cloned().collect();
         for fault in &faults {
-            ui.colored_label(theme::BAD, format!("`{}` {}", fault.key, fault.message));
+            ui.colored_label(theme::bad(ui), format!("`{}` {}", fault.key, fault.message));
         }
         if faults.is_empty() {
-            ui.colored_label(theme::GOOD, "valid");
+            ui.colored_label(theme::good(ui), "valid");
             self.typed = None;
         }
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
@@ -63,14 +63,70 @@ impl StudyPanel {
     }
 }
 
-/// Shows a field for every value of the study. The fields follow from the study's own TOML table, so a new setting
-/// appears without a change here.
+/// The sections of a study in the order in which a designer thinks of them: heading, and names of the sections.
+const GROUPS: [(&str, &[&str]); 6] = [
+    ("Mechanism", &["", "geometry", "rails", "bodies", "bodies.layers"]),
+    ("Task", &["workspace", "workspace.region"]),
+    ("Loads and accuracy", &["requirements", "model"]),
+    (
+        "Material, bars and drives",
+        &[
+            "material",
+            "sections.legs",
+            "sections.platform",
+            "sections.rails",
+            "actuators",
+        ],
+    ),
+    ("Bounds", &["bounds", "variables"]),
+    (
+        "Search",
+        &[
+            "optimizer",
+            "optimizer.stagnation",
+            "optimizer.front_de",
+            "optimizer.moga2",
+            "optimizer.nsga2",
+            "optimizer.cma_es",
+            "grid.reference",
+            "grid.fine",
+            "hypervolume",
+        ],
+    ),
+];
+
+/// What the fields of a study are shown with.
+struct Context<'a> {
+    /// The paper's study, which has the defaults.
+    defaults: &'a Table,
+    faults: &'a [Fault],
+}
+
+/// Shows a field for every setting of the study. The fields follow from the settings as they are declared, so that a new one
+/// appears in its section without a change here.
 fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault]) {
-    let Ok(before) = Table::try_from(session.editor.study()) else {
+    let tables = (
+        Table::try_from(session.editor.study()),
+        Table::try_from(Study::default()),
+    );
+    let (Ok(before), Ok(defaults)) = tables else {
         return;
     };
+    differences(ui, session, &before);
     let mut table = before.clone();
-    section(ui, "", &mut table, faults);
+    let context = Context {
+        defaults: &defaults,
+        faults,
+    };
+    for (heading, sections) in GROUPS {
+        CollapsingHeader::new(heading)
+            .default_open(matches!(heading, "Mechanism" | "Loads and accuracy" | "Bounds"))
+            .show(ui, |ui| {
+                for path in sections {
+                    section(ui, path, &mut table, &context);
+                }
+            });
+    }
     follow_characteristic_length(&mut table);
     follow_sections(&mut table);
     follow_region(&mut table);
@@ -143,6 +199,33 @@ fn follow_region(table: &mut Table) {
     }
 }
 
+/// Tells which settings differ from those of the study that was run.
+fn differences(ui: &mut Ui, session: &Session, edited: &Table) {
+    let Ok(run) = Table::try_from(session.study()) else {
+        return;
+    };
+    if session.store().is_empty() {
+        return;
+    }
+    let differs = |setting: &&Setting| setting.value(&run) != setting.value(edited);
+    let changed: Vec<String> = settings().filter(differs).map(Setting::path).collect();
+    if !changed.is_empty() {
+        ui.colored_label(
+            theme::active(ui),
+            format!("differs from the study that was run: {}", changed.join(", ")),
+        );
+    }
+}
+
+/// Shows the name of a section within its group; the first one needs none.
+fn subheading(ui: &mut Ui, path: &str) {
+    let is_first = GROUPS.iter().any(|(_, sections)| sections.first() == Some(&path));
+    if !is_first {
+        ui.add_space(4.0);
+        ui.weak(path.replace(['_', '.'], " "));
+    }
+}
+
 /// Returns the value that an optional setting starts from; `None` for one that is edited as text.
 fn initial_value(initial: Initial) -> Option<Value> {
     match initial {
@@ -162,7 +245,7 @@ fn optional_settings(ui: &mut Ui, path: &str, table: &mut Table) {
             continue;
         };
         let mut stated = table.contains_key(setting.key);
-        let tick = ui.checkbox(&mut stated, format!("set {}", setting.key));
+        let tick = ui.checkbox(&mut stated, format!("set {}", setting.title()));
         if tick.on_hover_text(setting.description.trim()).changed() {
             if stated {
                 table.insert(setting.key.to_owned(), initial);
@@ -191,78 +274,100 @@ fn selection(ui: &mut Ui, names: &mut Vec<Value>, all: &[&str]) {
     }
 }
 
-fn section(ui: &mut Ui, path: &str, table: &mut Table, faults: &[Fault]) {
+/// Shows the settings of a section in the order in which they are declared.
+fn section(ui: &mut Ui, path: &str, table: &mut Table, context: &Context<'_>) {
+    let table = if path.is_empty() {
+        Some(table)
+    } else {
+        path.split('.')
+            .try_fold(table, |table, part| table.get_mut(part)?.as_table_mut())
+    };
+    let Some(table) = table else { return };
+    subheading(ui, path);
     optional_settings(ui, path, table);
-    for (key, value) in table.iter_mut() {
-        // The question has fields of its own.
-        if path.is_empty() && ["objectives", "constraints", "quantities"].contains(&&**key) {
-            continue;
+    // The question has fields of its own.
+    let has_field = |setting: &&Setting| !["objectives", "constraints", "quantities"].contains(&setting.key);
+    for setting in settings().filter(|setting| setting.section == path).filter(has_field) {
+        if let Some(value) = table.get_mut(setting.key) {
+            field(ui, setting, value, context);
         }
-        let path = if path.is_empty() {
-            key.clone()
-        } else {
-            format!("{path}.{key}")
-        };
-        let setting = settings().find(|setting| setting.path() == path);
-        let label = |ui: &mut Ui| {
-            let label = ui.label(key.as_str());
-            match setting {
-                Some(setting) => label.on_hover_text(setting.description.trim()),
-                None => label,
-            }
-        };
-        let check = setting.map(|setting| setting.check);
-        match value {
-            Value::Table(inner) => {
-                CollapsingHeader::new(key.as_str())
-                    .id_salt(&path)
-                    .default_open(matches!(key.as_str(), "bounds" | "requirements"))
-                    .show(ui, |ui| section(ui, &path, inner, faults));
-            }
-            Value::Array(names) if matches!(check, Some(Check::Selection(_))) => {
-                ui.horizontal(|ui| {
-                    label(ui);
-                    if let Some(Check::Selection(all)) = check {
-                        selection(ui, names, &all());
-                    }
-                });
-            }
-            // Other arrays, the references, are edited as text.
-            Value::Array(items) if items.iter().all(|item| item.is_float() || item.is_integer()) => {
-                ui.horizontal(|ui| {
-                    let label = label(ui);
-                    for item in items {
-                        number(ui, item).labelled_by(label.id);
-                    }
-                });
-            }
-            Value::Array(_) => {}
-            Value::Float(_) | Value::Integer(_) => {
-                ui.horizontal(|ui| {
-                    let label = label(ui);
-                    number(ui, value).labelled_by(label.id);
-                });
-            }
-            Value::String(text) => {
-                ui.horizontal(|ui| {
-                    let label = label(ui);
-                    if let Some(Check::Choice(choices)) = check {
-                        for choice in choices {
-                            ui.selectable_value(text, (*choice).to_owned(), *choice);
-                        }
-                    } else {
-                        ui.add(TextEdit::singleline(text).desired_width(220.0))
-                            .labelled_by(label.id);
-                    }
-                });
-            }
-            Value::Boolean(flag) => {
-                ui.checkbox(flag, key.as_str());
-            }
-            Value::Datetime(_) => {}
+    }
+}
+
+/// Shows a setting: its name with the unit, its value, whether it differs from the default, and its faults.
+fn field(ui: &mut Ui, setting: &Setting, value: &mut Value, context: &Context<'_>) {
+    // A name is no value to return to.
+    let default = setting
+        .value(context.defaults)
+        .filter(|_| !matches!(setting.key, "name" | "description"));
+    let is_changed = default.is_some_and(|default| default != value);
+    let hint = hint(setting, default);
+    ui.horizontal(|ui| {
+        let name = egui::RichText::new(setting.title());
+        let name = if is_changed { name.strong() } else { name };
+        let label = ui.label(name).on_hover_text(&hint);
+        edit(ui, setting, value, label.id);
+        if let Some(default) = default.filter(|_| is_changed)
+            && ui
+                .small_button("⟲")
+                .on_hover_text(format!("back to {}", short_value(default)))
+                .clicked()
+        {
+            *value = default.clone();
         }
-        for fault in faults.iter().filter(|fault| fault.key == path) {
-            ui.colored_label(theme::BAD, &fault.message);
+    });
+    let path = setting.path();
+    for fault in context.faults.iter().filter(|fault| fault.key == path) {
+        ui.colored_label(theme::bad(ui), &fault.message);
+    }
+}
+
+/// Returns what a setting means, which values are valid, and its default.
+fn hint(setting: &Setting, default: Option<&Value>) -> String {
+    let mut hint = format!("{}\n{}", setting.description.trim(), setting.path());
+    if let Some(range) = setting.check.range() {
+        hint.push_str(&format!("\nvalid: {range}"));
+    }
+    if let Some(default) = default {
+        hint.push_str(&format!("\ndefault: {}", short_value(default)));
+    }
+    hint
+}
+
+/// Writes a value as in a study file, on one line.
+fn short_value(value: &Value) -> String {
+    value.to_string().replace('\n', " ")
+}
+
+/// Shows the fields of a value.
+fn edit(ui: &mut Ui, setting: &Setting, value: &mut Value, label: egui::Id) {
+    match (setting.check, value) {
+        (Check::Selection(all), Value::Array(names)) => {
+            ui.horizontal_wrapped(|ui| selection(ui, names, &all()));
+        }
+        (_, Value::Array(items)) if items.iter().all(|item| item.is_float() || item.is_integer()) => {
+            for item in items {
+                number(ui, item).labelled_by(label);
+            }
+        }
+        // Other arrays, such as the corners of a polygon, are edited as text.
+        (_, Value::Array(_) | Value::Table(_) | Value::Datetime(_)) => {
+            ui.weak("see Text");
+        }
+        (_, value @ (Value::Float(_) | Value::Integer(_))) => {
+            number(ui, value).labelled_by(label);
+        }
+        (Check::Choice(choices), Value::String(text)) => {
+            for choice in choices {
+                ui.selectable_value(text, (*choice).to_owned(), choice.replace('_', " "));
+            }
+        }
+        (_, Value::String(text)) => {
+            ui.add(TextEdit::singleline(text).desired_width(220.0))
+                .labelled_by(label);
+        }
+        (_, Value::Boolean(flag)) => {
+            ui.checkbox(flag, "").labelled_by(label);
         }
     }
 }
@@ -275,5 +380,42 @@ fn number(ui: &mut Ui, value: &mut Value) -> egui::Response {
             ui.add(DragValue::new(number).speed(speed).max_decimals(9))
         }
         _ => ui.label(""),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_setting_has_its_place() {
+        for setting in settings() {
+            let groups = GROUPS
+                .iter()
+                .filter(|(_, sections)| sections.contains(&setting.section));
+            assert_eq!(groups.count(), 1, "{}", setting.path());
+        }
+    }
+
+    #[test]
+    fn names_have_their_units_and_hints_their_ranges() {
+        let named = |path: &str| settings().find(|setting| setting.path() == path).expect("a setting");
+        for (path, title) in [
+            ("material.youngs_modulus_pa", "youngs modulus [Pa]"),
+            ("requirements.k_phi_z_min_nm_per_rad", "k phi z min [N·m/rad]"),
+            ("bounds.R_m", "R [m]"),
+            ("bounds.alpha_deg", "alpha [°]"),
+            ("workspace.rotation_range_deg", "rotation range [°]"),
+            ("optimizer.seed", "seed"),
+        ] {
+            assert_eq!(named(path).title(), title);
+        }
+        let defaults = Table::try_from(Study::default()).expect("a table");
+        let range = named("workspace.rotation_range_deg");
+        let hint = hint(range, range.value(&defaults));
+        assert!(
+            hint.contains("valid: 0 to 350") && hint.contains("default: 20"),
+            "{hint}"
+        );
     }
 }

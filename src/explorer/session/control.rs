@@ -336,6 +336,7 @@ impl Session {
             pins: document.pins.iter().map(|pin| (pin.name.clone(), pin.design)).collect(),
             comparing: self.staging.comparing,
             light: self.staging.light,
+            viewpoint: self.staging.viewpoint,
             front: Arc::clone(&self.front_points),
         };
         self.requested = self.scene.ask(request);

@@ -14,8 +14,8 @@ use super::data::{Document, History, Named, Origin, Selected};
 use super::threads::{Answer, Known, SceneThread};
 use super::threads::{Running, Writing};
 use super::{Filter, FrontEntry, Row, Store, StudyEditor};
-use crate::recording::{FrontPoint, LiveScene, VisibleLayers};
-use crate::scene::WorkspaceProof;
+use crate::recording::{FrontPoint, LiveScene, Viewpoint, VisibleLayers};
+use crate::scene::{FieldLegend, WorkspaceProof};
 use crate::study::{CertifiedRadius, EndReason, GenerationSummary, Study};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::spatial::Pose;
@@ -85,6 +85,8 @@ pub struct Staging {
     pub comparing: bool,
     /// Whether the window uses light colours.
     pub light: bool,
+    /// Direction from which the manipulator is seen, and how often one was chosen.
+    pub viewpoint: (Viewpoint, u64),
 }
 
 /// Wakes the window when there is something new to show.
@@ -278,6 +280,21 @@ impl Session {
             .known
             .as_ref()
             .filter(|known| known.evaluation.design == selected.design)
+    }
+
+    /// Returns the legend of the heatmap that was drawn last, if there is one.
+    pub fn legend(&self) -> Option<&FieldLegend> {
+        self.answer.legend.as_ref()
+    }
+
+    /// Returns the distance between the lines of the ground grid in 3-D \[m\], if there is a viewer.
+    pub fn grid_spacing(&self) -> Option<f64> {
+        self.answer.grid_spacing
+    }
+
+    /// Looks at the manipulator from another side, with the whole of it in view.
+    pub fn look_from(&mut self, viewpoint: Viewpoint) {
+        self.staging.viewpoint = (viewpoint, self.staging.viewpoint.1 + 1);
     }
 
     /// Returns the evaluations of the pinned designs; `None` for each that is not known yet.

@@ -4,6 +4,7 @@ use super::{MOST_PINS, Session};
 use crate::explorer::data::{Named, Origin, Selected};
 use crate::recording::Picked;
 use kinefront_model::mechanism::{Design, DesignError, DesignVariable};
+use kinefront_model::spatial::Pose;
 
 impl Session {
     /// Selects a design of the run.
@@ -63,6 +64,15 @@ impl Session {
             Picked::Front(place) => {
                 if let Some(id) = self.front_points.get(place).map(|point| point.id) {
                     self.select(id);
+                }
+            }
+            Picked::Position(position) => {
+                let phi = self.staging.heatmap_phi.or(self.home().map(|home| home.phi));
+                if let Some(phi) = phi {
+                    let stopped = self.move_platform(Pose { position, phi });
+                    if let Some(stopped) = stopped {
+                        self.notify(stopped);
+                    }
                 }
             }
             Picked::Pin(place) => {

@@ -15,8 +15,8 @@ use std::thread::Builder;
 use std::time::Duration;
 
 use crate::explorer::Wake;
-use crate::recording::{FrontPoint, LiveScene, Pinned, RecordingError, Shown, VisibleLayers};
-use crate::scene::{WorkspaceProof, workspace_proof};
+use crate::recording::{FrontPoint, LiveScene, Pinned, RecordingError, Shown, Viewpoint, VisibleLayers};
+use crate::scene::{FieldLegend, WorkspaceProof, workspace_proof};
 use crate::study::Study;
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::Design;
@@ -44,6 +44,8 @@ pub struct Request {
     pub comparing: bool,
     /// Whether the viewer uses light colours.
     pub light: bool,
+    /// Direction from which the manipulator is seen, and how often one was chosen: choosing it again fits the view.
+    pub viewpoint: (Viewpoint, u64),
     /// Evaluation of the design on the fine grid, if it is known; the scene shows its values.
     pub verified: Option<Arc<Evaluation>>,
     /// Proof of its workspace, if it is known.
@@ -80,6 +82,10 @@ pub struct Answer {
     pub known: Option<Known>,
     /// Proof of the workspace of the design that was proved last.
     pub proof: Option<Arc<WorkspaceProof>>,
+    /// Legend of the heatmap, if one is drawn.
+    pub legend: Option<FieldLegend>,
+    /// Distance between the lines of the ground grid \[m\], if there is a viewer.
+    pub grid_spacing: Option<f64>,
     /// Evaluations of the pinned designs.
     pub pins: Vec<Evaluation>,
     /// Number of the last request that was drawn.
@@ -275,6 +281,7 @@ struct SceneState {
     scene: Option<LiveScene>,
     request: Option<Request>,
     known: Option<Known>,
+    legend: Option<FieldLegend>,
     pins: Vec<Evaluation>,
     /// The design sent last to the verify thread.
     verifying: Option<Design>,
@@ -295,7 +302,7 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
                 shared.to_verify.put((Arc::clone(&request.study), known.clone()));
             }
         }
-        let (known, pins) = (state.known.clone(), state.pins.clone());
+        let (known, pins, legend) = (state.known.clone(), state.pins.clone(), state.legend);
         shared.answer(|answer| {
             // The verify thread may have finished earlier, while the answer still held another design.
             let finer = known
@@ -303,6 +310,8 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
                 .and_then(|known| shared.verified(&request.study, &known.evaluation.design));
             answer.known = finer.or(known);
             answer.pins = pins;
+            answer.legend = legend;
+            answer.grid_spacing = state.scene.as_ref().map(LiveScene::grid_spacing);
             answer.study = Some(Arc::clone(&request.study));
             answer.drawn = number;
             if let Some(trouble) = trouble {
@@ -354,10 +363,11 @@ fn step(state: &mut SceneState, shared: &Shared, request: &Request) -> Result<()
     };
     let drawn = draw(&mut scene, state, before.as_ref(), request, &model, new_pins);
     state.scene = Some(scene);
+    let drawn = drawn.map(|legend| state.legend = legend);
     drawn.map_err(|error| format!("the scene cannot be drawn: {error}").into())
 }
 
-/// Draws what differs from the request before.
+/// Draws what differs from the request before, and returns the legend of the heatmap.
 fn draw(
     scene: &mut LiveScene,
     state: &SceneState,
@@ -365,9 +375,12 @@ fn draw(
     request: &Request,
     model: &Model,
     new_pins: bool,
-) -> Result<(), RecordingError> {
+) -> Result<Option<FieldLegend>, RecordingError> {
     if before.is_some_and(|before| before.comparing != request.comparing) {
         scene.compare(request.comparing)?;
+    }
+    if before.is_some_and(|before| before.viewpoint != request.viewpoint) {
+        scene.look_from(request.viewpoint.0)?;
     }
     let shown = state.known.as_ref().map(|known| Shown {
         model,
@@ -381,7 +394,7 @@ fn draw(
         layers: &request.layers,
         light: request.light,
     });
-    scene.design(shown.as_ref())?;
+    let legend = scene.design(shown.as_ref())?;
     if new_pins {
         let named = request.pins.iter().zip(&state.pins);
         let pins: Vec<Pinned<'_>> = named
@@ -395,5 +408,5 @@ fn draw(
         let marked = state.known.as_ref().map(|known| &*known.evaluation);
         scene.front(&request.study, &request.front, marked)?;
     }
-    Ok(())
+    Ok(legend)
 }

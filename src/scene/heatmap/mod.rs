@@ -16,7 +16,7 @@ use self::mesh::{FieldMesh, NodeGrid, Surface};
 use super::Field;
 use kinefront_model::evaluation::Model;
 use kinefront_model::mechanism::{Design, Leg, ReachReason};
-use kinefront_model::spatial::{LEGS, Rotation};
+use kinefront_model::spatial::{LEGS, Pose, Rotation};
 use kinefront_model::with_leg;
 use kinefront_model::workspace::{PoseChecker, PoseLanes, PoseValues, ValueColumns};
 
@@ -63,11 +63,17 @@ impl Heatmap {
     /// Computes the heatmap of `field` for `design` at orientation `phi` \[rad\].
     pub fn new(model: &Model, design: &Design, field: Field, phi: f64, settings: HeatmapSettings) -> Self {
         with_leg!(design.architecture, L => {
-            let mut checker = model.checker::<L>(design);
-            checker.definition = field.definition(model);
-            checker.thresholds.clearance = field.clearance(model);
-            let sampler = Sampler { model, design, checker: &checker, arms: checker.manipulator.arms(&Rotation::new(phi)), field };
-            sampler.heatmap(phi, settings)
+            let checker = checker::<L>(model, design, field);
+            Sampler::new(model, design, &checker, field, phi).heatmap(phi, settings)
+        })
+    }
+
+    /// Returns the value of a field at a pose; `None` if a leg does not reach it.
+    pub fn value_at(model: &Model, design: &Design, field: Field, pose: &Pose) -> Option<f64> {
+        with_leg!(design.architecture, L => {
+            let checker = checker::<L>(model, design, field);
+            let sample = Sampler::new(model, design, &checker, field, pose.phi).at(pose.position);
+            sample.map(|sample| sample.value)
         })
     }
 
@@ -95,6 +101,26 @@ struct Sampler<'a, L> {
     checker: &'a PoseChecker<L>,
     arms: [DVec2; LEGS],
     field: Field,
+}
+
+/// Returns the checker whose values a field needs.
+fn checker<L: Leg>(model: &Model, design: &Design, field: Field) -> PoseChecker<L> {
+    let mut checker = model.checker::<L>(design);
+    checker.definition = field.definition(model);
+    checker.thresholds.clearance = field.clearance(model);
+    checker
+}
+
+impl<'a, L: Leg> Sampler<'a, L> {
+    fn new(model: &'a Model, design: &'a Design, checker: &'a PoseChecker<L>, field: Field, phi: f64) -> Self {
+        Self {
+            model,
+            design,
+            checker,
+            arms: checker.manipulator.arms(&Rotation::new(phi)),
+            field,
+        }
+    }
 }
 
 impl<L: Leg> Sampler<'_, L> {

@@ -65,6 +65,29 @@ impl Setting {
         }
     }
 
+    /// Name for people, with the unit in brackets: `youngs_modulus_pa` is `youngs modulus [Pa]`.
+    pub fn title(&self) -> String {
+        const UNITS: [(&str, &str); 10] = [
+            ("_kg_per_m3", "kg/m³"),
+            ("_nm_per_rad", "N·m/rad"),
+            ("_n_per_m", "N/m"),
+            ("_deg", "°"),
+            ("_nm", "N·m"),
+            ("_kg", "kg"),
+            ("_pa", "Pa"),
+            ("_m", "m"),
+            ("_n", "N"),
+            ("_s", "s"),
+        ];
+        let unit = UNITS
+            .iter()
+            .find_map(|(suffix, unit)| Some((self.key.strip_suffix(suffix)?, *unit)));
+        match unit {
+            Some((name, unit)) => format!("{} [{unit}]", name.replace('_', " ")),
+            None => self.key.replace('_', " "),
+        }
+    }
+
     /// The value of this setting in a study as a TOML table.
     pub fn value<'a>(&self, study: &'a toml::Table) -> Option<&'a Value> {
         let sections = self.section.split('.').filter(|part| !part.is_empty());
@@ -95,6 +118,18 @@ impl Check {
             (Check::Name, Value::String(name)) => {
                 name.trim().is_empty().then(|| "is empty; give a short name".to_owned())
             }
+            _ => None,
+        }
+    }
+
+    /// The valid values in words, if they are a range.
+    pub fn range(self) -> Option<String> {
+        match self {
+            Check::Positive => Some("above 0".to_owned()),
+            Check::NonNegative => Some("0 or above".to_owned()),
+            Check::Within(low, high, more) => Some(format!("{low} to {high}{more}")),
+            Check::HalfOpen(low, high) => Some(format!("{low} to below {high}")),
+            Check::Count(low, high) => Some(format!("{low} to {high}")),
             _ => None,
         }
     }

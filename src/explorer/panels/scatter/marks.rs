@@ -42,7 +42,7 @@ impl Scatter {
         if let Some(known) = session.known() {
             let at = self.place(&Row::new(0, &known.evaluation));
             let color = if session.is_modified() {
-                theme::MODIFIED
+                theme::modified(dark)
             } else {
                 theme::SELECTED
             };

@@ -351,14 +351,14 @@ impl Scatter {
         let frame = transform.frame();
         let centre = frame.left_top() + Vec2::new(34.0, 34.0);
         let painter = ui.painter_at(*frame);
-        let stroke = Stroke::new(2.0, theme::GOOD);
+        let stroke = Stroke::new(2.0, theme::good(ui));
         painter.arrow(centre - 12.0 * vector.normalized(), 24.0 * vector.normalized(), stroke);
         painter.text(
             centre + Vec2::new(20.0, 0.0),
             Align2::LEFT_CENTER,
             "better",
             egui::FontId::proportional(12.0),
-            theme::GOOD,
+            theme::good(ui),
         );
     }
 }
@@ -379,7 +379,7 @@ pub fn hover(ui: &mut Ui, id: usize, row: &Row, session: &Session) {
     ui.label(format!("R {base:.3}  r {platform:.3}  L_b {link:.3} m"));
     ui.label(format!("r_j {:.1}  r_p {:.1} mm", 1e3 * leg, 1e3 * bar));
     if row.radius == 0.0 {
-        ui.colored_label(theme::BAD, "infeasible");
+        ui.colored_label(theme::bad(ui), "infeasible");
     }
     if let Some(note) = session.document().notes.get(&id) {
         ui.label(egui::RichText::new(note).italics());
