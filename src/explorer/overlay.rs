@@ -4,7 +4,7 @@ use egui::{Align2, Color32, ComboBox, FontId, Frame, Id, Pos2, Rect, Sense, Stro
 
 use super::pointing::Description;
 use super::{Session, theme};
-use crate::recording::Viewpoint;
+use crate::recording::{Viewpoint, VisibleLayers};
 use crate::scene::{ColorMap, Field, FieldLegend};
 use crate::text::short;
 
@@ -29,10 +29,8 @@ pub fn ui(ui: &mut Ui, pane: Rect, session: &mut Session, pointed: Option<&Descr
     // Pinned designs have neither a heatmap nor a viewpoint of their own.
     if !session.staging.comparing {
         viewpoints(ui, below_tabs, session);
-        if let Some(legend) = session.legend().copied()
-            && let Some(field) = legend_of_field(ui, below_tabs, &legend)
-        {
-            session.staging.layers.heatmap = field;
+        if let Some(legend) = session.legend().copied() {
+            legend_of_field(ui, below_tabs, &legend, &mut session.staging.layers);
         }
     }
     if let Some(description) = pointed {
@@ -76,23 +74,27 @@ fn viewpoints(ui: &mut Ui, area: Rect, session: &mut Session) {
     });
 }
 
-/// Draws the legend of the heatmap, and returns the choice if the user chooses another field, or none.
-fn legend_of_field(ui: &mut Ui, area: Rect, legend: &FieldLegend) -> Option<Option<Field>> {
+/// Draws the legend of the heatmap, with which the user chooses another field, or none, and whether its range is locked.
+fn legend_of_field(ui: &mut Ui, area: Rect, legend: &FieldLegend, layers: &mut VisibleLayers) {
     boxed(ui, "legend", Align2::RIGHT_TOP, area, |ui| {
-        let mut chosen = Some(legend.field);
+        let field = legend.field;
         ComboBox::from_id_salt("field of the heatmap")
             .selected_text(legend.field.title())
             .width(150.0)
             .show_ui(ui, |ui| {
                 for field in Field::ALL {
-                    ui.selectable_value(&mut chosen, Some(field), field.title());
+                    ui.selectable_value(&mut layers.heatmap, Some(field), field.title());
                 }
-                ui.selectable_value(&mut chosen, None, "no heatmap");
+                ui.selectable_value(&mut layers.heatmap, None, "no heatmap");
             });
         ui.add_space(4.0);
         color_bar(ui, legend);
-        (chosen != Some(legend.field)).then_some(chosen)
-    })
+        let mut locked = layers.locked.is_some_and(|(of, _)| of == field);
+        let hint = "keeps these colours for these values, so that other designs can be compared by colour";
+        if ui.checkbox(&mut locked, "lock range").on_hover_text(hint).changed() {
+            layers.locked = locked.then_some((field, legend.map.range()));
+        }
+    });
 }
 
 /// Draws the colours of a field with ticks and the threshold.

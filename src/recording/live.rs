@@ -53,6 +53,8 @@ pub struct VisibleLayers {
     pub ellipsoids: Option<EllipsoidKind>,
     /// Field below the manipulator.
     pub heatmap: Option<Field>,
+    /// A field whose colours stand for the same values in every design, and their range; other fields use the range of the design.
+    pub locked: Option<(Field, [f64; 2])>,
     /// The workspace in (x, y, φ).
     pub configuration: bool,
 }
@@ -69,6 +71,7 @@ impl Default for VisibleLayers {
             proof: false,
             ellipsoids: None,
             heatmap: Some(Field::InverseCondition),
+            locked: None,
             configuration: true,
         }
     }
@@ -397,7 +400,9 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<Option<FieldLegend>, R
             heatmap.edges.clear();
         }
         if layers.heatmap.is_some() {
-            legend = subject.field(canvas, &heatmap, subject.floor())?;
+            let locked = layers.locked.filter(|(locked, _)| *locked == field);
+            let range = locked.map(|(_, range)| range);
+            legend = subject.field(canvas, &heatmap, range, subject.floor())?;
         } else {
             heatmap.threshold.clear();
             let floor = subject.floor();

@@ -87,14 +87,16 @@ impl DrawnDesign<'_> {
         ConfigurationSpace::new(self.home().phi, self.design().base_radius)
     }
 
-    /// Draws a heatmap at height `z` below the manipulator, and returns its legend; `None` if no position is reachable.
+    /// Draws a heatmap at height `z` below the manipulator, with colours over `range` or over its own values, and returns its legend;
+    /// `None` if no position is reachable.
     pub(super) fn field(
         &self,
         canvas: &Canvas<'_>,
         heatmap: &Heatmap,
+        range: Option<[f64; 2]>,
         z: f64,
     ) -> Result<Option<FieldLegend>, RecordingError> {
-        let Some(range) = heatmap.range() else {
+        let Some(range) = range.or(heatmap.range()) else {
             return Ok(None);
         };
         let field = heatmap.field;
@@ -107,7 +109,7 @@ impl DrawnDesign<'_> {
 
     /// Draws a heatmap at height `z` below the manipulator, and its legend beside it.
     pub(super) fn heatmap(&self, canvas: &Canvas<'_>, heatmap: &Heatmap, z: f64) -> Result<(), RecordingError> {
-        let Some(legend) = self.field(canvas, heatmap, z)? else {
+        let Some(legend) = self.field(canvas, heatmap, None, z)? else {
             return Ok(());
         };
         let right = heatmap

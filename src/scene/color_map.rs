@@ -43,6 +43,11 @@ impl ColorMap {
         }
     }
 
+    /// Returns the smallest and the largest value that the map distinguishes.
+    pub fn range(&self) -> [f64; 2] {
+        [self.low, self.high]
+    }
+
     /// Returns the position of a value in the map, from 0 to 1.
     fn fraction(&self, value: f64) -> f64 {
         let fraction = match self.scale {

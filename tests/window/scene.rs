@@ -94,9 +94,18 @@ fn what_is_no_longer_drawn_disappears() {
             layers,
             light: false,
         };
-        scene.design(Some(&shown)).expect("drawn");
+        scene.design(Some(&shown)).expect("drawn")
     };
-    show(&mut scene, &layers);
+    // The window draws the legend; a locked range holds for its own field alone.
+    let legend = show(&mut scene, &layers).expect("a legend");
+    assert_eq!((legend.field, legend.threshold), (Field::InverseCondition, 0.1));
+    assert!(shown(&standing, "/design/legend").is_empty());
+    layers.locked = Some((Field::StiffnessXy, [1e5, 1e7]));
+    assert_eq!(show(&mut scene, &layers), Some(legend));
+    layers.locked = Some((Field::InverseCondition, [0.0, 0.5]));
+    let locked = show(&mut scene, &layers).expect("a legend");
+    assert_eq!(locked.map.range(), [0.0, 0.5]);
+    assert_eq!(locked.map.color(0.5), locked.map.color(0.9));
     for below in [
         "/design/heatmap/inverse_condition/field",
         "/design/ellipsoids/stiffness",
