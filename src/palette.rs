@@ -6,6 +6,9 @@ use crate::scene::Part;
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::Architecture;
 
+/// Contour at a field's threshold, and its mark in the legend.
+pub const THRESHOLD: [u8; 3] = [255, 70, 200];
+
 /// Returns the colour of an architecture: a hue for each chain, and a shade for each driven joint. The hues can be distinguished with
 /// any type of colour vision (Okabe and Ito).
 pub fn architecture(architecture: Architecture) -> [u8; 3] {

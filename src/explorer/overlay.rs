@@ -4,6 +4,7 @@ use egui::{Align2, Color32, ComboBox, FontId, Frame, Id, Pos2, Rect, Sense, Stro
 
 use super::pointing::Description;
 use super::{Session, theme};
+use crate::palette;
 use crate::recording::{Viewpoint, VisibleLayers};
 use crate::scene::{ColorMap, Field, FieldLegend};
 use crate::text::short;
@@ -16,9 +17,6 @@ const MARGIN: f32 = 10.0;
 
 /// Height of the viewer's own row of tabs, below which the overlays begin [points].
 const TABS: f32 = 26.0;
-
-/// Colour of thresholds, as in the scene.
-const THRESHOLD: Color32 = Color32::from_rgb(255, 70, 200);
 
 /// Draws the overlays over the view in `pane`.
 pub fn ui(ui: &mut Ui, pane: Rect, session: &mut Session, pointed: Option<&Description>) {
@@ -125,7 +123,9 @@ pub fn color_bar(ui: &mut Ui, legend: &FieldLegend) {
     let label = match threshold {
         Some(fraction) => {
             let y = at(fraction);
-            painter.hline(bar.left() - 3.0..=bar.right() + 5.0, y, Stroke::new(2.0, THRESHOLD));
+            let [r, g, b] = palette::THRESHOLD;
+            let mark = Stroke::new(2.0, Color32::from_rgb(r, g, b));
+            painter.hline(bar.left() - 3.0..=bar.right() + 5.0, y, mark);
             let text = format!("threshold {}", short(legend.threshold * factor));
             let place = Pos2::new(bar.right() + 7.0, y);
             painter.text(place, Align2::LEFT_CENTER, &text, font, ink);

@@ -6,7 +6,7 @@ use super::Session;
 use crate::recording::{LiveScene, SceneTarget};
 use crate::scene::{EllipsoidKind, Field, Heatmap, Part, Solid, ellipsoids, manipulator};
 use crate::text::number;
-use kinefront_model::evaluation::MemberReport;
+use kinefront_model::evaluation::{Contribution, MemberReport};
 use kinefront_model::mechanism::MemberKind;
 use kinefront_model::spatial::Pose;
 
@@ -120,7 +120,7 @@ fn of_solid(session: &Session, parts: &[Part], index: usize) -> Option<Descripti
         _ => {
             let members = model.members(&design, &pose).ok()?;
             let member = members.iter().find(|member| is_of(member, solid))?;
-            Some(of_member(member))
+            Some(describe_member(member))
         }
     }
 }
@@ -139,30 +139,39 @@ fn is_of(member: &MemberReport, solid: &Solid) -> bool {
     Some(member.member.leg) == solid.leg && kinds.contains(&member.member.kind)
 }
 
-fn of_member(member: &MemberReport) -> Description {
-    let kind = member.member.kind.name().replace('_', " ");
-    let is_slider = member.member.kind == MemberKind::Slider;
+/// Describes a member at the pose of its report.
+pub(super) fn describe_member(report: &MemberReport) -> Description {
+    let kind = report.member.kind.name().replace('_', " ");
+    let is_slider = report.member.kind == MemberKind::Slider;
     let thickness = if is_slider { "half width" } else { "radius" };
+    let of_rail = if is_slider { " of its rail" } else { "" };
     let mut lines = vec![format!(
         "length {} m, {thickness} {} mm",
-        number(member.length),
-        number(1e3 * member.radius)
+        number(report.length),
+        number(1e3 * report.radius)
     )];
-    if member.mass > 0.0 {
-        let of = if is_slider { "mass of its rail" } else { "mass" };
-        lines.push(format!("{of} {} kg", number(member.mass)));
+    if report.mass > 0.0 {
+        lines.push(format!("mass{of_rail} {} kg", number(report.mass)));
     }
-    if let Some(contribution) = member
-        .contribution
-        .filter(|found| found.in_plane + found.vertical > 0.0)
-    {
-        lines.push(format!(
-            "{:.1} % of the compliance in the plane, {:.1} % along z",
-            100.0 * contribution.in_plane,
-            100.0 * contribution.vertical
-        ));
-    }
-    Description::new(format!("{kind} of leg {}", member.member.leg + 1), lines)
+    let of_all = |what: &str, contribution: Contribution| {
+        let percent = |fraction: f64| format!("{:.1} %", 100.0 * fraction);
+        format!(
+            "contribution{what} to the compliance at this pose: {} in the plane, {} along z, {} about z",
+            percent(contribution.in_plane),
+            percent(contribution.vertical),
+            percent(contribution.rotation)
+        )
+    };
+    // A rigid rail contributes nothing.
+    let yields = |contribution: &Contribution| !is_slider || *contribution != Contribution::default();
+    let contribution = report.contribution.filter(yields);
+    lines.extend(contribution.map(|contribution| of_all(of_rail, contribution)));
+    lines.extend(
+        report
+            .actuator
+            .map(|contribution| of_all(" of its actuator", contribution)),
+    );
+    Description::new(format!("{kind} of leg {}", report.member.leg + 1), lines)
 }
 
 fn of_ellipsoid(session: &Session, kind: EllipsoidKind, index: usize) -> Option<Description> {

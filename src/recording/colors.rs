@@ -18,8 +18,6 @@ pub(super) fn part(part: Part) -> Color {
 
 /// The regular workspace.
 pub(super) const WORKSPACE: [u8; 3] = [255, 255, 255];
-/// Contour at a field's threshold.
-pub(super) const THRESHOLD: [u8; 3] = [255, 70, 200];
 /// Parallel singularities.
 pub(super) const SINGULAR: [u8; 3] = [255, 40, 40];
 /// Poses that limit the regular workspace.

@@ -263,7 +263,10 @@ impl<'a> Canvas<'a> {
             .edges
             .iter()
             .map(|edge| (&edge.points, colors::edge(edge.reason), 1.0));
-        let threshold = heatmap.threshold.iter().map(|line| (line, rgb(colors::THRESHOLD), 1.6));
+        let threshold = heatmap
+            .threshold
+            .iter()
+            .map(|line| (line, rgb(palette::THRESHOLD), 1.6));
         let singular = heatmap.singular.iter().map(|line| (line, rgb(colors::SINGULAR), 1.6));
         for (name, lines) in [
             ("edge", edges.collect::<Vec<_>>()),
@@ -310,13 +313,13 @@ impl<'a> Canvas<'a> {
         if let Some(fraction) = map.place(threshold) {
             ticks.push((
                 vec![point(at(-0.6, fraction)), point(at(1.0, fraction))],
-                rgb(colors::THRESHOLD),
+                rgb(palette::THRESHOLD),
             ));
             let text = format!("threshold {}", short(threshold * factor));
             self.labels(
                 &format!("{root}/threshold"),
                 vec![(at(-2.4, fraction), text)],
-                rgb(colors::THRESHOLD),
+                rgb(palette::THRESHOLD),
             )?;
         }
         let count = ticks.len();

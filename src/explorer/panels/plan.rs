@@ -3,11 +3,11 @@
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2};
 use glam::{DVec2, DVec3};
 
+use crate::explorer::pointing::describe_member;
 use crate::explorer::theme;
 use crate::scene::{Part, Scene, Solid, SolidShape};
-use kinefront_model::clearance::MemberId;
-use kinefront_model::evaluation::{Contribution, MemberReport};
-use kinefront_model::mechanism::{Design, MemberKind};
+use kinefront_model::evaluation::MemberReport;
+use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::nearest_on_segment;
 
 /// Largest distance of the pointer from the axis of a thin member at which the member is still under the pointer \[points\].
@@ -137,49 +137,12 @@ fn distance(at: DVec2, member: &MemberReport) -> f64 {
 
 /// Shows the data of a member.
 pub(super) fn card(ui: &mut Ui, report: &MemberReport) {
-    let is_slider = report.member.kind == MemberKind::Slider;
-    ui.strong(name(&report.member));
-    ui.label(format!(
-        "length {} m, {} {} mm",
-        theme::number(report.length),
-        if is_slider { "half width" } else { "radius" },
-        theme::number(1e3 * report.radius)
-    ));
-    if report.mass > 0.0 {
-        let of = if is_slider { "mass of its rail" } else { "mass" };
-        ui.label(format!("{of} {} kg", theme::number(report.mass)));
-    } else {
+    let description = describe_member(report);
+    ui.strong(description.title);
+    for line in description.lines {
+        ui.label(line);
+    }
+    if report.mass == 0.0 {
         ui.weak("no mass in this model");
-    }
-    let of_all = |what: &str, contribution: Contribution| {
-        let percent = |fraction: f64| format!("{:.1} %", 100.0 * fraction);
-        format!(
-            "{what} to the compliance at this pose: {} in the plane, {} along z, {} about z",
-            percent(contribution.in_plane),
-            percent(contribution.vertical),
-            percent(contribution.rotation)
-        )
-    };
-    let yields = |contribution: &Contribution| !is_slider || *contribution != Contribution::default();
-    if let Some(contribution) = report.contribution.filter(yields) {
-        let what = if is_slider {
-            "contribution of its rail"
-        } else {
-            "contribution"
-        };
-        ui.label(of_all(what, contribution));
-    }
-    if let Some(contribution) = report.actuator {
-        ui.label(of_all("contribution of its actuator", contribution));
-    }
-}
-
-/// Returns the display name of a member.
-fn name(member: &MemberId) -> String {
-    let kind = member.kind.name().replace('_', " ");
-    let number = member.leg + 1;
-    match member.kind {
-        MemberKind::PlatformBar => format!("{kind} {number}"),
-        _ => format!("{kind} of leg {number}"),
     }
 }

@@ -1,5 +1,7 @@
 //! The study panel: the settings as fields or as the text of the study file; both are checked as they are typed.
 
+use std::sync::LazyLock;
+
 use egui::{CollapsingHeader, DragValue, ScrollArea, TextEdit, Ui};
 use toml::{Table, Value};
 
@@ -105,17 +107,15 @@ struct Context<'a> {
 /// Shows a field for every setting of the study. The fields follow from the settings as they are declared, so that a new one
 /// appears in its section without a change here.
 fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault]) {
-    let tables = (
-        Table::try_from(session.editor.study()),
-        Table::try_from(Study::default()),
-    );
-    let (Ok(before), Ok(defaults)) = tables else {
+    // The defaults do not change from frame to frame.
+    static DEFAULTS: LazyLock<Table> = LazyLock::new(|| Table::try_from(Study::default()).unwrap_or_default());
+    let Ok(before) = Table::try_from(session.editor.study()) else {
         return;
     };
     differences(ui, session, &before);
     let mut table = before.clone();
     let context = Context {
-        defaults: &defaults,
+        defaults: &DEFAULTS,
         faults,
     };
     for (heading, sections) in GROUPS {

@@ -184,10 +184,7 @@ impl Model {
     /// Returns the mass of all legs \[kg\]: their bars, and their rails if these have a cross-section.
     pub fn legs_mass(&self, design: &Design) -> f64 {
         let bars = self.leg_bars_mass(design);
-        match &self.rails {
-            Some(_) => (0..LEGS).fold(bars, |sum, leg| sum + self.rail_mass(design, leg)),
-            None => bars,
-        }
+        (0..LEGS).fold(bars, |sum, leg| sum + self.rail_mass(design, leg))
     }
 
     /// Returns the mass of the bars of all legs \[kg\].
@@ -196,11 +193,16 @@ impl Model {
         LEGS as f64 * self.bar_mass(section, design.leg_bar_radius, design.leg_bars_length())
     }
 
+    /// Returns the rails of a design, if its chain has rails and they have a cross-section.
+    pub fn rails_of(&self, design: &Design) -> Option<&RailSettings> {
+        let has_rails = design.architecture.chain().is_on_rails();
+        self.rails.as_ref().filter(|_| has_rails)
+    }
+
     /// Returns the mass of the rail of a leg (0, 1, 2) over the travel of its slider \[kg\]; 0 if the chain has none, or if rails have
     /// no cross-section.
     pub fn rail_mass(&self, design: &Design, leg: usize) -> f64 {
-        let has_rails = design.architecture.chain().is_on_rails();
-        let Some(rails) = self.rails.as_ref().filter(|_| has_rails) else {
+        let Some(rails) = self.rails_of(design) else {
             return 0.0;
         };
         let [lower, upper] = self.legs.geometry.rail_travel(leg, design.base_radius);
@@ -263,7 +265,7 @@ impl Model {
             &self.material,
             &self.sections,
             &self.actuators,
-            self.rails.as_ref(),
+            self.rails_of(design),
         )
     }
 

@@ -89,7 +89,7 @@ impl Bar<'_> {
 }
 
 impl StiffnessModel {
-    /// Creates the model of `design`. Returns `None` if a bar or a rail is infinitely compliant ([`BarCompliance::new`] returns
+    /// Creates the model of `design`, whose chain may have `rails` that bend. Returns `None` if a bar or a rail is infinitely compliant ([`BarCompliance::new`] returns
     /// `None`), which makes every stiffness 0.
     pub fn new(
         design: &Design,
@@ -102,7 +102,7 @@ impl StiffnessModel {
         let leg_bar = BarCompliance::new(material, &sections.legs, design.leg_bar_radius)?;
         let platform_bar = BarCompliance::new(material, &sections.platform, design.platform_bar_radius)?;
         let actuator = 1.0 / actuators.of(design.architecture.actuator());
-        let rail = match rails.filter(|_| design.architecture.chain().is_on_rails()) {
+        let rail = match rails {
             Some(rails) => Some(RailBeam {
                 section: BarCompliance::new(material, &rails.section, rails.radius)?,
                 supports: rails.supports,

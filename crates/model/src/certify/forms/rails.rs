@@ -30,10 +30,7 @@ pub(super) struct RailForms {
 impl RailCompliances {
     /// Returns the compliances of a design on rails that bend; the units are those along a line and of bending.
     pub fn new(model: &Model, design: &Design, [along, bend]: [Interval; 2]) -> Option<Self> {
-        let rails = model
-            .rails
-            .as_ref()
-            .filter(|_| design.architecture.chain().is_on_rails())?;
+        let rails = model.rails_of(design)?;
         let [_, bending, torsion] = per_length(&model.material, &rails.section, rails.radius);
         let link = Interval::exactly(design.link_length);
         Some(Self {
