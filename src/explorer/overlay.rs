@@ -9,13 +9,13 @@ use crate::recording::{Viewpoint, VisibleLayers};
 use crate::scene::{ColorMap, Field, FieldLegend};
 use crate::text::short;
 
-/// Width and height of the colour bar [points].
+/// Width and height of the colour bar \[points\].
 const BAR: egui::Vec2 = vec2(14.0, 150.0);
 
-/// Distance of the overlays from the edges of the view [points].
+/// Distance of the overlays from the edges of the view \[points\].
 const MARGIN: f32 = 10.0;
 
-/// Height of the viewer's own row of tabs, below which the overlays begin [points].
+/// Height of the viewer's own row of tabs, below which the overlays begin \[points\].
 const TABS: f32 = 26.0;
 
 /// Draws the overlays over the view in `pane`.
@@ -77,11 +77,11 @@ fn legend_of_field(ui: &mut Ui, area: Rect, legend: &FieldLegend, layers: &mut V
     boxed(ui, "legend", Align2::RIGHT_TOP, area, |ui| {
         let field = legend.field;
         ComboBox::from_id_salt("field of the heatmap")
-            .selected_text(legend.field.title())
+            .selected_text(field.title())
             .width(150.0)
             .show_ui(ui, |ui| {
-                for field in Field::ALL {
-                    ui.selectable_value(&mut layers.heatmap, Some(field), field.title());
+                for other in Field::ALL {
+                    ui.selectable_value(&mut layers.heatmap, Some(other), other.title());
                 }
                 ui.selectable_value(&mut layers.heatmap, None, "no heatmap");
             });

@@ -188,7 +188,7 @@ impl Explorer {
             ),
             (
                 "3-D",
-                "shows the selected design; pointing tells what is there, and a click on the heatmap moves it",
+                "shows the selected design; pointing tells what is there, and a click on the heatmap moves the platform",
             ),
             (
                 "Inspector",
