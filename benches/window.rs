@@ -221,12 +221,13 @@ fn main() {
     window.run_steps(5);
     println!("memory before: {:.0} MB", memory());
 
+    // The first subscriber writes the tables and passes the designs on to the window; the second writes the recording.
     let (took, waited, mut times) = stream(&mut window, DESIGNS, None, |subscribers| {
-        subscribers.into_iter().skip(2).collect()
+        subscribers.into_iter().take(1).collect()
     });
     println!(
-        "{DESIGNS} designs to the window alone: {took:.1} s, of which {waited:.2} s sending: {:.2} M designs/s",
-        DESIGNS as f64 / waited.max(1e-9) / 1e6
+        "{DESIGNS} designs to tables and window: {took:.1} s, of which {waited:.2} s sending: {:.0} designs/s",
+        DESIGNS as f64 / took.max(1e-9)
     );
     println!("frames while designs arrive: {}", percentiles(&mut times));
     assert_eq!(window.state().session().store().len(), DESIGNS);
@@ -260,7 +261,7 @@ fn main() {
     let (took, waited, mut times) = stream(&mut all, 100_000, None, |subscribers| subscribers);
     println!(
         "100000 designs to window, tables and recording: {took:.1} s, of which {waited:.1} s sending: {:.0} designs/s",
-        1e5 / waited.max(1e-9)
+        1e5 / took.max(1e-9)
     );
     println!("frames meanwhile: {}", percentiles(&mut times));
     let (_, _, mut times) = stream(&mut all, 50_000, Some(5000.0), |subscribers| subscribers);

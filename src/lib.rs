@@ -42,14 +42,13 @@
 
 #[cfg(feature = "explorer")]
 pub mod explorer;
-pub mod export;
-pub mod palette;
 pub mod recording;
 pub mod report;
-pub mod scene;
 pub mod signals;
-pub mod study;
-pub mod text;
 
-/// An error of a library that writes a format, whose message is shown with the name of what could not be written.
-pub(crate) type AnyError = Box<dyn std::error::Error + Send + Sync>;
+pub use kinefront_export as export;
+pub use kinefront_scene as scene;
+pub use kinefront_scene::{palette, text};
+pub use kinefront_study as study;
+
+pub(crate) use kinefront_export::AnyError;

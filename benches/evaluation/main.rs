@@ -8,6 +8,7 @@
 //!   fine grid.
 //! - `threads`: the front's designs on one thread and on two.
 //! - `clearance`: optimizer runs in which members may collide, and in which they must not.
+//! - `algorithm`: a search of the paper's study, and what its optimizer alone does in it.
 //! - `proof`: evaluations on the fine grid and proofs of designs of the best fronts known.
 //!
 //! The operations of a pose are counted, and `pose/limit` is the time that the machine takes for as many operations of
@@ -19,7 +20,7 @@ mod proofs;
 
 use std::hint::black_box;
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec2;
 use kinefront::study::{DesignProblem, Study};
 use kinefront_model::clearance::Layers;
@@ -32,7 +33,7 @@ use kinefront_model::stiffness::joint_model;
 use kinefront_model::with_leg;
 use kinefront_model::workspace::plain::plain;
 use kinefront_model::workspace::{PoseChecker, ValueColumns};
-use kinefront_optimize::{FrontDe, FrontDeSettings, run, sobol};
+use kinefront_optimize::{Algorithm, Evaluated, FrontDe, FrontDeSettings, Problem, run, sobol};
 use rayon::prelude::*;
 
 use self::counted::{Operations, operations};
@@ -279,5 +280,53 @@ fn clearance(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, poses, designs, threads, clearance, proofs);
+/// The share of the optimizer in a search: the same candidates are asked for, and their outcomes told, without evaluating them.
+fn algorithm(criterion: &mut Criterion) {
+    const EVALUATIONS: usize = 3000;
+    let mut group = criterion.benchmark_group("algorithm");
+    group
+        .sample_size(10)
+        .throughput(Throughput::Elements(EVALUATIONS as u64));
+    let problem = DesignProblem::new(&Study::default()).expect("a valid study");
+    for (name, learned) in [
+        ("front-de", FrontDeSettings::default().learned),
+        ("front-de without learning", 0.0),
+    ] {
+        let settings = FrontDeSettings {
+            learned,
+            ..FrontDeSettings::default()
+        };
+        let new = || FrontDe::for_problem(&problem, settings, 1);
+        group.bench_function(BenchmarkId::new("search", name), |bencher| {
+            bencher.iter(|| run(&problem, &mut new(), EVALUATIONS).len());
+        });
+        let mut generations: Vec<Vec<Evaluated>> = Vec::new();
+        let mut recorded = new();
+        while generations.iter().map(Vec::len).sum::<usize>() < EVALUATIONS {
+            let evaluate = |candidate| {
+                let x = problem.completed(candidate);
+                let outcome = problem.evaluate(&x);
+                Evaluated { x, outcome }
+            };
+            let generation: Vec<Evaluated> = recorded.ask().into_iter().map(evaluate).collect();
+            recorded.tell(generation.clone());
+            generations.push(generation);
+        }
+        group.bench_function(BenchmarkId::new("optimizer alone", name), |bencher| {
+            bencher.iter_batched(
+                || (new(), generations.clone()),
+                |(mut algorithm, generations)| {
+                    for generation in generations {
+                        black_box(algorithm.ask());
+                        algorithm.tell(generation);
+                    }
+                },
+                BatchSize::LargeInput,
+            );
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, poses, designs, threads, clearance, algorithm, proofs);
 criterion_main!(benches);

@@ -6,6 +6,7 @@ mod evaluate;
 #[cfg(feature = "explorer")]
 mod explore;
 mod export;
+mod merge;
 mod optimize;
 mod pose;
 mod progress;
@@ -25,7 +26,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use kinefront::recording::{UNPACK_COMMAND, unpack_with};
-use kinefront::study::{BUILTIN, Builtin, Study};
+use kinefront::study::{BUILTIN, Study};
 use kinefront_model::evaluation::GridChoice;
 use miette::{IntoDiagnostic, Report, Result, miette};
 
@@ -55,6 +56,8 @@ enum Command {
     Export(export::ExportArguments),
     /// Search for light designs with a large regular workspace, without a window.
     Optimize(optimize::OptimizeArguments),
+    /// Join runs that differ in their seeds into one run folder, and verify their common front.
+    Merge(merge::MergeArguments),
     /// Check a run folder: its tables, what follows from them, and its recording.
     Check(check::CheckArguments),
     /// Write a report on one or more runs: fronts, trends, comparison, pictures, sensitivity.
@@ -138,6 +141,7 @@ pub fn run() -> ExitCode {
         Some(Command::Show(arguments)) => show::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),
         Some(Command::Optimize(arguments)) => optimize::run(&arguments),
+        Some(Command::Merge(arguments)) => merge::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::UnpackRecording(arguments)) => check::unpack(&arguments),
         Some(Command::Report(arguments)) => report::run(&arguments),
@@ -199,23 +203,7 @@ fn load_study(argument: Option<&OsStr>) -> Result<Study> {
     let Some(argument) = argument else {
         return Ok(BUILTIN[0].study()?);
     };
-    let path = Path::new(argument);
-    // A study may come from a pipe, but a folder is none.
-    let is_file = path.exists() && !path.is_dir();
-    match argument.to_str().and_then(Builtin::find) {
-        // A folder of that name does not take precedence over the built-in study.
-        Some(builtin) if !is_file => Ok(builtin.study()?),
-        None if !is_file => Err(miette!(
-            help = format!("the built-in studies are: {}", builtin_names()),
-            "there is neither a study file nor a built-in study named `{}`",
-            path.display()
-        )),
-        _ => Ok(Study::read(path)?),
-    }
-}
-
-fn builtin_names() -> String {
-    BUILTIN.map(|builtin| builtin.name).join(", ")
+    Ok(Study::load(argument)?)
 }
 
 /// The grid that an argument specifies.

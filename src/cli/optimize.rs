@@ -88,7 +88,11 @@ pub fn run(arguments: &OptimizeArguments) -> Result<Ending, Failure> {
     };
     // The front is printed even if it could not be written. That nobody reads it changes nothing about a run that did not end
     // well.
-    match (tell(&study, &summary, &path, arguments, failures.is_empty()), ending) {
+    let output = RunOutput {
+        json: arguments.json,
+        quiet: arguments.quiet,
+    };
+    match (tell(&study, &summary, &path, output, failures.is_empty()), ending) {
         (Err(failure), Ending::Done) => Err(failure),
         (_, ending) => Ok(ending),
     }
@@ -166,9 +170,14 @@ fn resume(
         } else if !arguments.quiet {
             writeln!(
                 std::io::stdout(),
-                "{} is complete: {} evaluations; a larger --evaluations extends it",
+                "{} is complete: {} evaluations{}",
                 path.display(),
-                resumption.search().study().optimizer.evaluations
+                resumption.search().study().optimizer.evaluations,
+                // A merged run follows from no search that could go on.
+                match resumption.folder().merged().len() {
+                    0 => "; a larger --evaluations extends it".to_owned(),
+                    runs => format!(" of {runs} runs"),
+                }
             )?;
         }
         return Ok(None);
@@ -187,7 +196,7 @@ fn record_every(arguments: &OptimizeArguments, other: Option<usize>) -> Option<u
     }
 }
 
-fn write_failure(error: WriteError) -> Failure {
+pub fn write_failure(error: WriteError) -> Failure {
     match error {
         WriteError::Occupied { .. } | WriteError::InUse(_) => Failure::input(error),
         WriteError::Write { .. } | WriteError::Changed { .. } => Failure::files(error),
@@ -255,15 +264,25 @@ fn watch(events: &Receiver<Arc<Event>>, progress: &mut Progress) -> Result<RunSu
     ended
 }
 
-fn tell(
+/// How the end of a run is told on the standard output.
+#[derive(Debug, Clone, Copy)]
+pub struct RunOutput {
+    /// As `run.json` instead of a table.
+    pub json: bool,
+    /// Not at all, unless as JSON.
+    pub quiet: bool,
+}
+
+/// Tells the result of a run.
+pub fn tell(
     study: &Study,
     summary: &RunSummary,
     path: &Path,
-    arguments: &OptimizeArguments,
+    output: RunOutput,
     is_written: bool,
 ) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    if arguments.json {
+    if output.json {
         // The text is that of the file, if there is one: reading JSON may change the last bit of a number.
         let written = is_written
             .then(|| std::fs::read_to_string(path.join("run.json")).ok())
@@ -275,7 +294,7 @@ fn tell(
                 writeln!(out, "{}", report.map_err(Failure::runtime)?)?;
             }
         }
-    } else if !arguments.quiet {
+    } else if !output.quiet {
         let last = summary.history.last();
         if summary.outcome == EndReason::Interrupted {
             writeln!(

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use kinefront::study::{BUILTIN, Builtin, Study, write_whole};
 use miette::miette;
 
-use super::{Ending, Failure, builtin_names, exists_already, load_study, question};
+use super::{Ending, Failure, exists_already, load_study, question};
 
 #[derive(Debug, clap::Args)]
 pub struct StudyArguments {
@@ -44,7 +44,8 @@ enum StudyCommand {
 }
 
 fn builtin(name: &str) -> Result<Builtin, Failure> {
-    Builtin::find(name).ok_or_else(|| Failure::Input(miette!("no study `{name}`; expected one of {}", builtin_names())))
+    Builtin::find(name)
+        .ok_or_else(|| Failure::Input(miette!("no study `{name}`; expected one of {}", Builtin::names())))
 }
 
 pub fn run(arguments: &StudyArguments) -> Result<Ending, Failure> {

@@ -28,13 +28,13 @@ mod viewer;
 
 pub use crate::study::Row;
 pub use app::{Explorer, InitialContent, run};
-pub use data::{Document, Filter, FilterError, FrontEntry, History, Named, Origin, Selected, Store};
+pub use data::{DesignOrigin, Document, Filter, FilterError, FrontEntry, History, Named, Selected, Store};
 pub use files::{OpenError, Opened, Purpose, open};
 pub use panels::scatter::{ScatterAxis, axes};
 pub use panels::{Panel, Panels};
 pub use pointing::{Description, Pointed, describe};
 pub use script::{Script, ScriptError};
-pub use session::{MOST_PINS, Notice, Phase, ReferenceMark, Session, Staging, Wake};
+pub use session::{MOST_PINS, MarkedCounts, Notice, Phase, ReferenceMark, Session, Staging, Wake};
 pub use study_editor::StudyEditor;
 pub use theme::dress;
 pub use threads::{Intake, Known, RunMessages};

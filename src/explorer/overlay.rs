@@ -12,6 +12,9 @@ use crate::text::short;
 /// Width and height of the colour bar \[points\].
 const BAR: egui::Vec2 = vec2(14.0, 150.0);
 
+/// Width of the legend \[points\].
+const LEGEND_WIDTH: f32 = 118.0;
+
 /// Distance of the overlays from the edges of the view \[points\].
 const MARGIN: f32 = 10.0;
 
@@ -30,6 +33,13 @@ pub fn ui(ui: &mut Ui, pane: Rect, session: &mut Session, pointed: Option<&Descr
         if let Some(legend) = session.legend().copied() {
             legend_of_field(ui, below_tabs, &legend, &mut session.staging.layers);
         }
+    }
+    if session.document().selected.is_none() {
+        boxed(ui, "empty", Align2::CENTER_TOP, below_tabs, |ui| {
+            ui.weak(
+                "The selected design is shown here: click one in the scatter, or press K for the knee of the front.",
+            );
+        });
     }
     if let Some(description) = pointed {
         describe(ui, below_tabs, description);
@@ -75,10 +85,12 @@ fn viewpoints(ui: &mut Ui, area: Rect, session: &mut Session) {
 /// Draws the legend of the heatmap, with which the user chooses another field, or none, and whether its range is locked.
 fn legend_of_field(ui: &mut Ui, area: Rect, legend: &FieldLegend, layers: &mut VisibleLayers) {
     boxed(ui, "legend", Align2::RIGHT_TOP, area, |ui| {
+        ui.set_max_width(LEGEND_WIDTH);
         let field = legend.field;
         ComboBox::from_id_salt("field of the heatmap")
             .selected_text(field.title())
-            .width(150.0)
+            .width(LEGEND_WIDTH)
+            .truncate()
             .show_ui(ui, |ui| {
                 for other in Field::ALL {
                     ui.selectable_value(&mut layers.heatmap, Some(other), other.title());
@@ -97,7 +109,7 @@ fn legend_of_field(ui: &mut Ui, area: Rect, legend: &FieldLegend, layers: &mut V
 
 /// Draws the colours of a field with ticks and the threshold.
 pub fn color_bar(ui: &mut Ui, legend: &FieldLegend) {
-    let (rect, response) = ui.allocate_exact_size(vec2(190.0, BAR.y + 12.0), Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(vec2(LEGEND_WIDTH, BAR.y + 12.0), Sense::hover());
     let bar = Rect::from_min_size(rect.left_top() + vec2(0.0, 6.0), BAR);
     let at = |fraction: f64| bar.bottom() - fraction as f32 * bar.height();
     let painter = ui.painter();

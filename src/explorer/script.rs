@@ -21,6 +21,10 @@
 //! | `theme dark`, `theme light` | sets the colours |
 //! | `look VIEWPOINT` | looks at the manipulator from `oblique`, `top`, `front` or `side` |
 //! | `point X Y`, `click X Y` | moves the pointer, and clicks, at a place of the window \[points\] |
+//! | `drag X Y X Y …` | presses the button of the mouse at the first place, moves through the others, and releases it at the last |
+//! | `tool pan`, `tool box`, `tool lasso` | sets what dragging in the scatter does |
+//! | `color architecture`, `color density`, `color KEY` | sets what the colours of the scatter tell |
+//! | `size W H` | sets the size of the window \[points\] |
 //! | `pause`, `resume`, `stop` | control the run |
 //! | `filter KEY LOW HIGH` | sets a range of the filter |
 //! | `picture FILE.png`, `save FILE.rrd` | writes a file and waits until it is written |
@@ -35,6 +39,7 @@ use egui::{Context, Event, Modifiers, PointerButton, Pos2, ViewportCommand};
 
 use super::files::Purpose;
 use super::panels::Panel;
+use super::panels::scatter::{Coloring, DragTool};
 use super::{Explorer, Phase};
 use crate::recording::Viewpoint;
 use crate::scene::{EllipsoidKind, Field};
@@ -77,6 +82,10 @@ enum Step {
     Compare(bool),
     Dark(bool),
     Look(Viewpoint),
+    Drag(Vec<Pos2>),
+    Tool(DragTool),
+    Color(Coloring),
+    Size(Pos2),
     Point(Pos2),
     Click(Pos2),
     Pause,
@@ -223,16 +232,11 @@ impl Script {
             Step::Dark(dark) => ctx.set_theme(if *dark { egui::Theme::Dark } else { egui::Theme::Light }),
             Step::Look(viewpoint) => session.look_from(*viewpoint),
             Step::Point(at) => explorer.pointer.extend([Event::PointerMoved(*at)]),
-            Step::Click(at) => {
-                let button = |pressed| Event::PointerButton {
-                    pos: *at,
-                    button: PointerButton::Primary,
-                    pressed,
-                    modifiers: Modifiers::NONE,
-                };
-                let click = [Event::PointerMoved(*at), button(true), button(false)];
-                explorer.pointer.extend(click);
-            }
+            Step::Click(at) => explorer.pointer.extend(drag(&[*at])),
+            Step::Drag(path) => explorer.pointer.extend(drag(path)),
+            Step::Tool(tool) => explorer.scatter_mut().set_tool(*tool),
+            Step::Color(coloring) => explorer.scatter_mut().set_coloring(*coloring),
+            Step::Size(size) => ctx.send_viewport_cmd(ViewportCommand::InnerSize(size.to_vec2())),
             Step::Pause => session.pause(),
             Step::Resume => session.resume(),
             Step::Stop => session.stop(),
@@ -262,6 +266,36 @@ impl Script {
             }
         }
     }
+}
+
+/// Returns the events of pressing the button of the mouse at the first place, moving to the others, and releasing it at the last.
+fn drag(path: &[Pos2]) -> Vec<Event> {
+    let button = |pos: Pos2, pressed: bool| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let (Some(&first), Some(&last)) = (path.first(), path.last()) else {
+        return Vec::new();
+    };
+    let moves = path[1..].iter().map(|&at| Event::PointerMoved(at));
+    [Event::PointerMoved(first), button(first, true)]
+        .into_iter()
+        .chain(moves)
+        .chain([button(last, false)])
+        .collect()
+}
+
+/// Reads places of the window.
+fn places(text: &str) -> Option<Vec<Pos2>> {
+    let numbers: Vec<f32> = text
+        .split_whitespace()
+        .map(|word| word.parse().ok())
+        .collect::<Option<_>>()?;
+    let pairs = numbers.chunks_exact(2);
+    let is_even = pairs.remainder().is_empty() && numbers.len() > 2;
+    is_even.then(|| pairs.map(|pair| Pos2::new(pair[0], pair[1])).collect())
 }
 
 /// Reads a place of the window.
@@ -316,6 +350,10 @@ fn step(line: &str) -> Option<Step> {
         ),
         "point" => Step::Point(place(rest)?),
         "click" => Step::Click(place(rest)?),
+        "drag" => Step::Drag(places(rest)?),
+        "tool" => Step::Tool(DragTool::find(rest)?),
+        "color" => Step::Color(Coloring::find(rest)?),
+        "size" => Step::Size(place(rest)?),
         "pause" => Step::Pause,
         "resume" => Step::Resume,
         "stop" => Step::Stop,

@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 use toml_edit::{DocumentMut, Item, TableLike};
 
+use super::History;
 use crate::study::{BUILTIN, Builtin, Fault, Study, StudyError, settings};
 
 /// A study being edited.
 #[derive(Debug, Clone)]
 pub struct StudyEditor {
-    /// Its text, including comments.
-    text: String,
+    /// Its text, including comments, with its earlier states.
+    text: History<String>,
     /// The study that the text describes, or the last valid one.
     study: Study,
     /// Faults in the text.
@@ -29,7 +30,7 @@ impl StudyEditor {
     pub fn new(study: Study, path: Option<PathBuf>) -> Self {
         let text = toml::to_string(&study).unwrap_or_default();
         Self {
-            text,
+            text: history_of(text),
             study,
             faults: Vec::new(),
             rejected: Vec::new(),
@@ -44,7 +45,7 @@ impl StudyEditor {
     /// Returns a [`StudyError`] if the built-in study is invalid, which the tests exclude.
     pub fn builtin(builtin: &Builtin) -> Result<Self, StudyError> {
         Ok(Self {
-            text: builtin.text.to_owned(),
+            text: history_of(builtin.text.to_owned()),
             ..Self::new(builtin.study()?, None)
         })
     }
@@ -65,7 +66,7 @@ impl StudyEditor {
             cause,
         })?;
         Ok(Self {
-            text,
+            text: history_of(text),
             ..Self::new(study, Some(path.to_owned()))
         })
     }
@@ -91,7 +92,7 @@ impl StudyEditor {
     /// # Errors
     /// Returns a message that says why the file cannot be written.
     pub fn save(&mut self, path: &Path) -> Result<(), AnyError> {
-        super::files::write_whole(path, self.text.as_bytes())?;
+        super::files::write_whole(path, self.text().as_bytes())?;
         self.path = Some(path.to_owned());
         self.changed = false;
         Ok(())
@@ -99,7 +100,7 @@ impl StudyEditor {
 
     /// Returns the text.
     pub fn text(&self) -> &str {
-        &self.text
+        self.text.present()
     }
 
     /// Returns the study that the text describes if it is valid, otherwise the last valid one.
@@ -129,15 +130,49 @@ impl StudyEditor {
 
     /// Sets the text as typed and checks it.
     pub fn set_text(&mut self, text: String) {
-        self.changed |= text != self.text;
-        self.text = text;
+        self.changed |= text != *self.text();
+        self.text.edit(|present| *present = text);
+        self.check();
+    }
+
+    /// Returns the text with its earlier states.
+    pub fn history(&self) -> &History<String> {
+        &self.text
+    }
+
+    /// Undoes the last change.
+    pub fn undo(&mut self) {
+        self.text.undo();
+        self.changed = true;
+        self.check();
+    }
+
+    /// Redoes the change undone last.
+    pub fn redo(&mut self) {
+        self.text.redo();
+        self.changed = true;
+        self.check();
+    }
+
+    /// Ends the gesture to which changes by hand belong.
+    pub fn end_gesture(&mut self) {
+        self.text.end_gesture();
+    }
+
+    /// Reads the study from the text, or the faults of the text.
+    fn check(&mut self) {
         self.faults.clear();
         self.rejected.clear();
-        match self.parse(&self.text) {
+        match self.parse(self.text()) {
             Ok(study) => self.study = study,
             Err(StudyError::Values { faults, .. }) => self.faults = faults,
             Err(StudyError::Shape { message, key, span, .. }) => {
-                let line = span.map(|span| self.text[..span.offset().min(self.text.len())].lines().count().max(1));
+                let line = span.map(|span| {
+                    self.text()[..span.offset().min(self.text().len())]
+                        .lines()
+                        .count()
+                        .max(1)
+                });
                 let place = line.map_or_else(|| "study".to_owned(), |line| format!("line {line}"));
                 self.faults.push(Fault {
                     key: key.unwrap_or(place),
@@ -166,7 +201,8 @@ impl StudyEditor {
         }
         self.rejected = study.faults();
         if self.rejected.is_empty() {
-            self.text = self.text_of(&study);
+            let text = self.text_of(&study);
+            self.text.drag("by hand", |present| *present = text);
             self.study = study;
             self.faults.clear();
             self.changed = true;
@@ -178,11 +214,18 @@ impl StudyEditor {
     fn text_of(&self, study: &Study) -> String {
         let edited = || {
             let (before, after) = (Table::try_from(&self.study).ok()?, Table::try_from(study).ok()?);
-            let text = replace_values(&self.text, &before, &after)?;
+            let text = replace_values(self.text(), &before, &after)?;
             self.parse(&text).is_ok_and(|found| found == *study).then_some(text)
         };
         edited().unwrap_or_else(|| toml::to_string(study).unwrap_or_default())
     }
+}
+
+/// Returns a history that begins with a text.
+fn history_of(text: String) -> History<String> {
+    let mut history = History::default();
+    history.restart(text);
+    history
 }
 
 /// Replaces the settings of `text` that differ between two studies. `None` if the text is not TOML.
@@ -262,6 +305,10 @@ mod tests {
         editor.set_text(valid);
         assert!(editor.faults().next().is_none());
         editor.change(|study| study.optimizer.seed = 7);
+        editor.undo();
+        assert!(editor.study().optimizer.seed == 1 && editor.history().can_redo());
+        editor.redo();
+        assert_eq!(editor.study().optimizer.seed, 7);
         assert!(editor.text().contains("seed = 7") && editor.is_changed());
         let kept = editor.text().replace("seed = 7", "seed = 1");
         assert_eq!(kept, BUILTIN[0].text, "everything but the value stays, comments too");

@@ -11,6 +11,7 @@ use rerun::external::uuid::Uuid;
 use rerun::log::{Chunk, ChunkError, LogMsg, RowId};
 use rerun::{AsComponents, EntityPath, RecordingStream, StoreId, StoreKind, TimePoint, Timeline};
 
+use super::legend::legend_bounds;
 use super::{APPLICATION_ID, Viewpoint, paths, timelines};
 use crate::scene::Field;
 
@@ -47,6 +48,7 @@ pub(super) fn send_run_layout(
         .with_apply_latest_at(false);
     layout.property(&table, "DataframeQuery", &query)?;
     let manipulator = layout.space("Manipulator", paths::DESIGN, &["+ $origin/**"], base_radius)?;
+    let manipulator = layout.beside_legend(manipulator, "Manipulator", Field::InverseCondition)?;
     let configuration = layout.configuration(base_radius)?;
 
     let curves = layout.container(ContainerKind::Tabs, &[hypervolume, feasible, size], &[])?;
@@ -78,7 +80,6 @@ pub(super) fn send_design_layout(
             format!("+ {}/**", paths::MANIPULATOR),
             format!("+ {}/**", paths::WORKSPACE),
             format!("+ {}/{key}/**", paths::HEATMAP),
-            format!("+ {}/{key}/**", paths::HEATMAP_LEGEND),
             format!("+ {}/**", paths::LIMITS),
         ];
         // The heatmaps of in-plane stiffness and displacement also show the ellipsoids of that quantity.
@@ -89,7 +90,8 @@ pub(super) fn send_design_layout(
         }
         let contents: Vec<&str> = contents.iter().map(String::as_str).collect();
         let title = field.title().split(" [").next().unwrap_or(key);
-        maps.push(layout.space(title, paths::DESIGN, &contents, extent)?);
+        let map = layout.space(title, paths::DESIGN, &contents, extent)?;
+        maps.push(layout.beside_legend(map, title, field)?);
     }
     let contents = [paths::PROOF, paths::WORKSPACE, &format!("{}/base", paths::MANIPULATOR)];
     let contents = contents.map(|path| format!("+ {path}/**"));
@@ -258,10 +260,21 @@ impl ViewLayout {
         self.property(view, "PlotLegend", &legend)
     }
 
+    /// Places the legend of a field beside the view of its heatmap.
+    fn beside_legend(&mut self, map: Node, title: &str, field: Field) -> Result<Node, ChunkError> {
+        let contents = format!("+ $origin/{}/**", field.key());
+        let legend = self.view("2D", field.title(), paths::HEATMAP_LEGEND, &[&contents])?;
+        self.property(&legend, "VisualBounds2D", &parts::VisualBounds2D::new(legend_bounds()))?;
+        let together = self.container(ContainerKind::Horizontal, &[map, legend], &[5.0, 1.0])?;
+        let name = parts::ContainerBlueprint::update_fields().with_display_name(title);
+        self.log(together.path.clone(), &name)?;
+        Ok(together)
+    }
+
     /// Adds a view of the manipulator, seen from the front and above.
     fn space(&mut self, name: &str, origin: &str, contents: &[&str], base_radius: f64) -> Result<Node, ChunkError> {
         let node = self.view("3D", name, origin, contents)?;
-        self.eye(&node, [0.32, -0.95, 2.25], [0.32, -0.06, 0.0], base_radius)?;
+        self.eye(&node, [0.0, -0.95, 2.25], [0.0, -0.06, 0.0], base_radius)?;
         Ok(node)
     }
 

@@ -18,6 +18,8 @@ pub(super) fn part(part: Part) -> Color {
 
 /// The regular workspace.
 pub(super) const WORKSPACE: [u8; 3] = [255, 255, 255];
+/// The regular workspace on a light background.
+pub(super) const WORKSPACE_ON_LIGHT: [u8; 3] = [24, 26, 32];
 /// Parallel singularities.
 pub(super) const SINGULAR: [u8; 3] = [255, 40, 40];
 /// Poses that limit the regular workspace.

@@ -14,8 +14,7 @@ use super::stage::Rows;
 use super::writer::{Moment, RecordingError, RecordingWriter};
 use crate::palette;
 use crate::scene::{
-    ColorMap, ConfigurationSpace, EllipsoidSet, FieldLegend, Heatmap, Nearest, Part, RegularCylinder, Scene, Solid,
-    SolidShape,
+    ColorMap, ConfigurationSpace, EllipsoidSet, Heatmap, Nearest, Part, RegularCylinder, Scene, Solid, SolidShape,
 };
 use crate::text::short;
 use kinefront_model::evaluation::{ConstraintResult, Evaluation};
@@ -37,6 +36,18 @@ fn circle(centre: DVec3, radius: f64) -> Vec<[f32; 3]> {
         })
         .collect()
 }
+
+/// Half the width of the line along the axis of a bar \[points\].
+const AXIS_WIDTH: f32 = 0.8;
+
+/// Name of the entity of these lines below that of the bars.
+pub(super) const BAR_AXES: &str = "axes";
+
+/// Brightness of a part on a light background, as a fraction of that on a dark one.
+const ON_LIGHT: f32 = 0.68;
+
+/// Opacity of the volume of the regular workspace.
+const TRANSLUCENT: u8 = 60;
 
 /// Draws scenes.
 ///
@@ -86,6 +97,29 @@ impl<'a> Canvas<'a> {
         }
     }
 
+    /// Whether the background is light.
+    fn is_light(&self) -> bool {
+        matches!(self.0, CanvasTarget::Collected { dark_words: true, .. })
+    }
+
+    /// Returns the colour of a part, darker on a light background.
+    fn part(&self, part: Part) -> Color {
+        if self.is_light() {
+            rgb(palette::part(part).map(|level| (f32::from(level) * ON_LIGHT) as u8))
+        } else {
+            colors::part(part)
+        }
+    }
+
+    /// Returns the colour of the regular workspace.
+    fn workspace(&self) -> [u8; 3] {
+        if self.is_light() {
+            colors::WORKSPACE_ON_LIGHT
+        } else {
+            colors::WORKSPACE
+        }
+    }
+
     /// Draws the manipulator below `root`.
     pub(super) fn manipulator(&self, root: &str, scene: &Scene) -> DrawResult {
         for (name, parts) in GROUPS {
@@ -112,7 +146,7 @@ impl<'a> Canvas<'a> {
                 .iter()
                 .map(|line| line.points.iter().map(|&p| point(p)).collect::<Vec<_>>());
             let strips = LineStrips3D::new(strips)
-                .with_colors(lines.iter().map(|line| colors::part(line.part)))
+                .with_colors(lines.iter().map(|line| self.part(line.part)))
                 .with_radii(std::iter::repeat_n(Radius::new_ui_points(width), lines.len()));
             self.row(&format!("{root}/{name}"), &strips)?;
         }
@@ -147,9 +181,15 @@ impl<'a> Canvas<'a> {
         let cylinders = Cylinders3D::from_lengths_and_radii(lengths, radii)
             .with_centers(bars.iter().map(|(from, to, ..)| point(0.5 * (*from + *to))))
             .with_quaternions(bars.iter().map(|(from, to, ..)| along_z(*to - *from)))
-            .with_colors(bars.iter().map(|(.., part)| colors::part(*part)))
+            .with_colors(bars.iter().map(|(.., part)| self.part(*part)))
             .with_fill_mode(FillMode::Solid);
-        self.row(entity, &cylinders)
+        self.row(entity, &cylinders)?;
+        // A bar that is thinner than a line on the screen is seen by its axis, which a thicker one hides.
+        let axes = bars.iter().map(|(from, to, ..)| [point(*from), point(*to)]);
+        let axes = LineStrips3D::new(axes)
+            .with_colors(bars.iter().map(|(.., part)| self.part(*part)))
+            .with_radii(std::iter::repeat_n(Radius::new_ui_points(AXIS_WIDTH), bars.len()));
+        self.row(&format!("{entity}/{BAR_AXES}"), &axes)
     }
 
     fn blocks(&self, entity: &str, solids: &[&Solid]) -> DrawResult {
@@ -170,7 +210,7 @@ impl<'a> Canvas<'a> {
             blocks.iter().map(|(_, half, ..)| point(*half)),
         )
         .with_rotation_axis_angles(blocks.iter().map(|(_, _, angle, _)| about_z(*angle)))
-        .with_colors(blocks.iter().map(|(.., part)| colors::part(*part)))
+        .with_colors(blocks.iter().map(|(.., part)| self.part(*part)))
         .with_fill_mode(FillMode::Solid);
         self.row(entity, &boxes)
     }
@@ -182,10 +222,7 @@ impl<'a> Canvas<'a> {
 
     /// Draws texts at points, without markers.
     fn labels(&self, entity: &str, labels: Vec<(DVec3, String)>, color: Color) -> DrawResult {
-        let color = match self.0 {
-            CanvasTarget::Collected { dark_words: true, .. } => rgb(colors::INK),
-            _ => color,
-        };
+        let color = if self.is_light() { rgb(colors::INK) } else { color };
         let count = labels.len();
         let points = Points3D::new(labels.iter().map(|(at, _)| point(*at)))
             .with_labels(labels.into_iter().map(|(_, text)| text))
@@ -233,10 +270,21 @@ impl<'a> Canvas<'a> {
     fn outlined(&self, root: &str, strips: Vec<Vec<[f32; 3]>>, at: DVec3, label: &str) -> DrawResult {
         let count = strips.len();
         let lines = LineStrips3D::new(strips)
-            .with_colors(std::iter::repeat_n(rgb(colors::WORKSPACE), count))
+            .with_colors(std::iter::repeat_n(rgb(self.workspace()), count))
             .with_radii((0..count).map(|k| Radius::new_ui_points(if k < 2 { 1.6 } else { 0.7 })));
         self.row(&format!("{root}/outline"), &lines)?;
-        self.word(&format!("{root}/label"), at, label, colors::WORKSPACE)
+        self.word(&format!("{root}/label"), at, label, self.workspace())
+    }
+
+    /// Draws the volume of the regular workspace between two heights, so that one sees through it.
+    pub(super) fn volume(&self, root: &str, cylinder: &RegularCylinder, [low, high]: [f64; 2]) -> DrawResult {
+        let [r, g, b] = self.workspace();
+        let volume = Cylinders3D::from_lengths_and_radii([(high - low) as f32], [cylinder.radius as f32])
+            .with_centers([point(cylinder.centre.extend(0.5 * (low + high)))])
+            .with_colors([Color::from_unmultiplied_rgba(r, g, b, TRANSLUCENT)])
+            .with_line_radii([Radius::new_ui_points(0.0)])
+            .with_fill_mode(FillMode::TransparentFillMajorWireframe);
+        self.row(&format!("{root}/volume"), &volume)
     }
 
     /// Draws a heatmap with its contours and edges below `root`; `place` maps its positions to points of the scene.
@@ -282,52 +330,6 @@ impl<'a> Canvas<'a> {
             self.row(&format!("{root}/{name}"), &strips)?;
         }
         Ok(())
-    }
-
-    /// Draws the legend of a colour map below `root`, as a strip beside the base.
-    pub(super) fn legend(&self, root: &str, legend: &FieldLegend, corner: DVec3, size: DVec2) -> DrawResult {
-        let FieldLegend { field, map, threshold } = *legend;
-        const STEPS: u32 = 64;
-        let at = |x: f64, fraction: f64| corner + DVec3::new(x * size.x, fraction * size.y, 0.0);
-        let rows = (0..=STEPS).map(|k| f64::from(k) / f64::from(STEPS));
-        let vertices = rows
-            .clone()
-            .flat_map(|fraction| [point(at(0.0, fraction)), point(at(1.0, fraction))]);
-        let colors = rows.flat_map(|fraction| [rgb(ColorMap::at(fraction)); 2]);
-        let triangles = (0..STEPS).flat_map(|k| [[2 * k, 2 * k + 1, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 2]]);
-        let mesh = Mesh3D::new(vertices)
-            .with_triangle_indices(triangles)
-            .with_vertex_colors(colors);
-        self.row(&format!("{root}/strip"), &mesh)?;
-        let factor = field.display_factor();
-        let mut ticks = Vec::new();
-        let mut labels = vec![(at(0.5, 1.09), field.title().to_owned())];
-        for (value, fraction) in map.ticks() {
-            ticks.push((
-                vec![point(at(1.0, fraction)), point(at(1.25, fraction))],
-                rgb(colors::TEXT),
-            ));
-            labels.push((at(2.1, fraction), short(value * factor)));
-        }
-        self.labels(&format!("{root}/ticks"), labels, rgb(colors::TEXT))?;
-        if let Some(fraction) = map.place(threshold) {
-            ticks.push((
-                vec![point(at(-0.6, fraction)), point(at(1.0, fraction))],
-                rgb(palette::THRESHOLD),
-            ));
-            let text = format!("threshold {}", short(threshold * factor));
-            self.labels(
-                &format!("{root}/threshold"),
-                vec![(at(-2.4, fraction), text)],
-                rgb(palette::THRESHOLD),
-            )?;
-        }
-        let count = ticks.len();
-        let (strips, tints): (Vec<_>, Vec<_>) = ticks.into_iter().unzip();
-        let lines = LineStrips3D::new(strips)
-            .with_colors(tints)
-            .with_radii(std::iter::repeat_n(Radius::new_ui_points(1.2), count));
-        self.row(&format!("{root}/lines"), &lines)
     }
 
     /// Draws ellipsoids at height `z` below `root`, with a text that gives their scale at `note`.

@@ -11,7 +11,7 @@
 //! | `/summary` | the verified front as a table, as markdown | static |
 //! | `/design/manipulator/…` | a design: base, legs, platform, joints, frames, labels | `front`, or `tour` |
 //! | `/design/workspace/…`, `/design/limits` | its regular workspace and the poses that limit it | `front`, or static |
-//! | `/design/heatmap/FIELD/…`, `/design/legend/FIELD/…` | a field with threshold, singularities and edge of reach | `front`, or static |
+//! | `/design/heatmap/FIELD/…`, `/legend/FIELD/…` | a field with threshold, singularities and edge of reach, and its colours | `front`, or static |
 //! | `/design/ellipsoids/KIND/…` | stiffness or displacement ellipsoids | `front`, or static |
 //! | `/configuration/…` | the workspace in (x, y, φ): cylinder, heatmaps over φ, the pose | `front`, or static and `tour` |
 //! | `/design/proof/…`, `/configuration/proof/…` | the boxes of the proof of the workspace, and an infeasible pose | static |
@@ -31,6 +31,7 @@ mod colors;
 mod columns;
 mod design;
 mod draw;
+mod legend;
 mod live;
 mod objective_plot;
 mod plot;
@@ -66,7 +67,7 @@ mod paths {
     pub const LIMITS: &str = "/design/limits";
     pub const PROOF: &str = "/design/proof";
     pub const HEATMAP: &str = "/design/heatmap";
-    pub const HEATMAP_LEGEND: &str = "/design/legend";
+    pub const HEATMAP_LEGEND: &str = "/legend";
     pub const ELLIPSOIDS: &str = "/design/ellipsoids";
     pub const DESIGN: &str = "/design";
     pub const CONFIGURATION: &str = "/configuration";

@@ -1,6 +1,6 @@
 //! What the entities of a window's scene represent, for a window that tells what the pointer is over.
 
-use super::draw::GROUPS;
+use super::draw::{BAR_AXES, GROUPS};
 use super::{LiveScene, paths};
 use crate::scene::{EllipsoidKind, Field, Part};
 
@@ -48,6 +48,11 @@ impl LiveScene {
             return Some(SceneTarget::Ellipsoid(kind, instance));
         }
         let group = below(paths::MANIPULATOR)?;
+        // The axis of a bar is the bar.
+        let group = group
+            .strip_suffix(BAR_AXES)
+            .and_then(|rest| rest.strip_suffix('/'))
+            .unwrap_or(group);
         let (_, parts) = GROUPS.iter().find(|(name, _)| *name == group)?;
         Some(SceneTarget::Solid(parts, instance))
     }
@@ -65,6 +70,8 @@ mod tests {
         assert_eq!(singular, Some(SceneTarget::Singularity));
         let link = LiveScene::target("/design/manipulator/legs", Some(4));
         assert!(matches!(link, Some(SceneTarget::Solid(parts, 4)) if parts.contains(&Part::Link)));
+        let axis = LiveScene::target("/design/manipulator/legs/axes", Some(4));
+        assert_eq!(axis, link);
         let slider = LiveScene::target("/design/manipulator/joints/sliders", Some(1));
         assert_eq!(slider, Some(SceneTarget::Solid(&[Part::Slider], 1)));
         let ellipsoid = LiveScene::target("/design/ellipsoids/stiffness/bodies", Some(2));

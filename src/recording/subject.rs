@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::draw::Canvas;
+use super::legend::draw_legend;
 use super::paths;
 use super::writer::RecordingError;
 use crate::scene::{
@@ -107,20 +108,13 @@ impl DrawnDesign<'_> {
         Ok(Some(FieldLegend { field, map, threshold }))
     }
 
-    /// Draws a heatmap at height `z` below the manipulator, and its legend beside it.
+    /// Draws a heatmap at height `z` below the manipulator, and its legend for a view of its own.
     pub(super) fn heatmap(&self, canvas: &Canvas<'_>, heatmap: &Heatmap, z: f64) -> Result<(), RecordingError> {
         let Some(legend) = self.field(canvas, heatmap, None, z)? else {
             return Ok(());
         };
-        let right = heatmap
-            .vertices
-            .iter()
-            .map(|p| p.x)
-            .fold(0.9 * self.design().base_radius, f64::max);
-        let size = self.design().base_radius;
-        let corner = DVec3::new(right + 0.55 * size, -0.5 * size, z);
         let root = format!("{}/{}", paths::HEATMAP_LEGEND, heatmap.field.key());
-        canvas.legend(&root, &legend, corner, DVec2::new(0.08, 1.2) * size)
+        draw_legend(canvas, &root, &legend)
     }
 
     /// Draws the regular workspace below the manipulator, and the poses that limit it.
@@ -191,13 +185,11 @@ impl DrawnDesign<'_> {
         let height = |turn: f64| space.place(DVec2::ZERO, cylinder.phi + turn).z;
         let half = 0.5 * cylinder.phi_range;
         let label = format!("Δφ = {}°", self.model.workspace.rotation_range_deg);
-        self.outline(
-            canvas,
-            &root("cylinder"),
-            &cylinder,
-            [height(-half), height(half)],
-            &label,
-        )
+        let heights = [height(-half), height(half)];
+        if region_corners(self.model).is_none() {
+            canvas.volume(&root("cylinder"), &cylinder, heights)?;
+        }
+        self.outline(canvas, &root("cylinder"), &cylinder, heights, &label)
     }
 
     /// Draws the inverse condition number as layers stacked over φ: its heatmaps, or only their outlines.

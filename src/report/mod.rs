@@ -22,7 +22,7 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-pub use assumptions::{ALTERNATIVES, Alternative, ClearanceCost, Variation};
+pub use assumptions::{ClearanceCost, Variation};
 pub use error::ReportError;
 pub use fits::{AT_BOUND, Fit, Trend, trends};
 pub use fronts::{Front, Fronts, SearchFronts, lightest_intervals};

@@ -69,7 +69,13 @@ const PHYSICS: [&str; 7] = [
 ];
 
 /// Every module of the program, window and command line left out.
-const LIBRARY: [&str; 5] = ["src/study", "src/scene", "src/export", "src/report", "src/recording"];
+const LIBRARY: [&str; 5] = [
+    "crates/study/src",
+    "crates/scene/src",
+    "crates/export/src",
+    "src/report",
+    "src/recording",
+];
 
 #[test]
 fn the_core_crates_depend_on_numbers_alone() {
@@ -77,7 +83,7 @@ fn the_core_crates_depend_on_numbers_alone() {
         ("model", &["glam", "libm", "nalgebra", "pulp", "serde", "thiserror"][..]),
         (
             "optimize",
-            &["libm", "rand_chacha", "rand_core", "serde", "sobol_burley"],
+            &["libm", "nalgebra", "rand_chacha", "rand_core", "serde", "sobol_burley"],
         ),
     ] {
         let text = fs::read_to_string(root().join("crates").join(name).join("Cargo.toml")).expect("a manifest");
@@ -87,6 +93,23 @@ fn the_core_crates_depend_on_numbers_alone() {
                 allowed.contains(&dependency.as_str()),
                 "kinefront-{name} uses {dependency}"
             );
+        }
+    }
+}
+
+/// The package for Python is built from these crates: it must need neither Rerun nor a window.
+#[test]
+fn only_the_program_needs_rerun_and_a_window() {
+    for folder in ["crates/study", "crates/scene", "crates/export", "python"] {
+        let text = fs::read_to_string(root().join(folder).join("Cargo.toml")).expect("a manifest");
+        let manifest: toml::Table = text.parse().expect("TOML");
+        let dependencies = manifest["dependencies"].as_table().expect("dependencies");
+        assert!(dependencies.len() > 3);
+        for dependency in dependencies.keys() {
+            let is_of_window = ["egui", "eframe", "re_", "rfd"]
+                .iter()
+                .any(|start| dependency.starts_with(start));
+            assert!(!is_of_window && dependency != "rerun", "{folder} uses {dependency}");
         }
     }
 }
@@ -169,12 +192,11 @@ fn architectures_are_named_in_mechanism_alone() {
 #[test]
 fn only_the_recording_and_the_window_know_rerun() {
     let others = [
-        "src/study",
-        "src/scene",
-        "src/export",
+        "crates/study/src",
+        "crates/scene/src",
+        "crates/export/src",
+        "python/src",
         "src/report",
-        "src/palette.rs",
-        "src/text.rs",
     ];
     assert_absent(&others, &["rerun", "egui", "crate::recording"]);
     assert_absent(&["src/recording"], &["egui", "eframe", "re_viewer", "crate::explorer"]);
@@ -208,7 +230,15 @@ fn a_panel_shows_what_others_computed() {
 #[test]
 fn every_type_name_stands_once() {
     let mut places: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    for place in ["crates/model/src", "crates/optimize/src", "src"] {
+    for place in [
+        "crates/export/src",
+        "crates/model/src",
+        "crates/optimize/src",
+        "crates/scene/src",
+        "crates/study/src",
+        "python/src",
+        "src",
+    ] {
         for (path, code) in sources(place) {
             for line in code.lines() {
                 let line = line.trim_start_matches("pub(super) ").trim_start_matches("pub(crate) ");
@@ -253,7 +283,7 @@ fn references_to_the_model_lead_to_its_sections() {
         "{model:?}"
     );
     let mut count = 0;
-    for place in ["crates", "src", "tests", "benches", "examples"] {
+    for place in ["crates", "python", "src", "tests", "benches", "examples"] {
         for path in files(&root().join(place), "rs") {
             let text = fs::read_to_string(&path).expect("a source");
             if path.ends_with("library/invariants.rs") {
@@ -294,6 +324,7 @@ fn documents_refer_to_what_is_there() {
         "docs/model.md",
         "docs/interfaces.md",
         "docs/benchmarks.md",
+        "python/README.md",
     ];
     for document in documents {
         let path = root().join(document);

@@ -4,6 +4,7 @@ mod commands;
 mod damage;
 mod exports;
 mod faults;
+mod merging;
 mod outside;
 mod recordings;
 mod reports;

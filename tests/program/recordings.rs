@@ -75,7 +75,10 @@ fn a_design_is_recorded_with_its_overlays_and_its_tour() {
         if let Some(found) = check_design(&path) {
             assert_eq!(found["poses"], 235);
             assert_eq!(found["leg_bars"], bars);
-            assert_eq!(found["views"], serde_json::json!({"3D": 10, "TextDocument": 1}));
+            assert_eq!(
+                found["views"],
+                serde_json::json!({"2D": 7, "3D": 10, "TextDocument": 1})
+            );
             assert!(found["vertices"].as_u64().expect("a count") > 5000);
             let card = found["card"].as_str().expect("a card");
             assert!(

@@ -31,7 +31,7 @@ tables = {entity: pa.concat_tables(parts, promote_options="default") for entity,
 fields = ["inverse_condition", "k_xy", "k_z", "k_phi_z", "displacement", "worst_margin", "clearance"]
 wanted = ["/card", "/configuration/axes/lines", "/configuration/cylinder/outline", "/design/workspace/outline"]
 wanted += ["/design/limits/poses", "/design/ellipsoids/stiffness/bodies", "/design/ellipsoids/displacement/bodies"]
-wanted += [f"/design/heatmap/{field}/field" for field in fields] + [f"/design/legend/{field}/strip" for field in fields]
+wanted += [f"/design/heatmap/{field}/field" for field in fields] + [f"/legend/{field}/bar" for field in fields]
 # The layer at the home orientation; other layers may have no reachable pose.
 wanted += ["/configuration/layers/2/edge"]
 wanted += ["/design/proof/boxes", "/design/proof/depth", "/design/proof/violation", "/configuration/proof/boxes"]

@@ -3,7 +3,7 @@
 use egui::accesskit::{Role, Toggled};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use kinefront::explorer::{Origin, Phase};
+use kinefront::explorer::{DesignOrigin, Phase};
 use kinefront::study::{Column, EndReason};
 use kinefront_model::evaluation::{MemberReport, QuantitySet};
 use kinefront_model::mechanism::{DesignVariable, MemberKind};
@@ -30,7 +30,7 @@ fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_re
     let at = window.state().scatter_position(id).expect("a position in the scatter");
     click_at(&mut window, at);
     let selected = window.state().session().document().selected.clone().expect("a design");
-    assert_eq!(selected.origin, Origin::Evaluated(id));
+    assert_eq!(selected.origin, DesignOrigin::Evaluated(id));
     until(&mut window, "the design is verified", |explorer| {
         explorer.session().known().is_some_and(|known| known.verified) && explorer.session().is_drawn()
     });
@@ -49,7 +49,7 @@ fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_re
     set_slider(&mut window, "R", 2.0);
     let session = window.state().session();
     let changed = session.document().selected.clone().expect("a design");
-    assert_eq!(changed.origin, Origin::Modified { from: Some(id) });
+    assert_eq!(changed.origin, DesignOrigin::Modified { from: Some(id) });
     assert_eq!(changed.design.base_radius, 2.0);
     assert!(window.query_by_label("modified design").is_some());
     until(&mut window, "the modified design is evaluated", |explorer| {
@@ -124,7 +124,7 @@ fn arrow_keys_walk_along_the_lit_front_and_p_pins() {
         .as_ref()
         .map(|c| c.origin.clone())
     {
-        Some(Origin::Evaluated(id)) => id,
+        Some(DesignOrigin::Evaluated(id)) => id,
         other => panic!("{other:?}"),
     };
     let knee = here(&window);
@@ -181,7 +181,7 @@ fn one_filter_holds_everywhere() {
     let session = window.state().session();
     let prepared = session.document().filter.prepare(session.store());
     match session.document().selected.as_ref().map(|selected| &selected.origin) {
-        Some(Origin::Evaluated(id)) => assert!(
+        Some(DesignOrigin::Evaluated(id)) => assert!(
             prepared.passes(*id),
             "the arrow key selected #{id}, which does not pass"
         ),

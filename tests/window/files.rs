@@ -6,7 +6,7 @@ use std::sync::mpsc::sync_channel;
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use kinefront::explorer::{Explorer, FrontEntry, InitialContent, Origin, Phase, open};
+use kinefront::explorer::{DesignOrigin, Explorer, FrontEntry, InitialContent, Phase, open};
 use kinefront::recording::{Recorder, RunFiles, read_run};
 use kinefront::study::{RunControl, RunWriter, StudySearch, spawn_search};
 
@@ -166,7 +166,7 @@ fn the_front_is_exported_with_stars_and_notes() {
         .as_ref()
         .map(|selected| selected.origin.clone())
     {
-        Some(Origin::Evaluated(id)) => id,
+        Some(DesignOrigin::Evaluated(id)) => id,
         other => panic!("{other:?}"),
     };
     let ctx = window.ctx.clone();
@@ -251,7 +251,7 @@ fn a_design_is_copied_and_pasted_as_text() {
     window.event(egui::Event::Paste("3-RPR R=2 r=0.5 Lb=2 rj=0.03 rp=0.04".to_owned()));
     window.run_steps(2);
     let selected = window.state().session().document().selected.clone().expect("a design");
-    assert_eq!(selected.origin, Origin::Modified { from: None });
+    assert_eq!(selected.origin, DesignOrigin::Modified { from: None });
     assert_eq!(selected.design.architecture.name(), "3-RPR");
     window.event(egui::Event::Paste("3-RPR R=two".to_owned()));
     window.run_steps(2);

@@ -1,7 +1,7 @@
 //! The window with other questions than the paper's: objectives, limits, and designs in three quantities.
 
 use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use kinefront::explorer::{InitialContent, Panel};
 use kinefront::study::{Column, ObjectiveChoice, Study};
 use kinefront_model::evaluation::Quantity;
@@ -43,7 +43,9 @@ fn three_objectives_have_axes_colour_buttons_and_a_space_that_is_clicked() {
     let k_xy = Column::of_quantity(Quantity::StiffnessXy);
     let axes = window.state().scatter_axes().map(<(String, bool)>::from);
     assert_eq!(axes, [("mass_kg".to_owned(), true), ("value_g4".to_owned(), true)]);
-    assert!(window.query_by_label_contains("colour: footprint").is_some());
+    let coloring = window.get_by_role_and_label(Role::ComboBox, "colour");
+    let told = coloring.accesskit_node().value().unwrap_or_default();
+    assert!(told.contains("footprint"), "{told}");
 
     window.state_mut().show(Panel::Choose);
     window.run_steps(3);

@@ -71,6 +71,7 @@
 //! | [`knee`], [`spread`], [`ranking`], [`groups`] | choosing from a front |
 
 mod archive;
+mod categories;
 mod cma_es;
 mod doe;
 mod dominance;

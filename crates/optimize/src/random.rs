@@ -22,6 +22,13 @@ impl Random {
         (self.0.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
     }
 
+    /// Draws an almost normal number of mean 0 and variance 1: the sum of three uniform numbers of 21 bits, which share one word.
+    pub fn almost_normal(&mut self) -> f64 {
+        let word = self.0.next_u64();
+        let part = |shift: u32| ((word >> shift) & 0x1f_ffff) as f64;
+        2.0 * ((part(0) + part(21) + part(42)) / f64::from(1u32 << 21) - 1.5)
+    }
+
     /// Returns `true` with the given probability.
     pub fn chance(&mut self, probability: f64) -> bool {
         self.uniform() < probability

@@ -101,6 +101,92 @@ fn structure_is_made_use_of() {
     assert!(levels.len() > 20 && levels.iter().any(|level| *level < 0.3) && levels.iter().any(|level| *level > 0.7));
 }
 
+/// A frame of two lengths whose bars follow from the reach asked for: the reach `x0 (1 − 2 (x1 − 0.3 x0)²)` is bought by a thickness that
+/// grows with its square, and the mass is that of the bars. On the front, `x1 = 0.3 x0`, and a reach `R` weighs `(0.2 + R²)(1 + R)`. The
+/// frame comes in two kinds, of which the second one is twice as heavy.
+struct Frame;
+
+impl Frame {
+    fn reach(x: &[f64]) -> f64 {
+        let off = x[1] - 0.3 * x[0];
+        x[0] * (1.0 - 2.0 * off * off)
+    }
+
+    /// Fraction of the area under the best front that a search leaves out.
+    fn missing(archive: &Archive) -> f64 {
+        let best = (0..=20_000).map(|step| {
+            let reach = f64::from(step) / 20_000.0;
+            [(0.2 + reach * reach) * (1.0 + reach), -reach]
+        });
+        let whole = hypervolume(best, [2.4, 0.0]);
+        1.0 - hypervolume(archive.iter().map(|member| member.objectives), [2.4, 0.0]) / whole
+    }
+}
+
+impl Problem for Frame {
+    fn variables(&self) -> Vec<Variable> {
+        let real = Variable::Real { lower: 0.0, upper: 1.0 };
+        vec![Variable::Categorical { choices: 2 }, real, real, real]
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Outcome {
+        let reach = Self::reach(&x[1..]).min((x[3] - 0.2).max(0.0).sqrt());
+        let violation = (0.2 - x[3]).max(0.0);
+        Outcome {
+            objectives: [x[3] * (1.0 + x[1]) * (1.0 + x[0]), -reach].into(),
+            violation,
+        }
+    }
+
+    fn complete(&self, x: &[f64], target: Target) -> Option<Vec<f64>> {
+        let largest = Self::reach(&x[1..]).max(0.0);
+        let reach = match target {
+            Target::Level(level) if -level < largest => (-level).max(0.0),
+            _ => largest,
+        };
+        Some(vec![x[0], x[1], x[2], 0.2 + reach * reach])
+    }
+
+    fn determined_variables(&self) -> Vec<usize> {
+        vec![3]
+    }
+}
+
+#[test]
+fn a_front_is_learned_where_the_problem_determines_variables() {
+    let settings = FrontDeSettings::default();
+    let unlearned = FrontDeSettings {
+        learned: 0.0,
+        ..settings
+    };
+    for seed in 1..=5 {
+        let search = |settings| run(&Frame, &mut FrontDe::for_problem(&Frame, settings, seed), 600);
+        assert_eq!(search(settings), search(settings));
+        let [learned, without] = [settings, unlearned].map(|settings| Frame::missing(&search(settings)));
+        assert!(
+            learned < 0.005 && learned < 0.6 * without,
+            "seed {seed}: {learned} is missing, and {without} without learning"
+        );
+    }
+}
+
+/// Where the algorithm is told nothing of the structure, or the problem has none, learning changes no bit.
+#[test]
+fn without_determined_variables_nothing_is_learned() {
+    let settings = FrontDeSettings::default();
+    let unlearned = FrontDeSettings {
+        learned: 0.0,
+        ..settings
+    };
+    let of_frame = |mut algorithm: FrontDe| run(&Frame, &mut algorithm, 600);
+    assert_eq!(
+        of_frame(FrontDe::new(Frame.variables(), settings, 5)),
+        of_frame(FrontDe::for_problem(&Frame, unlearned, 5))
+    );
+    let of_structured = |settings| run(&Structured, &mut FrontDe::for_problem(&Structured, settings, 5), 600);
+    assert_eq!(of_structured(settings), of_structured(unlearned));
+}
+
 /// The candidates depend on nothing but the random seed and the evaluations: the same seed gives the same candidates,
 /// another seed gives others, and all are within the bounds.
 #[test]

@@ -5,10 +5,12 @@ use std::path::PathBuf;
 use egui::{Key, Ui, ViewportCommand};
 
 use super::super::files::{Dialog, Purpose};
+use super::super::panels::named;
 use super::super::{Panel, Phase, theme};
 use super::shortcuts::SHORTCUTS;
 use super::{Explorer, layout};
 use crate::export::Format;
+use crate::study::BUILTIN;
 
 /// Entries of the menu "File" that select a file first.
 const FILE_ENTRIES: [(&str, Purpose); 9] = [
@@ -31,7 +33,7 @@ impl Explorer {
             ui.menu_button("Edit", |ui| self.edit_menu(ui));
             ui.menu_button("View", |ui| self.view_menu(ui));
             ui.menu_button("Help", |ui| {
-                if ui.button("Keyboard shortcuts").clicked() {
+                if ui.button("Keyboard shortcuts (?)").clicked() {
                     self.help = true;
                 }
                 if ui.button("What you see").clicked() {
@@ -55,6 +57,15 @@ impl Explorer {
                 requested = Some(purpose);
             }
         }
+        ui.menu_button("New study from", |ui| {
+            for builtin in BUILTIN {
+                let hint = builtin.study().map(|study| study.description).unwrap_or_default();
+                if ui.button(builtin.name).on_hover_text(hint).clicked() {
+                    self.session.edit_builtin(&builtin);
+                    self.show(Panel::Study);
+                }
+            }
+        });
         ui.menu_button("Export design", |ui| {
             for format in Format::ALL {
                 if ui.button(format!("{}…", format.title())).clicked() {
@@ -77,14 +88,14 @@ impl Explorer {
     }
 
     fn edit_menu(&mut self, ui: &mut Ui) {
-        let history = &mut self.session.history;
+        let session = &mut self.session;
         let undo = egui::Button::new("Undo (Ctrl+Z)");
-        if ui.add_enabled(history.can_undo(), undo).clicked() {
-            history.undo();
+        if ui.add_enabled(session.can_undo(), undo).clicked() {
+            session.undo();
         }
         let redo = egui::Button::new("Redo (Ctrl+Shift+Z)");
-        if ui.add_enabled(history.can_redo(), redo).clicked() {
-            history.redo();
+        if ui.add_enabled(session.can_redo(), redo).clicked() {
+            session.redo();
         }
     }
 
@@ -113,7 +124,7 @@ impl Explorer {
         let mut away = None;
         for (index, notice) in self.session.notices.iter().enumerate() {
             ui.horizontal_wrapped(|ui| {
-                if ui.small_button("×").clicked() {
+                if named(ui.small_button("×"), "Close this message").clicked() {
                     away = Some(index);
                 }
                 let color = if notice.is_error {

@@ -184,6 +184,11 @@ impl Explorer {
         self.panels.scatter.axes()
     }
 
+    /// Returns the scatter for modification.
+    pub(super) fn scatter_mut(&mut self) -> &mut Scatter {
+        &mut self.panels.scatter
+    }
+
     /// Replaces the axes of the scatter and fits its view.
     pub fn set_axes(&mut self, axes: [ScatterAxis; 2]) {
         self.panels.scatter = Scatter::new(axes);
@@ -258,7 +263,7 @@ impl eframe::App for Explorer {
         self.deliveries(&ctx);
         self.shortcuts(&ctx);
         if !ctx.input(|input| input.pointer.any_down()) {
-            self.session.history.end_gesture();
+            self.session.end_gestures();
         }
         egui::Panel::top("menu").show(ui, |ui| self.menu(ui));
         if !self.session.notices.is_empty() {

@@ -53,9 +53,9 @@ impl Explorer {
         let pressed = |shortcut: &KeyboardShortcut| ctx.input_mut(|input| input.consume_shortcut(shortcut));
         // Shortcuts with more modifiers come first: a shortcut also matches while additional modifiers are held.
         if pressed(&REDO) || pressed(&REDO_TOO) {
-            self.session.history.redo();
+            self.session.redo();
         } else if pressed(&UNDO) {
-            self.session.history.undo();
+            self.session.undo();
         }
         if pressed(&OPEN) {
             self.ask(ctx, Purpose::Open);

@@ -5,7 +5,7 @@ use egui::{Context, Ui, ViewportCommand};
 use super::super::viewer;
 use super::Explorer;
 use super::menu::phase_name;
-use crate::explorer::data::Origin;
+use crate::explorer::data::DesignOrigin;
 use crate::text;
 
 impl Explorer {
@@ -24,10 +24,10 @@ impl Explorer {
             ui.label(match &session.document().selected {
                 Some(selected) => {
                     let name = match selected.origin {
-                        Origin::Evaluated(id) => format!("#{id}"),
-                        Origin::Kept(_) => "kept design".to_owned(),
-                        Origin::Modified { .. } => "modified design".to_owned(),
-                        Origin::Reference(_) => "reference design".to_owned(),
+                        DesignOrigin::Evaluated(id) => format!("#{id}"),
+                        DesignOrigin::Kept(_) => "kept design".to_owned(),
+                        DesignOrigin::Modified { .. } => "modified design".to_owned(),
+                        DesignOrigin::Reference(_) => "reference design".to_owned(),
                     };
                     format!("selected: {name}, {}", text::architecture(selected.design.architecture))
                 }

@@ -49,6 +49,28 @@ impl FrontEntry {
         }
     }
 
+    /// Makes the entry of a design of the search.
+    pub fn of_search(id: usize, row: Row) -> Self {
+        Self {
+            id,
+            reference_radius: row.radius,
+            row,
+            verified: false,
+            certified: None,
+            evaluation: None,
+        }
+    }
+
+    /// Returns the entry as a row of a table.
+    pub fn to_table_row(&self) -> TableRow {
+        TableRow {
+            id: self.id,
+            row: self.row,
+            reference_radius: Some(self.reference_radius),
+            certified: self.certified,
+        }
+    }
+
     /// Returns the objectives, as they are minimised.
     pub fn objectives(&self) -> Objectives {
         self.row.objectives
@@ -65,16 +87,8 @@ pub fn front_of(store: &super::Store) -> Vec<FrontEntry> {
         };
         archive.insert(id, &[], &outcome);
     }
-    let members = archive.iter().filter_map(|member| {
-        let row = store.row(member.id)?;
-        Some(FrontEntry {
-            id: member.id,
-            reference_radius: row.radius,
-            row,
-            verified: false,
-            certified: None,
-            evaluation: None,
-        })
-    });
+    let members = archive
+        .iter()
+        .filter_map(|member| Some(FrontEntry::of_search(member.id, store.row(member.id)?)));
     members.collect()
 }

@@ -3,9 +3,11 @@
 mod document;
 mod filter;
 mod front;
+mod history;
 mod store;
 
-pub use document::{Document, History, Named, Origin, Selected};
+pub use document::{DesignOrigin, Document, Named, Selected};
 pub use filter::{Filter, FilterError, PreparedFilter};
 pub use front::{FrontEntry, front_of};
+pub use history::History;
 pub use store::Store;

@@ -13,7 +13,7 @@ use super::{Phase, Session};
 use crate::export::{ExportSubject, Format, export, front_to_parquet};
 use crate::recording::{record_design, save_copy};
 use crate::report::{Options, Report, Source};
-use crate::study::{Cell, Column, TableRow, table_bytes};
+use crate::study::{Cell, Column, table_bytes};
 use kinefront_model::evaluation::GridChoice;
 
 /// Writes a file atomically: an existing file is either replaced completely or left unchanged.
@@ -342,12 +342,7 @@ fn front_table(session: &Session) -> Result<Vec<u8>, AnyError> {
     };
     let document = session.document();
     let rows = session.front().iter().map(|entry| {
-        let row = TableRow {
-            id: entry.id,
-            row: entry.row,
-            reference_radius: Some(entry.reference_radius),
-            certified: entry.certified,
-        };
+        let row = entry.to_table_row();
         let cell = |column| match column {
             Verified => Cell::Flag(entry.verified),
             Starred => Cell::Flag(document.stars.contains(&entry.id)),

@@ -3,6 +3,7 @@
 use crate::study::{Column, Row};
 use egui::{DragValue, ScrollArea, Slider, Ui};
 
+use super::named;
 use crate::explorer::{Filter, Session, theme};
 use kinefront_model::evaluation::{Better, Quantity};
 use kinefront_optimize::{Objectives, groups, ranking};
@@ -40,6 +41,12 @@ impl ChoosePanel {
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
         let mut requested = None;
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            if session.front().is_empty() {
+                ui.weak(
+                    "Designs are proposed here once a run has found a front: start one in the panel Run, or open one.",
+                );
+                ui.separator();
+            }
             ui.strong("Knee and extreme designs");
             ui.horizontal_wrapped(|ui| {
                 let hover = "the design beyond which more of one objective costs much of the others (K)";
@@ -97,7 +104,9 @@ impl ChoosePanel {
     fn clusters(&mut self, ui: &mut Ui, session: &mut Session) {
         ui.horizontal(|ui| {
             ui.strong("Groups of similar designs");
-            ui.add(DragValue::new(&mut self.groups).range(2..=12).speed(0.05));
+            let field = ui.add(DragValue::new(&mut self.groups).range(2..=12).speed(0.05));
+            ui.ctx()
+                .accesskit_node_builder(field.id, |node| node.set_label("Number of groups"));
         });
         let front = session.front_number();
         let middles = match self.middles.take() {
@@ -126,7 +135,8 @@ fn filter(ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
     let mut requested = None;
     ui.strong("Filter");
     let mut edited: Filter = session.document().filter.clone();
-    ui.checkbox(&mut edited.feasible_only, "feasible only");
+    ui.checkbox(&mut edited.feasible_only, "feasible only")
+        .on_hover_text("dims designs that are not feasible in all panels (F)");
     let keys: Vec<String> = edited.ranges.keys().cloned().collect();
     for key in keys {
         let Some(quantity) = Column::find_quantity(&key) else {
@@ -142,7 +152,11 @@ fn filter(ui: &mut Ui, session: &mut Session) -> Option<FilterFile> {
                 ui.label("to");
                 ui.add(DragValue::new(high).speed(speed).max_decimals(4))
                     .labelled_by(label.id);
-                lift = ui.small_button("×").clicked();
+                lift = named(
+                    ui.small_button("×"),
+                    &format!("Remove the range of {}", quantity.title()),
+                )
+                .clicked();
             }
             if lift {
                 edited.ranges.remove(&key);

@@ -2,6 +2,7 @@
 
 use egui::{Color32, Grid, RichText, ScrollArea, Ui};
 
+use super::named;
 use crate::explorer::{Named, Session, theme};
 use crate::study::Column;
 use crate::text;
@@ -72,10 +73,7 @@ fn names(ui: &mut Ui, pins: &[Named]) -> Vec<Option<PinClick>> {
         let click = ui.horizontal(|ui| {
             let color = theme::architecture(pin.design.architecture, ui.visuals().dark_mode);
             let name = ui.button(RichText::new(&pin.name).color(color).strong());
-            let close = ui.small_button("×");
-            close.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("Unpin {}", pin.name))
-            });
+            let close = named(ui.small_button("×"), &format!("Unpin {}", pin.name));
             let unpin = close.clicked().then_some(PinClick::Unpin);
             unpin.or_else(|| name.clicked().then_some(PinClick::Name))
         });

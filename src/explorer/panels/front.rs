@@ -1,42 +1,28 @@
-//! The front panel: a table of the front, which can be sorted and searched, with stars and notes.
+//! The front panel: a table of the front, or of the marked designs, with columns by choice, which can be sorted, searched and
+//! copied.
+
+mod order;
+
+use std::borrow::Cow;
 
 use crate::study::{Column, Study};
 use crate::text;
-use egui::{Align, Label, RichText, Sense, Ui};
+use egui::{Align, Button, Label, RichText, Sense, Ui, WidgetInfo, WidgetType};
 use egui_extras::{TableBuilder, TableRow};
 
-use crate::explorer::{FrontEntry, Origin, Session, theme};
+use self::order::{Listing, Order, SortKey, active};
+use crate::explorer::{DesignOrigin, FrontEntry, Session, theme};
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::DESIGN_VARIABLES;
 
-/// Column by which the table is sorted.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Key {
-    Star,
-    Id,
-    Architecture,
-    Number(Column),
-}
-
 /// The panel with the table of the front.
+#[derive(Default)]
 pub struct FrontPanel {
-    key: Key,
-    descending: bool,
-    search: String,
-    starred_only: bool,
+    listing: Listing,
+    /// Columns that the user has chosen; the usual ones if `None`.
+    chosen: Option<Vec<Column>>,
+    order: Order,
     last_selected: Option<usize>,
-}
-
-impl Default for FrontPanel {
-    fn default() -> Self {
-        Self {
-            key: Key::Number(Column::Mass),
-            descending: false,
-            search: String::new(),
-            starred_only: false,
-            last_selected: None,
-        }
-    }
 }
 
 /// State that determines how a row is drawn.
@@ -57,43 +43,64 @@ struct Clicked {
     star: Option<usize>,
 }
 
-/// The columns that sort the table, with their titles.
-fn sortable(study: &Study) -> Vec<(Key, String)> {
-    let number = |column: Column| (Key::Number(column), column.title());
+/// The columns of quantities that the table has unless the user chooses others.
+fn usual_columns(study: &Study) -> Vec<Column> {
     let always = [
         Column::Mass,
         Column::WorkspaceRadius,
         Column::Value(Constraint::Clearance),
     ];
     let named = study.named_quantities().iter().map(Column::of_quantity);
-    let others: Vec<Column> = named.filter(|column| !always.contains(column)).collect();
-    [
-        (Key::Star, "★".to_owned()),
-        (Key::Id, "#".to_owned()),
-        (Key::Architecture, "architecture".to_owned()),
-    ]
-    .into_iter()
-    .chain([Column::Mass, Column::WorkspaceRadius].map(number))
-    .chain(others.into_iter().map(number))
-    .chain([number(Column::HomePhi)])
-    .chain(DESIGN_VARIABLES.map(|variable| number(Column::Dimension(variable))))
-    .chain([number(Column::Value(Constraint::Clearance))])
-    .collect()
+    let others = named.filter(|column| !always.contains(column));
+    [Column::Mass, Column::WorkspaceRadius]
+        .into_iter()
+        .chain(others)
+        .chain([Column::HomePhi])
+        .chain(DESIGN_VARIABLES.map(Column::Dimension))
+        .chain([Column::Value(Constraint::Clearance)])
+        .collect()
+}
+
+/// The columns that sort the table, with their titles.
+fn sortable(columns: &[Column]) -> Vec<(SortKey, String)> {
+    let first = [
+        (SortKey::Star, "★".to_owned()),
+        (SortKey::Id, "#".to_owned()),
+        (SortKey::Architecture, "architecture".to_owned()),
+    ];
+    let numbers = columns.iter().map(|column| (SortKey::Number(*column), column.title()));
+    first.into_iter().chain(numbers).collect()
+}
+
+/// Returns design `id` as an entry of the table.
+fn entry(session: &Session, id: usize) -> Option<Cow<'_, FrontEntry>> {
+    match session.place_on_front(id) {
+        Some(place) => Some(Cow::Borrowed(&session.front()[place])),
+        None => Some(Cow::Owned(FrontEntry::of_search(id, session.store().row(id)?))),
+    }
 }
 
 impl FrontPanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        self.search_bar(ui, session);
-        let order = self.order(session);
+        if session.document().marked.is_empty() {
+            self.listing.marked = false;
+        }
+        let columns = self.chosen.clone().unwrap_or_else(|| usual_columns(session.study()));
+        self.search_bar(ui, session, &columns);
+        if session.front().is_empty() && !self.listing.marked {
+            ui.weak("The designs of the front are listed here once a run has found some: start one in the panel Run, or open one.");
+            return;
+        }
+        self.order.update(session, &self.listing);
         let selected = match session.document().selected.as_ref().map(|selected| &selected.origin) {
-            Some(Origin::Evaluated(id)) => Some(*id),
+            Some(DesignOrigin::Evaluated(id)) => Some(*id),
             _ => None,
         };
         let mut clicked = Clicked::default();
         egui::ScrollArea::horizontal()
             .auto_shrink([false, false])
-            .show(ui, |ui| self.table(ui, session, &order, selected, &mut clicked));
+            .show(ui, |ui| self.table(ui, session, &columns, selected, &mut clicked));
         if let Some(id) = clicked.design {
             session.select(id);
         }
@@ -102,16 +109,32 @@ impl FrontPanel {
         }
     }
 
-    fn search_bar(&mut self, ui: &mut Ui, session: &Session) {
+    fn search_bar(&mut self, ui: &mut Ui, session: &Session, columns: &[Column]) {
         ui.horizontal_wrapped(|ui| {
+            let marked = session.document().marked.len();
+            ui.selectable_value(
+                &mut self.listing.marked,
+                false,
+                format!("Front ({})", session.front().len()),
+            );
+            ui.add_enabled_ui(marked > 0, |ui| {
+                ui.selectable_value(&mut self.listing.marked, true, format!("Marked ({marked})"))
+                    .on_disabled_hover_text("mark designs in the scatter with Box or Lasso");
+            });
             let field = ui.add(
-                egui::TextEdit::singleline(&mut self.search)
+                egui::TextEdit::singleline(&mut self.listing.search)
                     .hint_text("search: 3-PRR, g3, text of a note")
                     .desired_width(180.0),
             );
             ui.ctx()
                 .accesskit_node_builder(field.id, |node| node.set_label("Search the table"));
-            ui.checkbox(&mut self.starred_only, "starred only");
+            ui.checkbox(&mut self.listing.starred_only, "starred only");
+            ui.menu_button("Columns", |ui| self.column_menu(ui, session, columns));
+            let hint = "copies the listed designs with these columns, separated by tabs, for a spreadsheet";
+            if ui.button("Copy table").on_hover_text(hint).clicked() {
+                self.order.update(session, &self.listing);
+                ui.ctx().copy_text(tab_separated(session, self.order.ids(), columns));
+            }
             let count = |holds: fn(&FrontEntry) -> bool| session.front().iter().filter(|entry| holds(entry)).count();
             ui.weak(format!(
                 "{} designs on the front, {} verified on the fine grid, {} proved",
@@ -122,16 +145,42 @@ impl FrontPanel {
         });
     }
 
-    /// Draws the designs in the given order of their places on the front.
+    /// Shows a tick for every column that the table may have.
+    fn column_menu(&mut self, ui: &mut Ui, session: &Session, columns: &[Column]) {
+        let all: Vec<Column> = Column::quantities(session.study().named_quantities()).collect();
+        if ui.button("Usual columns").clicked() {
+            self.chosen = None;
+        }
+        egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
+            for column in &all {
+                let mut shown = columns.contains(column);
+                if ui.checkbox(&mut shown, column.title()).changed() {
+                    let is_shown = |other: &Column| {
+                        if other == column {
+                            shown
+                        } else {
+                            columns.contains(other)
+                        }
+                    };
+                    // The columns that stay keep their places; a further one comes last.
+                    let kept = columns.iter().copied().filter(is_shown);
+                    let further = Some(*column).filter(|column| shown && !columns.contains(column));
+                    self.chosen = Some(kept.chain(further).collect());
+                }
+            }
+        });
+    }
+
+    /// Draws the listed designs.
     fn table(
         &mut self,
         ui: &mut Ui,
         session: &Session,
-        order: &[usize],
+        columns: &[Column],
         selected: Option<usize>,
         clicked: &mut Clicked,
     ) {
-        let columns = sortable(session.study());
+        let columns = sortable(columns);
         let mut table = TableBuilder::new(ui)
             .id_salt("front")
             .striped(true)
@@ -146,93 +195,76 @@ impl FrontPanel {
             .column(egui_extras::Column::initial(70.0))
             .column(egui_extras::Column::remainder().clip(true))
             .min_scrolled_height(0.0);
+        let ids = self.order.ids();
         // A new selection is scrolled into view once.
         if selected != self.last_selected
-            && let Some(row) = order
-                .iter()
-                .position(|&place| Some(session.front()[place].id) == selected)
+            && let Some(row) = ids.iter().position(|&id| Some(id) == selected)
         {
             table = table.scroll_to_row(row, Some(Align::Center));
         }
         self.last_selected = selected;
         let prepared = session.document().filter.prepare(session.store());
+        let listing = &mut self.listing;
         table
-            .header(20.0, |mut header| self.header(&mut header, &columns))
+            .header(20.0, |mut head| header(&mut head, &columns, listing))
             .body(|body| {
-                body.rows(18.0, order.len(), |mut row| {
-                    let entry = &session.front()[order[row.index()]];
+                body.rows(18.0, ids.len(), |mut row| {
+                    let Some(entry) = entry(session, ids[row.index()]) else {
+                        return;
+                    };
                     let state = RowState {
-                        passes: prepared.passes_entry(entry),
+                        passes: prepared.passes_entry(&entry),
                         selected: Some(entry.id) == selected,
                     };
-                    draw_row(&mut row, session, entry, &columns, state, clicked);
+                    draw_row(&mut row, session, &entry, &columns, state, clicked);
                 });
             });
     }
+}
 
-    /// Draws the titles; a click sorts the table, a second one in the other direction.
-    fn header(&mut self, header: &mut TableRow<'_, '_>, columns: &[(Key, String)]) {
-        for (key, title) in columns {
-            header.col(|ui| {
-                let arrow = match (*key == self.key, self.descending) {
-                    (false, _) => "",
-                    (true, false) => " ⏶",
-                    (true, true) => " ⏷",
-                };
-                let button = egui::Button::new(format!("{title}{arrow}")).frame(false);
-                if ui.add(button).clicked() {
-                    self.descending = *key == self.key && !self.descending;
-                    self.key = *key;
-                }
-            });
-        }
-        header.col(|ui| drop(ui.label("proof")));
-        header.col(|ui| drop(ui.label("active")));
-        header.col(|ui| drop(ui.label("note")));
-    }
-
-    /// Returns the positions on the front of the listed designs, in the order of the table.
-    fn order(&self, session: &Session) -> Vec<usize> {
-        let document = session.document();
-        let search = self.search.trim().to_lowercase();
-        let found = |entry: &FrontEntry| {
-            search.is_empty()
-                || entry.row.design.to_string().to_lowercase().contains(&search)
-                || format!("#{}", entry.id).contains(&search)
-                || active(entry).contains(&search)
-                || document
-                    .notes
-                    .get(&entry.id)
-                    .is_some_and(|note| note.to_lowercase().contains(&search))
-        };
-        let mut order: Vec<usize> = (0..session.front().len())
-            .filter(|&place| {
-                let entry = &session.front()[place];
-                found(entry) && (!self.starred_only || document.stars.contains(&entry.id))
-            })
-            .collect();
-        let number = |place: usize| {
-            let entry = &session.front()[place];
-            match self.key {
-                Key::Star => f64::from(u8::from(!document.stars.contains(&entry.id))),
-                Key::Id => entry.id as f64,
-                Key::Architecture => theme::index(entry.row.design.architecture) as f64,
-                Key::Number(quantity) => entry.row.number(quantity).unwrap_or(f64::NAN),
+/// Draws the titles; a click sorts the table, a second one in the other direction.
+fn header(header: &mut TableRow<'_, '_>, columns: &[(SortKey, String)], listing: &mut Listing) {
+    for (key, title) in columns {
+        header.col(|ui| {
+            let arrow = match (*key == listing.key, listing.descending) {
+                (false, _) => "",
+                (true, false) => " ⏶",
+                (true, true) => " ⏷",
+            };
+            let button = ui.add(Button::new(format!("{title}{arrow}")).frame(false));
+            if button.on_hover_text("sorts the table").clicked() {
+                listing.descending = *key == listing.key && !listing.descending;
+                listing.key = *key;
             }
-        };
-        order.sort_by(|&a, &b| number(a).total_cmp(&number(b)));
-        if self.descending {
-            order.reverse();
-        }
-        order
+        });
     }
+    for title in ["proof", "active", "note"] {
+        header.col(|ui| drop(ui.label(title)));
+    }
+}
+
+/// Returns designs as lines of values separated by tabs, after a line with the names of the columns.
+fn tab_separated(session: &Session, ids: &[usize], columns: &[Column]) -> String {
+    let of_entry = [Column::Id, Column::Architecture, Column::WorkingMode];
+    let names = of_entry.iter().chain(columns).map(|column| column.name());
+    let mut lines = vec![names.collect::<Vec<_>>().join("\t")];
+    for entry in ids.iter().filter_map(|&id| entry(session, id)) {
+        let row = entry.to_table_row();
+        let cells = of_entry
+            .iter()
+            .chain(columns)
+            .map(|column| column.cell(&row).to_string());
+        lines.push(cells.collect::<Vec<_>>().join("\t"));
+    }
+    lines.push(String::new());
+    lines.join("\n")
 }
 
 fn draw_row(
     row: &mut TableRow<'_, '_>,
     session: &Session,
     entry: &FrontEntry,
-    columns: &[(Key, String)],
+    columns: &[(SortKey, String)],
     state: RowState,
     clicked: &mut Clicked,
 ) {
@@ -244,7 +276,12 @@ fn draw_row(
         } else {
             "☆"
         };
-        if ui.add(egui::Button::new(star).frame(false)).clicked() {
+        let button = ui.add(Button::new(star).frame(false));
+        button.widget_info(|| {
+            let is_starred = document.stars.contains(&entry.id);
+            WidgetInfo::selected(WidgetType::Checkbox, true, is_starred, format!("star #{}", entry.id))
+        });
+        if button.clicked() {
             clicked.star = Some(entry.id);
         }
     });
@@ -252,13 +289,13 @@ fn draw_row(
         row.col(|ui| {
             let text = RichText::new(cell(entry, *key));
             let text = match key {
-                Key::Number(Column::Value(Constraint::Clearance))
+                SortKey::Number(Column::Value(Constraint::Clearance))
                     if entry.row.clearance().is_some_and(|clearance| clearance < 0.0) =>
                 {
                     text.color(theme::bad(ui))
                 }
                 _ if !state.passes => text.weak(),
-                Key::Architecture if !state.selected => text.color(theme::architecture(
+                SortKey::Architecture if !state.selected => text.color(theme::architecture(
                     entry.row.design.architecture,
                     ui.visuals().dark_mode,
                 )),
@@ -291,16 +328,11 @@ fn draw_row(
     }
 }
 
-fn cell(entry: &FrontEntry, key: Key) -> String {
+fn cell(entry: &FrontEntry, key: SortKey) -> String {
     match key {
-        Key::Star => String::new(),
-        Key::Id => format!("#{}", entry.id),
-        Key::Architecture => text::architecture(entry.row.design.architecture),
-        Key::Number(quantity) => theme::number(entry.row.number(quantity).unwrap_or(f64::NAN)),
+        SortKey::Star => String::new(),
+        SortKey::Id => format!("#{}", entry.id),
+        SortKey::Architecture => text::architecture(entry.row.design.architecture),
+        SortKey::Number(quantity) => theme::number(entry.row.number(quantity).unwrap_or(f64::NAN)),
     }
-}
-
-fn active(entry: &FrontEntry) -> String {
-    let ids: Vec<&str> = entry.row.active_constraints().map(Constraint::id).collect();
-    ids.join(" ")
 }

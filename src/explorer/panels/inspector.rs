@@ -3,7 +3,9 @@
 use crate::text;
 use egui::{Color32, Grid, RichText, ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo, WidgetType};
 
+use super::named;
 use crate::explorer::{Known, Session, theme};
+use crate::scene::Part;
 use kinefront_model::certify::Verdict;
 use kinefront_model::evaluation::{ConstraintResult, Quantity};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignVariable};
@@ -72,13 +74,10 @@ fn heading(ui: &mut Ui, session: &mut Session) {
         {
             ui.ctx().copy_text(selected.design.to_string());
         }
-        if let crate::explorer::Origin::Evaluated(id) = selected.origin {
+        if let crate::explorer::DesignOrigin::Evaluated(id) = selected.origin {
             let starred = session.document().stars.contains(&id);
-            if ui
-                .selectable_label(starred, if starred { "★" } else { "☆" })
-                .on_hover_text("star or unstar this design (S)")
-                .clicked()
-            {
+            let star = ui.selectable_label(starred, if starred { "★" } else { "☆" });
+            if named(star, "Star or unstar this design (S)").clicked() {
                 session.toggle_star();
             }
             let mut note = session.document().notes.get(&id).cloned().unwrap_or_default();
@@ -211,17 +210,12 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
     let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 14.0), Sense::hover());
     let split = rect.left() + rect.width() * (legs / total) as f32;
     let painter = ui.painter_at(rect);
-    painter.rect_filled(rect.with_max_x(split), 2.0, Color32::from_rgb(130, 145, 170));
-    painter.rect_filled(rect.with_min_x(split), 2.0, Color32::from_rgb(90, 150, 235));
+    let [of_legs, of_platform] = [Part::Crank, Part::PlatformBar].map(|part| theme::part(part, ui.visuals().dark_mode));
+    painter.rect_filled(rect.with_max_x(split), 2.0, of_legs);
+    painter.rect_filled(rect.with_min_x(split), 2.0, of_platform);
     ui.horizontal(|ui| {
-        ui.colored_label(
-            Color32::from_rgb(130, 145, 170),
-            format!("legs {} kg", theme::number(legs)),
-        );
-        ui.colored_label(
-            Color32::from_rgb(90, 150, 235),
-            format!("platform {} kg", theme::number(platform)),
-        );
+        ui.colored_label(of_legs, format!("legs {} kg", theme::number(legs)));
+        ui.colored_label(of_platform, format!("platform {} kg", theme::number(platform)));
     });
 }
 

@@ -4,21 +4,12 @@ use egui::{
     Align2, Color32, FontId, Rect, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, WidgetType,
 };
 
-use super::plan::{Plan, paint};
+use super::sketch::Sketch;
 use crate::explorer::{Session, theme};
-use crate::scene::{Scene, example, manipulator};
-use kinefront_model::evaluation::Model;
-use kinefront_model::mechanism::{Architecture, Design};
+use kinefront_model::mechanism::Architecture;
 
 /// Size of a card \[points\].
 const CARD: Vec2 = Vec2::new(168.0, 176.0);
-
-/// A sketch of one architecture.
-struct Sketch {
-    architecture: Architecture,
-    design: Design,
-    scene: Scene,
-}
 
 /// The mechanisms panel.
 #[derive(Default)]
@@ -30,7 +21,10 @@ impl MechanismsPanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         if self.sketches.is_empty() {
-            self.sketches = sketches();
+            self.sketches = Architecture::ALL
+                .iter()
+                .filter_map(|&found| Sketch::new(found))
+                .collect();
         }
         ui.weak("orange: the driven joints, whose letters are underlined; click to search an architecture, or to leave it out");
         let mut chosen = session.editor.study().architectures.clone();
@@ -54,22 +48,6 @@ impl MechanismsPanel {
     }
 }
 
-fn sketches() -> Vec<Sketch> {
-    let model = Model::default();
-    let sketch = |&architecture: &Architecture| {
-        let (design, pose) = example(&model, architecture)?;
-        let mut scene = manipulator(&model, &design, &pose).ok()?;
-        scene.nearest = None;
-        scene.labels.clear();
-        Some(Sketch {
-            architecture,
-            design,
-            scene,
-        })
-    };
-    Architecture::ALL.iter().filter_map(sketch).collect()
-}
-
 /// Draws a card; returns whether it was clicked.
 fn card(ui: &mut Ui, sketch: &Sketch, is_chosen: bool) -> bool {
     let name = sketch.architecture.name();
@@ -80,12 +58,7 @@ fn card(ui: &mut Ui, sketch: &Sketch, is_chosen: bool) -> bool {
     let inner = rect.shrink(3.0);
     painter.rect_filled(inner, 6.0, theme::ground(dark));
     let picture = Rect::from_min_max(inner.min, inner.max - Vec2::new(0.0, 26.0));
-    paint(
-        ui,
-        &ui.painter_at(picture),
-        &Plan::new(picture, &sketch.design),
-        &sketch.scene,
-    );
+    sketch.paint(ui, picture);
     let color = if is_chosen {
         theme::ink(ui)
     } else {

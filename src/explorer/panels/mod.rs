@@ -14,6 +14,7 @@ mod progress;
 mod question;
 mod run;
 pub mod scatter;
+mod sketch;
 mod space;
 mod study;
 
@@ -34,6 +35,13 @@ use self::space::SpacePanel;
 use self::study::StudyPanel;
 use super::Session;
 use super::files::Purpose;
+
+/// Gives a button whose text is a symbol a name for assistive technology, and says it when the pointer is over the button.
+pub(super) fn named(button: egui::Response, name: &str) -> egui::Response {
+    let enabled = button.enabled();
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, enabled, name));
+    button.on_hover_text(name)
+}
 
 /// A panel of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

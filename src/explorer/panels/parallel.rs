@@ -76,6 +76,17 @@ impl ParallelPanel {
         if let Some((_, mesh)) = &self.drawn {
             painter.add(Shape::Mesh(Arc::clone(mesh)));
         }
+        if session.store().is_empty() {
+            let text = "The designs of a run appear here, each as a line: start one in the panel Run, or open one.";
+            let color = ui.visuals().weak_text_color();
+            painter.text(
+                plot.center(),
+                Align2::CENTER_CENTER,
+                text,
+                FontId::proportional(13.0),
+                color,
+            );
+        }
         self.selected_line(&painter, session, &axes, plot);
         for index in 0..axes.len() {
             self.axis(ui, &painter, session, &axes, index, plot);
@@ -115,8 +126,8 @@ impl ParallelPanel {
         let title = format!("{}{better}", axis.short());
         text(plot.top() - 36.0, Align2::CENTER_TOP, title, 12.0, ink);
         let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
-        text(plot.top() - 3.0, Align2::CENTER_BOTTOM, theme::number(high), 9.5, weak);
-        text(plot.bottom() + 3.0, Align2::CENTER_TOP, theme::number(low), 9.5, weak);
+        text(plot.top() - 3.0, Align2::CENTER_BOTTOM, theme::number(high), 12.0, weak);
+        text(plot.bottom() + 3.0, Align2::CENTER_TOP, theme::number(low), 12.0, weak);
         if let Some([from, to]) = session.document().filter.range(axis) {
             let (top, bottom) = (self.height(index, axis, to, plot), self.height(index, axis, from, plot));
             let brush = Rect::from_min_max(Pos2::new(x - 6.0, top), Pos2::new(x + 6.0, bottom));

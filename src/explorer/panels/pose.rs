@@ -45,7 +45,7 @@ impl PosePanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let (Some(known), Some(pose), Some(home)) = (session.known().cloned(), session.pose(), session.home()) else {
-            ui.weak("no design is selected");
+            ui.weak("Click a design in the scatter: here its platform is moved, and the values at the pose are shown.");
             return;
         };
         let evaluation = &known.evaluation;

@@ -1,7 +1,8 @@
 //! What the search knew as it went on: curves over the number of evaluations.
 
 use egui::{ComboBox, Ui};
-use egui_plot::{Line, Plot, PlotPoints};
+use egui_plot::{HoverPosition, Line, Plot, PlotPoints, Points};
+use std::time::Duration;
 
 use crate::explorer::{Session, theme};
 use crate::study::GenerationSummary;
@@ -24,14 +25,16 @@ enum ProgressCurve {
     Hypervolume,
     FeasibleShare,
     FrontSize,
+    TimePerDesign,
     Architectures,
 }
 
 impl ProgressCurve {
-    const ALL: [ProgressCurve; 4] = [
+    const ALL: [ProgressCurve; 5] = [
         ProgressCurve::Hypervolume,
         ProgressCurve::FeasibleShare,
         ProgressCurve::FrontSize,
+        ProgressCurve::TimePerDesign,
         ProgressCurve::Architectures,
     ];
 
@@ -40,6 +43,7 @@ impl ProgressCurve {
             ProgressCurve::Hypervolume => "hypervolume [kg·m]",
             ProgressCurve::FeasibleShare => "feasible designs [%]",
             ProgressCurve::FrontSize => "designs on the front",
+            ProgressCurve::TimePerDesign => "time for each design [ms]",
             ProgressCurve::Architectures => "candidates of each architecture [%]",
         }
     }
@@ -52,7 +56,7 @@ impl ProgressCurve {
                 Some(100.0 * generation.feasible as f64 / generation.evaluations.max(1) as f64)
             }
             ProgressCurve::FrontSize => Some(generation.front_size as f64),
-            ProgressCurve::Architectures => None,
+            ProgressCurve::TimePerDesign | ProgressCurve::Architectures => None,
         }
     }
 }
@@ -69,8 +73,12 @@ struct ArchitectureCounts {
 impl ArchitectureCounts {
     fn update(&mut self, session: &Session) {
         let store = session.store();
-        let budget = session.study().optimizer.evaluations.max(store.len());
-        let of = (session.era(), budget.div_ceil(INTERVALS).max(1));
+        // A run that is extended beyond its budget gets wider intervals only when they would be twice as many.
+        let mut width = session.study().optimizer.evaluations.div_ceil(INTERVALS).max(1);
+        while store.len() > 2 * INTERVALS * width {
+            width *= 2;
+        }
+        let of = (session.era(), width);
         if self.of != of || self.counted > store.len() {
             *self = Self { of, ..Self::default() };
         }
@@ -114,7 +122,12 @@ impl ProgressPlot {
                     ui.selectable_value(&mut self.shown, curve, curve.title());
                 }
             });
-        let lines = self.lines(ui, session);
+        let curves = self.curves(ui, session);
+        if curves.iter().all(|curve| curve.points.is_empty()) {
+            ui.weak(self.why_empty(session));
+            return;
+        }
+        let generations = marks(session.generations());
         let height = ui.available_height().clamp(60.0, 160.0);
         let mut plot = Plot::new("progress plot")
             .height(height)
@@ -122,13 +135,20 @@ impl ProgressPlot {
             .allow_zoom(false)
             .allow_scroll(false)
             .allow_boxed_zoom(false)
-            .include_y(0.0);
+            .include_y(0.0)
+            .label_formatter(move |pointed| label(pointed, &generations));
         if height >= NAMED {
             plot = plot.x_axis_label("evaluations");
         }
         let shown = plot.show(ui, |plot| {
-            for line in lines {
-                plot.line(line);
+            for curve in curves {
+                let points = PlotPoints::from(curve.points.clone());
+                plot.line(Line::new(curve.name.clone(), points).color(curve.color).width(1.6));
+                // A mark at the end of each generation, while they can be told apart.
+                if curve.points.len() <= INTERVALS {
+                    let marks = Points::new(curve.name, PlotPoints::from(curve.points));
+                    plot.points(marks.color(curve.color).radius(2.2));
+                }
             }
         });
         let name = format!("{} over evaluations", self.shown.title());
@@ -137,29 +157,92 @@ impl ProgressPlot {
             .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, &name));
     }
 
-    fn lines(&mut self, ui: &Ui, session: &Session) -> Vec<Line<'static>> {
+    /// Says why there is no curve.
+    fn why_empty(&self, session: &Session) -> &'static str {
+        match self.shown {
+            ProgressCurve::TimePerDesign if !session.generations().is_empty() => {
+                "a run that was opened states no times"
+            }
+            _ => "the curve begins with the first generation of a run",
+        }
+    }
+
+    fn curves(&mut self, ui: &Ui, session: &Session) -> Vec<Curve> {
         if self.shown == ProgressCurve::Architectures {
             self.counts.update(session);
             let dark = ui.visuals().dark_mode;
-            let of = |architecture: &Architecture| {
-                let points = PlotPoints::from(self.counts.share(*architecture));
-                Line::new(text::architecture(*architecture), points)
-                    .color(theme::architecture(*architecture, dark))
-                    .width(1.6)
+            let of = |architecture: &Architecture| Curve {
+                name: text::architecture(*architecture),
+                points: self.counts.share(*architecture),
+                color: theme::architecture(*architecture, dark),
             };
             return session.study().architectures.iter().map(of).collect();
         }
         let generations = session.generations();
-        let every = generations.len().div_ceil(MOST_POINTS).max(1);
-        let points: Vec<[f64; 2]> = generations
-            .iter()
-            .step_by(every)
-            .chain(generations.last())
-            .filter_map(|generation| Some([generation.evaluations as f64, self.shown.value(generation)?]))
-            .collect();
-        let line = Line::new(self.shown.title(), PlotPoints::from(points));
-        vec![line.color(theme::good(ui)).width(1.6)]
+        let points = if self.shown == ProgressCurve::TimePerDesign {
+            times(generations, session.generation_times())
+        } else {
+            let every = generations.len().div_ceil(MOST_POINTS).max(1);
+            let kept = generations.iter().step_by(every);
+            let last = generations
+                .last()
+                .filter(|_| !(generations.len() - 1).is_multiple_of(every));
+            kept.chain(last)
+                .filter_map(|generation| Some([generation.evaluations as f64, self.shown.value(generation)?]))
+                .collect()
+        };
+        vec![Curve {
+            name: self.shown.title().to_owned(),
+            points,
+            color: theme::good(ui),
+        }]
     }
+}
+
+/// A curve over the number of evaluations.
+struct Curve {
+    name: String,
+    points: Vec<[f64; 2]>,
+    color: egui::Color32,
+}
+
+/// Returns the time that a design took over the last generations \[ms\], over the number of evaluations.
+fn times(generations: &[GenerationSummary], ends: &[Duration]) -> Vec<[f64; 2]> {
+    let every = ends.len().div_ceil(INTERVALS).max(1);
+    let mut before = (0, Duration::ZERO);
+    let mut points = Vec::new();
+    for (generation, &end) in generations.iter().zip(ends).skip(every - 1).step_by(every) {
+        let designs = generation.evaluations.saturating_sub(before.0);
+        if designs > 0 {
+            let time = 1e3 * end.saturating_sub(before.1).as_secs_f64() / designs as f64;
+            points.push([generation.evaluations as f64, time]);
+        }
+        before = (generation.evaluations, end);
+    }
+    points
+}
+
+/// Returns the number of evaluations at the end of each generation, with the number of the generation.
+fn marks(generations: &[GenerationSummary]) -> Vec<(usize, usize)> {
+    let mark = |generation: &GenerationSummary| (generation.evaluations, generation.generation);
+    generations.iter().map(mark).collect()
+}
+
+/// Says which point of a curve the pointer is near: its generation, its number of evaluations, and its value.
+fn label(pointed: &HoverPosition<'_>, generations: &[(usize, usize)]) -> Option<String> {
+    let HoverPosition::NearDataPoint {
+        plot_name, position, ..
+    } = pointed
+    else {
+        return None;
+    };
+    let place = generations.partition_point(|(evaluations, _)| (*evaluations as f64) < position.x);
+    let (_, generation) = generations.get(place).or(generations.last())?;
+    Some(format!(
+        "generation {generation}, {:.0} evaluations\n{plot_name}: {}",
+        position.x,
+        theme::number(position.y)
+    ))
 }
 
 #[cfg(test)]
@@ -190,7 +273,10 @@ mod tests {
             front_size: 7,
             hypervolume: 3.5,
         };
+        let ends = [Duration::from_millis(800)];
+        assert_eq!(times(&[generation], &ends), [[80.0, 10.0]]);
+        assert_eq!(times(&[generation], &[]), [] as [[f64; 2]; 0], "a run that was opened");
         let values = ProgressCurve::ALL.map(|curve| curve.value(&generation));
-        assert_eq!(values, [Some(3.5), Some(25.0), Some(7.0), None]);
+        assert_eq!(values, [Some(3.5), Some(25.0), Some(7.0), None, None]);
     }
 }

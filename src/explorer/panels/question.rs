@@ -2,6 +2,7 @@
 
 use egui::{ComboBox, DragValue, Ui};
 
+use super::named;
 use crate::study::{LimitChoice, ObjectiveChoice, Study};
 use kinefront_model::evaluation::{Better, Quantity};
 
@@ -63,7 +64,7 @@ fn objectives(ui: &mut Ui, study: &mut Study) {
             if let Some(quantity) = quantities(ui, ("objective", place), &shown) {
                 *objective = choice(quantity, quantity.entry().better);
             }
-            if several && ui.small_button("×").on_hover_text("remove this objective").clicked() {
+            if several && named(ui.small_button("×"), "Remove this objective").clicked() {
                 removed = Some(place);
             }
         });
@@ -95,7 +96,7 @@ fn limits(ui: &mut Ui, study: &mut Study) {
                         .labelled_by(label.id);
                 }
             }
-            if ui.small_button("×").on_hover_text("remove this limit").clicked() {
+            if named(ui.small_button("×"), "Remove this limit").clicked() {
                 removed = Some(key.clone());
             }
         });

@@ -3,7 +3,7 @@
 use egui::{ComboBox, DragValue, Grid, ProgressBar, Ui};
 
 use super::progress::ProgressPlot;
-use crate::explorer::{Phase, Session, StudyEditor, theme};
+use crate::explorer::{Phase, Session, theme};
 use crate::study::{AlgorithmName, BUILTIN, EndReason};
 
 /// The run panel.
@@ -40,10 +40,7 @@ fn study(ui: &mut Ui, session: &mut Session) {
                 }
             });
         if let Some(builtin) = picked {
-            match StudyEditor::builtin(&builtin) {
-                Ok(editor) => session.editor = editor,
-                Err(error) => session.notify_error(error.to_string()),
-            }
+            session.edit_builtin(&builtin);
         }
         if session.editor.is_changed() {
             ui.weak("changed");
@@ -125,12 +122,20 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
         let valid = session.editor.text_fault().is_none();
         match session.phase() {
             Phase::Searching => {
-                if ui.button("⏸ Pause").clicked() {
+                if ui
+                    .button("⏸ Pause")
+                    .on_hover_text("pauses after the current generation (Space)")
+                    .clicked()
+                {
                     session.pause();
                 }
             }
             Phase::Paused => {
-                if ui.button("▶ Resume").clicked() {
+                if ui
+                    .button("▶ Resume")
+                    .on_hover_text("goes on with the search (Space)")
+                    .clicked()
+                {
                     session.resume();
                 }
             }
@@ -157,7 +162,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
         let can_step = matches!(session.phase(), Phase::Searching | Phase::Paused);
         if ui
             .add_enabled(can_step, egui::Button::new("⏭ Step"))
-            .on_hover_text("runs one generation, then pauses")
+            .on_hover_text("runs one generation, then pauses (G)")
             .on_disabled_hover_text("only while a search runs or is paused")
             .clicked()
         {

@@ -1,6 +1,6 @@
 //! The space panel: the designs in three quantities at once, by default the objectives, as points that can be turned and clicked.
 
-use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
+use egui::{Align2, FontId, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 
 use crate::explorer::{Session, theme};
 use crate::study::{Column, Row};
@@ -227,10 +227,4 @@ fn front(
     let text = format!("#{} {}\n{}", entry.id, entry.row.design.architecture, lines.join("\n"));
     response.clone().on_hover_text_at_pointer(text);
     Some(entry.id)
-}
-
-/// Colour of a fraction between a dark and a light end, for a third quantity in a plot of two.
-pub(super) fn gradient(fraction: f64) -> Color32 {
-    let color = colorous::VIRIDIS.eval_continuous(fraction.clamp(0.0, 1.0));
-    Color32::from_rgb(color.r, color.g, color.b)
 }

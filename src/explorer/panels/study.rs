@@ -2,10 +2,12 @@
 
 use std::sync::LazyLock;
 
-use egui::{CollapsingHeader, DragValue, ScrollArea, TextEdit, Ui};
+use egui::{Button, CollapsingHeader, DragValue, ScrollArea, TextEdit, Ui};
 use toml::{Table, Value};
 
+use super::named;
 use super::question;
+use super::sketch::Sketch;
 use crate::explorer::{Session, theme};
 use crate::study::{Check, Fault, Initial, Setting, Study, settings};
 
@@ -15,6 +17,8 @@ pub struct StudyPanel {
     as_text: bool,
     /// The text as typed, while it is invalid.
     typed: Option<String>,
+    /// Shows what the lengths of the first architecture are.
+    sketch: Option<Sketch>,
 }
 
 impl StudyPanel {
@@ -26,6 +30,28 @@ impl StudyPanel {
             ui.selectable_value(&mut self.as_text, true, "Text");
             ui.separator();
             save = ui.button("Save study…").clicked();
+            let history = session.editor.history();
+            let (can_undo, can_redo) = (history.can_undo(), history.can_redo());
+            let hints = (
+                "undoes the last change of the study (Ctrl+Z)",
+                "makes the undone change again (Ctrl+Shift+Z)",
+            );
+            let undo = ui.add_enabled(can_undo, Button::new("Undo"));
+            if undo
+                .on_hover_text(hints.0)
+                .on_disabled_hover_text("the study is as it was opened")
+                .clicked()
+            {
+                session.editor.undo();
+            }
+            let redo = ui.add_enabled(can_redo, Button::new("Redo"));
+            if redo
+                .on_hover_text(hints.1)
+                .on_disabled_hover_text("no change is undone")
+                .clicked()
+            {
+                session.editor.redo();
+            }
             if let Some(path) = session.editor.path() {
                 ui.weak(path.display().to_string());
             }
@@ -58,10 +84,19 @@ impl StudyPanel {
                     question::ui(ui, &mut study);
                     session.editor.change(|edited| *edited = study);
                 });
-                fields(ui, session, &faults);
+                self.follow_architecture(session);
+                fields(ui, session, &faults, self.sketch.as_ref());
             }
         });
         save
+    }
+
+    /// Sketches the first architecture of the study.
+    fn follow_architecture(&mut self, session: &Session) {
+        let first = session.editor.study().architectures.first().copied();
+        if self.sketch.as_ref().map(|sketch| sketch.architecture) != first {
+            self.sketch = first.and_then(Sketch::new);
+        }
     }
 }
 
@@ -106,7 +141,7 @@ struct Context<'a> {
 
 /// Shows a field for every setting of the study. The fields follow from the settings as they are declared, so that a new one
 /// appears in its section without a change here.
-fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault]) {
+fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault], sketch: Option<&Sketch>) {
     // The defaults do not change from frame to frame.
     static DEFAULTS: LazyLock<Table> = LazyLock::new(|| Table::try_from(Study::default()).unwrap_or_default());
     let Ok(before) = Table::try_from(session.editor.study()) else {
@@ -122,6 +157,9 @@ fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault]) {
         CollapsingHeader::new(heading)
             .default_open(matches!(heading, "Mechanism" | "Loads and accuracy" | "Bounds"))
             .show(ui, |ui| {
+                if let Some(sketch) = sketch.filter(|_| heading == "Bounds") {
+                    sketch.ui(ui);
+                }
                 for path in sections {
                     section(ui, path, &mut table, &context);
                 }
@@ -308,10 +346,11 @@ fn field(ui: &mut Ui, setting: &Setting, value: &mut Value, context: &Context<'_
         let label = ui.label(name).on_hover_text(&hint);
         edit(ui, setting, value, label.id);
         if let Some(default) = default.filter(|_| is_changed)
-            && ui
-                .small_button("⟲")
-                .on_hover_text(format!("back to {}", short_value(default)))
-                .clicked()
+            && named(
+                ui.small_button("⟲"),
+                &format!("{} back to {}", setting.title(), short_value(default)),
+            )
+            .clicked()
         {
             *value = default.clone();
         }

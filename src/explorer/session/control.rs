@@ -8,17 +8,25 @@ use std::time::{Duration, Instant};
 use super::super::{FrontEntry, Store, StudyEditor};
 use super::{GLANCE, Phase, Session, references};
 use crate::AnyError;
-use crate::explorer::data::{Document, Origin, Selected};
+use crate::explorer::data::{DesignOrigin, Document, Selected};
 use crate::explorer::files::{Opened, open, run_folder_of};
 use crate::explorer::threads::Request;
 use crate::explorer::threads::Running;
 use crate::recording::FrontPoint;
-use crate::study::{Resumption, RunControl, Study, Subscriber, spawn};
+use crate::study::{Builtin, Resumption, RunControl, Study, Subscriber, spawn};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Design;
 use kinefront_optimize::{Objectives, knee};
 
 impl Session {
+    /// Puts a built-in study into the editor.
+    pub fn edit_builtin(&mut self, builtin: &Builtin) {
+        match StudyEditor::builtin(builtin) {
+            Ok(editor) => self.editor = editor,
+            Err(error) => self.notify_error(error),
+        }
+    }
+
     /// Starts a run of the study in the editor; a run in progress is abandoned.
     pub fn start(&mut self) {
         if let Some(fault) = self.editor.text_fault() {
@@ -132,6 +140,7 @@ impl Session {
         self.as_run = study;
         self.store = Store::default();
         self.generations.clear();
+        self.generation_times.clear();
         self.set_front(Vec::new());
         self.threads = None;
         self.era += 1;
@@ -209,7 +218,10 @@ impl Session {
         if let Some(run) = &mut self.run {
             let mut messages = run.intake.take();
             self.store.append(&mut messages.rows);
-            self.generations.append(&mut messages.history);
+            for (generation, at) in messages.history {
+                self.generations.push(generation);
+                self.generation_times.push(run.elapsed_at(at));
+            }
             self.threads = messages.threads.or(self.threads);
             if let Some((done, total)) = messages.verifying {
                 self.phase = Phase::Verifying { done, total };
@@ -260,7 +272,7 @@ impl Session {
         if let Some(entry) = self.knee().map(|place| &self.front[place]) {
             let selected = Selected {
                 design: entry.row.design,
-                origin: Origin::Evaluated(entry.id),
+                origin: DesignOrigin::Evaluated(entry.id),
             };
             self.history.follow(|document| document.selected = Some(selected));
             self.followed = Some(Instant::now());
@@ -306,7 +318,7 @@ impl Session {
     fn verified(&self, design: &Design) -> Option<Arc<Evaluation>> {
         let of_front = || {
             let id = match self.document().selected.as_ref()?.origin {
-                Origin::Evaluated(id) => id,
+                DesignOrigin::Evaluated(id) => id,
                 _ => return None,
             };
             self.front[*self.place_on_front.get(&id)?].evaluation.clone()

@@ -10,13 +10,14 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::data::{Document, History, Named, Origin, Selected};
+pub use self::selection::MarkedCounts;
+use super::data::{DesignOrigin, Document, History, Named, Selected};
 use super::threads::{Answer, Known, SceneThread};
 use super::threads::{Running, Writing};
 use super::{Filter, FrontEntry, Row, Store, StudyEditor};
 use crate::recording::{FrontPoint, LiveScene, Viewpoint, VisibleLayers};
 use crate::scene::{FieldLegend, WorkspaceProof};
-use crate::study::{CertifiedRadius, EndReason, GenerationSummary, Study};
+use crate::study::{CertifiedRadius, Column, EndReason, GenerationSummary, Study};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::spatial::Pose;
 
@@ -101,7 +102,7 @@ pub struct Session {
     /// Messages to the user.
     pub notices: Vec<Notice>,
     /// The user's selection, pins, kept designs, stars, notes and filter, with their earlier states.
-    pub history: History,
+    pub history: History<Document>,
     as_run: Arc<Study>,
     model: Model,
     run: Option<Running>,
@@ -115,6 +116,8 @@ pub struct Session {
     /// Number of the front and the filter that `front_points` shows.
     front_drawn: Option<(u64, Filter)>,
     generations: Vec<GenerationSummary>,
+    /// Working time of the run at the end of each generation; none for a run that was opened.
+    generation_times: Vec<Duration>,
     references: Vec<ReferenceMark>,
     scene: SceneThread,
     answer: Answer,
@@ -156,6 +159,7 @@ impl Session {
             front_number: 0,
             front_drawn: None,
             generations: Vec::new(),
+            generation_times: Vec::new(),
             scene: SceneThread::start(scene, move || waking())?,
             answer: Answer::default(),
             requested: 0,
@@ -210,10 +214,23 @@ impl Session {
         }
     }
 
+    /// Returns a value of design `id`: from the front if it is on it, otherwise from the store.
+    pub fn number(&self, id: usize, quantity: Column) -> Option<f64> {
+        match self.place_on_front(id) {
+            Some(place) => self.front[place].row.number(quantity),
+            None => self
+                .store
+                .column(quantity)
+                .get(id)
+                .copied()
+                .filter(|value| value.is_finite()),
+        }
+    }
+
     /// Returns what the front states about the workspace of the selected design, if it is a design of a certified front.
     pub fn certified(&self) -> Option<CertifiedRadius> {
         match self.document().selected.as_ref()?.origin {
-            Origin::Evaluated(id) => self.front[self.place_on_front(id)?].certified,
+            DesignOrigin::Evaluated(id) => self.front[self.place_on_front(id)?].certified,
             _ => None,
         }
     }
@@ -230,6 +247,11 @@ impl Session {
     /// Returns the summary of each generation.
     pub fn generations(&self) -> &[GenerationSummary] {
         &self.generations
+    }
+
+    /// Returns the working time of the run at the end of each generation; none for a run that was opened.
+    pub fn generation_times(&self) -> &[Duration] {
+        &self.generation_times
     }
 
     /// Returns the phase of the run.
@@ -312,11 +334,11 @@ impl Session {
     pub fn selected_name(&self) -> Option<String> {
         let document = self.document();
         Some(match &document.selected.as_ref()?.origin {
-            Origin::Evaluated(id) => format!("#{id}"),
-            Origin::Modified { from: Some(id) } => format!("modified from #{id}"),
-            Origin::Modified { from: None } => "modified".to_owned(),
-            Origin::Kept(index) => document.kept.get(*index).map_or("kept", |kept| &kept.name).to_owned(),
-            Origin::Reference(index) => self
+            DesignOrigin::Evaluated(id) => format!("#{id}"),
+            DesignOrigin::Modified { from: Some(id) } => format!("modified from #{id}"),
+            DesignOrigin::Modified { from: None } => "modified".to_owned(),
+            DesignOrigin::Kept(index) => document.kept.get(*index).map_or("kept", |kept| &kept.name).to_owned(),
+            DesignOrigin::Reference(index) => self
                 .references
                 .get(*index)
                 .map_or("reference", |reference| &reference.name)
@@ -329,7 +351,7 @@ impl Session {
         matches!(
             self.document().selected,
             Some(Selected {
-                origin: Origin::Modified { .. },
+                origin: DesignOrigin::Modified { .. },
                 ..
             })
         )

@@ -1,10 +1,25 @@
 //! Selection of designs by hand, by key and in the scene; modified designs, pins and stars.
 
+use std::sync::Arc;
+
 use super::{MOST_PINS, Session};
-use crate::explorer::data::{Named, Origin, Selected};
+use crate::explorer::data::{DesignOrigin, Named, Selected};
 use crate::recording::Picked;
-use kinefront_model::mechanism::{Design, DesignError, DesignVariable};
+use kinefront_model::mechanism::{Architecture, Design, DesignError, DesignVariable};
 use kinefront_model::spatial::Pose;
+
+/// Numbers of marked designs.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct MarkedCounts {
+    /// All of them.
+    pub all: usize,
+    /// Those that are feasible.
+    pub feasible: usize,
+    /// Those on the front.
+    pub on_front: usize,
+    /// Those of each architecture.
+    pub of: Vec<(Architecture, usize)>,
+}
 
 impl Session {
     /// Selects a design of the run.
@@ -12,7 +27,7 @@ impl Session {
         if let Some(row) = self.row(id) {
             self.select_design(Selected {
                 design: row.design,
-                origin: Origin::Evaluated(id),
+                origin: DesignOrigin::Evaluated(id),
             });
         }
     }
@@ -43,7 +58,7 @@ impl Session {
             .collect();
         let here = match self.document().selected {
             Some(Selected {
-                origin: Origin::Evaluated(id),
+                origin: DesignOrigin::Evaluated(id),
                 ..
             }) => passing.iter().position(|&other| other == id),
             _ => None,
@@ -88,10 +103,10 @@ impl Session {
         let id = named.name.strip_prefix('#').and_then(|id| id.parse().ok());
         let origin = match id {
             // After a new run, the number may belong to another design.
-            Some(id) if self.store().design(id) == Some(named.design) => Origin::Evaluated(id),
+            Some(id) if self.store().design(id) == Some(named.design) => DesignOrigin::Evaluated(id),
             _ => match self.document().kept.iter().position(|kept| kept.design == named.design) {
-                Some(index) => Origin::Kept(index),
-                None => Origin::Modified { from: None },
+                Some(index) => DesignOrigin::Kept(index),
+                None => DesignOrigin::Modified { from: None },
             },
         };
         self.select_design(Selected {
@@ -117,16 +132,16 @@ impl Session {
         match change(&selected.design) {
             Ok(design) => {
                 let from = match selected.origin {
-                    Origin::Evaluated(id) => Some(id),
-                    Origin::Modified { from } => from,
-                    Origin::Kept(_) | Origin::Reference(_) => None,
+                    DesignOrigin::Evaluated(id) => Some(id),
+                    DesignOrigin::Modified { from } => from,
+                    DesignOrigin::Kept(_) | DesignOrigin::Reference(_) => None,
                 };
                 self.following = false;
                 self.staging.pose = None;
                 self.history.drag(gesture, |document| {
                     document.selected = Some(Selected {
                         design,
-                        origin: Origin::Modified { from },
+                        origin: DesignOrigin::Modified { from },
                     });
                 });
             }
@@ -139,7 +154,7 @@ impl Session {
         match Design::parse(text.trim(), self.as_run.working_mode) {
             Ok(design) => self.select_design(Selected {
                 design,
-                origin: Origin::Modified { from: None },
+                origin: DesignOrigin::Modified { from: None },
             }),
             Err(error) => self.notify_error(format!("the pasted text is not a design: {error}")),
         }
@@ -157,16 +172,84 @@ impl Session {
                 design: selected.design,
             });
             document.selected = Some(Selected {
-                origin: Origin::Kept(document.kept.len() - 1),
+                origin: DesignOrigin::Kept(document.kept.len() - 1),
                 ..selected
             });
         });
     }
 
+    /// Returns whether there is a step to undo, of the study or of what was selected, marked and noted.
+    pub fn can_undo(&self) -> bool {
+        self.history.can_undo() || self.editor.history().can_undo()
+    }
+
+    /// Returns whether there is a step to redo.
+    pub fn can_redo(&self) -> bool {
+        self.history.can_redo() || self.editor.history().can_redo()
+    }
+
+    /// Undoes the last step, of the study or of what was selected, marked and noted.
+    pub fn undo(&mut self) {
+        if self.editor.history().last_step() > self.history.last_step() {
+            self.editor.undo();
+            self.notify("a change of the study is undone".to_owned());
+        } else {
+            self.history.undo();
+        }
+    }
+
+    /// Redoes the step that was undone last.
+    pub fn redo(&mut self) {
+        if self.editor.history().last_undone() > self.history.last_undone() {
+            self.editor.redo();
+            self.notify("a change of the study is made again".to_owned());
+        } else {
+            self.history.redo();
+        }
+    }
+
+    /// Ends the gestures to which changes by hand belong.
+    pub fn end_gestures(&mut self) {
+        self.history.end_gesture();
+        self.editor.end_gesture();
+    }
+
+    /// Marks designs of the run; `ids` are in order.
+    pub fn mark(&mut self, ids: Arc<Vec<usize>>) {
+        self.history.edit(|document| document.marked = ids);
+    }
+
+    /// Counts the marked designs: all of them, those that are feasible, those on the front, and those of each architecture of the
+    /// study.
+    pub fn count_marked(&self) -> MarkedCounts {
+        let mut counts = MarkedCounts {
+            of: self.study().architectures.iter().map(|&found| (found, 0)).collect(),
+            ..MarkedCounts::default()
+        };
+        for &id in self.document().marked.iter() {
+            let place = self.place_on_front(id);
+            let (architecture, feasible) = match place {
+                Some(place) => {
+                    let row = &self.front[place].row;
+                    (row.design.architecture, row.is_feasible())
+                }
+                None if id < self.store.len() => (self.store.architecture(id), self.store.is_feasible(id)),
+                None => continue,
+            };
+            counts.all += 1;
+            counts.feasible += usize::from(feasible);
+            counts.on_front += usize::from(place.is_some());
+            if let Some((_, count)) = counts.of.iter_mut().find(|(found, _)| *found == architecture) {
+                *count += 1;
+            }
+        }
+        counts
+    }
+
     /// Adds or removes the star of the selected design, if it is a design of the run.
     pub fn toggle_star(&mut self) {
         if let Some(Selected {
-            origin: Origin::Evaluated(id),
+            origin: DesignOrigin::Evaluated(id),
             ..
         }) = self.document().selected
         {

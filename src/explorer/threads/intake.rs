@@ -2,6 +2,7 @@
 
 use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 use crate::explorer::{FrontEntry, Store};
 use crate::study::{Event, GenerationSummary, RunSummary};
@@ -13,8 +14,8 @@ pub struct RunMessages {
     pub rows: Store,
     /// The current front, if it has changed.
     pub front: Option<Vec<FrontEntry>>,
-    /// Summaries of the completed generations.
-    pub history: Vec<GenerationSummary>,
+    /// Summaries of the completed generations, and when they arrived.
+    pub history: Vec<(GenerationSummary, Instant)>,
     /// Number of worker threads, reported once per run.
     pub threads: Option<usize>,
     /// Number of designs verified so far, and number of designs to verify.
@@ -73,7 +74,7 @@ impl Intake {
                     let front = front.iter().map(|entry| FrontEntry::of_row(entry, false)).collect();
                     self.put(|messages| messages.front = Some(front));
                 }
-                Event::Generation(summary) => self.put(|messages| messages.history.push(*summary)),
+                Event::Generation(summary) => self.put(|messages| messages.history.push((*summary, Instant::now()))),
                 Event::Verifying { done, total } => self.put(|messages| messages.verifying = Some((*done, *total))),
                 Event::Finished(summary) => {
                     let front = summary.front.iter().map(FrontEntry::of_member).collect();

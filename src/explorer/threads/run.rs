@@ -197,6 +197,12 @@ impl Running {
         self.clock.worked + self.clock.since.map_or(Duration::ZERO, |since| since.elapsed())
     }
 
+    /// Returns the working time until an earlier moment.
+    pub fn elapsed_at(&self, moment: Instant) -> Duration {
+        let since = self.clock.since.map(|since| moment.saturating_duration_since(since));
+        self.clock.worked + since.unwrap_or_default()
+    }
+
     /// Starts the clock if `counting`, otherwise stops it.
     pub fn count_time(&mut self, counting: bool) {
         match (self.clock.since, counting) {

@@ -4,8 +4,8 @@ use maud::{Markup, html};
 
 use super::results::levels;
 use super::{cell, change, figures, optional, paper};
-use crate::report::assumptions::AS_STATED;
-use crate::report::{ALTERNATIVES, Alternative, Front, Report, Variation};
+use crate::report::{Front, Report, Variation};
+use crate::study::sensitivity::{ALTERNATIVES, AS_STATED, Alternative};
 use crate::text::{number, short};
 use kinefront_model::mechanism::Architecture;
 

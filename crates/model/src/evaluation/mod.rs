@@ -30,7 +30,7 @@ pub use crate::stiffness::Contribution;
 pub use constraint::{Constraint, ConstraintResult};
 pub use members::MemberReport;
 pub use model::{GridChoice, Model, ModelSettings};
-pub use pose::{PoseEvaluation, Unreachable};
+pub use pose::{PoseEvaluation, PosedDesign, Unreachable};
 pub use quantity::{
     Better, Bound, LimitResult, Objective, Quantity, QuantityEntry, QuantityLimit, QuantitySet, QuantityValues, Scope,
 };

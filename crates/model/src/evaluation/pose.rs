@@ -5,9 +5,10 @@ use nalgebra::Matrix6;
 use super::{Constraint, Model};
 use crate::clearance::Clearance;
 use crate::kinematics::Jacobian;
-use crate::mechanism::{AnyLeg, Design, Leg, ReachReason, Shortfall};
+use crate::mechanism::{AnyLeg, Design, Leg as _, ReachReason, Shortfall};
 use crate::spatial::{LEGS, Pose};
 use crate::stiffness::StiffnessValues;
+use crate::workspace::PoseChecker;
 
 /// Values of a design at a reachable pose.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,23 +57,11 @@ impl Model {
     /// Returns the margin of a constraint at a pose, in doubles; that of g2 at a pose that is not reached, and for a constraint that
     /// has no value there, is the shortfall of the leg. The margin of `det_sign` is the absolute value.
     pub fn margin_at(&self, design: &Design, pose: &Pose, constraint: Constraint) -> f64 {
-        let assembly = self.assembly(design);
-        let value = match self.pose(design, pose) {
-            Err(unreachable) => {
-                return Constraint::Reach.margin(unreachable.shortfall.limit_margin, 0.0, design);
-            }
-            Ok(found) => match constraint {
-                Constraint::Assembly => assembly.value,
-                Constraint::Reach => found.limit_margin,
-                Constraint::Dexterity => found.inverse_condition,
-                Constraint::StiffnessXy => found.stiffness_values.k_xy,
-                Constraint::StiffnessZ => found.stiffness_values.k_z,
-                Constraint::StiffnessPhiZ => found.stiffness_values.k_phi_z,
-                Constraint::DeterminantSign => found.determinant.abs(),
-                Constraint::Clearance => found.clearance.distance,
-            },
-        };
-        constraint.margin(value, constraint.threshold(&assembly, &self.thresholds), design)
+        let posed = self.posed(design);
+        match posed.at(pose) {
+            Err(unreachable) => Constraint::Reach.margin(unreachable.shortfall.limit_margin, 0.0, design),
+            Ok(found) => posed.margins(&found)[constraint as usize],
+        }
     }
 
     /// Evaluates `design` at `pose`.
@@ -80,8 +69,33 @@ impl Model {
     /// # Errors
     /// The leg that does not reach the pose, and why.
     pub fn pose(&self, design: &Design, pose: &Pose) -> Result<PoseEvaluation, Unreachable> {
-        let checker = self.checker::<AnyLeg>(design);
-        let driven = design.architecture.driven();
+        self.posed(design).at(pose)
+    }
+
+    /// Prepares `design` for its evaluation at many poses.
+    pub fn posed(&self, design: &Design) -> PosedDesign {
+        PosedDesign {
+            design: *design,
+            checker: self.checker(design),
+        }
+    }
+}
+
+/// A design that is prepared for its evaluation at many poses: what does not depend on the pose is computed once.
+#[derive(Debug)]
+pub struct PosedDesign {
+    design: Design,
+    checker: PoseChecker<AnyLeg>,
+}
+
+impl PosedDesign {
+    /// Evaluates the design at `pose`.
+    ///
+    /// # Errors
+    /// The leg that does not reach the pose, and why.
+    pub fn at(&self, pose: &Pose) -> Result<PoseEvaluation, Unreachable> {
+        let checker = &self.checker;
+        let driven = self.design.architecture.driven();
         let posture = checker
             .manipulator
             .posture(pose)
@@ -95,9 +109,28 @@ impl Model {
             limit_margin: posture.limit_margin,
             inverse_condition: jacobian.inverse_condition(checker.length),
             determinant: jacobian.determinant() / checker.length,
-            stiffness_values: stiffness.stiffness_values(self.stiffness_definition),
+            stiffness_values: stiffness.stiffness_values(checker.definition),
             clearance: checker.nearest(pose.position, &posture),
             stiffness: stiffness.matrix(),
+        })
+    }
+
+    /// Returns the margins of all constraints at a pose that is reached, in the order of [`Constraint::ALL`]; that of `det_sign` is
+    /// the absolute value.
+    pub fn margins(&self, found: &PoseEvaluation) -> [f64; Constraint::ALL.len()] {
+        Constraint::ALL.map(|constraint| {
+            let value = match constraint {
+                Constraint::Assembly => self.checker.assembly.value,
+                Constraint::Reach => found.limit_margin,
+                Constraint::Dexterity => found.inverse_condition,
+                Constraint::StiffnessXy => found.stiffness_values.k_xy,
+                Constraint::StiffnessZ => found.stiffness_values.k_z,
+                Constraint::StiffnessPhiZ => found.stiffness_values.k_phi_z,
+                Constraint::DeterminantSign => found.determinant.abs(),
+                Constraint::Clearance => found.clearance.distance,
+            };
+            let threshold = constraint.threshold(&self.checker.assembly, &self.checker.thresholds);
+            constraint.margin(value, threshold, &self.design)
         })
     }
 }

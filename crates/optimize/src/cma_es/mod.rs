@@ -125,7 +125,7 @@ struct Placed<S> {
 impl CmaEs {
     /// Creates the algorithm in its state before the first generation.
     pub fn new(variables: Vec<Variable>, settings: CmaEsSettings, seed: u64) -> Self {
-        let niches = super::front_de::combinations(&variables)
+        let niches = super::categories::combinations(&variables)
             .into_iter()
             .map(|categories| StrategyNiche {
                 categories,
@@ -161,7 +161,7 @@ impl CmaEs {
             .enumerate()
             .map(|(index, mut x)| {
                 let niche = index % self.niches.len();
-                super::front_de::set_categories(&self.variables, &mut x, &self.niches[niche].categories);
+                super::categories::set_categories(&self.variables, &mut x, &self.niches[niche].categories);
                 (niche, x)
             })
             .collect()

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
 
+use super::coloring::{ColorScale, Coloring, density};
 use crate::explorer::data::PreparedFilter;
 use crate::explorer::{Store, theme};
 
@@ -19,6 +20,8 @@ pub struct View {
     pub low: [f64; 2],
     /// Largest coordinates shown.
     pub high: [f64; 2],
+    /// Colours of the values of the quantity that the colour tells, if it tells one.
+    pub scale: Option<ColorScale>,
     /// Everything else that determines the pixels.
     pub style: Style,
 }
@@ -32,6 +35,8 @@ pub struct Style {
     pub era: u64,
     /// Text of the filter.
     pub filter: String,
+    /// What the colour of a design tells.
+    pub coloring: Coloring,
     /// Whether the background is dark.
     pub dark: bool,
 }
@@ -54,6 +59,9 @@ const SMALL: [u8; 5] = [0, 0b01110, 0b01110, 0b01110, 0];
 /// Number of designs above which all marks are small.
 const CROWD: usize = 100_000;
 
+/// Width and height of the cells in which designs are counted \[pixels\].
+const CELL: usize = 4;
+
 struct CloudImage {
     view: View,
     pixels: Vec<Color32>,
@@ -61,6 +69,8 @@ struct CloudImage {
     rank: Vec<u8>,
     /// Id of the design that each pixel shows.
     ids: Vec<u32>,
+    /// Number of feasible designs that pass the filter in each cell, row by row; empty unless the colour tells it.
+    counts: Vec<u32>,
     /// Number of designs drawn so far.
     drawn: usize,
 }
@@ -68,10 +78,15 @@ struct CloudImage {
 impl CloudImage {
     fn new(view: View) -> Self {
         let count = view.size[0] * view.size[1];
+        let cells = match view.style.coloring {
+            Coloring::Density => view.size[0].div_ceil(CELL) * view.size[1].div_ceil(CELL),
+            _ => 0,
+        };
         Self {
             pixels: vec![Color32::TRANSPARENT; count],
             rank: vec![0; count],
             ids: vec![NOBODY; count],
+            counts: vec![0; cells],
             drawn: 0,
             view,
         }
@@ -90,7 +105,11 @@ impl CloudImage {
             .iter()
             .map(|&architecture| theme::architecture(architecture, dark))
             .collect();
-        let crowded = store.len() > CROWD;
+        let crowded = store.len() > CROWD || !self.counts.is_empty();
+        let values = match self.view.style.coloring {
+            Coloring::Quantity(column) => self.view.scale.map(|scale| (scale, store.column(column))),
+            _ => None,
+        };
         let place = |value: f64, log: bool| if log { value.max(1e-12).log10() } else { value };
         while self.drawn < store.len() && Instant::now() < deadline {
             let end = (self.drawn + BATCH).min(store.len());
@@ -104,10 +123,15 @@ impl CloudImage {
                 let feasible = store.is_feasible(id);
                 let passes_filter = prepared.passes(id);
                 let index = theme::index(store.architecture(id));
+                let told = match values {
+                    Some((scale, values)) if feasible => scale.color(values[id]),
+                    _ => None,
+                };
+                let color = told.unwrap_or(colors[index]);
                 let (rank, color) = match (passes_filter, feasible) {
-                    (true, true) => (4, theme::mix(colors[index], ground, 0.85)),
+                    (true, true) => (4, theme::mix(color, ground, 0.85)),
                     (true, false) => (3, theme::infeasible(dark)),
-                    (false, true) => (2, theme::mix(colors[index], ground, 0.16)),
+                    (false, true) => (2, theme::mix(color, ground, 0.16)),
                     (false, false) => (1, theme::mix(theme::infeasible(dark), ground, 0.22)),
                 };
                 let mark = if crowded || rank < 4 {
@@ -116,6 +140,10 @@ impl CloudImage {
                     &MARKS[index % MARKS.len()]
                 };
                 self.stamp(mark, column as usize, row as usize, rank, color, id as u32);
+                if rank == 4 && !self.counts.is_empty() {
+                    let cell = row as usize / CELL * size[0].div_ceil(CELL) + column as usize / CELL;
+                    self.counts[cell] += 1;
+                }
             }
             self.drawn = end;
         }
@@ -142,6 +170,29 @@ impl CloudImage {
                 }
             }
         }
+    }
+}
+
+impl CloudImage {
+    /// Returns the number of designs in the fullest cell.
+    fn most(&self) -> u32 {
+        self.counts.iter().copied().max().unwrap_or(0)
+    }
+
+    /// Returns the picture; where the colour tells the number of designs, the cells are drawn over the marks.
+    fn colored(&self) -> ColorImage {
+        let [width, height] = self.view.size;
+        let mut pixels = self.pixels.clone();
+        let (most, dark) = (self.most(), self.view.style.dark);
+        let across = width.div_ceil(CELL);
+        for (cell, &count) in self.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+            let color = density(count, most, dark);
+            let (left, top) = (cell % across * CELL, cell / across * CELL);
+            for y in top..(top + CELL).min(height) {
+                pixels[y * width + left..y * width + (left + CELL).min(width)].fill(color);
+            }
+        }
+        ColorImage::new(self.view.size, pixels)
     }
 }
 
@@ -192,11 +243,17 @@ impl Cloud {
         let Some(shown) = &self.shown else {
             return;
         };
-        let image = ColorImage::new(shown.view.size, shown.pixels.clone());
+        let image = shown.colored();
         match &mut self.texture {
             Some(texture) => texture.set(image, TextureOptions::NEAREST),
             None => self.texture = Some(ctx.load_texture("designs", image, TextureOptions::NEAREST)),
         }
+    }
+
+    /// Returns the largest number of designs in one place; none unless the colour tells it.
+    pub fn most(&self) -> Option<u32> {
+        let shown = self.shown.as_ref()?;
+        (!shown.counts.is_empty()).then(|| shown.most())
     }
 
     /// Returns the picture with its smallest and largest coordinates.

@@ -5,7 +5,7 @@ use egui::{Align2, Color32};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points, Text};
 
 use super::Scatter;
-use crate::explorer::panels::space::gradient;
+use super::coloring::{ColorScale, Coloring};
 use crate::explorer::{FrontEntry, Row, Session, theme};
 use kinefront_model::mechanism::Architecture;
 use kinefront_optimize::{Objectives, knee};
@@ -73,28 +73,11 @@ impl Scatter {
         Some(line.color(colors.ink).width(1.2).allow_hover(false))
     }
 
-    /// The column of the third objective, which the designs of the front have as colour; `None` for fewer objectives.
-    pub(super) fn third_objective(session: &Session) -> Option<Column> {
-        let objectives = session.study().objectives();
-        objectives
-            .get(2)
-            .map(|objective| Column::of_quantity(objective.quantity))
-    }
-
-    /// The designs of the front in the colours of a column.
-    fn in_colors<'a>(&self, session: &Session, column: Column) -> Vec<LabelledPoints<'a>> {
+    /// The designs of the front in the colours of a quantity.
+    fn in_colors<'a>(&self, session: &Session, column: Column, scale: ColorScale) -> Vec<LabelledPoints<'a>> {
         let prepared = session.document().filter.prepare(session.store());
-        let value = |entry: &FrontEntry| entry.row.number(column);
-        let [low, high] = session
-            .front()
-            .iter()
-            .filter_map(value)
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-                [low.min(value), high.max(value)]
-            });
         let mark = |entry: &FrontEntry| {
-            let fraction = (value(entry)? - low) / (high - low).max(f64::MIN_POSITIVE);
-            let color = gradient(fraction);
+            let color = scale.color(entry.row.number(column)?)?;
             let color = if prepared.passes_entry(entry) {
                 color
             } else {
@@ -107,11 +90,10 @@ impl Scatter {
         session.front().iter().filter_map(mark).collect()
     }
 
-    /// The designs of the front by architecture; those that do not pass the filter are dimmed. With three objectives the colour
-    /// tells the third.
+    /// The designs of the front by architecture, or in the colours of a quantity; those that do not pass the filter are dimmed.
     fn designs<'a>(&self, session: &Session, colors: Colors) -> Vec<LabelledPoints<'a>> {
-        if let Some(third) = Self::third_objective(session) {
-            return self.in_colors(session, third);
+        if let (Coloring::Quantity(column), Some(scale)) = (self.coloring, self.scale) {
+            return self.in_colors(session, column, scale);
         }
         let prepared = session.document().filter.prepare(session.store());
         let of = |architecture: Architecture, passes: bool| {

@@ -2,21 +2,28 @@
 
 mod axis;
 mod cloud;
+mod coloring;
+mod enclosing;
 mod marks;
 
 use crate::study::Column;
 use crate::text;
 use kinefront_model::evaluation::Better;
-use kinefront_model::mechanism::DesignVariable;
+use kinefront_model::mechanism::{Architecture, DesignVariable};
+use std::sync::Arc;
 use std::time::Duration;
 
-use egui::{Align2, Color32, ComboBox, Pos2, Response, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
+use egui::{Align2, Color32, ComboBox, Pos2, Rect, Response, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 use egui_plot::{Plot, PlotBounds, PlotImage, PlotPoint, PlotTransform};
 
 use self::axis::{Extent, decades, tick};
 pub use self::axis::{ScatterAxis, axes};
 use self::cloud::{Cloud, Style, View};
-use crate::explorer::{Row, Session, theme};
+pub use self::coloring::Coloring;
+use self::coloring::{ColorLegend, ColorRange, ColorScale};
+pub use self::enclosing::DragTool;
+use self::enclosing::Enclosing;
+use crate::explorer::{MarkedCounts, Row, Session, theme};
 
 /// Time that a frame may spend on drawing the cloud.
 const BUDGET: Duration = Duration::from_millis(4);
@@ -29,6 +36,14 @@ pub struct Scatter {
     /// Whether the view is fitted to the designs in every frame.
     fitted: bool,
     transform: Option<PlotTransform>,
+    coloring: Coloring,
+    color_range: ColorRange,
+    /// Colours of the quantity that the colour tells, if it tells one.
+    scale: Option<ColorScale>,
+    tool: DragTool,
+    enclosing: Enclosing,
+    /// The marked designs that were counted last, with their counts.
+    counted: Option<(Arc<Vec<usize>>, u64, MarkedCounts)>,
     /// Columns of the objectives that the axes last followed.
     followed: Option<Vec<Column>>,
 }
@@ -57,8 +72,24 @@ impl Scatter {
             extent: Extent::default(),
             fitted: true,
             transform: None,
+            coloring: Coloring::default(),
+            color_range: ColorRange::default(),
+            scale: None,
+            tool: DragTool::default(),
+            enclosing: Enclosing::default(),
+            counted: None,
             followed: None,
         }
+    }
+
+    /// Sets what dragging does.
+    pub fn set_tool(&mut self, tool: DragTool) {
+        self.tool = tool;
+    }
+
+    /// Sets what the colours tell.
+    pub fn set_coloring(&mut self, coloring: Coloring) {
+        self.coloring = coloring;
     }
 
     /// Returns the axes.
@@ -81,6 +112,11 @@ impl Scatter {
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         self.follow_objectives(session);
         self.controls(ui, session);
+        self.marked(ui, session);
+        self.scale = match self.coloring {
+            Coloring::Quantity(column) => Some(self.color_range.update(column, session.era(), session.store())),
+            _ => None,
+        };
         let bounds = self.bounds(session);
         let dark = ui.visuals().dark_mode;
         let (lines, marks) = self.front(session, dark);
@@ -112,12 +148,71 @@ impl Scatter {
         });
         self.transform = Some(shown.transform);
         self.follow_pointer(ui, &shown.response);
+        self.enclosing
+            .follow(ui, &shown.response, self.tool, self.axes, &shown.transform, session);
         shown
             .response
             .widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "Scatter of designs"));
         self.pointed(&shown.response, session);
         self.draw_cloud(ui, session, dark);
         self.arrows(ui);
+        if session.store().is_empty() {
+            self.say_empty(ui);
+        }
+        self.legend(ui, *shown.transform.frame(), dark);
+    }
+
+    /// Tells how many designs are marked, and what can be done with them.
+    fn marked(&mut self, ui: &mut Ui, session: &mut Session) {
+        let marked = Arc::clone(&session.document().marked);
+        if marked.is_empty() {
+            return;
+        }
+        let front = session.front_number();
+        let is_counted =
+            |counted: &(Arc<Vec<usize>>, u64, MarkedCounts)| Arc::ptr_eq(&counted.0, &marked) && counted.1 == front;
+        if !self.counted.as_ref().is_some_and(is_counted) {
+            self.counted = Some((Arc::clone(&marked), front, session.count_marked()));
+        }
+        let Some((_, _, counts)) = &self.counted else { return };
+        ui.horizontal_wrapped(|ui| {
+            ui.strong(format!("{} marked", counts.all));
+            let of = counts.of.iter().filter(|(_, count)| *count > 0);
+            let of: Vec<String> = of
+                .map(|(found, count)| format!("{} {count}", text::architecture(*found)))
+                .collect();
+            ui.label(format!(
+                "{} feasible, {} on the front; {}",
+                counts.feasible,
+                counts.on_front,
+                of.join(", ")
+            ));
+            let hint = "lets only designs pass that lie in the ranges of the marked ones on both axes";
+            if ui.button("Filter").on_hover_text(hint).clicked() {
+                self.filter_to_marked(session);
+            }
+            if ui.button("Unmark").on_hover_text("marks no design").clicked() {
+                session.mark(Arc::default());
+            }
+        });
+    }
+
+    /// Sets the filter to the ranges of the marked designs on both axes.
+    fn filter_to_marked(&self, session: &mut Session) {
+        let of_axis = |axis: &ScatterAxis| {
+            let ids = session.document().marked.iter();
+            let values = ids.filter_map(|&id| session.number(id, axis.quantity));
+            let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+                [low.min(value), high.max(value)]
+            });
+            (axis.quantity, range)
+        };
+        let ranges = self.axes.each_ref().map(of_axis);
+        session.history.edit(|document| {
+            for (quantity, [low, high]) in ranges.into_iter().filter(|(_, [low, high])| low <= high) {
+                document.filter.set_range(quantity, Some([low, high]));
+            }
+        });
     }
 
     /// Shows the objectives of the study when they are other ones than before.
@@ -138,6 +233,20 @@ impl Scatter {
             log: quantity.is_logarithmic(),
         });
         self.fitted = true;
+        self.coloring = columns
+            .get(2)
+            .copied()
+            .map_or(Coloring::Architecture, Coloring::Quantity);
+    }
+
+    /// Tells what the colours mean, unless they are those of the architectures.
+    fn legend(&self, ui: &Ui, frame: Rect, dark: bool) {
+        let legend = match (self.scale, self.cloud.most()) {
+            (Some(scale), _) => ColorLegend::of_scale(&scale),
+            (None, Some(most)) => ColorLegend::of_density(most, dark),
+            (None, None) => return,
+        };
+        legend.paint(ui, frame);
     }
 
     /// Bounds that hold every feasible design and every reference design.
@@ -160,6 +269,7 @@ impl Scatter {
             .x_axis_label(x_axis.title())
             .y_axis_label(y_axis.title())
             .allow_scroll(false)
+            .allow_drag(self.tool == DragTool::Pan)
             .allow_double_click_reset(false)
             .show_crosshair(false)
             .cursor_color(Color32::TRANSPARENT)
@@ -177,7 +287,8 @@ impl Scatter {
     /// Keeps the bounds where the user moves them; a double click fits them to the designs again.
     fn follow_pointer(&mut self, ui: &Ui, response: &egui::Response) {
         let scrolled = ui.input(|input| input.smooth_scroll_delta().y != 0.0) && response.hovered();
-        if response.dragged() || response.drag_stopped() || scrolled {
+        let is_moved = response.dragged() || response.drag_stopped();
+        if (is_moved && self.tool == DragTool::Pan) || scrolled {
             self.fitted = false;
         }
         if response.double_clicked() {
@@ -188,32 +299,7 @@ impl Scatter {
     fn controls(&mut self, ui: &mut Ui, session: &mut Session) {
         ui.horizontal_wrapped(|ui| {
             for (k, name) in ["x", "y"].into_iter().enumerate() {
-                let axis = &mut self.axes[k];
-                let before = *axis;
-                ui.label(name);
-                ComboBox::from_id_salt(("axis", k))
-                    .selected_text(axis.quantity.title())
-                    .width(130.0)
-                    .show_ui(ui, |ui| {
-                        for quantity in Column::quantities(session.study().named_quantities()) {
-                            if ui
-                                .selectable_label(axis.quantity == quantity, quantity.title())
-                                .clicked()
-                            {
-                                *axis = ScatterAxis {
-                                    quantity,
-                                    log: quantity.is_logarithmic(),
-                                };
-                            }
-                        }
-                    });
-                let log = ui.checkbox(&mut axis.log, "log");
-                log.widget_info(|| {
-                    WidgetInfo::selected(WidgetType::Checkbox, true, axis.log, format!("{name} logarithmic"))
-                });
-                if before != *axis {
-                    self.fitted = true;
-                }
+                self.axis_field(ui, session, k, name);
             }
             if ui
                 .button("Fit")
@@ -222,36 +308,47 @@ impl Scatter {
             {
                 self.fitted = true;
             }
-            if let Some(third) = Self::third_objective(session) {
-                ui.weak(format!("colour: {}, dark is small", third.title()));
-            }
+        });
+        ui.horizontal_wrapped(|ui| {
+            self.coloring.ui(ui, session.study().named_quantities());
             ui.separator();
-            let dark = ui.visuals().dark_mode;
-            for &architecture in &session.study().architectures.clone() {
-                let hidden = session.document().filter.hidden.contains(&architecture);
-                let color = if hidden {
-                    theme::infeasible(dark)
-                } else {
-                    theme::architecture(architecture, dark)
-                };
-                let mark = ["●", "■", "▲", "◆"][theme::index(architecture) % 4];
-                let text = egui::RichText::new(format!("{mark} {}", text::architecture(architecture))).color(color);
-                let text = if hidden { text.strikethrough() } else { text };
-                let hover = "click to exclude this architecture (dimmed in all panels) or to include it again";
-                let button = ui.add(egui::Button::new(text).frame(false)).on_hover_text(hover);
-                let label = format!("include {architecture}");
-                button.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, !hidden, label.clone()));
-                if button.clicked() {
-                    session.history.edit(|document| {
-                        let hidden = &mut document.filter.hidden;
-                        match hidden.iter().position(|&other| other == architecture) {
-                            Some(place) => drop(hidden.remove(place)),
-                            None => hidden.push(architecture),
-                        }
-                    });
-                }
+            self.tool.ui(ui);
+        });
+        ui.horizontal_wrapped(|ui| {
+            for architecture in session.study().architectures.clone() {
+                include(ui, session, architecture);
             }
         });
+    }
+
+    /// Shows the fields of an axis.
+    fn axis_field(&mut self, ui: &mut Ui, session: &Session, k: usize, name: &str) {
+        let axis = &mut self.axes[k];
+        let before = *axis;
+        let label = ui.label(name);
+        ComboBox::from_id_salt(("axis", k))
+            .selected_text(axis.quantity.title())
+            .width(130.0)
+            .show_ui(ui, |ui| {
+                for quantity in Column::quantities(session.study().named_quantities()) {
+                    if ui
+                        .selectable_label(axis.quantity == quantity, quantity.title())
+                        .clicked()
+                    {
+                        *axis = ScatterAxis {
+                            quantity,
+                            log: quantity.is_logarithmic(),
+                        };
+                    }
+                }
+            })
+            .response
+            .labelled_by(label.id);
+        let log = ui.checkbox(&mut axis.log, "log");
+        log.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, axis.log, format!("{name} logarithmic")));
+        if before != *axis {
+            self.fitted = true;
+        }
     }
 
     /// Shows the values of the design under the pointer, and selects the design when it is clicked.
@@ -259,6 +356,9 @@ impl Scatter {
         let Some((pointer, transform)) = response.hover_pos().zip(self.transform) else {
             return;
         };
+        if response.dragged() {
+            return;
+        }
         let near = |row: &Row| {
             let [x, y] = self.place(row);
             transform.position_from_point(&PlotPoint::new(x, y)).distance(pointer)
@@ -291,7 +391,7 @@ impl Scatter {
             if response.clicked() {
                 session.select_design(crate::explorer::Selected {
                     design,
-                    origin: crate::explorer::Origin::Reference(index),
+                    origin: crate::explorer::DesignOrigin::Reference(index),
                 });
             }
             return;
@@ -321,8 +421,10 @@ impl Scatter {
             size: [frame.width(), frame.height()].map(|points| (points * pixels).round().clamp(16.0, 2048.0) as usize),
             low: bounds.min(),
             high: bounds.max(),
+            scale: self.scale,
             style: Style {
                 axes: self.axes.map(|axis| (axis.quantity, axis.log)),
+                coloring: self.coloring,
                 era: session.era(),
                 filter: session.document().filter.to_text(),
                 dark,
@@ -332,6 +434,20 @@ impl Scatter {
         if !self.cloud.advance(ui.ctx(), session.store(), &prepared, &view, BUDGET) {
             ui.ctx().request_repaint();
         }
+    }
+
+    /// Says how designs come into the scatter.
+    fn say_empty(&self, ui: &Ui) {
+        let Some(transform) = self.transform else {
+            return;
+        };
+        ui.painter_at(*transform.frame()).text(
+            transform.frame().center(),
+            Align2::CENTER_CENTER,
+            "Designs appear here as they are evaluated:\nstart a run in the panel Run, or open one.",
+            egui::FontId::proportional(13.0),
+            ui.visuals().weak_text_color(),
+        );
     }
 
     /// Draws an arrow in the direction in which both quantities improve.
@@ -360,6 +476,33 @@ impl Scatter {
             egui::FontId::proportional(12.0),
             theme::good(ui),
         );
+    }
+}
+
+/// Shows an architecture, with which the user excludes its designs or includes them again.
+fn include(ui: &mut Ui, session: &mut Session, architecture: Architecture) {
+    let dark = ui.visuals().dark_mode;
+    let hidden = session.document().filter.hidden.contains(&architecture);
+    let color = if hidden {
+        theme::infeasible(dark)
+    } else {
+        theme::architecture(architecture, dark)
+    };
+    let mark = ["●", "■", "▲", "◆"][theme::index(architecture) % 4];
+    let text = egui::RichText::new(format!("{mark} {}", text::architecture(architecture))).color(color);
+    let text = if hidden { text.strikethrough() } else { text };
+    let hover = "click to exclude this architecture (dimmed in all panels) or to include it again";
+    let button = ui.add(egui::Button::new(text).frame(false)).on_hover_text(hover);
+    let label = format!("include {architecture}");
+    button.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, !hidden, label.clone()));
+    if button.clicked() {
+        session.history.edit(|document| {
+            let hidden = &mut document.filter.hidden;
+            match hidden.iter().position(|&other| other == architecture) {
+                Some(place) => drop(hidden.remove(place)),
+                None => hidden.push(architecture),
+            }
+        });
     }
 }
 

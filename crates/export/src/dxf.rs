@@ -1,0 +1,200 @@
+//! The plan view for CAD, in millimetres, with one layer for each kind of object. The file is DXF release 12, which
+//! every CAD program reads: for later releases the library omits table handles that some programs require.
+
+use crate::AnyError;
+use ::dxf::entities::{Circle, Entity, EntityType, Line, Polyline, Text, Vertex};
+use ::dxf::enums::AcadVersion;
+use ::dxf::tables::Layer;
+use ::dxf::{Color, Drawing, Point};
+use glam::{DVec2, DVec3};
+
+use super::Prepared;
+use kinefront_scene::text::number;
+use kinefront_scene::{Part, Scene, SolidShape};
+
+/// Millimetres per metre.
+const MM: f64 = 1e3;
+
+/// Layers with their colours from the AutoCAD Color Index.
+const LAYERS: [(&str, u8); 8] = [
+    ("BASE", 8),
+    ("RAILS", 9),
+    ("LEGS", 7),
+    ("PLATFORM", 5),
+    ("JOINTS", 30),
+    ("CENTRE_LINES", 1),
+    ("WORKSPACE", 3),
+    ("TEXT", 2),
+];
+
+pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
+    let design = &subject.evaluation.design;
+    let scene = &subject.scene;
+    let mut sheet = Sheet::new();
+    sheet.manipulator(scene);
+    match (&subject.corners, subject.cylinder) {
+        (Some(corners), _) => sheet.outline("WORKSPACE", corners),
+        (None, Some(cylinder)) => sheet.circle("WORKSPACE", cylinder.centre, cylinder.radius),
+        (None, None) => {}
+    }
+    let height = 0.03 * design.base_radius;
+    for label in &scene.labels {
+        sheet.text(label.at.truncate(), height, &label.text);
+    }
+    // Beside the drawing, from the top downwards.
+    let corner = DVec2::new(1.3 * design.base_radius, design.base_radius);
+    for (line, words) in facts(subject).iter().enumerate() {
+        sheet.text(corner - DVec2::new(0.0, 1.6 * height * line as f64), height, words);
+    }
+    let mut bytes = Vec::new();
+    sheet.drawing.save(&mut bytes)?;
+    Ok(release_12(&String::from_utf8(bytes)?).into_bytes())
+}
+
+/// Removes what release 12 does not know: the library writes subclass markers and handles in tables and entities for
+/// this release too. A file consists of pairs of lines, a group code and its value.
+fn release_12(text: &str) -> String {
+    const SUBCLASS: &str = "100";
+    const HANDLE: &str = "5";
+    let mut lines = text.lines();
+    let (mut kept, mut in_header) = (String::with_capacity(text.len()), true);
+    while let (Some(code), Some(value)) = (lines.next(), lines.next()) {
+        in_header &= value != "TABLES";
+        if in_header || !matches!(code.trim(), SUBCLASS | HANDLE) {
+            kept += &format!("{code}\r\n{value}\r\n");
+        }
+    }
+    kept
+}
+
+fn facts(subject: &Prepared) -> Vec<String> {
+    let (evaluation, pose) = (subject.evaluation, &subject.pose);
+    let mut facts = vec![
+        subject.title(),
+        "lengths in mm".to_owned(),
+        format!("mass in motion {} kg", number(evaluation.mass)),
+    ];
+    if let Some(cylinder) = subject.cylinder {
+        let region = match &subject.corners {
+            Some(_) => "prescribed region".to_owned(),
+            None => format!("regular workspace R_w {} mm", number(MM * cylinder.radius)),
+        };
+        let range = number(cylinder.phi_range.to_degrees());
+        facts.push(format!("{region}, rotation range {range} deg"));
+    }
+    let [x, y] = (pose.position * MM).to_array();
+    let phi = pose.phi.to_degrees();
+    facts.push(format!(
+        "drawn at x {} mm, y {} mm, phi {} deg",
+        number(x),
+        number(y),
+        number(phi)
+    ));
+    facts
+}
+
+struct Sheet {
+    drawing: Drawing,
+}
+
+impl Sheet {
+    fn new() -> Self {
+        let mut drawing = Drawing::new();
+        drawing.header.version = AcadVersion::R12;
+        for (name, color) in LAYERS {
+            drawing.add_layer(Layer {
+                name: name.to_owned(),
+                color: Color::from_index(color),
+                ..Layer::default()
+            });
+        }
+        Self { drawing }
+    }
+
+    fn add(&mut self, layer: &str, kind: EntityType) {
+        let mut entity = Entity::new(kind);
+        layer.clone_into(&mut entity.common.layer);
+        self.drawing.add_entity(entity);
+    }
+
+    fn manipulator(&mut self, scene: &Scene) {
+        for line in &scene.lines {
+            let layer = match line.part {
+                Part::Base => "BASE",
+                Part::Rail | Part::Stroke => "RAILS",
+                _ => "CENTRE_LINES",
+            };
+            for ends in line.points.windows(2) {
+                let line = Line::new(point(ends[0].truncate()), point(ends[1].truncate()));
+                self.add(layer, EntityType::Line(line));
+            }
+        }
+        for solid in scene.solids.iter().filter(|solid| solid.shape.has_volume()) {
+            let layer = match solid.part {
+                Part::PlatformBar => "PLATFORM",
+                Part::ActuatedJoint | Part::PassiveJoint => "JOINTS",
+                _ => "LEGS",
+            };
+            match solid.shape {
+                // In plan view a pin is a circle.
+                SolidShape::Bar { from, to, radius, .. } if from.truncate() == to.truncate() => {
+                    self.circle(layer, from.truncate(), radius);
+                }
+                SolidShape::Bar { from, to, radius, .. } => {
+                    self.bar(layer, from, to, radius);
+                    let axis = Line::new(point(from.truncate()), point(to.truncate()));
+                    self.add("CENTRE_LINES", EntityType::Line(axis));
+                }
+                SolidShape::Block {
+                    centre,
+                    half_size,
+                    angle,
+                    ..
+                } => {
+                    let along = kinefront_model::spatial::unit(angle) * half_size.x;
+                    let (from, to) = (centre - along.extend(0.0), centre + along.extend(0.0));
+                    self.bar(layer, from, to, half_size.y);
+                }
+            }
+        }
+    }
+
+    /// Adds the outline of a bar in plan view.
+    fn bar(&mut self, layer: &str, from: DVec3, to: DVec3, radius: f64) {
+        let (from, to) = (from.truncate(), to.truncate());
+        let side = (to - from).normalize_or(DVec2::X).perp() * radius;
+        self.outline(layer, &[from + side, from - side, to - side, to + side]);
+    }
+
+    /// Adds a closed polygon.
+    fn outline(&mut self, layer: &str, corners: &[DVec2]) {
+        let mut outline = Polyline::default();
+        for corner in corners {
+            let vertex = Vertex {
+                location: point(*corner),
+                ..Vertex::default()
+            };
+            outline.add_vertex(&mut self.drawing, vertex);
+        }
+        outline.set_is_closed(true);
+        self.add(layer, EntityType::Polyline(outline));
+    }
+
+    fn circle(&mut self, layer: &str, centre: DVec2, radius: f64) {
+        self.add(layer, EntityType::Circle(Circle::new(point(centre), MM * radius)));
+    }
+
+    fn text(&mut self, at: DVec2, height: f64, words: &str) {
+        let text = Text {
+            location: point(at),
+            text_height: MM * height,
+            value: words.to_owned(),
+            ..Text::default()
+        };
+        self.add("TEXT", EntityType::Text(text));
+    }
+}
+
+fn point(at: DVec2) -> Point {
+    Point::new(MM * at.x, MM * at.y, 0.0)
+}

@@ -1,0 +1,223 @@
+//! MJCF for MuJoCo: legs as trees, the platform free in the plane, the connections at `C_1` to `C_3` as equality constraints, and
+//! actuators as position servos whose gain is the study's actuator stiffness.
+
+use super::xml::Element;
+use super::{Format, Prepared, inertial, joint_axis, joint_name, rgba};
+use crate::AnyError;
+use glam::DVec2;
+use kinefront_model::mechanism::JointKind;
+use kinefront_scene::{Body, Joint, Solid, SolidShape};
+
+pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
+    let root = Element::new("mujoco")
+        .with("model", subject.identifier())
+        .children(settings())
+        .child(world(subject))
+        .child(Element::new("equality").children(closures(subject)))
+        .child(Element::new("actuator").children(servos(subject)))
+        .child(Element::new("sensor").children(["x", "y", "phi"].map(|axis| {
+            Element::new("jointpos")
+                .with("name", format!("platform_{axis}_value"))
+                .with("joint", format!("platform_{axis}"))
+        })))
+        .child(Element::new("keyframe").child(start(subject)));
+    root.document(&subject.preamble(Format::Mjcf))
+}
+
+/// Units, integrator, no contacts, and the stiffness of the closures.
+fn settings() -> [Element; 3] {
+    [
+        Element::new("compiler")
+            .with("angle", "radian")
+            .with("autolimits", "true"),
+        // The servos have the stiffness K_act, which requires a short time step.
+        Element::new("option")
+            .with("timestep", "0.0001")
+            .with("integrator", "implicitfast")
+            .with("gravity", "0 0 -9.81"),
+        Element::new("default")
+            .child(Element::new("geom").with("contype", "0").with("conaffinity", "0"))
+            .child(
+                Element::new("equality")
+                    .with("solref", "0.0002 1")
+                    .with("solimp", "0.9999 0.9999 0.001 0.5 2"),
+            ),
+    ]
+}
+
+/// Light, base, regular workspace, and the trees of bodies.
+fn world(subject: &Prepared) -> Element {
+    let mut world = Element::new("worldbody").child(
+        Element::new("light")
+            .with("directional", "true")
+            .with("pos", "0 0 10")
+            .with("dir", "0.3 0.4 -1"),
+    );
+    world = world.children(subject.base.iter().map(geom));
+    world.children(workspace(subject)).children(trees(subject))
+}
+
+/// The workspace, of which a prescribed polygon is shown by its sides. A site is only displayed and does not take part in the
+/// simulation.
+fn workspace(subject: &Prepared) -> Vec<Element> {
+    let site = |name: &str, kind: &str, color: &str| {
+        Element::new("site")
+            .with("name", name)
+            .with("type", kind)
+            .with("rgba", color)
+    };
+    match (&subject.corners, subject.cylinder) {
+        (Some(corners), _) => {
+            let sides = corners.iter().zip(corners.iter().cycle().skip(1)).enumerate();
+            let side = |(place, (from, to)): (usize, (&DVec2, &DVec2))| {
+                site(
+                    &format!("regular_workspace_{}", place + 1),
+                    "capsule",
+                    "0.35 0.7 0.43 0.8",
+                )
+                .with_numbers("fromto", &[from.x, from.y, 0.0, to.x, to.y, 0.0])
+                .with_numbers("size", &[2e-3 * subject.evaluation.design.base_radius])
+            };
+            sides.map(side).collect()
+        }
+        (None, Some(cylinder)) => {
+            let [x, y] = cylinder.centre.to_array();
+            let disc = site("regular_workspace", "cylinder", "0.35 0.7 0.43 0.25")
+                .with_numbers("pos", &[x, y, 0.0])
+                .with_numbers("size", &[cylinder.radius, 1e-3]);
+            vec![disc]
+        }
+        (None, None) => Vec::new(),
+    }
+}
+
+/// The bodies, nested in their parents; each tree begins with a body that hangs on the base.
+fn trees(subject: &Prepared) -> Vec<Element> {
+    let bodies = &subject.linkage.bodies;
+    // Children are created before their parents.
+    let mut inside: Vec<Vec<Element>> = vec![Vec::new(); bodies.len()];
+    for (place, body) in bodies.iter().enumerate().rev() {
+        // The children were pushed from the last to the first.
+        let nested: Vec<Element> = inside[place].drain(..).rev().collect();
+        let element = element(subject, body).children(nested);
+        inside[body.parent.unwrap_or(place)].push(element);
+    }
+    let roots = (0..bodies.len()).filter(|&place| bodies[place].parent.is_none());
+    roots.flat_map(|place| inside[place].clone()).collect()
+}
+
+/// The connections at `C_1` to `C_3`, which close the loops.
+fn closures(subject: &Prepared<'_>) -> impl Iterator<Item = Element> {
+    let linkage = &subject.linkage;
+    let platform = &linkage.bodies[linkage.platform()];
+    linkage.closures.iter().enumerate().map(move |(leg, closure)| {
+        let [x, y] = closure.on_leg.to_array();
+        // A weld keeps the relative pose of both bodies in the model as it is written.
+        let kind = if closure.is_rigid { "weld" } else { "connect" };
+        Element::new(kind)
+            .with("name", format!("C{}", leg + 1))
+            .with("body1", linkage.bodies[closure.leg].name.clone())
+            .with("body2", platform.name.clone())
+            .with_numbers("anchor", &[x, y, 0.0])
+    })
+}
+
+/// The bodies with an actuated joint, and these joints.
+fn actuated<'a>(subject: &'a Prepared<'_>) -> impl Iterator<Item = (&'a Body, Joint)> {
+    let bodies = subject.linkage.bodies.iter();
+    bodies.filter_map(|body| Some((body, body.joint.filter(|joint| joint.actuated)?)))
+}
+
+/// Position servos whose gain is the study's actuator stiffness.
+fn servos(subject: &Prepared<'_>) -> impl Iterator<Item = Element> {
+    actuated(subject).map(|(body, joint)| {
+        let servo = Element::new("position")
+            .with("name", format!("{}_servo", body.name))
+            .with("joint", joint_name(body))
+            .with_numbers("kp", &[subject.model.actuators.of(joint.kind)])
+            .with("dampratio", "1");
+        match joint.limits {
+            Some(limits) => servo.with_numbers("ctrlrange", &limits),
+            None => servo,
+        }
+    })
+}
+
+/// The actuator values at the exported pose.
+fn start(subject: &Prepared) -> Element {
+    let values: Vec<f64> = actuated(subject).map(|(_, joint)| joint.value).collect();
+    Element::new("key").with("name", "start").with_numbers("ctrl", &values)
+}
+
+fn element(subject: &Prepared, body: &Body) -> Element {
+    let frame = subject.linkage.local_frame(body);
+    let mut element = Element::new("body")
+        .with("name", body.name.clone())
+        .with_numbers("pos", &[frame.origin.x, frame.origin.y, 0.0])
+        .with_numbers("euler", &[0.0, 0.0, frame.angle]);
+    match body.joint {
+        Some(joint) => {
+            let mut hinge = Element::new("joint").with("name", joint_name(body));
+            let kind = match joint.kind {
+                JointKind::Prismatic => "slide",
+                JointKind::Revolute => "hinge",
+            };
+            hinge = hinge.with("type", kind).with("axis", joint_axis(joint.kind));
+            hinge = hinge.with_numbers("ref", &[joint.value]);
+            if let Some(limits) = joint.limits {
+                hinge = hinge.with_numbers("range", &limits);
+            }
+            element.push(hinge);
+        }
+        // The platform is free in the plane; its joint values are the pose in the base frame.
+        None => {
+            let (sin, cos) = libm::sincos(frame.angle);
+            for (axis, kind, direction, value) in [
+                ("x", "slide", [cos, -sin, 0.0], frame.origin.x),
+                ("y", "slide", [sin, cos, 0.0], frame.origin.y),
+                ("phi", "hinge", [0.0, 0.0, 1.0], frame.angle),
+            ] {
+                element.push(
+                    Element::new("joint")
+                        .with("name", format!("{}_{axis}", body.name))
+                        .with("type", kind)
+                        .with_numbers("axis", &direction)
+                        .with_numbers("ref", &[value]),
+                );
+            }
+        }
+    }
+    let (mass, centre, [xx, yy, zz, xy]) = inertial(body);
+    element.push(
+        Element::new("inertial")
+            .with_numbers("pos", &centre.to_array())
+            .with("mass", mass.to_string())
+            .with("fullinertia", format!("{xx} {yy} {zz} {xy} 0 0")),
+    );
+    let solids = body.solids.iter().filter(|solid| solid.shape.has_volume());
+    element.children(solids.map(geom)).child(
+        Element::new("site")
+            .with("name", format!("{}_frame", body.name))
+            .with("group", "3"),
+    )
+}
+
+fn geom(solid: &Solid) -> Element {
+    let geom = match solid.shape {
+        SolidShape::Bar { from, to, radius, .. } => Element::new("geom")
+            .with("type", "cylinder")
+            .with_numbers("fromto", &[from.x, from.y, from.z, to.x, to.y, to.z])
+            .with_numbers("size", &[radius]),
+        SolidShape::Block {
+            centre,
+            half_size,
+            angle,
+            ..
+        } => Element::new("geom")
+            .with("type", "box")
+            .with_numbers("pos", &centre.to_array())
+            .with_numbers("size", &half_size.to_array())
+            .with_numbers("euler", &[0.0, 0.0, angle]),
+    };
+    geom.with_numbers("rgba", &rgba(solid.part))
+}

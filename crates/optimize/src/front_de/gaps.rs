@@ -1,0 +1,85 @@
+//! The gaps between neighbouring members of a front, and which of them a candidate is to close.
+
+use std::collections::BTreeMap;
+
+use crate::random::Random;
+use crate::{Archive, ArchiveMember};
+
+/// Probability that a gap is drawn whatever its area.
+const ANY: f64 = 0.15;
+
+/// Probability that the area counts with the logarithm of the sized objective.
+const LOGARITHMIC: f64 = 0.4;
+
+/// Weight of a gap neither end of which is on the common front.
+const DOMINATED: f64 = 0.1;
+
+/// The gaps of a front of two objectives.
+#[derive(Debug, Clone, Default)]
+pub struct Gaps {
+    gaps: Vec<Gap>,
+    /// Number of candidates for each gap so far, by the evaluations of its ends.
+    tried: BTreeMap<[usize; 2], u32>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Gap {
+    ends: [usize; 2],
+    /// Area of the rectangle between the ends, and the same with the logarithm of the sized objective.
+    areas: [f64; 2],
+    tried: u32,
+}
+
+impl Gaps {
+    /// Finds the gaps of a front of which `common` holds the members that no other category dominates. `sized` gives the logarithm
+    /// of the objective that is not leveled, if it is positive.
+    pub fn update(&mut self, front: &Archive, common: &Archive, leveled: usize, logarithm: impl Fn(f64) -> f64) {
+        let is_common = |member: &ArchiveMember| {
+            let first = member.objectives[0];
+            let at = common.partition_point(|other| other.objectives[0] < first);
+            common
+                .get(at)
+                .is_some_and(|other| other.objectives == member.objectives)
+        };
+        let ends: Vec<(&ArchiveMember, f64, bool)> = front
+            .iter()
+            .map(|member| (member, logarithm(member.objectives[1 - leveled]), is_common(member)))
+            .collect();
+        let before = std::mem::take(&mut self.tried);
+        let gap = |pair: &[(&ArchiveMember, f64, bool)]| {
+            let [(a, log_a, common_a), (b, log_b, common_b)] = [pair[0], pair[1]];
+            let weight = if common_a || common_b { 1.0 } else { DOMINATED };
+            let height = weight * (b.objectives[leveled] - a.objectives[leveled]);
+            let width = b.objectives[1 - leveled] - a.objectives[1 - leveled];
+            let ends = [a.id, b.id];
+            Gap {
+                ends,
+                areas: [width * height, (log_b - log_a) * height].map(f64::abs),
+                tried: before.get(&ends).copied().unwrap_or(0),
+            }
+        };
+        self.gaps = ends.windows(2).map(gap).collect();
+        let tried = self.gaps.iter().filter(|gap| gap.tried > 0);
+        self.tried = tried.map(|gap| (gap.ends, gap.tried)).collect();
+    }
+
+    /// Draws a gap, mostly in proportion to its area, and the less likely the more often it was tried. Returns the place of its first end.
+    pub fn draw(&mut self, random: &mut Random) -> usize {
+        let place = if random.chance(ANY) {
+            random.below(self.gaps.len())
+        } else {
+            let kind = usize::from(random.chance(LOGARITHMIC));
+            let weight = |gap: &Gap| gap.areas[kind] / (1.0 + f64::from(gap.tried));
+            let mut draw = random.uniform() * self.gaps.iter().map(weight).sum::<f64>();
+            let reached = |gap| {
+                draw -= weight(gap);
+                draw < 0.0
+            };
+            self.gaps.iter().position(reached).unwrap_or(self.gaps.len() - 1)
+        };
+        let gap = &mut self.gaps[place];
+        gap.tried += 1;
+        self.tried.insert(gap.ends, gap.tried);
+        place
+    }
+}

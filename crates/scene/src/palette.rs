@@ -1,0 +1,83 @@
+//! The colours of architectures, parts, constraints and clearances in every view, as red, green and blue.
+
+use std::sync::LazyLock;
+
+use crate::Part;
+use kinefront_model::evaluation::Constraint;
+use kinefront_model::mechanism::Architecture;
+
+/// Contour at a field's threshold, and its mark in the legend.
+pub const THRESHOLD: [u8; 3] = [255, 70, 200];
+
+/// Returns the colour of an architecture: a hue for each chain, and a shade for each driven joint. The hues can be distinguished with
+/// any type of colour vision (Okabe and Ito).
+pub fn architecture(architecture: Architecture) -> [u8; 3] {
+    const HUES: [[u8; 3]; 7] = [
+        [86, 180, 233],
+        [230, 159, 0],
+        [0, 190, 140],
+        [204, 121, 167],
+        [240, 228, 66],
+        [60, 125, 205],
+        [224, 102, 40],
+    ];
+    // A plot asks for the colour of every design.
+    static COLORS: LazyLock<Vec<[u8; 3]>> = LazyLock::new(|| {
+        let mut chains: Vec<&str> = Vec::new();
+        let color = |&architecture: &Architecture| {
+            let own = architecture.chain_name();
+            let chain = chains.iter().position(|&name| name == own).unwrap_or_else(|| {
+                chains.push(own);
+                chains.len() - 1
+            });
+            let of_chain = Architecture::ALL.iter().filter(|other| other.chain_name() == own);
+            let shade = of_chain.take_while(|&&other| other != architecture).count();
+            HUES[chain % HUES.len()].map(|part| match shade {
+                0 => part,
+                // Lighter, then darker.
+                1 => part + (255 - part) / 2,
+                _ => (u16::from(part) * 11 / 20) as u8,
+            })
+        };
+        Architecture::ALL.iter().map(color).collect()
+    });
+    COLORS[architecture as usize]
+}
+
+/// Returns the colour of a part: orange for actuated parts, darker grey for fixed parts, steel grey for other moving
+/// parts, blue for the bars of the platform.
+pub fn part(part: Part) -> [u8; 3] {
+    match part {
+        Part::Base => [120, 126, 138],
+        Part::Rail => [150, 156, 168],
+        Part::Stroke => [255, 170, 70],
+        Part::Slider | Part::ActuatedJoint => [255, 128, 20],
+        Part::Tube => [92, 104, 124],
+        Part::Rod | Part::Link | Part::Guide => [190, 200, 214],
+        Part::Crank => [150, 164, 186],
+        Part::PlatformBar => [90, 150, 235],
+        Part::PassiveJoint | Part::Carriage => [238, 240, 244],
+        Part::AxisX => [230, 70, 70],
+        Part::AxisY => [80, 200, 90],
+        Part::Workspace => [255, 255, 255],
+    }
+}
+
+/// Returns the colour of the nearest pair of members: red if it is too near, otherwise green.
+pub fn nearest(too_near: bool) -> [u8; 3] {
+    if too_near { [255, 60, 60] } else { [90, 225, 130] }
+}
+
+/// Returns the colour of a constraint. The colours can be distinguished with any type of colour vision (Tol's bright scheme).
+pub fn constraint(constraint: Constraint) -> [u8; 3] {
+    match constraint {
+        Constraint::Assembly => [187, 187, 187],
+        Constraint::Reach => [102, 204, 238],
+        Constraint::Dexterity => [68, 119, 170],
+        Constraint::StiffnessXy => [238, 102, 119],
+        Constraint::StiffnessZ => [204, 187, 68],
+        Constraint::StiffnessPhiZ => [34, 136, 51],
+        Constraint::DeterminantSign => [170, 51, 119],
+        Constraint::Clearance => [238, 153, 51],
+    }
+}

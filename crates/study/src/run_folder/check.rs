@@ -1,0 +1,161 @@
+//! Checking a run folder against what follows from its study and its designs.
+
+use std::path::{Path, PathBuf};
+
+use super::write::front_table;
+use super::{RunFolder, RunFolderError, RunReport};
+use crate::run::verify_replayed;
+use crate::{RunSummary, StudySearch, TableError, TableRow};
+
+/// Something that is wrong in a run folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Finding {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong with it.
+    pub message: String,
+    /// How it can be repaired without guessing; `None` if it cannot.
+    pub repair: Option<Repair>,
+}
+
+/// What repairs a run folder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Repair {
+    /// Nothing but an incomplete last row is cut off; resuming the run does so.
+    Cut,
+    /// The file follows from the study and the designs and is written anew.
+    WriteAnew,
+}
+
+/// What a check of a run folder has found.
+#[derive(Debug)]
+pub struct Inspection {
+    /// The folder.
+    pub folder: RunFolder,
+    /// Everything that is wrong, in the order of the files.
+    pub findings: Vec<Finding>,
+    /// The designs, unless their table is damaged.
+    pub designs: Option<Vec<TableRow>>,
+}
+
+impl Inspection {
+    /// Checks the study, the tables and the report of the run folder at `path`: that every row is valid and in order, that
+    /// the designs are those that the study leads to (some are evaluated again), and that the front and the report follow
+    /// from them. The recording is not read.
+    ///
+    /// # Errors
+    /// [`RunFolderError`] if the path is not a run folder, or if its study or its report cannot be read.
+    pub fn new(path: &Path) -> Result<Self, RunFolderError> {
+        let mut inspection = Self {
+            folder: RunFolder::open(path)?,
+            findings: Vec::new(),
+            designs: None,
+        };
+        inspection.check_designs();
+        Ok(inspection)
+    }
+
+    /// Whether all that is wrong can be repaired without guessing.
+    pub fn is_repairable(&self) -> bool {
+        self.findings.iter().all(|finding| finding.repair.is_some())
+    }
+
+    /// Adds something that is wrong.
+    pub fn add(&mut self, path: PathBuf, message: String, repair: Option<Repair>) {
+        self.findings.push(Finding { path, message, repair });
+    }
+
+    fn add_table_error(&mut self, error: TableError) {
+        self.add(error.path, error.fault.to_string(), None);
+    }
+
+    fn check_designs(&mut self) {
+        let contents = match self.folder.designs() {
+            Ok(contents) => contents,
+            Err(error) => return self.add_table_error(error),
+        };
+        let path = self.folder.designs_path();
+        if let Some(line) = contents.cut_line {
+            let message = format!("line {line} is incomplete");
+            self.add(path.clone(), message, Some(Repair::Cut));
+        }
+        let (study, rows) = (self.folder.study().clone(), contents.rows.clone());
+        let search = if self.folder.merged().is_empty() {
+            StudySearch::resume(study, rows, None)
+        } else {
+            StudySearch::of_rows(study, rows, None)
+        };
+        let search = match search {
+            Ok(search) => search,
+            Err(error) => return self.add(path, error.to_string(), None),
+        };
+        self.designs = Some(contents.rows);
+        self.check_results(search);
+    }
+
+    /// Checks the front and the report of a run that has ended.
+    fn check_results(&mut self, search: StudySearch) {
+        let Some(report) = self.folder.report().cloned() else {
+            return;
+        };
+        let study = self.folder.study().clone();
+        let Some(summary) = verify_replayed(search, report.outcome) else {
+            return;
+        };
+        if summary.verified_front() {
+            self.check_front(&study, &summary);
+        }
+        for (key, stated, found) in differences(&report, &RunReport::new(&study, &summary)) {
+            let message = format!("`{key}` is {stated}, but {found} follows from the study and the designs");
+            self.add(self.folder.report_path(), message, Some(Repair::WriteAnew));
+        }
+    }
+
+    fn check_front(&mut self, study: &crate::Study, summary: &RunSummary) {
+        let path = self.folder.front_path();
+        let message = match self.folder.front() {
+            Ok(None) => "it is missing".to_owned(),
+            Err(error) => error.fault.to_string(),
+            Ok(Some(_)) => match (front_table(study, summary), std::fs::read(&path)) {
+                (Ok(expected), Ok(found)) if found != expected => {
+                    "it is not the front that follows from the designs".to_owned()
+                }
+                _ => return,
+            },
+        };
+        self.add(path, message, Some(Repair::WriteAnew));
+    }
+}
+
+/// Compares two reports on a run; returns key, value and expected value of what differs, but for what may differ.
+fn differences(stated: &RunReport, found: &RunReport) -> Vec<(String, String, String)> {
+    const MAY_DIFFER: [&str; 6] = [
+        "kinefront_version",
+        "threads",
+        "times",
+        "record_every",
+        "files",
+        "merged",
+    ];
+    // Reading JSON may change the last bit of a number, so that both are compared as read.
+    let as_read = |report: &RunReport| -> serde_json::Result<serde_json::Value> {
+        serde_json::from_slice(&serde_json::to_vec(report)?)
+    };
+    let found = as_read(found).unwrap_or_default();
+    let stated = serde_json::to_value(stated).unwrap_or_default();
+    let empty = serde_json::Map::new();
+    let [stated, found] = [&stated, &found].map(|value| value.as_object().unwrap_or(&empty));
+    let differing = stated
+        .iter()
+        .filter(|(key, value)| !MAY_DIFFER.contains(&key.as_str()) && found.get(*key) != Some(value));
+    differing
+        .map(|(key, value)| {
+            let shorten = |value: Option<&serde_json::Value>| match value {
+                Some(list @ serde_json::Value::Array(_)) => format!("a list ({} bytes)", list.to_string().len()),
+                Some(value) => value.to_string(),
+                None => "no value".to_owned(),
+            };
+            (key.clone(), shorten(Some(value)), shorten(found.get(key)))
+        })
+        .collect()
+}

@@ -1,0 +1,240 @@
+//! Resuming a run from its folder.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader};
+use std::path::{Path, PathBuf};
+
+use super::design_table::{DesignTable, open_locked};
+use super::durable::remove;
+use super::{DESIGNS, FRONT, RECORDING, RunFolder, RunFolderError, RunWriter, WriteError};
+use crate::{EndReason, ReplayError, StudySearch, TableError};
+
+/// A run that can be resumed: its folder is locked, and its designs were replayed.
+///
+/// The algorithms are deterministic, so that the table of the designs determines their state: an algorithm is asked for
+/// each generation and told the outcomes that the table holds. Nothing in the folder is changed before
+/// [`Resumption::start`].
+#[derive(Debug)]
+pub struct Resumption {
+    folder: RunFolder,
+    table: DesignTable,
+    search: StudySearch,
+    /// Complete rows.
+    evaluated: usize,
+    /// Rows of complete generations, which are kept.
+    kept: usize,
+    record_every: Option<usize>,
+    notes: Vec<String>,
+    is_complete: bool,
+}
+
+/// Why a run cannot be resumed.
+#[derive(Debug, thiserror::Error)]
+pub enum ResumeError {
+    /// The folder cannot be read.
+    #[error(transparent)]
+    Folder(#[from] RunFolderError),
+    /// Another process writes the run, or the folder cannot be locked.
+    #[error(transparent)]
+    Lock(WriteError),
+    /// The table of the designs is damaged.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// The run was made by another version of the program.
+    #[error(
+        "{} was written by Kinefront {found}, but this is {}; evaluations may differ between versions, so resume the run \
+         with that version",
+        path.display(),
+        env!("CARGO_PKG_VERSION")
+    )]
+    Version {
+        /// Path of the folder.
+        path: PathBuf,
+        /// Version that wrote the run.
+        found: String,
+    },
+    /// The budget is smaller than what was evaluated.
+    #[error("{} holds {evaluated} evaluations already; --evaluations must be at least that, not {asked}", path.display())]
+    Budget {
+        /// Path of the folder.
+        path: PathBuf,
+        /// Evaluations of the run.
+        evaluated: usize,
+        /// Evaluations asked for.
+        asked: usize,
+    },
+    /// The folder holds the designs of several runs.
+    #[error(
+        "{} holds the designs of several runs, to which no search leads; continue one of them and merge again",
+        .0.display()
+    )]
+    Merged(PathBuf),
+    /// The rows are not those of a run of the study.
+    #[error("{}: {cause}", path.display())]
+    Replay {
+        /// Path of the table.
+        path: PathBuf,
+        /// The first difference.
+        cause: ReplayError,
+    },
+}
+
+impl Resumption {
+    /// Locks the run folder at `path` and replays its designs, with a budget of `evaluations` if that is given and on
+    /// `threads` worker threads if that is.
+    ///
+    /// # Errors
+    /// [`ResumeError`]; the folder is unchanged.
+    pub fn open(path: &Path, evaluations: Option<usize>, threads: Option<usize>) -> Result<Self, ResumeError> {
+        if !RunFolder::is_at(path) {
+            return Err(RunFolderError::NoRun(path.to_owned()).into());
+        }
+        let file = open_locked(path, false).map_err(ResumeError::Lock)?;
+        let folder = RunFolder::open(path)?;
+        if let Some(found) = folder.version().filter(|version| *version != env!("CARGO_PKG_VERSION")) {
+            return Err(ResumeError::Version {
+                path: path.to_owned(),
+                found: found.to_owned(),
+            });
+        }
+        let mut notes = Vec::new();
+        let table = DesignTable::over(file, path, folder.study());
+        let contents = folder.designs_to_resume(&mut notes)?;
+        let evaluated = contents.rows.len();
+        let mut study = folder.study().clone();
+        if let Some(asked) = evaluations {
+            if asked < evaluated {
+                return Err(ResumeError::Budget {
+                    path: path.to_owned(),
+                    evaluated,
+                    asked,
+                });
+            }
+            study.optimizer.evaluations = asked;
+        }
+        if let Some(line) = contents.cut_line {
+            notes.push(format!("line {line} of {DESIGNS} was incomplete; it was cut off"));
+        }
+        let is_merged = !folder.merged().is_empty();
+        // A merged folder is complete, or its merge was killed; nothing can be searched in it.
+        if is_merged && study.optimizer.evaluations != evaluated {
+            return Err(ResumeError::Merged(path.to_owned()));
+        }
+        let search = if is_merged {
+            StudySearch::of_rows(study, contents.rows, threads)
+        } else {
+            StudySearch::resume(study, contents.rows, threads)
+        };
+        let search = search.map_err(|cause| ResumeError::Replay {
+            path: folder.designs_path(),
+            cause,
+        })?;
+        let kept = search.replayed();
+        if kept < evaluated {
+            notes.push(format!(
+                "the last generation was incomplete; {} designs are evaluated again",
+                evaluated - kept
+            ));
+        }
+        let is_complete = folder.report().is_some_and(|report| {
+            report.outcome == EndReason::Completed && report.evaluations == search.study().optimizer.evaluations
+        }) && kept == evaluated;
+        let record_every = match (folder.checkpoint(), folder.report()) {
+            (Some(checkpoint), _) => checkpoint.record_every,
+            (_, Some(report)) if report.files.is_some() => report.record_every,
+            _ => Some(1),
+        };
+        Ok(Self {
+            folder,
+            table,
+            search,
+            evaluated,
+            kept,
+            record_every,
+            notes,
+            is_complete,
+        })
+    }
+
+    /// The search, with the designs of the complete generations replayed.
+    pub fn search(&self) -> &StudySearch {
+        &self.search
+    }
+
+    /// Whether nothing is left to do: the run used its budget and stated that its files are complete.
+    pub fn is_complete(&self) -> bool {
+        self.is_complete
+    }
+
+    /// The run as its folder describes it.
+    pub fn folder(&self) -> &RunFolder {
+        &self.folder
+    }
+
+    /// Every how many generations one was recorded; `None` for a run without a recording.
+    pub fn record_every(&self) -> Option<usize> {
+        self.record_every
+    }
+
+    /// What was found in the folder that its user should know.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Removes an incomplete last row, and nothing else.
+    ///
+    /// # Errors
+    /// [`WriteError`] if the table cannot be cut.
+    pub fn cut(mut self) -> Result<(), WriteError> {
+        let path = self.folder.designs_path();
+        match end_of_row(&path, self.evaluated).map_err(WriteError::at(&path))? {
+            Some(end) => self.table.keep(self.evaluated, end),
+            None => self.table.begin(),
+        }
+    }
+
+    /// Begins to write the folder again: cuts the table after its last complete generation, and removes the front and the
+    /// recording, which follow from the designs and are written anew.
+    ///
+    /// # Errors
+    /// [`WriteError`] if a file cannot be written; the run can still be resumed.
+    pub fn start(self, record_every: Option<usize>) -> Result<(RunWriter, StudySearch), WriteError> {
+        let Self {
+            folder,
+            mut table,
+            search,
+            kept,
+            ..
+        } = self;
+        let path = folder.path();
+        let end = end_of_row(&folder.designs_path(), kept).map_err(WriteError::at(&folder.designs_path()))?;
+        match end {
+            Some(end) => table.keep(kept, end)?,
+            None => table.begin()?,
+        }
+        let mut writer = RunWriter::start(path, search.study(), record_every, table)?;
+        if !folder.merged().is_empty() {
+            writer.set_merged(folder.merged().to_vec())?;
+        }
+        for file in [FRONT, RECORDING] {
+            remove(&path.join(file))?;
+        }
+        Ok((writer, search))
+    }
+}
+
+/// Returns the byte at which row `rows` of a table ends, where 0 is the header; `None` if the header is incomplete.
+fn end_of_row(path: &Path, rows: usize) -> io::Result<Option<u64>> {
+    let mut reader = BufReader::new(File::open(path)?);
+    let mut line = Vec::new();
+    let mut end = 0;
+    for _ in 0..=rows {
+        line.clear();
+        let count = reader.read_until(b'\n', &mut line)?;
+        if line.last() != Some(&b'\n') {
+            return Ok(None);
+        }
+        end += count as u64;
+    }
+    Ok(Some(end))
+}

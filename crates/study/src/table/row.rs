@@ -1,0 +1,212 @@
+//! Designs as rows of a table.
+
+use std::fmt;
+
+use super::Column;
+use crate::{CertifiedRadius, Study};
+use kinefront_model::evaluation::{Constraint, Evaluation, Quantity, QuantityValues};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignError, TextError};
+use kinefront_optimize::Objectives;
+
+/// Stored values of one design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Number of the generation, counted from 1.
+    pub generation: u32,
+    /// The design.
+    pub design: Design,
+    /// Mass in motion \[kg\].
+    pub mass: f64,
+    /// Workspace radius `R_w` \[m\]; 0 for an infeasible design.
+    pub radius: f64,
+    /// Home orientation `φ_c` \[deg\]; `None` for an infeasible design.
+    pub phi: Option<f64>,
+    /// Constraint violation; 0 for a feasible design.
+    pub violation: f64,
+    /// Relative margins in the order of [`Constraint::ALL`]; `None` for a constraint that the study does not require.
+    pub margins: [Option<f64>; Constraint::ALL.len()],
+    /// Smallest values in the order of [`Constraint::ALL`]; `None` if no pose has one, and where they are not stored.
+    pub values: [Option<f64>; Constraint::ALL.len()],
+    /// Bit set of the active constraints; the lowest bit is that of the first constraint.
+    pub active: u8,
+    /// Quantities that the study names and that have no other column.
+    pub quantities: QuantityValues,
+    /// The objectives of the study, as they are minimised.
+    pub objectives: Objectives,
+}
+
+/// Why texts and numbers are not a row.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RowError {
+    /// A value is missing, or it is not of the type of its column.
+    #[error("`{name}` is missing or not {kind}", name = .0.name(), kind = Expected(*.0))]
+    Value(Column),
+    /// The architecture or the working mode is unknown.
+    #[error(transparent)]
+    Text(#[from] TextError),
+    /// The dimensions are no design.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+}
+
+struct Expected(Column);
+
+impl fmt::Display for Expected {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self.0.kind() {
+            super::ColumnType::Integer => "a whole number",
+            super::ColumnType::Number => "a number",
+            super::ColumnType::Flag => "true or false",
+            super::ColumnType::Text => "a text",
+        })
+    }
+}
+
+impl Row {
+    /// Creates the row of an evaluation.
+    pub fn new(generation: usize, evaluation: &Evaluation) -> Self {
+        Self {
+            generation: generation.try_into().unwrap_or(u32::MAX),
+            design: evaluation.design,
+            mass: evaluation.mass,
+            radius: evaluation.workspace_radius,
+            phi: evaluation.home_phi_deg,
+            violation: evaluation.violation,
+            margins: evaluation.constraints.map(|result| result.required_margin()),
+            values: evaluation.constraints.map(|result| result.value),
+            active: bits(evaluation.active()),
+            quantities: evaluation.quantities.asked_for(),
+            objectives: Objectives::new(evaluation.objectives.iter().copied()),
+        }
+    }
+
+    /// Reads a row from the texts and numbers of the columns of `designs.csv`.
+    ///
+    /// # Errors
+    /// [`RowError`] for the first missing or invalid value.
+    pub fn read<'a>(
+        study: &Study,
+        generation: usize,
+        text: impl Fn(Column) -> Option<&'a str>,
+        number: impl Fn(Column) -> Option<f64>,
+    ) -> Result<Self, RowError> {
+        let design = read_design(study, &text, &number)?;
+        let expected = |column: Column| number(column).ok_or(RowError::Value(column));
+        let thresholds = study.thresholds();
+        let mut margins = [None; Constraint::ALL.len()];
+        for (margin, constraint) in margins.iter_mut().zip(Constraint::ALL) {
+            if constraint.is_required(&thresholds) {
+                *margin = Some(expected(Column::Margin(constraint))?);
+            }
+        }
+        let active = text(Column::Active).unwrap_or_default();
+        let named = |constraint: &Constraint| active.split('+').any(|id| id == constraint.id());
+        let objectives = study.objectives().into_iter().map(|objective| {
+            let column = Column::of_quantity(objective.quantity);
+            objective.minimised(number(column))
+        });
+        let further = Quantity::all().filter(|quantity| matches!(Column::of_quantity(*quantity), Column::Quantity(_)));
+        Ok(Self {
+            generation: generation.try_into().unwrap_or(u32::MAX),
+            design,
+            mass: expected(Column::Mass)?,
+            radius: expected(Column::WorkspaceRadius)?,
+            phi: number(Column::HomePhi),
+            violation: expected(Column::Violation)?,
+            margins,
+            values: Constraint::ALL.map(|constraint| number(Column::Value(constraint))),
+            active: bits(Constraint::ALL.into_iter().filter(named)),
+            quantities: further
+                .map(|quantity| (quantity, number(Column::Quantity(quantity))))
+                .collect(),
+            objectives: Objectives::new(objectives),
+        })
+    }
+
+    /// Whether the design has a workspace and keeps all limits.
+    pub fn is_feasible(&self) -> bool {
+        self.violation <= 0.0
+    }
+
+    /// Smallest clearance of members that are not joined \[m\], whether or not the study requires a clearance; `None` if
+    /// no pose has one, and for tables of earlier versions.
+    pub fn clearance(&self) -> Option<f64> {
+        self.values[Constraint::Clearance as usize]
+    }
+
+    /// Value of a numerical column, if the design has one.
+    pub fn number(&self, column: Column) -> Option<f64> {
+        match column {
+            Column::Dimension(variable) => {
+                let has_it = self.design.architecture.has(variable);
+                has_it.then(|| self.design.value(variable))
+            }
+            Column::Mass => Some(self.mass),
+            Column::WorkspaceRadius => Some(self.radius),
+            Column::HomePhi => self.phi,
+            Column::Margin(constraint) => self.margins[constraint as usize],
+            Column::Value(constraint) => self.values[constraint as usize],
+            Column::Violation => Some(self.violation),
+            Column::Quantity(quantity) => self.quantities.get(quantity),
+            _ => None,
+        }
+    }
+
+    /// Returns the active constraints.
+    pub fn active_constraints(&self) -> impl Iterator<Item = Constraint> {
+        let active = self.active;
+        Constraint::ALL
+            .into_iter()
+            .filter(move |&constraint| active & bits([constraint]) != 0)
+    }
+}
+
+/// Reads the design of a row from the texts and numbers of its columns; a design without a working mode has that of the study, and the
+/// variables of its chain that are not given follow from the others.
+///
+/// # Errors
+/// [`RowError`] for the first missing or invalid value.
+pub fn read_design<'a>(
+    study: &Study,
+    text: impl Fn(Column) -> Option<&'a str>,
+    number: impl Fn(Column) -> Option<f64>,
+) -> Result<Design, RowError> {
+    let architecture = text(Column::Architecture)
+        .ok_or(RowError::Value(Column::Architecture))?
+        .parse()?;
+    let mode = match text(Column::WorkingMode) {
+        Some(mode) => mode.parse()?,
+        None => study.working_mode,
+    };
+    let mut dimensions = [0.0; DESIGN_VARIABLES.len()];
+    for (dimension, variable) in dimensions.iter_mut().zip(DESIGN_VARIABLES) {
+        let column = Column::Dimension(variable);
+        *dimension = number(column).ok_or(RowError::Value(column))?;
+    }
+    let design = Design::new(architecture, mode, dimensions)?;
+    let further = architecture.further_variables().iter();
+    let given = further.filter_map(|&variable| Some((variable, number(Column::Dimension(variable))?)));
+    given
+        .into_iter()
+        .try_fold(design, |design, (variable, value)| Ok(design.with(variable, value)?))
+}
+
+/// Returns a bit set of constraints.
+fn bits(constraints: impl IntoIterator<Item = Constraint>) -> u8 {
+    constraints
+        .into_iter()
+        .fold(0, |bits, constraint| bits | 1 << constraint as u8)
+}
+
+/// A row of `designs.csv` or `front.csv`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TableRow {
+    /// Id of the design in its run.
+    pub id: usize,
+    /// Values of the design.
+    pub row: Row,
+    /// `R_w` on the reference grid \[m\], in a verified front.
+    pub reference_radius: Option<f64>,
+    /// What is proved about `R_w`, in a front whose workspaces were proved.
+    pub certified: Option<CertifiedRadius>,
+}

@@ -1,0 +1,143 @@
+"""Types of the native module."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+
+Designs = Design | str | Sequence[Design | str] | Mapping[str, ArrayLike | str | Sequence[str]] | Table | NDArray[Any] | Any
+
+class Study:
+    """What to design, under which assumptions, and how to search.
+
+    >>> import kinefront
+    >>> study = kinefront.Study.paper()
+    >>> study.architectures
+    ['3-PRR', '3-RPR', '3-RRR']
+    >>> study.objectives
+    [('minimize', 'mass_kg'), ('maximize', 'workspace_radius_m')]
+    """
+
+    name: str
+    architectures: list[str]
+    objectives: list[tuple[str, str]]
+    objective_columns: list[str]
+    bounds: dict[str, tuple[float, float]]
+    optimizer: dict[str, Any]
+
+    @staticmethod
+    def paper() -> Study: ...
+    @staticmethod
+    def names() -> list[str]: ...
+    @staticmethod
+    def read(path: str | os.PathLike[str]) -> Study: ...
+    @staticmethod
+    def from_toml(text: str, name: str = "study") -> Study: ...
+    def to_toml(self) -> str: ...
+    def replace(self, text: str) -> Study:
+        """Return the study with the settings of a text replaced.
+
+        >>> Study.paper().replace("architectures = ['3-RRR']")
+        <kinefront.Study paper: 3-RRR>
+        """
+
+    def sensitivity(self, evaluations: int) -> dict[str, Study]:
+        """Return the searches of the sensitivity of the report, as studies by their names.
+
+        >>> Study.paper().sensitivity(100)["seed + 1, 3-PRR"].optimizer["seed"]
+        2
+        """
+
+    def design(self, text: str) -> Design: ...
+    def designs(self, designs: Designs) -> list[Design]: ...
+    def evaluate(self, designs: Designs, *, grid: str = "reference", threads: int | None = None) -> Table:
+        """Evaluate n designs; lengths are in metres, angles in degrees. Return a table of n rows with every quantity.
+
+        >>> study = Study.paper()
+        >>> table = study.evaluate({"architecture": "3-PRR", "R": [2.0, 2.5], "r": 0.4, "Lb": 1.2, "rj": 0.02, "rp": 0.03})
+        >>> table["workspace_radius_m"].round(2).tolist()
+        [0.58, 0.34]
+        """
+
+    def poses(self, design: Design | str, poses: NDArray[np.float64]) -> dict[str, Any]:
+        """Evaluate a design at poses (n, 3): x and y in metres, phi in radians. Return arrays by name, all with n as first axis.
+
+        >>> at = Study.paper().poses("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056", np.array([[0.0, 0.0, 0.0], [9.0, 0.0, 0.0]]))
+        >>> at["reachable"].tolist(), at["K"].shape, at["kappa"].round(3).tolist()
+        ([True, False], (2, 6, 6), [0.985, nan])
+        """
+
+    def optimize(
+        self,
+        *,
+        seed: int | None = None,
+        evaluations: int | None = None,
+        algorithm: str | None = None,
+        architectures: Sequence[str] | None = None,
+        callback: Callable[[Progress], bool | None] | None = None,
+        threads: int | None = None,
+        out: str | os.PathLike[str] | None = None,
+    ) -> Run:
+        """Search for the front of the study; ``callback`` is told the progress and ends the search by returning ``False``.
+
+        >>> run = Study.paper().optimize(seed=1, evaluations=90, architectures=["3-PRR"])
+        >>> len(run.designs), run.report["outcome"]
+        (90, 'completed')
+        """
+
+class Design:
+    """A design of a study."""
+
+    architecture: str
+    working_mode: str
+    values: dict[str, float]
+
+    def evaluate(self, grid: str = "reference") -> dict[str, Any]: ...
+    def poses(self, poses: NDArray[np.float64]) -> dict[str, Any]: ...
+    def export(self, format: str, pose: Sequence[float] | None = None) -> str | bytes: ...
+
+class Table:
+    """Designs as named columns."""
+
+    columns: list[str]
+    units: dict[str, str]
+
+    def __len__(self) -> int: ...
+    def __contains__(self, name: str) -> bool: ...
+    def __getitem__(self, name: str) -> Any: ...
+    @staticmethod
+    def concat(tables: Sequence[Table]) -> Table: ...
+    def to_numpy(self) -> NDArray[Any]: ...
+    def to_pandas(self) -> Any: ...
+    def to_polars(self) -> Any: ...
+    def to_arrow(self) -> Any: ...
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
+
+class Progress:
+    """State of a search."""
+
+    phase: str
+    generation: int
+    evaluations: int
+    budget: int
+    feasible: int
+    front_size: int
+    hypervolume: float
+
+class Run:
+    """A run of a study."""
+
+    study: Study
+    designs: Table
+    front: Table
+    report: dict[str, Any] | None
+    path: Any
+
+    @staticmethod
+    def open(path: str | os.PathLike[str]) -> Run: ...

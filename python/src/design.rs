@@ -1,0 +1,124 @@
+//! A design of a study.
+
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyString};
+
+use kinefront_export::{EvaluationJson, ExportSubject, Format, export};
+use kinefront_model::evaluation::Model;
+use kinefront_model::mechanism::{DESIGN_VARIABLES, Design};
+use kinefront_model::spatial::Pose;
+use kinefront_study::Study;
+
+use crate::errors::{InputError, of_design};
+use crate::poses;
+use crate::study::grid_choice;
+
+/// A study with its model, which designs share.
+pub(crate) struct StudyWithModel {
+    pub(crate) study: Study,
+    pub(crate) model: Model,
+}
+
+/// A design of a study.
+#[pyclass(name = "Design", module = "kinefront", frozen)]
+pub struct PyDesign {
+    shared: Arc<StudyWithModel>,
+    design: Design,
+}
+
+impl PyDesign {
+    pub(crate) fn new(shared: Arc<StudyWithModel>, design: Design) -> Self {
+        Self { shared, design }
+    }
+
+    pub(crate) fn design(&self) -> &Design {
+        &self.design
+    }
+}
+
+/// Returns a value of Python with the contents of a JSON text.
+pub(crate) fn of_json<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(value).map_err(|cause| InputError::new_err(cause.to_string()))?;
+    py.import("json")?.call_method1("loads", (text,))
+}
+
+#[pymethods]
+impl PyDesign {
+    /// Name of the architecture.
+    #[getter]
+    fn architecture(&self) -> &'static str {
+        self.design.architecture.name()
+    }
+
+    /// Working mode, a sign for each leg.
+    #[getter]
+    fn working_mode(&self) -> String {
+        self.design.working_mode.to_string()
+    }
+
+    /// The variables of the design by their keys, in metres and degrees.
+    #[getter]
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let values = PyDict::new(py);
+        let further = self.design.architecture.further_variables().iter().copied();
+        for variable in DESIGN_VARIABLES.into_iter().chain(further) {
+            values.set_item(variable.key(), self.design.value(variable))?;
+        }
+        Ok(values)
+    }
+
+    /// Evaluates the design; returns mass, workspace radius, constraints and quantities as `kinefront evaluate --json` does.
+    #[pyo3(signature = (grid="reference"))]
+    fn evaluate<'py>(&self, py: Python<'py>, grid: &str) -> PyResult<Bound<'py, PyAny>> {
+        let grid = grid_choice(grid)?;
+        let evaluation = py.detach(|| self.shared.model.evaluate(&self.design, grid));
+        of_json(py, &EvaluationJson::new(&evaluation))
+    }
+
+    /// Evaluates the design at poses, an array of shape (n, 3) with x and y in metres and phi in radians.
+    fn poses<'py>(&self, py: Python<'py>, poses: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+        poses::evaluate(py, &self.shared.model, &self.design, poses)
+    }
+
+    /// Writes the design in a format of other programs: a text, or bytes for glTF.
+    #[pyo3(signature = (format, pose=None))]
+    fn export<'py>(&self, py: Python<'py>, format: &str, pose: Option<[f64; 3]>) -> PyResult<Bound<'py, PyAny>> {
+        let Some(format) = Format::find(format) else {
+            let known = Format::ALL.map(Format::key).join(", ");
+            return Err(InputError::new_err(format!(
+                "there is no format `{format}`; expected one of {known}"
+            )));
+        };
+        let written = py.detach(|| {
+            let StudyWithModel { study, model } = &*self.shared;
+            let evaluation = model.evaluate(&self.design, kinefront_model::evaluation::GridChoice::Fine);
+            let subject = ExportSubject {
+                study,
+                model,
+                evaluation: &evaluation,
+                pose: pose.map(|[x, y, phi]| Pose::new(x, y, phi)),
+            };
+            export(&subject, format)
+        });
+        let written = written.map_err(of_design)?;
+        Ok(match String::from_utf8(written) {
+            Ok(text) if format != Format::Gltf => PyString::new(py, &text).into_any(),
+            Ok(text) => PyBytes::new(py, text.as_bytes()).into_any(),
+            Err(bytes) => PyBytes::new(py, bytes.as_bytes()).into_any(),
+        })
+    }
+
+    fn __str__(&self) -> String {
+        self.design.to_string()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<kinefront.Design {}>", self.design)
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.design == other.design
+    }
+}

@@ -1,0 +1,124 @@
+//! A design at many poses, as arrays.
+
+use numpy::ndarray::{Array2, Array3};
+use numpy::{IntoPyArray, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use rayon::prelude::*;
+
+use kinefront_model::evaluation::{Constraint, Model, PoseEvaluation};
+use kinefront_model::mechanism::Design;
+use kinefront_model::spatial::Pose;
+
+use crate::designs::contiguous;
+use crate::errors::InputError;
+
+/// Number of poses that a thread evaluates at a time.
+const CHUNK: usize = 1024;
+
+/// Evaluates a design at poses, whose rows are x, y \[m\] and φ \[rad\].
+pub(crate) fn evaluate<'py>(
+    py: Python<'py>,
+    model: &Model,
+    design: &Design,
+    poses: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let poses: PyReadonlyArray2<'_, f64> = contiguous(poses)?
+        .extract()
+        .map_err(|_| InputError::new_err("expected poses of shape (n, 3): x, y [m] and phi [rad]"))?;
+    let given = poses.as_array();
+    if given.ncols() != 3 {
+        return Err(InputError::new_err(format!(
+            "the poses have {} columns; expected x, y [m] and phi [rad]",
+            given.ncols()
+        )));
+    }
+    let poses: Vec<Pose> = given
+        .rows()
+        .into_iter()
+        .map(|row| Pose::new(row[0], row[1], row[2]))
+        .collect();
+    let (found, margins) = py.detach(|| {
+        let posed = model.posed(design);
+        let found: Vec<Option<PoseEvaluation>> = poses
+            .par_chunks(CHUNK)
+            .flat_map_iter(|poses| poses.iter().map(|pose| posed.at(pose).ok()))
+            .collect();
+        let margins: Vec<f64> = found
+            .iter()
+            .flat_map(|found| {
+                found
+                    .as_ref()
+                    .map_or([f64::NAN; Constraint::ALL.len()], |found| posed.margins(found))
+            })
+            .collect();
+        (found, margins)
+    });
+    let count = found.len();
+    let numbers = |value: fn(&PoseEvaluation) -> f64| -> Vec<f64> {
+        found
+            .iter()
+            .map(|found| found.as_ref().map_or(f64::NAN, value))
+            .collect()
+    };
+    let flat = |width: usize, values: &dyn Fn(&PoseEvaluation, &mut Vec<f64>)| {
+        let mut all = Vec::with_capacity(width * count);
+        for found in &found {
+            match found {
+                Some(found) => values(found, &mut all),
+                None => all.resize(all.len() + width, f64::NAN),
+            }
+        }
+        all
+    };
+    let table = PyDict::new(py);
+    let reached: Vec<bool> = found.iter().map(Option::is_some).collect();
+    table.set_item("reachable", reached.into_pyarray(py))?;
+    let actuators = flat(3, &|found, all| all.extend(found.actuators));
+    table.set_item("actuators", matrix(py, actuators, count, 3)?)?;
+    for (name, of) in [("B", true), ("C", false)] {
+        let points = flat(6, &|found, all| {
+            all.extend((if of { found.b } else { found.c }).as_flattened())
+        });
+        table.set_item(name, cube(py, points, count, [3, 2])?)?;
+    }
+    table.set_item("kappa", numbers(|found| found.inverse_condition).into_pyarray(py))?;
+    table.set_item("det_a", numbers(|found| found.determinant).into_pyarray(py))?;
+    table.set_item("limit_margin_m", numbers(|found| found.limit_margin).into_pyarray(py))?;
+    table.set_item(
+        "k_xy_n_per_m",
+        numbers(|found| found.stiffness_values.k_xy).into_pyarray(py),
+    )?;
+    table.set_item(
+        "k_z_n_per_m",
+        numbers(|found| found.stiffness_values.k_z).into_pyarray(py),
+    )?;
+    table.set_item(
+        "k_phi_z_nm_per_rad",
+        numbers(|found| found.stiffness_values.k_phi_z).into_pyarray(py),
+    )?;
+    table.set_item(
+        "clearance_m",
+        numbers(|found| found.clearance.distance).into_pyarray(py),
+    )?;
+    let stiffness = flat(36, &|found, all| {
+        // Row by row, as arrays of NumPy are; the matrix is symmetric but for rounding.
+        all.extend(found.stiffness.transpose().iter());
+    });
+    table.set_item("K", cube(py, stiffness, count, [6, 6])?)?;
+    table.set_item("margins", matrix(py, margins, count, Constraint::ALL.len())?)?;
+    let names = Constraint::ALL.map(|constraint| constraint.id());
+    table.set_item("constraints", PyList::new(py, names)?)?;
+    Ok(table)
+}
+
+fn matrix(py: Python<'_>, values: Vec<f64>, rows: usize, columns: usize) -> PyResult<Py<PyAny>> {
+    let array =
+        Array2::from_shape_vec((rows, columns), values).map_err(|cause| InputError::new_err(cause.to_string()))?;
+    Ok(array.into_pyarray(py).into_any().unbind())
+}
+
+fn cube(py: Python<'_>, values: Vec<f64>, rows: usize, [a, b]: [usize; 2]) -> PyResult<Py<PyAny>> {
+    let array = Array3::from_shape_vec((rows, a, b), values).map_err(|cause| InputError::new_err(cause.to_string()))?;
+    Ok(array.into_pyarray(py).into_any().unbind())
+}
