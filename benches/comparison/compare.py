@@ -2,10 +2,13 @@
 evaluator.
 
     python -m pip install -r benches/comparison/requirements.txt
+    python -m pip install -r benches/comparison/requirements-models.txt    # for BoTorch and SMAC
     cargo build --release --no-default-features
     (cd benches/comparison/mode && cargo build --release)
     python benches/comparison/compare.py run target/release/kinefront benches/comparison/mode/target/release/mode OUT \
         [--evaluations 6000] [--from 0] [--seeds 11] [--architectures 3-PRR,3-RPR,3-RRR] [--only NAME,NAME]
+    python benches/comparison/compare.py run target/release/kinefront benches/comparison/mode/target/release/mode OUT \
+        --evaluations 300 --only BoTorch,SMAC
     python benches/comparison/compare.py table OUT [--plot screenshots/comparison.png]
 
 The quality of a run after N evaluations is the hypervolume of the non-dominated designs among its first N designs,
@@ -13,8 +16,10 @@ with every radius from the fine grid, as a fraction of the hypervolume of the re
 (`assets/reference_fronts`), with the reference point at 2000 kg and a radius of 0; it is also computed with the
 logarithm of the mass. moocore computes the hypervolumes. The candidates of other programs are evaluated through
 `kinefront evaluate --stdin`; for these programs the architecture is a real variable whose range is divided into equal
-parts. A run that is already in OUT is not repeated. The search of an optimizer does not depend on its budget, so a
-longer run continues a shorter one: with `--from`, only the later part is measured, and the table combines both.
+parts. The optimizers of BoTorch and SMAC know it as a category (`model_based.py`); they take minutes for 300 evaluations,
+so that they run only if `--only` names them. A run that is already in OUT is not repeated. The search of an optimizer
+does not depend on its budget, so a longer run continues a shorter one: with `--from`, only the later part is measured,
+and the table combines both.
 """
 
 import argparse
@@ -36,7 +41,7 @@ import numpy as np
 KEYS = ("R", "r", "Lb", "rj", "rp")
 LOWER = [0.5, 0.1, 0.5, 0.0, 0.0]
 UPPER = [4.0, 4.0, 4.0, 0.1, 0.1]
-MARKS = (250, 500, 1000, 2000, 3000, 4000, 6000, 15_000, 30_000)
+MARKS = (250, 300, 500, 1000, 2000, 3000, 4000, 6000, 15_000, 30_000)
 ALL = "3-PRR,3-RPR,3-RRR"
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -69,15 +74,16 @@ def design_text(architecture, values):
     return architecture + " " + " ".join(f"{key}={float(value)!r}" for key, value in zip(KEYS, values))
 
 
-def own(algorithm):
-    """Return a function that runs one of Kinefront's algorithms as its users run it."""
+def own(algorithm, study=""):
+    """Return a function that runs one of Kinefront's algorithms as its users run it, on the paper's study with the given changes."""
 
     def run(job):
         with tempfile.TemporaryDirectory() as folder:
-            out = pathlib.Path(folder) / "run"
+            out, file = pathlib.Path(folder) / "run", pathlib.Path(folder) / "study.toml"
+            file.write_text(study)
             arguments = ["--algorithm", algorithm, "--evaluations", job["evaluations"], "--seed", job["seed"]]
             arguments += ["--architectures", job["architectures"], "--threads", 1, "--quiet", "--out", out]
-            command = [job["kinefront"], "optimize", "paper", *map(str, arguments)]
+            command = [job["kinefront"], "optimize", file, *map(str, arguments)]
             subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
             with open(out / "designs.csv", newline="") as file:
                 rows = list(csv.DictReader(file))
@@ -161,8 +167,23 @@ def mode(job):
     return [(design, answer["mass_kg"], answer["workspace_radius_m"]) for design, answer in zip(designs, answers)]
 
 
+def model_based(name):
+    """Return a function that runs an optimizer of `model_based.py`."""
+
+    def run(job):
+        import model_based
+
+        evaluator = Evaluator(job["kinefront"])
+        met = getattr(model_based, name)(job, evaluator, design_text, LOWER, UPPER)
+        evaluator.close()
+        return met
+
+    return run
+
+
 ALGORITHMS = {
     "Kinefront front-de": own("front-de"),
+    "Kinefront front-de, `learned = 0`": own("front-de", "[optimizer.front_de]\nlearned = 0.0\n"),
     "Kinefront NSGA-II": own("nsga2"),
     "Kinefront MOGA-II (reimplementation)": own("moga2"),
     "pymoo NSGA-II, population 30": pymoo_algorithm(lambda: nsga2(30)),
@@ -171,7 +192,12 @@ ALGORITHMS = {
     "pymoo SMS-EMOA, population 100": pymoo_algorithm(sms_emoa),
     "pymoo C-TAEA, 60 directions": pymoo_algorithm(c_taea),
     "fcmaes-core MODE, population 64": mode,
+    "BoTorch qLogNEHVI, 5 at a time": model_based("qnehvi"),
+    "SMAC ParEGO, random forest": model_based("parego"),
 }
+
+# They run only if they are named.
+EXPENSIVE = ("BoTorch", "SMAC")
 
 
 def hypervolume(points, logarithmic=False):
@@ -231,7 +257,10 @@ def measure(job):
 
 def run(arguments):
     arguments.out.mkdir(parents=True, exist_ok=True)
-    names = [name for name in ALGORITHMS if not arguments.only or any(part in name for part in arguments.only.split(","))]
+    if arguments.only:
+        names = [name for name in ALGORITHMS if any(part in name for part in arguments.only.split(","))]
+    else:
+        names = [name for name in ALGORITHMS if not name.startswith(EXPENSIVE)]
     jobs = []
     for seed in range(1, arguments.seeds + 1):
         for name in names:
@@ -268,7 +297,7 @@ def table(arguments):
         reference = reference_front(architectures)
         whole = [hypervolume(reference), hypervolume(reference, logarithmic=True)]
         print(f"\n{architectures}: median (worst) fraction of the reference front's hypervolume\n")
-        budgets = [1000, 6000, 30_000]
+        budgets = [300, 1000, 6000, 30_000]
         heads = [f"{budget}, {seeds_of(algorithms, budget)} seeds | with log mass" for budget in budgets]
         print("| | " + " | ".join(heads) + " | 90 / 95 / 99 % after |")
         print("|---|" + "---:|---:|" * len(budgets) + "---:|")

@@ -33,7 +33,7 @@ use kinefront_model::stiffness::joint_model;
 use kinefront_model::with_leg;
 use kinefront_model::workspace::plain::plain;
 use kinefront_model::workspace::{PoseChecker, ValueColumns};
-use kinefront_optimize::{Algorithm, Evaluated, FrontDe, FrontDeSettings, Problem, run, sobol};
+use kinefront_optimize::{Algorithm, Candidate, Evaluated, FrontDe, FrontDeSettings, run, sobol};
 use rayon::prelude::*;
 
 use self::counted::{Operations, operations};
@@ -280,6 +280,23 @@ fn clearance(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// An algorithm that keeps what it is told.
+struct Recorder {
+    algorithm: FrontDe,
+    generations: Vec<Vec<Evaluated>>,
+}
+
+impl Algorithm for Recorder {
+    fn ask(&mut self) -> Vec<Candidate> {
+        self.algorithm.ask()
+    }
+
+    fn tell(&mut self, evaluated: Vec<Evaluated>) {
+        self.generations.push(evaluated.clone());
+        self.algorithm.tell(evaluated);
+    }
+}
+
 /// The share of the optimizer in a search: the same candidates are asked for, and their outcomes told, without evaluating them.
 fn algorithm(criterion: &mut Criterion) {
     const EVALUATIONS: usize = 3000;
@@ -300,21 +317,14 @@ fn algorithm(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("search", name), |bencher| {
             bencher.iter(|| run(&problem, &mut new(), EVALUATIONS).len());
         });
-        let mut generations: Vec<Vec<Evaluated>> = Vec::new();
-        let mut recorded = new();
-        while generations.iter().map(Vec::len).sum::<usize>() < EVALUATIONS {
-            let evaluate = |candidate| {
-                let x = problem.completed(candidate);
-                let outcome = problem.evaluate(&x);
-                Evaluated { x, outcome }
-            };
-            let generation: Vec<Evaluated> = recorded.ask().into_iter().map(evaluate).collect();
-            recorded.tell(generation.clone());
-            generations.push(generation);
-        }
+        let mut recorder = Recorder {
+            algorithm: new(),
+            generations: Vec::new(),
+        };
+        run(&problem, &mut recorder, EVALUATIONS);
         group.bench_function(BenchmarkId::new("optimizer alone", name), |bencher| {
             bencher.iter_batched(
-                || (new(), generations.clone()),
+                || (new(), recorder.generations.clone()),
                 |(mut algorithm, generations)| {
                     for generation in generations {
                         black_box(algorithm.ask());

@@ -64,8 +64,8 @@ impl PyRun {
 
     /// The study as run.
     #[getter]
-    fn study(&self, py: Python<'_>) -> PyResult<PyStudy> {
-        PyStudy::new(py, self.study.clone())
+    fn study(&self) -> PyResult<PyStudy> {
+        PyStudy::new(self.study.clone())
     }
 
     /// All evaluated designs, in the order of their ids.

@@ -27,10 +27,9 @@ pub struct PyStudy {
 }
 
 impl PyStudy {
-    pub(crate) fn new(py: Python<'_>, study: Study) -> PyResult<Self> {
+    pub(crate) fn new(study: Study) -> PyResult<Self> {
         // Every quantity is computed, as the methods return them.
         let model = study.model().map_err(of_design)?.with_all_quantities();
-        let _ = py;
         Ok(Self {
             shared: Arc::new(StudyWithModel { study, model }),
         })
@@ -69,7 +68,7 @@ impl PyStudy {
     /// The study of the 2010 paper.
     #[staticmethod]
     fn paper(py: Python<'_>) -> PyResult<Self> {
-        Self::new(py, BUILTIN[0].study().map_err(|fault| of_study(py, &fault))?)
+        Self::new(BUILTIN[0].study().map_err(|fault| of_study(py, &fault))?)
     }
 
     /// Names of the built-in studies.
@@ -82,14 +81,14 @@ impl PyStudy {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let argument: &OsStr = path.as_os_str();
-        Self::new(py, Study::load(argument).map_err(|fault| of_study(py, &fault))?)
+        Self::new(Study::load(argument).map_err(|fault| of_study(py, &fault))?)
     }
 
     /// Reads a study from the text of a study file.
     #[staticmethod]
     #[pyo3(signature = (text, name="study"))]
     fn from_toml(py: Python<'_>, text: &str, name: &str) -> PyResult<Self> {
-        Self::new(py, Study::parse(text, name).map_err(|fault| of_study(py, &fault))?)
+        Self::new(Study::parse(text, name).map_err(|fault| of_study(py, &fault))?)
     }
 
     /// The text of the study file, without comments.
@@ -114,11 +113,10 @@ impl PyStudy {
     fn sensitivity<'py>(&self, py: Python<'py>, evaluations: usize) -> PyResult<Bound<'py, PyDict>> {
         let searches = PyDict::new(py);
         for (alternative, study) in sensitivity::studies(self.study(), evaluations) {
-            let name = alternative.map_or(sensitivity::AS_STATED, |alternative| alternative.name);
+            let name = sensitivity::name_of(alternative.as_ref());
             for &architecture in &study.architectures {
-                let mut single = study.clone();
-                single.architectures = vec![architecture];
-                searches.set_item(format!("{name}, {architecture}"), Self::new(py, single)?)?;
+                let single = Self::new(study.with_one_architecture(architecture))?;
+                searches.set_item(format!("{name}, {architecture}"), single)?;
             }
         }
         Ok(searches)

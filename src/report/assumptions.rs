@@ -3,7 +3,7 @@
 use super::fronts::Front;
 use super::source::Source;
 use super::{Fronts, ReportError};
-use crate::study::sensitivity::{self, AS_STATED, Alternative, CLEAR, CLEARANCE, COLLIDING};
+use crate::study::sensitivity::{self, Alternative, CLEAR, CLEARANCE, COLLIDING};
 use crate::study::{DesignProblem, Study};
 use kinefront_model::evaluation::GridChoice;
 use kinefront_model::mechanism::Architecture;
@@ -22,7 +22,7 @@ pub struct Variation {
 impl Variation {
     /// Returns the short name of the alternative assumption.
     pub fn name(&self) -> &'static str {
-        self.alternative.map_or(AS_STATED, |alternative| alternative.name)
+        sensitivity::name_of(self.alternative.as_ref())
     }
 
     /// Returns whether the alternative can change the evaluation of a design, rather than only the search.
@@ -86,14 +86,12 @@ pub(super) fn search_alternatives(
 ) -> Result<Vec<Variation>, ReportError> {
     let mut variations = Vec::new();
     for (alternative, study) in sensitivity::studies(study, evaluations) {
-        let name = alternative.map_or(AS_STATED, |alternative| alternative.name);
+        let name = sensitivity::name_of(alternative.as_ref());
         let problem = DesignProblem::new(&study)?;
         let mut alone = Vec::new();
         for &architecture in &study.architectures {
             tell(&format!("sensitivity: {name}, {architecture}"));
-            let mut single = study.clone();
-            single.architectures = vec![architecture];
-            let source = Source::run(name, single)?;
+            let source = Source::run(name, study.with_one_architecture(architecture))?;
             match Fronts::new(&[source], &problem, study.optimizer.front_designs) {
                 Some(fronts) => alone.extend(fronts.alone),
                 None => alone.push((architecture, Front::default())),

@@ -77,6 +77,18 @@ const LIBRARY: [&str; 5] = [
     "src/recording",
 ];
 
+/// Names of the crates that the package in a folder depends on.
+fn dependencies(folder: &str) -> Vec<String> {
+    let text = fs::read_to_string(root().join(folder).join("Cargo.toml")).expect("a manifest");
+    let manifest: toml::Table = text.parse().expect("TOML");
+    manifest["dependencies"]
+        .as_table()
+        .expect("dependencies")
+        .keys()
+        .cloned()
+        .collect()
+}
+
 #[test]
 fn the_core_crates_depend_on_numbers_alone() {
     for (name, allowed) in [
@@ -86,9 +98,7 @@ fn the_core_crates_depend_on_numbers_alone() {
             &["libm", "nalgebra", "rand_chacha", "rand_core", "serde", "sobol_burley"],
         ),
     ] {
-        let text = fs::read_to_string(root().join("crates").join(name).join("Cargo.toml")).expect("a manifest");
-        let manifest: toml::Table = text.parse().expect("TOML");
-        for dependency in manifest["dependencies"].as_table().expect("dependencies").keys() {
+        for dependency in dependencies(&format!("crates/{name}")) {
             assert!(
                 allowed.contains(&dependency.as_str()),
                 "kinefront-{name} uses {dependency}"
@@ -101,11 +111,9 @@ fn the_core_crates_depend_on_numbers_alone() {
 #[test]
 fn only_the_program_needs_rerun_and_a_window() {
     for folder in ["crates/study", "crates/scene", "crates/export", "python"] {
-        let text = fs::read_to_string(root().join(folder).join("Cargo.toml")).expect("a manifest");
-        let manifest: toml::Table = text.parse().expect("TOML");
-        let dependencies = manifest["dependencies"].as_table().expect("dependencies");
+        let dependencies = dependencies(folder);
         assert!(dependencies.len() > 3);
-        for dependency in dependencies.keys() {
+        for dependency in dependencies {
             let is_of_window = ["egui", "eframe", "re_", "rfd"]
                 .iter()
                 .any(|start| dependency.starts_with(start));

@@ -6,7 +6,8 @@
 //! gives the same bits.
 //!
 //! Every function that is generic over [`Real`] is `#[inline(always)]`, because a function that is not inlined is
-//! compiled for the baseline processor.
+//! compiled for the baseline processor. A closure that is called more than once may not be inlined, so that its place is taken by
+//! a function.
 
 use std::ops::{Add, BitAnd, Div, Mul, Neg, Sub};
 

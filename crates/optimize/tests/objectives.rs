@@ -198,8 +198,7 @@ impl Problem for Valleys {
 fn descents_find_the_lowest_of_many_sharp_valleys() {
     let found: Vec<f64> = (0..8)
         .map(|seed| {
-            let algorithm = CmaEs::new(Valleys.variables(), CmaEsSettings::default(), seed);
-            let mut algorithm = algorithm.with_determined_variables(&Valleys.determined_variables());
+            let mut algorithm = CmaEs::for_problem(&Valleys, CmaEsSettings::default(), seed);
             run(&Valleys, &mut algorithm, 3000)[0].objectives[0]
         })
         .collect();

@@ -101,6 +101,14 @@ impl Default for Study {
 }
 
 impl Study {
+    /// Returns the study with one architecture alone.
+    pub fn with_one_architecture(&self, architecture: Architecture) -> Self {
+        Self {
+            architectures: vec![architecture],
+            ..self.clone()
+        }
+    }
+
     /// Builds the model that evaluates the designs of this study, in SI units.
     ///
     /// # Errors

@@ -341,15 +341,14 @@ pub(super) fn outcome(row: &Row) -> Outcome {
 }
 
 fn algorithm(study: &Study, problem: &DesignProblem) -> Box<dyn Algorithm> {
-    let (variables, seed) = (problem.variables(), study.optimizer.seed);
-    let determined = kinefront_optimize::Problem::determined_variables(problem);
-    let cma_es = |variables| CmaEs::new(variables, study.optimizer.cma_es, seed).with_determined_variables(&determined);
-    match study.optimizer.algorithm {
+    let (settings, seed) = (&study.optimizer, study.optimizer.seed);
+    match settings.algorithm {
         // A front of one objective is a single design.
-        AlgorithmName::FrontDe if study.objectives.len() == 1 => Box::new(cma_es(variables)),
-        AlgorithmName::FrontDe => Box::new(FrontDe::for_problem(problem, study.optimizer.front_de, seed)),
-        AlgorithmName::CmaEs => Box::new(cma_es(variables)),
-        AlgorithmName::Moga2 => Box::new(Moga2::new(variables, study.optimizer.moga2, seed)),
-        AlgorithmName::Nsga2 => Box::new(Nsga2::new(variables, study.optimizer.nsga2, seed)),
+        AlgorithmName::FrontDe if study.objectives.len() != 1 => {
+            Box::new(FrontDe::for_problem(problem, settings.front_de, seed))
+        }
+        AlgorithmName::FrontDe | AlgorithmName::CmaEs => Box::new(CmaEs::for_problem(problem, settings.cma_es, seed)),
+        AlgorithmName::Moga2 => Box::new(Moga2::new(problem.variables(), settings.moga2, seed)),
+        AlgorithmName::Nsga2 => Box::new(Nsga2::new(problem.variables(), settings.nsga2, seed)),
     }
 }

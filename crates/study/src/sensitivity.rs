@@ -45,6 +45,11 @@ pub const CLEARANCE: f64 = 5e-3;
 /// Name of the study without an alternative.
 pub const AS_STATED: &str = "study as given";
 
+/// Returns the short name of an alternative, or of the study without one.
+pub fn name_of(alternative: Option<&Alternative>) -> &'static str {
+    alternative.map_or(AS_STATED, |alternative| alternative.name)
+}
+
 /// The alternative assumptions tried. The last ones change only the random seed: their differences are due to chance.
 pub const ALTERNATIVES: [Alternative; 15] = [
     Alternative {

@@ -79,7 +79,7 @@ impl StudyPanel {
                     self.typed = Some(text);
                 }
             } else {
-                CollapsingHeader::new("question").default_open(true).show(ui, |ui| {
+                CollapsingHeader::new("Question").default_open(true).show(ui, |ui| {
                     let mut study = session.editor.study().clone();
                     question::ui(ui, &mut study);
                     session.editor.change(|edited| *edited = study);

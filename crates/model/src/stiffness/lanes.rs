@@ -56,6 +56,12 @@ struct ReducedPlatformBar {
     vertical: [f64; 2],
 }
 
+/// Returns three times the mean square of a moment that varies linearly between the ends of a bar.
+#[inline(always)]
+fn sum_of_squares<V: Real>([first, second]: [V; 2]) -> V {
+    first * first + first * second + second * second
+}
+
 impl Reduced {
     pub(super) fn new(
         design: &Design,
@@ -111,19 +117,21 @@ impl Reduced {
                 None => compliance,
             };
         };
-        let squares = |[first, second]: [V; 2]| first * first + first * second + second * second;
-        let of_leg = |load: &BarLoads<V>, length: V| {
-            length
-                * (load.force * load.force * like.splat(self.leg_axial)
-                    + squares(load.moments) * like.splat(self.leg_bending))
-        };
         let of_platform = loads.platform.force * loads.platform.force * like.splat(platform.axial)
-            + squares(loads.platform.moments) * like.splat(platform.bending);
-        let compliance = actuator + of_leg(&loads.distal, chain.beam) + of_platform;
+            + sum_of_squares(loads.platform.moments) * like.splat(platform.bending);
+        let compliance = actuator + self.of_bar(&loads.distal, chain.beam) + of_platform;
         match &chain.proximal {
-            Some(bar) => compliance + of_leg(&loads.proximal, bar.length),
+            Some(bar) => compliance + self.of_bar(&loads.proximal, bar.length),
             None => compliance,
         }
+    }
+
+    /// Computes the compliance of a bar of a leg along the line, in multiples of `along_unit`.
+    #[inline(always)]
+    fn of_bar<V: Real>(&self, load: &BarLoads<V>, length: V) -> V {
+        length
+            * (load.force * load.force * length.splat(self.leg_axial)
+                + sum_of_squares(load.moments) * length.splat(self.leg_bending))
     }
 
     /// Computes `det S_φφ` and `det S` of leg `index`, whose quotient is its `K_zz` in multiples of 1/`bend_unit`.

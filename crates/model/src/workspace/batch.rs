@@ -36,61 +36,41 @@ impl OrientationLanes<'_> {
     }
 }
 
-/// Counts the poses before the first infeasible one; the result is `count` if all are feasible.
-struct Leading<'a, L, const FURTHER: bool> {
+/// Determines which poses are feasible. The result is the number of poses before the first infeasible one, or `count` if all are
+/// feasible or `marks` are written.
+struct Feasible<'a, L, const FURTHER: bool> {
     checker: &'a PoseChecker<L>,
     oriented: OrientationLanes<'a>,
     xs: &'a [f64],
     ys: &'a [f64],
     count: usize,
+    /// Receives 1 for each feasible pose and 0 for each infeasible one. Without it, the loop ends at the first infeasible pose.
+    marks: Option<&'a mut [f64]>,
 }
 
-impl<L: Leg, const FURTHER: bool> WithSimd for Leading<'_, L, FURTHER> {
+impl<L: Leg, const FURTHER: bool> WithSimd for Feasible<'_, L, FURTHER> {
     type Output = usize;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> usize {
         let (arms, sign) = self.oriented.lanes(simd);
-        let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
-        let mut at = 0;
-        for (x, y) in xs.iter().zip(ys) {
-            if at >= self.count {
-                break;
-            }
-            let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            let good = self.checker.feasible_lanes::<_, FURTHER>(position, &arms, sign);
-            let count_leading_set = good.count_leading_set();
-            if count_leading_set < Lanes::<S>::COUNT {
-                return (at + count_leading_set).min(self.count);
-            }
-            at += Lanes::<S>::COUNT;
-        }
-        self.count
-    }
-}
-
-/// Writes 1 for each feasible pose and 0 for each infeasible one.
-struct Good<'a, L, const FURTHER: bool> {
-    checker: &'a PoseChecker<L>,
-    oriented: OrientationLanes<'a>,
-    xs: &'a [f64],
-    ys: &'a [f64],
-    good: &'a mut [f64],
-}
-
-impl<L: Leg, const FURTHER: bool> WithSimd for Good<'_, L, FURTHER> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let (arms, sign) = self.oriented.lanes(simd);
         let (one, zero) = (sign.splat(1.0), sign.splat(0.0));
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
-        for ((x, y), good) in xs.iter().zip(ys).zip(Lanes::<S>::column_mut(self.good)) {
+        let mut marks = self.marks.map(|marks| Lanes::<S>::column_mut(marks));
+        let groups = self.count.div_ceil(Lanes::<S>::COUNT);
+        for (group, (x, y)) in xs.iter().zip(ys).take(groups).enumerate() {
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            let found = self.checker.feasible_lanes::<_, FURTHER>(position, &arms, sign);
-            one.select(found, zero).store(good);
+            let good = self.checker.feasible_lanes::<_, FURTHER>(position, &arms, sign);
+            if let Some(marks) = &mut marks {
+                one.select(good, zero).store(&mut marks[group]);
+                continue;
+            }
+            let count_leading_set = good.count_leading_set();
+            if count_leading_set < Lanes::<S>::COUNT {
+                return (group * Lanes::<S>::COUNT + count_leading_set).min(self.count);
+            }
         }
+        self.count
     }
 }
 
@@ -188,35 +168,32 @@ impl<L: Leg> PoseChecker<L> {
     ) -> usize {
         // A column that ends early must not be mistaken for one of feasible poses.
         assert!(xs.len() == ys.len() && xs.len() >= padded_length(count));
-        macro_rules! run {
-            ($further:literal) => {
-                self.instructions.run(Leading::<L, $further> {
-                    checker: self,
-                    oriented,
-                    xs,
-                    ys,
-                    count,
-                })
-            };
-        }
-        if self.thresholds.further.is_some() {
-            run!(true)
-        } else {
-            run!(false)
-        }
+        self.mark_and_count(oriented, xs, ys, count, None)
     }
 
     /// Writes 1 for each position at which the pose is feasible and 0 for every other position.
     pub(super) fn mark_feasible(&self, oriented: OrientationLanes<'_>, xs: &[f64], ys: &[f64], good: &mut [f64]) {
         assert!(xs.len() == ys.len() && xs.len() == good.len() && xs.len().is_multiple_of(MAX_LANES));
+        self.mark_and_count(oriented, xs, ys, xs.len(), Some(good));
+    }
+
+    fn mark_and_count(
+        &self,
+        oriented: OrientationLanes<'_>,
+        xs: &[f64],
+        ys: &[f64],
+        count: usize,
+        marks: Option<&mut [f64]>,
+    ) -> usize {
         macro_rules! run {
             ($further:literal) => {
-                self.instructions.run(Good::<L, $further> {
+                self.instructions.run(Feasible::<L, $further> {
                     checker: self,
                     oriented,
                     xs,
                     ys,
-                    good,
+                    count,
+                    marks,
                 })
             };
         }

@@ -190,6 +190,41 @@ impl<L: Leg, V: Real> LaneJob for StiffnessOnRails<'_, L, V> {
     }
 }
 
+/// The values except the clearance, as a job of its own, for loops in which its speed matters less than their size.
+struct WithoutClearance<'a, L, V> {
+    checker: &'a PoseChecker<L>,
+    position: Planar<V>,
+    arms: &'a [Planar<V>; LEGS],
+}
+
+impl<L: Leg, V: Real> LaneJob for WithoutClearance<'_, L, V> {
+    type Output = (PoseLanes<V>, [DistalLanes<V>; LEGS]);
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.checker.lanes_without_clearance(self.position, self.arms)
+    }
+}
+
+/// The clearance at several poses, as a job of its own.
+struct ClearanceUpTo<'a, L, V: Real> {
+    checker: &'a PoseChecker<L>,
+    position: Planar<V>,
+    arms: &'a [Planar<V>; LEGS],
+    distals: &'a [DistalLanes<V>; LEGS],
+    limit: V,
+}
+
+impl<L: Leg, V: Real> LaneJob for ClearanceUpTo<'_, L, V> {
+    type Output = V;
+
+    #[inline(always)]
+    fn run(self) -> V {
+        self.checker
+            .compute_clearance_up_to(self.position, self.arms, self.distals, self.limit)
+    }
+}
+
 impl<L: Leg> PoseChecker<L> {
     /// Returns the sign of `det A` with `P` at `position`, if the pose is feasible in every other respect.
     ///
@@ -222,7 +257,7 @@ impl<L: Leg> PoseChecker<L> {
         let (mut values, distals) = self.lanes_without_clearance(position, arms);
         if self.thresholds.clearance.is_some() {
             let limit = position.x.splat(f64::INFINITY);
-            values.clearance = Some(self.compute_clearance_up_to(position, arms, &distals, limit));
+            values.clearance = Some(self.compute_clearance_apart(position, arms, &distals, limit));
         }
         if self.thresholds.further.is_some() {
             values.further = Some(self.further_lanes(position, arms));
@@ -245,6 +280,25 @@ impl<L: Leg> PoseChecker<L> {
             .compute_clearance_up_to(&self.manipulator.legs, position, arms, distals, limit)
     }
 
+    /// Does the same as [`PoseChecker::compute_clearance_up_to`] in a function of its own.
+    #[inline(always)]
+    pub(super) fn compute_clearance_apart<V: Real>(
+        &self,
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
+        distals: &[DistalLanes<V>; LEGS],
+        limit: V,
+    ) -> V {
+        let checker = self;
+        limit.call_apart(ClearanceUpTo {
+            checker,
+            position,
+            arms,
+            distals,
+            limit,
+        })
+    }
+
     /// Returns the distances of the sliders from both ends of their rails \[m\], for chains on rails.
     #[inline(always)]
     pub(super) fn slider_lanes<V: Real>(
@@ -253,12 +307,24 @@ impl<L: Leg> PoseChecker<L> {
         arms: &[Planar<V>; LEGS],
         legs: &[LegLanes<V>; LEGS],
     ) -> [[V; 2]; LEGS] {
-        let slider = |leg: usize| {
-            let chain = &legs[leg].chain;
-            let b = position.plus(arms[leg]).minus(chain.tangent.scaled(chain.offset));
-            self.manipulator.legs[leg].frame().from_rail_ends(b)
-        };
-        [slider(0), slider(1), slider(2)]
+        [
+            self.slider_lanes_of(position, arms, legs, 0),
+            self.slider_lanes_of(position, arms, legs, 1),
+            self.slider_lanes_of(position, arms, legs, 2),
+        ]
+    }
+
+    #[inline(always)]
+    fn slider_lanes_of<V: Real>(
+        &self,
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
+        legs: &[LegLanes<V>; LEGS],
+        leg: usize,
+    ) -> [V; 2] {
+        let chain = &legs[leg].chain;
+        let b = position.plus(arms[leg]).minus(chain.tangent.scaled(chain.offset));
+        self.manipulator.legs[leg].frame().from_rail_ends(b)
     }
 
     /// Returns all values except the clearance at several poses at once, and the distal bars of the legs.
@@ -301,8 +367,23 @@ impl<L: Leg> PoseChecker<L> {
         (values, [legs[0].distal(), legs[1].distal(), legs[2].distal()])
     }
 
+    /// Does the same as [`PoseChecker::lanes_without_clearance`] in a function of its own.
+    #[inline(always)]
+    pub(super) fn lanes_without_clearance_apart<V: Real>(
+        &self,
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
+    ) -> (PoseLanes<V>, [DistalLanes<V>; LEGS]) {
+        let checker = self;
+        position.x.call_apart(WithoutClearance {
+            checker,
+            position,
+            arms,
+        })
+    }
+
     /// Returns the mask of the feasible poses, at which `det A` has the given sign (±1). The limits of further values are examined
-    /// only if `FURTHER` says so, because a loop that could examine them is slower.
+    /// only if `FURTHER` says so, because a loop that could examine them is slower; with them, the parts are functions of their own.
     #[inline(always)]
     pub(super) fn feasible_lanes<V: Real, const FURTHER: bool>(
         &self,
@@ -310,7 +391,11 @@ impl<L: Leg> PoseChecker<L> {
         arms: &[Planar<V>; LEGS],
         sign: V,
     ) -> V::Mask {
-        let (values, distals) = self.lanes_without_clearance(position, arms);
+        let (values, distals) = if FURTHER {
+            self.lanes_without_clearance_apart(position, arms)
+        } else {
+            self.lanes_without_clearance(position, arms)
+        };
         let least = &self.thresholds;
         let good = values.reachable
             & (values.determinant * sign).exceeds(sign.splat(0.0))
@@ -330,9 +415,12 @@ impl<L: Leg> PoseChecker<L> {
             Some(least) if V::any(good) => {
                 let least = sign.splat(least);
                 let limit = least.select(good, sign.splat(f64::NEG_INFINITY));
-                good & self
-                    .compute_clearance_up_to(position, arms, &distals, limit)
-                    .at_least(least)
+                let clearance = if FURTHER {
+                    self.compute_clearance_apart(position, arms, &distals, limit)
+                } else {
+                    self.compute_clearance_up_to(position, arms, &distals, limit)
+                };
+                good & clearance.at_least(least)
             }
             _ => good,
         }

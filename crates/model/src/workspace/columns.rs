@@ -3,7 +3,6 @@
 use glam::DVec2;
 use pulp::{Simd, WithSimd};
 
-use super::batch::OrientationLanes;
 use super::further::FurtherValues;
 use super::{PoseChecker, PoseLanes, PoseValues, Thresholds};
 use crate::clearance::NUMBER_LIMIT;
@@ -231,30 +230,6 @@ impl<S: Simd> ColumnWriter<'_, S> {
     }
 }
 
-/// Computes the values at many positions in one orientation.
-struct AtPositions<'a, L> {
-    checker: &'a PoseChecker<L>,
-    oriented: OrientationLanes<'a>,
-    xs: &'a [f64],
-    ys: &'a [f64],
-    values: &'a mut ValueColumns,
-}
-
-impl<L: Leg> WithSimd for AtPositions<'_, L> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let (arms, _) = self.oriented.lanes(simd);
-        let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
-        let mut writer = self.values.writer::<S>();
-        for (group, (x, y)) in xs.iter().zip(ys).enumerate() {
-            let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            writer.put(group, self.checker.lanes(position, &arms));
-        }
-    }
-}
-
 /// Arms of many poses, one padded column for each component.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ArmColumns([Vec<f64>; 2 * LEGS]);
@@ -313,12 +288,18 @@ impl ArmColumns {
     }
 }
 
+/// The arms at poses: one orientation for all of them, or one for each.
+enum PoseArms<'a> {
+    Same(&'a [DVec2; LEGS]),
+    Columns(&'a ArmColumns),
+}
+
 /// Computes the values at many poses.
 struct AtPoses<'a, L> {
     checker: &'a PoseChecker<L>,
     xs: &'a [f64],
     ys: &'a [f64],
-    arms: &'a ArmColumns,
+    arms: PoseArms<'a>,
     values: &'a mut ValueColumns,
 }
 
@@ -328,18 +309,30 @@ impl<L: Leg> WithSimd for AtPoses<'_, L> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
-        let [x0, y0, x1, y1, x2, y2] = &self.arms.0;
-        let (x0, y0) = (Lanes::<S>::column(x0), Lanes::<S>::column(y0));
-        let (x1, y1) = (Lanes::<S>::column(x1), Lanes::<S>::column(y1));
-        let (x2, y2) = (Lanes::<S>::column(x2), Lanes::<S>::column(y2));
+        let zero = Lanes::all(simd, 0.0);
+        let (mut arms, columns) = match self.arms {
+            PoseArms::Same(&[first, second, third]) => {
+                let all = |arm| Planar::splat(zero, arm);
+                ([all(first), all(second), all(third)], None)
+            }
+            PoseArms::Columns(ArmColumns([x0, y0, x1, y1, x2, y2])) => {
+                let pair = |x, y| (Lanes::<S>::column(x), Lanes::<S>::column(y));
+                (
+                    [Planar::new(zero, zero); LEGS],
+                    Some([pair(x0, y0), pair(x1, y1), pair(x2, y2)]),
+                )
+            }
+        };
         let mut writer = self.values.writer::<S>();
         for group in 0..xs.len() {
             let position = Planar::new(Lanes::load(simd, &xs[group]), Lanes::load(simd, &ys[group]));
-            let arms = [
-                Planar::new(Lanes::load(simd, &x0[group]), Lanes::load(simd, &y0[group])),
-                Planar::new(Lanes::load(simd, &x1[group]), Lanes::load(simd, &y1[group])),
-                Planar::new(Lanes::load(simd, &x2[group]), Lanes::load(simd, &y2[group])),
-            ];
+            if let Some([(x0, y0), (x1, y1), (x2, y2)]) = columns {
+                arms = [
+                    Planar::new(Lanes::load(simd, &x0[group]), Lanes::load(simd, &y0[group])),
+                    Planar::new(Lanes::load(simd, &x1[group]), Lanes::load(simd, &y1[group])),
+                    Planar::new(Lanes::load(simd, &x2[group]), Lanes::load(simd, &y2[group])),
+                ];
+            }
             writer.put(group, self.checker.lanes(position, &arms));
         }
     }
@@ -351,11 +344,11 @@ impl<L: Leg> PoseChecker<L> {
     pub fn at_positions(&self, arms: &[DVec2; LEGS], xs: &[f64], ys: &[f64], values: &mut ValueColumns) {
         assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MAX_LANES));
         values.resize(xs.len(), &self.thresholds);
-        self.instructions.run(AtPositions {
+        self.instructions.run(AtPoses {
             checker: self,
-            oriented: OrientationLanes { arms, sign: 1.0 },
             xs,
             ys,
+            arms: PoseArms::Same(arms),
             values,
         });
     }
@@ -368,7 +361,7 @@ impl<L: Leg> PoseChecker<L> {
             checker: self,
             xs: &positions.xs,
             ys: &positions.ys,
-            arms,
+            arms: PoseArms::Columns(arms),
             values,
         });
     }

@@ -7,7 +7,7 @@ use super::PoseChecker;
 use super::batch::OrientationLanes;
 use super::columns::Positions;
 use crate::kinematics::Jacobian;
-use crate::lanes::{Lanes, Planar, Real};
+use crate::lanes::{LaneJob, Lanes, Planar, Real};
 use crate::mechanism::{JointKind, Leg, LegLanes};
 use crate::spatial::LEGS;
 
@@ -92,6 +92,22 @@ impl<L: Leg> WithSimd for WriteFurther<'_, L> {
     }
 }
 
+/// The further values at several poses, as a job of its own: few studies need them.
+struct FurtherJob<'a, L, V> {
+    checker: &'a PoseChecker<L>,
+    position: Planar<V>,
+    arms: &'a [Planar<V>; LEGS],
+}
+
+impl<L: Leg, V: Real> LaneJob for FurtherJob<'_, L, V> {
+    type Output = FurtherLanes<V>;
+
+    #[inline(always)]
+    fn run(self) -> FurtherLanes<V> {
+        self.checker.compute_further(self.position, self.arms)
+    }
+}
+
 impl<L: Leg> PoseChecker<L> {
     #[inline(always)]
     pub(super) fn leg_lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS]) -> [LegLanes<V>; LEGS] {
@@ -106,6 +122,16 @@ impl<L: Leg> PoseChecker<L> {
     /// Returns the further values at several poses at once; meaningless where a leg does not reach the pose.
     #[inline(always)]
     pub(super) fn further_lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS]) -> FurtherLanes<V> {
+        let checker = self;
+        position.x.call_apart(FurtherJob {
+            checker,
+            position,
+            arms,
+        })
+    }
+
+    #[inline(always)]
+    fn compute_further<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS]) -> FurtherLanes<V> {
         let like = position.x;
         let legs = self.leg_lanes(position, arms);
         let jacobian = Jacobian::of_lanes(&legs);

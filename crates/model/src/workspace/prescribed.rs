@@ -290,7 +290,7 @@ impl<L: Leg> PoseChecker<L> {
         if let Some(threshold) = least.clearance {
             let limit = worst * sign.splat(base_radius) + sign.splat(threshold);
             let limit = limit.select(values.reachable, sign.splat(f64::NEG_INFINITY));
-            let clearance = self.compute_clearance_up_to(position, arms, &distals, limit);
+            let clearance = self.compute_clearance_apart(position, arms, &distals, limit);
             worst = worst.smaller(((clearance - sign.splat(threshold)) * per_length).larger(none));
         }
         worst.select(values.reachable, unreached)

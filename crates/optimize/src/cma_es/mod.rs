@@ -22,7 +22,7 @@ use descent::Descent;
 use strategy::{Strategy, reflected};
 
 use super::random::Random;
-use super::{Algorithm, Candidate, Evaluated, Outcome, Target, Variable, doe};
+use super::{Algorithm, Candidate, Evaluated, Outcome, Problem, Target, Variable, doe};
 
 /// Parameters of [`CmaEs`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -123,7 +123,7 @@ struct Placed<S> {
 }
 
 impl CmaEs {
-    /// Creates the algorithm in its state before the first generation.
+    /// Creates the algorithm in its state before the first generation, for a problem without structure.
     pub fn new(variables: Vec<Variable>, settings: CmaEsSettings, seed: u64) -> Self {
         let niches = super::categories::combinations(&variables)
             .into_iter()
@@ -148,10 +148,13 @@ impl CmaEs {
         algorithm
     }
 
-    /// Leaves the variables at the given places to the problem, which determines them when it completes a candidate.
-    pub fn with_determined_variables(mut self, variables: &[usize]) -> Self {
-        self.free.retain(|k| !variables.contains(k));
-        self
+    /// Creates the algorithm for a problem that may determine variables
+    /// ([`determined_variables`](super::Problem::determined_variables)): these are left to it.
+    pub fn for_problem(problem: &impl Problem, settings: CmaEsSettings, seed: u64) -> Self {
+        let mut algorithm = Self::new(problem.variables(), settings, seed);
+        let determined = problem.determined_variables();
+        algorithm.free.retain(|k| !determined.contains(k));
+        algorithm
     }
 
     fn sample(&self) -> Vec<(usize, Vec<f64>)> {

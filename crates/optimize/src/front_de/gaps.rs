@@ -18,21 +18,21 @@ const DOMINATED: f64 = 0.1;
 #[derive(Debug, Clone, Default)]
 pub struct Gaps {
     gaps: Vec<Gap>,
-    /// Number of candidates for each gap so far, by the evaluations of its ends.
-    tried: BTreeMap<[usize; 2], u32>,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Gap {
+    /// Evaluations of the two members.
     ends: [usize; 2],
     /// Area of the rectangle between the ends, and the same with the logarithm of the sized objective.
     areas: [f64; 2],
+    /// Number of candidates so far that were to close it.
     tried: u32,
 }
 
 impl Gaps {
-    /// Finds the gaps of a front of which `common` holds the members that no other category dominates. `sized` gives the logarithm
-    /// of the objective that is not leveled, if it is positive.
+    /// Finds the gaps of a front of which `common` holds the members that no other category dominates. `logarithm` is applied to the
+    /// sized objective.
     pub fn update(&mut self, front: &Archive, common: &Archive, leveled: usize, logarithm: impl Fn(f64) -> f64) {
         let is_common = |member: &ArchiveMember| {
             let first = member.objectives[0];
@@ -45,7 +45,8 @@ impl Gaps {
             .iter()
             .map(|member| (member, logarithm(member.objectives[1 - leveled]), is_common(member)))
             .collect();
-        let before = std::mem::take(&mut self.tried);
+        let tried = self.gaps.iter().filter(|gap| gap.tried > 0);
+        let before: BTreeMap<[usize; 2], u32> = tried.map(|gap| (gap.ends, gap.tried)).collect();
         let gap = |pair: &[(&ArchiveMember, f64, bool)]| {
             let [(a, log_a, common_a), (b, log_b, common_b)] = [pair[0], pair[1]];
             let weight = if common_a || common_b { 1.0 } else { DOMINATED };
@@ -59,8 +60,6 @@ impl Gaps {
             }
         };
         self.gaps = ends.windows(2).map(gap).collect();
-        let tried = self.gaps.iter().filter(|gap| gap.tried > 0);
-        self.tried = tried.map(|gap| (gap.ends, gap.tried)).collect();
     }
 
     /// Draws a gap, mostly in proportion to its area, and the less likely the more often it was tried. Returns the place of its first end.
@@ -77,9 +76,7 @@ impl Gaps {
             };
             self.gaps.iter().position(reached).unwrap_or(self.gaps.len() - 1)
         };
-        let gap = &mut self.gaps[place];
-        gap.tried += 1;
-        self.tried.insert(gap.ends, gap.tried);
+        self.gaps[place].tried += 1;
         place
     }
 }

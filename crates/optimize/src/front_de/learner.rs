@@ -94,9 +94,12 @@ impl Learner {
         self.is_current = false;
         let level = objectives[self.leveled];
         // A candidate that missed its level has the best one that its free variables allow.
-        if !target
-            .is_some_and(|target| target == Target::Best || matches!(target, Target::Level(asked) if level > asked))
-        {
+        let has_best_level = match target {
+            Some(Target::Best) => true,
+            Some(Target::Level(asked)) => level > asked,
+            None => false,
+        };
+        if !has_best_level {
             return;
         }
         if self.values.len() >= MOST_SAMPLES {

@@ -190,9 +190,9 @@ impl FrontDe {
     fn sample(&mut self) -> Vec<Candidate> {
         let count = self.settings.generation.max(2).max(4 * self.niches.len());
         let mut sample = doe::sobol(&self.variables, count, self.seed);
+        let target = Some(Target::Best);
         for (index, x) in sample.iter_mut().enumerate() {
             let niche = index % self.niches.len();
-            let target = Some(Target::Best);
             self.pending.push(Origin {
                 niche,
                 way: None,
@@ -200,7 +200,6 @@ impl FrontDe {
             });
             set_categories(&self.variables, x, &self.niches[niche].categories);
         }
-        let target = Some(Target::Best);
         sample.into_iter().map(|x| Candidate { x, target }).collect()
     }
 
