@@ -1,6 +1,6 @@
 //! Colours and markers of the window: one per architecture, the same as in recordings.
 
-use egui::{Color32, Context, Stroke, Ui};
+use egui::{Button, Color32, Context, IntoAtoms, Response, Stroke, Ui};
 use egui_plot::MarkerShape;
 
 use crate::palette;
@@ -153,6 +153,21 @@ pub fn infeasible(dark: bool) -> Color32 {
 /// Returns the colour of lines and text that contrast with the background.
 pub fn ink(ui: &Ui) -> Color32 {
     ui.visuals().strong_text_color()
+}
+
+/// Returns a button that is on or off; its frame is visible either way.
+pub fn toggle<'a>(is_on: bool, text: impl IntoAtoms<'a>) -> Button<'a> {
+    Button::selectable(is_on, text).frame_when_inactive(true)
+}
+
+/// Shows a button that sets `current` to `value`, and is on while they are equal.
+pub fn choice<'a, T: PartialEq>(ui: &mut Ui, current: &mut T, value: T, text: impl IntoAtoms<'a>) -> Response {
+    let mut response = ui.add(toggle(*current == value, text));
+    if response.clicked() && *current != value {
+        *current = value;
+        response.mark_changed();
+    }
+    response
 }
 
 /// Blends a colour over the background; `fraction` is the fraction of the colour.

@@ -112,13 +112,14 @@ impl FrontPanel {
     fn search_bar(&mut self, ui: &mut Ui, session: &Session, columns: &[Column]) {
         ui.horizontal_wrapped(|ui| {
             let marked = session.document().marked.len();
-            ui.selectable_value(
+            theme::choice(
+                ui,
                 &mut self.listing.marked,
                 false,
                 format!("Front ({})", session.front().len()),
             );
             ui.add_enabled_ui(marked > 0, |ui| {
-                ui.selectable_value(&mut self.listing.marked, true, format!("Marked ({marked})"))
+                theme::choice(ui, &mut self.listing.marked, true, format!("Marked ({marked})"))
                     .on_disabled_hover_text("mark designs in the scatter with Box or Lasso");
             });
             let field = ui.add(

@@ -61,7 +61,7 @@ fn heading(ui: &mut Ui, session: &mut Session) {
     ui.horizontal_wrapped(|ui| {
         let pinned = session.document().pins.iter().any(|pin| pin.design == selected.design);
         if ui
-            .selectable_label(pinned, "📌 Pin")
+            .add(theme::toggle(pinned, "📌 Pin"))
             .on_hover_text("pin this design to compare it; up to four designs (P)")
             .clicked()
         {
@@ -76,7 +76,7 @@ fn heading(ui: &mut Ui, session: &mut Session) {
         }
         if let crate::explorer::DesignOrigin::Evaluated(id) = selected.origin {
             let starred = session.document().stars.contains(&id);
-            let star = ui.selectable_label(starred, if starred { "★" } else { "☆" });
+            let star = ui.add(theme::toggle(starred, if starred { "★" } else { "☆" }));
             if named(star, "Star or unstar this design (S)").clicked() {
                 session.toggle_star();
             }

@@ -1,6 +1,6 @@
 //! The assembly modes in the pose panel: a button and a ghost for each, and their number over a slice of the joint space.
 
-use egui::{Button, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
+use egui::{Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 
 use super::plan::Plan;
 use crate::explorer::{Session, theme};
@@ -158,7 +158,7 @@ fn is_at(a: &Pose, b: &Pose) -> bool {
 /// Draws the button of a mode; returns whether it was clicked.
 fn button(ui: &mut Ui, number: usize, mode: &AssemblyMode, pose: Pose) -> bool {
     let is_here = is_at(&mode.pose, &pose);
-    let button = ui.add_enabled(can_be_shown(mode), Button::selectable(is_here, number.to_string()));
+    let button = ui.add_enabled(can_be_shown(mode), theme::toggle(is_here, number.to_string()));
     button.widget_info(|| {
         WidgetInfo::selected(
             WidgetType::SelectableLabel,

@@ -76,7 +76,7 @@ impl PosePanel {
             }
             let cylinder = regular_workspace(&known.evaluation, session.model().workspace.rotation_range_deg);
             let playing = self.playing.is_some();
-            let button = egui::Button::selectable(playing, if playing { "⏹ Tour" } else { "▶ Tour" });
+            let button = theme::toggle(playing, if playing { "⏹ Tour" } else { "▶ Tour" });
             if ui
                 .add_enabled(cylinder.is_some(), button)
                 .on_hover_text("moves the platform around the rim of the regular workspace")

@@ -26,8 +26,8 @@ impl StudyPanel {
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) -> bool {
         let mut save = false;
         ui.horizontal(|ui| {
-            ui.selectable_value(&mut self.as_text, false, "Fields");
-            ui.selectable_value(&mut self.as_text, true, "Text");
+            theme::choice(ui, &mut self.as_text, false, "Fields");
+            theme::choice(ui, &mut self.as_text, true, "Text");
             ui.separator();
             save = ui.button("Save study…").clicked();
             let history = session.editor.history();

@@ -41,7 +41,7 @@ impl DragTool {
                 "dragging marks the designs within a line drawn around them",
             ),
         ] {
-            ui.selectable_value(self, tool, name).on_hover_text(hint);
+            theme::choice(ui, self, tool, name).on_hover_text(hint);
         }
     }
 }
