@@ -41,9 +41,10 @@ fn of_theme(is_dark: bool, dark: [u8; 3], light: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// Applies the fonts and colours of the embedded viewer, so that the whole window has one style.
+/// Applies the fonts and colours of the embedded viewer, so that the whole window has one style, and refines them.
 pub fn dress(ctx: &Context) {
     re_viewer::external::re_ui::apply_style_and_install_loaders(ctx);
+    refine(ctx);
 }
 
 /// Gives what can be clicked a frame, and text a size of at least 12 points and a legible colour: the viewer's style has flat buttons,
@@ -189,7 +190,6 @@ mod tests {
     fn colours_of_text_have_the_contrast_that_the_wcag_requires() {
         let ctx = Context::default();
         dress(&ctx);
-        refine(&ctx);
         for theme in [egui::Theme::Dark, egui::Theme::Light] {
             ctx.set_theme(theme);
             let _ = ctx.run_ui(egui::RawInput::default(), |ui| {

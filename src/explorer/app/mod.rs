@@ -108,12 +108,12 @@ impl Explorer {
         };
         let (viewer, scene) = if embedded {
             let (viewer, scene) = Viewer::new(cc, editor.study())?;
+            theme::refine(&cc.egui_ctx);
             (Some(viewer), Some(scene))
         } else {
             theme::dress(&cc.egui_ctx);
             (None, None)
         };
-        theme::refine(&cc.egui_ctx);
         let ctx = cc.egui_ctx.clone();
         // Updates that arrive within this interval share a frame. The interval grows with the time that a frame takes:
         // where frames are drawn by the processor, they would take its time from the search.
