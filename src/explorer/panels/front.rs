@@ -290,13 +290,15 @@ fn draw_row(
         row.col(|ui| {
             let text = RichText::new(cell(entry, *key));
             let text = match key {
+                // The row's own colour of text is legible on its ground; no other is in both themes.
+                _ if state.selected => text,
                 SortKey::Number(Column::Value(Constraint::Clearance))
                     if entry.row.clearance().is_some_and(|clearance| clearance < 0.0) =>
                 {
                     text.color(theme::bad(ui))
                 }
                 _ if !state.passes => text.weak(),
-                SortKey::Architecture if !state.selected => text.color(theme::architecture(
+                SortKey::Architecture => text.color(theme::architecture(
                     entry.row.design.architecture,
                     ui.visuals().dark_mode,
                 )),
@@ -314,7 +316,8 @@ fn draw_row(
             };
             let upper = certified.upper.map_or("∞".to_owned(), |upper| format!("{upper:.4}"));
             let words = format!("{} [{:.4}, {upper}]", certified.state(), certified.lower);
-            let words = RichText::new(words).color(color);
+            let words = RichText::new(words);
+            let words = if state.selected { words } else { words.color(color) };
             ui.add(Label::new(words).selectable(false))
                 .on_hover_text(certified.to_string());
         }
