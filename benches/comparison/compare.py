@@ -192,7 +192,7 @@ ALGORITHMS = {
     "pymoo SMS-EMOA, population 100": pymoo_algorithm(sms_emoa),
     "pymoo C-TAEA, 60 directions": pymoo_algorithm(c_taea),
     "fcmaes-core MODE, population 64": mode,
-    "BoTorch qLogEHVI, 10 at a time": model_based("qehvi"),
+    "BoTorch qLogEHVI, 5 at a time": model_based("qehvi"),
     "SMAC ParEGO, random forest": model_based("parego"),
 }
 

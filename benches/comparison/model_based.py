@@ -14,9 +14,10 @@ REFERENCE = 2000.0
 
 
 def qehvi(job, evaluator, design_text, lower, upper):
-    """Run qLogEHVI with Gaussian processes of ln mass, radius and violation; 10 candidates at a time after 60 of a Sobol sample.
+    """Run qLogEHVI with Gaussian processes of ln mass, radius and violation; 5 candidates at a time after 60 of a Sobol sample.
 
-    An evaluation has no noise, so that qNEHVI would compute the same improvement at many times the cost.
+    An evaluation has no noise, so that qNEHVI would compute the same improvement at many times the cost. That of qLogEHVI doubles with every
+    candidate of a batch.
     """
     import torch
     from botorch.acquisition.multi_objective.logei import qLogExpectedHypervolumeImprovement
@@ -71,7 +72,7 @@ def qehvi(job, evaluator, design_text, lower, upper):
             objective=objective,
             constraints=[lambda y: -y[..., 2]],
         )
-        options = {"q": min(10, job["evaluations"] - len(met)), "num_restarts": 2, "raw_samples": 64, "options": {"maxiter": 30}}
+        options = {"q": min(5, job["evaluations"] - len(met)), "num_restarts": 2, "raw_samples": 64, "options": {"maxiter": 30}}
         if several:
             fixed = [{5: float(place)} for place in range(len(architectures))]
             candidates, _ = optimize_acqf_mixed(gain, bounds, fixed_features_list=fixed, **options)

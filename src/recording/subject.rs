@@ -1,6 +1,7 @@
 //! A design with its evaluation, and the places at which its parts are drawn.
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 use super::draw::Canvas;
 use super::legend::draw_legend;
@@ -203,9 +204,13 @@ impl DrawnDesign<'_> {
         let field = Field::InverseCondition;
         // All layers share one colour map, over the full range of the inverse condition number.
         let map = ColorMap::new(field.scale(), [0.0, 1.0], field.threshold(self.model));
-        for (index, turn) in LAYERS_DEG.into_iter().enumerate() {
+        // Each of them is small, so that they are computed side by side rather than each in parallel.
+        let heatmap = |turn: f64| {
             let phi = space.origin + turn.to_radians();
-            let heatmap = Heatmap::new(self.model, self.design(), field, phi, settings);
+            (phi, Heatmap::new(self.model, self.design(), field, phi, settings))
+        };
+        let heatmaps: Vec<(f64, Heatmap)> = LAYERS_DEG.into_par_iter().map(heatmap).collect();
+        for (index, (phi, heatmap)) in heatmaps.into_iter().enumerate() {
             let root = format!("{}/layers/{index}", paths::CONFIGURATION);
             let place = |p: DVec2| space.place(p, phi);
             if filled {

@@ -64,6 +64,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Code that only needs values at poses asks [`Model::pose_evaluator`](evaluation::Model::pose_evaluator), which hides the leg type.
+//!
 //! | module | purpose |
 //! |---|---|
 //! | [`lanes`] | arithmetic on one number or on several at once |

@@ -10,7 +10,9 @@ use crate::mechanism::{AnyLeg, Assembly, Design, Geometry, Leg, LegSettings, Man
 use crate::spatial::{LEGS, Pose, Rotation};
 use crate::stiffness::planar::ActuatorStiffness;
 use crate::stiffness::{CrossSection, CrossSections, Material, RailSettings, StiffnessDefinition, StiffnessModel};
-use crate::workspace::{Grid, GridError, PoseChecker, Region, Thresholds, WorkspaceSampling, WorkspaceSpec};
+use crate::workspace::{
+    Grid, GridError, PoseChecker, PoseEvaluator, Region, Thresholds, WorkspaceSampling, WorkspaceSpec,
+};
 
 /// All inputs of an evaluation other than the design. The default is the model of the paper, with the choices of this
 /// program where the paper leaves something open (docs/model.md, section 11).
@@ -255,6 +257,22 @@ impl Model {
             thresholds: self.thresholds,
             instructions: InstructionSet::best(),
         }
+    }
+
+    /// Prepares the design for evaluation at many poses, whatever its legs are, with a definition of the stiffness values and with
+    /// the clearance that is required \[m\]; without one, the clearance is not computed.
+    pub fn pose_evaluator(
+        &self,
+        design: &Design,
+        definition: StiffnessDefinition,
+        clearance: Option<f64>,
+    ) -> Box<dyn PoseEvaluator> {
+        with_leg!(design.architecture, L => {
+            let mut checker = self.checker::<L>(design);
+            checker.definition = definition;
+            checker.thresholds.clearance = clearance;
+            Box::new(checker)
+        })
     }
 
     /// Returns the stiffness model of a design; `None` if a bar is infinitely compliant.

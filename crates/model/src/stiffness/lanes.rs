@@ -56,6 +56,37 @@ struct ReducedPlatformBar {
     vertical: [f64; 2],
 }
 
+/// Sliders on rails that bend, if there are any. This is known when a loop is compiled, so that nothing of rails is compiled into the
+/// others.
+pub(crate) trait Sliders<V: Real> {
+    /// Whether there are any.
+    const ON_BENDING_RAILS: bool;
+
+    /// Returns the distances of the slider of a leg from both ends of its rail \[m\], if there are any.
+    fn of(&self, leg: usize) -> Option<[V; 2]>;
+}
+
+/// No sliders on rails that bend.
+pub(crate) struct NoSliders;
+
+impl<V: Real> Sliders<V> for NoSliders {
+    const ON_BENDING_RAILS: bool = false;
+
+    #[inline(always)]
+    fn of(&self, _leg: usize) -> Option<[V; 2]> {
+        None
+    }
+}
+
+impl<V: Real> Sliders<V> for [[V; 2]; LEGS] {
+    const ON_BENDING_RAILS: bool = true;
+
+    #[inline(always)]
+    fn of(&self, leg: usize) -> Option<[V; 2]> {
+        Some(self[leg])
+    }
+}
+
 /// Returns three times the mean square of a moment that varies linearly between the ends of a bar.
 #[inline(always)]
 fn sum_of_squares<V: Real>([first, second]: [V; 2]) -> V {
@@ -200,24 +231,22 @@ impl StiffnessModel {
         self.rail.is_some()
     }
 
-    /// Computes `k_xy`, `k_z` and `k_φz` according to `definition`; valid in the lanes where all legs reach the pose. `sliders`
-    /// are the distances of the sliders from both ends of their rails \[m\], if rails bend.
+    /// Computes `k_xy`, `k_z` and `k_φz` according to `definition`; valid in the lanes where all legs reach the pose.
     #[inline(always)]
-    pub(crate) fn stiffness_value_lanes<V: Real>(
+    pub(crate) fn stiffness_value_lanes<V: Real, S: Sliders<V>>(
         &self,
         definition: StiffnessDefinition,
         legs: &[LegLanes<V>; LEGS],
         arms: &[Planar<V>; LEGS],
-        sliders: Option<[[V; 2]; LEGS]>,
+        sliders: &S,
         jacobian: &Jacobian<V>,
     ) -> [V; 3] {
-        let slider = |leg: usize| sliders.map(|sliders| sliders[leg]);
         let like = jacobian.ux[0];
         let reduced = &self.reduced;
         let c = [
-            self.along_line(&legs[0], slider(0), 0),
-            self.along_line(&legs[1], slider(1), 1),
-            self.along_line(&legs[2], slider(2), 2),
+            self.along_line(&legs[0], sliders, 0),
+            self.along_line(&legs[1], sliders, 1),
+            self.along_line(&legs[2], sliders, 2),
         ];
         // A single division gives the three reciprocals.
         let pairs = [c[1] * c[2], c[2] * c[0], c[0] * c[1]];
@@ -235,9 +264,9 @@ impl StiffnessModel {
                     yy = yy + y * ky;
                     mm = mm + m * m * stiffness[i];
                 }
-                let [n0, d0] = self.vertical_lanes(&legs[0], arms[0], slider(0), 0);
-                let [n1, d1] = self.vertical_lanes(&legs[1], arms[1], slider(1), 1);
-                let [n2, d2] = self.vertical_lanes(&legs[2], arms[2], slider(2), 2);
+                let [n0, d0] = self.vertical_lanes(&legs[0], arms[0], sliders, 0);
+                let [n1, d1] = self.vertical_lanes(&legs[1], arms[1], sliders, 1);
+                let [n2, d2] = self.vertical_lanes(&legs[2], arms[2], sliders, 2);
                 // A single division gives the sum of the three quotients.
                 let sum = n0 * (d1 * d2) + d0 * (n1 * d2 + n2 * d1);
                 let k_z = like.splat(1.0 / reduced.bend_unit) * sum / (d0 * (d1 * d2));
@@ -246,9 +275,9 @@ impl StiffnessModel {
             StiffnessDefinition::Compliance => {
                 // The legs are written out, because an array indexed in a loop would be kept in memory.
                 let in_plane = in_plane_block(jacobian, &stiffness);
-                let k0 = inverse(&self.bending_lanes(&legs[0], arms[0], slider(0), 0));
-                let k1 = inverse(&self.bending_lanes(&legs[1], arms[1], slider(1), 1));
-                let k2 = inverse(&self.bending_lanes(&legs[2], arms[2], slider(2), 2));
+                let k0 = inverse(&self.bending_lanes(&legs[0], arms[0], sliders, 0));
+                let k1 = inverse(&self.bending_lanes(&legs[1], arms[1], sliders, 1));
+                let k2 = inverse(&self.bending_lanes(&legs[2], arms[2], sliders, 2));
                 let mut k = k0;
                 for entry in 0..k.len() {
                     k[entry] = k0[entry] + k1[entry] + k2[entry];
@@ -262,20 +291,19 @@ impl StiffnessModel {
     /// Computes `k_xy` by compliance, whatever definition the study uses: the reciprocal of the largest displacement per unit of
     /// force in the plane \[N/m\].
     #[inline(always)]
-    pub(crate) fn compliant_k_xy_lanes<V: Real>(
+    pub(crate) fn compliant_k_xy_lanes<V: Real, S: Sliders<V>>(
         &self,
         legs: &[LegLanes<V>; LEGS],
-        sliders: Option<[[V; 2]; LEGS]>,
+        sliders: &S,
         jacobian: &Jacobian<V>,
     ) -> V {
-        let slider = |leg: usize| sliders.map(|sliders| sliders[leg]);
         let like = jacobian.ux[0];
         let reduced = &self.reduced;
         let along = |compliance: V| like.splat(1.0 / reduced.along_unit) / compliance;
         let stiffness = [
-            along(self.along_line(&legs[0], slider(0), 0)),
-            along(self.along_line(&legs[1], slider(1), 1)),
-            along(self.along_line(&legs[2], slider(2), 2)),
+            along(self.along_line(&legs[0], sliders, 0)),
+            along(self.along_line(&legs[1], sliders, 1)),
+            along(self.along_line(&legs[2], sliders, 2)),
         ];
         let in_plane = in_plane_block(jacobian, &stiffness);
         Self::in_plane_stiffness_values(&in_plane, StiffnessDefinition::Compliance).0
@@ -283,10 +311,13 @@ impl StiffnessModel {
 
     /// Computes the compliance along the line of leg `index`, in multiples of `along_unit`.
     #[inline(always)]
-    fn along_line<V: Real>(&self, leg: &LegLanes<V>, slider: Option<[V; 2]>, index: usize) -> V {
+    fn along_line<V: Real, S: Sliders<V>>(&self, leg: &LegLanes<V>, sliders: &S, index: usize) -> V {
         let of_bars = self.reduced.along_line(leg, index);
+        if !S::ON_BENDING_RAILS {
+            return of_bars;
+        }
         let chain = &leg.chain;
-        match (&self.rail, slider, chain.guides[0]) {
+        match (&self.rail, sliders.of(index), chain.guides[0]) {
             (Some(rail), Some(slider), Some(axis)) => {
                 // In the distal axes the line of the leg has the direction (1, 0), unless it is not that of the distal bar.
                 let (across, moment) = match &leg.loads {
@@ -305,18 +336,18 @@ impl StiffnessModel {
 
     /// Computes `det S_φφ` and `det S` of leg `index`, whose quotient is its `K_zz` in multiples of 1/`bend_unit`.
     #[inline(always)]
-    fn vertical_lanes<V: Real>(
+    fn vertical_lanes<V: Real, S: Sliders<V>>(
         &self,
         leg: &LegLanes<V>,
         arm: Planar<V>,
-        slider: Option<[V; 2]>,
+        sliders: &S,
         index: usize,
     ) -> [V; 2] {
-        if slider.is_none() {
+        if !S::ON_BENDING_RAILS {
             return self.reduced.vertical(leg, index);
         }
         let scale = leg.moment.splat(1.0 / self.reduced.bend_unit);
-        let s = self.bending_lanes(leg, arm, slider, index);
+        let s = self.bending_lanes(leg, arm, sliders, index);
         let [zz, zx, zy] = [s[0] * scale, s[1] * scale, s[2] * scale];
         let [xx, xy, yy] = [s[3] * scale, s[4] * scale, s[5] * scale];
         let minor = xx * yy - xy * xy;
@@ -326,11 +357,11 @@ impl StiffnessModel {
 
     /// Computes the upper triangle of the out-of-plane compliance of one leg at `P` in base axes.
     #[inline(always)]
-    fn bending_lanes<V: Real>(
+    fn bending_lanes<V: Real, S: Sliders<V>>(
         &self,
         leg: &LegLanes<V>,
         arm: Planar<V>,
-        slider: Option<[V; 2]>,
+        sliders: &S,
         index: usize,
     ) -> [V; 6] {
         let like = leg.moment;
@@ -358,7 +389,9 @@ impl StiffnessModel {
             let signed = bar.share * like.splat(self.reduced.proximal_length);
             add_bar(&mut s, &self.leg_bar, axis, [bar.length, signed], to_p);
         }
-        if let (Some(rail), Some(slider), Some(axis)) = (&self.rail, slider, chain.guides[0]) {
+        if S::ON_BENDING_RAILS
+            && let (Some(rail), Some(slider), Some(axis)) = (&self.rail, sliders.of(index), chain.guides[0])
+        {
             let axis = tangent.scaled(axis.x).plus(tangent.perp().scaled(axis.y));
             let to_p = tangent.scaled(chain.offset).minus(arm);
             rail.at(slider).add_to(&mut s, axis, to_p);

@@ -15,6 +15,7 @@ mod section;
 
 pub use bar::{BarCompliance, Material};
 pub use contributions::{Contribution, LegContributions};
+pub(crate) use lanes::NoSliders;
 pub use planar::{ActuatorStiffness, PlanarStiffness, StiffnessModel};
 pub use rail::{RailSettings, RailSupports};
 pub use section::{Catalogue, CatalogueEntry, CatalogueError, CrossSection, CrossSections, Wall};

@@ -8,7 +8,7 @@ use crate::kinematics::Jacobian;
 use crate::lanes::{InstructionSet, LaneJob, Planar, Real};
 use crate::mechanism::{Assembly, DistalLanes, JointKind, Leg, LegLanes, Manipulator, Posture};
 use crate::spatial::LEGS;
-use crate::stiffness::{PlanarStiffness, StiffnessDefinition, StiffnessModel, StiffnessValues};
+use crate::stiffness::{NoSliders, PlanarStiffness, StiffnessDefinition, StiffnessModel, StiffnessValues};
 
 /// Smallest values allowed at a feasible pose (g3 … g7).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -182,9 +182,7 @@ impl<L: Leg, V: Real> LaneJob for StiffnessOnRails<'_, L, V> {
         let jacobian = Jacobian::of_lanes(&legs);
         let sliders = self.checker.slider_lanes(self.position, &self.arms, &legs);
         match &self.checker.stiffness {
-            Some(model) => {
-                model.stiffness_value_lanes(self.checker.definition, &legs, &self.arms, Some(sliders), &jacobian)
-            }
+            Some(model) => model.stiffness_value_lanes(self.checker.definition, &legs, &self.arms, &sliders, &jacobian),
             None => [self.position.x.splat(0.0); 3],
         }
     }
@@ -254,7 +252,7 @@ impl<L: Leg> PoseChecker<L> {
     /// only if g7 is required.
     #[inline(always)]
     pub fn lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS]) -> PoseLanes<V> {
-        let (mut values, distals) = self.lanes_without_clearance(position, arms);
+        let (mut values, distals) = self.lanes_without_clearance_apart(position, arms);
         if self.thresholds.clearance.is_some() {
             let limit = position.x.splat(f64::INFINITY);
             values.clearance = Some(self.compute_clearance_apart(position, arms, &distals, limit));
@@ -347,7 +345,7 @@ impl<L: Leg> PoseChecker<L> {
                     arms,
                 })
             }
-            Some(model) => model.stiffness_value_lanes(self.definition, &legs, arms, None, &jacobian),
+            Some(model) => model.stiffness_value_lanes(self.definition, &legs, arms, &NoSliders, &jacobian),
             None => [like.splat(0.0); 3],
         };
         let [first, second, third] = [&legs[0].chain, &legs[1].chain, &legs[2].chain];

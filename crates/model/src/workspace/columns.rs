@@ -342,26 +342,23 @@ impl<L: Leg> PoseChecker<L> {
     /// Computes the values at many positions in one orientation. The columns have equal lengths, a multiple of
     /// [`MAX_LANES`].
     pub fn at_positions(&self, arms: &[DVec2; LEGS], xs: &[f64], ys: &[f64], values: &mut ValueColumns) {
+        self.run_at_poses(xs, ys, PoseArms::Same(arms), values);
+    }
+
+    /// Computes the values at many poses, one for each entry of `positions` and `arms`, both padded.
+    pub(crate) fn at_poses(&self, positions: &Positions, arms: &ArmColumns, values: &mut ValueColumns) {
+        assert!(arms.0.iter().all(|column| column.len() == positions.xs.len()));
+        self.run_at_poses(&positions.xs, &positions.ys, PoseArms::Columns(arms), values);
+    }
+
+    fn run_at_poses(&self, xs: &[f64], ys: &[f64], arms: PoseArms<'_>, values: &mut ValueColumns) {
         assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MAX_LANES));
         values.resize(xs.len(), &self.thresholds);
         self.instructions.run(AtPoses {
             checker: self,
             xs,
             ys,
-            arms: PoseArms::Same(arms),
-            values,
-        });
-    }
-
-    /// Computes the values at many poses, one for each entry of `positions` and `arms`, both padded.
-    pub(crate) fn at_poses(&self, positions: &Positions, arms: &ArmColumns, values: &mut ValueColumns) {
-        assert!(arms.0.iter().all(|column| column.len() == positions.xs.len()));
-        values.resize(positions.xs.len(), &self.thresholds);
-        self.instructions.run(AtPoses {
-            checker: self,
-            xs: &positions.xs,
-            ys: &positions.ys,
-            arms: PoseArms::Columns(arms),
+            arms,
             values,
         });
     }

@@ -10,6 +10,7 @@ use crate::kinematics::Jacobian;
 use crate::lanes::{LaneJob, Lanes, Planar, Real};
 use crate::mechanism::{JointKind, Leg, LegLanes};
 use crate::spatial::LEGS;
+use crate::stiffness::NoSliders;
 
 /// Limits of values that the paper does not bound; `None` where a study states none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -144,15 +145,10 @@ impl<L: Leg> PoseChecker<L> {
             .abs()
             .smaller(legs[1].transmission.abs().smaller(legs[2].transmission.abs()));
         let k_xy = match &self.stiffness {
-            Some(model) => {
-                let bends = L::MAY_BE_ON_RAILS && model.is_on_bending_rails();
-                let sliders = if bends {
-                    Some(self.slider_lanes(position, arms, &legs))
-                } else {
-                    None
-                };
-                model.compliant_k_xy_lanes(&legs, sliders, &jacobian)
+            Some(model) if L::MAY_BE_ON_RAILS && model.is_on_bending_rails() => {
+                model.compliant_k_xy_lanes(&legs, &self.slider_lanes(position, arms, &legs), &jacobian)
             }
+            Some(model) => model.compliant_k_xy_lanes(&legs, &NoSliders, &jacobian),
             None => like.splat(0.0),
         };
         let force = like.splat(self.in_plane_force);

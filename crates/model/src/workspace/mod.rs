@@ -8,6 +8,7 @@
 mod batch;
 mod checker;
 mod columns;
+mod evaluator;
 mod further;
 mod grid;
 mod orientations;
@@ -22,6 +23,7 @@ pub(crate) use batch::OrientationLanes;
 pub use checker::{PoseChecker, PoseLanes, PoseValues, Thresholds};
 pub use columns::ValueColumns;
 pub(crate) use columns::{ArmColumns, Positions};
+pub use evaluator::PoseEvaluator;
 pub(crate) use further::FurtherColumns;
 pub use further::{FurtherLanes, FurtherLimits, FurtherValues};
 pub use grid::{Grid, GridError};

@@ -15,10 +15,9 @@ use self::contour::{chains, contour};
 use self::mesh::{FieldMesh, NodeGrid, Surface};
 use super::Field;
 use kinefront_model::evaluation::Model;
-use kinefront_model::mechanism::{Design, Leg, ReachReason};
+use kinefront_model::mechanism::{Design, ReachReason};
 use kinefront_model::spatial::{LEGS, Pose, Rotation};
-use kinefront_model::with_leg;
-use kinefront_model::workspace::{PoseChecker, PoseLanes, PoseValues, ValueColumns};
+use kinefront_model::workspace::{PoseEvaluator, PoseValues, ValueColumns};
 
 /// Resolution of a heatmap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,19 +61,13 @@ pub struct Heatmap {
 impl Heatmap {
     /// Computes the heatmap of `field` for `design` at orientation `phi` \[rad\].
     pub fn new(model: &Model, design: &Design, field: Field, phi: f64, settings: HeatmapSettings) -> Self {
-        with_leg!(design.architecture, L => {
-            let checker = checker::<L>(model, design, field);
-            Sampler::new(model, design, &checker, field, phi).heatmap(phi, settings)
-        })
+        Sampler::new(model, design, field, phi).heatmap(phi, settings)
     }
 
     /// Returns the value of a field at a pose; `None` if a leg does not reach it.
     pub fn value_at(model: &Model, design: &Design, field: Field, pose: &Pose) -> Option<f64> {
-        with_leg!(design.architecture, L => {
-            let checker = checker::<L>(model, design, field);
-            let sample = Sampler::new(model, design, &checker, field, pose.phi).at(pose.position);
-            sample.map(|sample| sample.value)
-        })
+        let sample = Sampler::new(model, design, field, pose.phi).at(pose.position);
+        sample.map(|sample| sample.value)
     }
 
     /// Returns the smallest and the largest value; `None` if no position is reachable.
@@ -95,85 +88,59 @@ struct Sample {
     determinant: f64,
 }
 
-struct Sampler<'a, L> {
+struct Sampler<'a> {
     model: &'a Model,
     design: &'a Design,
-    checker: &'a PoseChecker<L>,
+    evaluator: Box<dyn PoseEvaluator>,
     arms: [DVec2; LEGS],
     field: Field,
 }
 
-/// Returns the checker whose values a field needs.
-fn checker<L: Leg>(model: &Model, design: &Design, field: Field) -> PoseChecker<L> {
-    let mut checker = model.checker::<L>(design);
-    checker.definition = field.definition(model);
-    checker.thresholds.clearance = field.clearance(model);
-    checker
-}
-
-impl<'a, L: Leg> Sampler<'a, L> {
-    fn new(model: &'a Model, design: &'a Design, checker: &'a PoseChecker<L>, field: Field, phi: f64) -> Self {
+impl<'a> Sampler<'a> {
+    /// Prepares the design for the values that the field needs.
+    fn new(model: &'a Model, design: &'a Design, field: Field, phi: f64) -> Self {
+        let evaluator = model.pose_evaluator(design, field.definition(model), field.clearance(model));
         Self {
             model,
             design,
-            checker,
-            arms: checker.manipulator.arms(&Rotation::new(phi)),
+            arms: evaluator.arms(&Rotation::new(phi)),
+            evaluator,
             field,
         }
     }
-}
 
-impl<L: Leg> Sampler<'_, L> {
     fn of(&self, values: &PoseValues) -> Sample {
         Sample {
             value: self.field.value(self.model, self.design, values),
             determinant: values.determinant,
         }
     }
-
-    /// Inlined so that quantities that the caller does not use are not computed.
-    #[inline(always)]
-    fn lanes(&self, position: DVec2) -> PoseLanes<f64> {
-        let [first, second, third] = self.arms;
-        self.checker
-            .lanes(position.into(), &[first.into(), second.into(), third.into()])
-    }
 }
 
-impl<L: Leg> Surface for Sampler<'_, L> {
+impl Surface for Sampler<'_> {
     fn row(&self, xs: &[f64], ys: &[f64]) -> Vec<Option<Sample>> {
         let mut values = ValueColumns::default();
-        self.checker.at_positions(&self.arms, xs, ys, &mut values);
+        self.evaluator.evaluate_positions(&self.arms, xs, ys, &mut values);
         (0..xs.len())
             .map(|index| values.get(index).ok().map(|values| self.of(&values)))
             .collect()
     }
 
     fn at(&self, position: DVec2) -> Option<Sample> {
-        self.lanes(position).reached().map(|values| self.of(&values))
+        let values = self.evaluator.evaluate_position(&self.arms, position)?;
+        Some(self.of(&values))
     }
 
     fn reaches(&self, position: DVec2) -> bool {
-        self.lanes(position).reachable
+        self.evaluator.reaches(&self.arms, position)
     }
 
     fn reason(&self, position: DVec2) -> Option<ReachReason> {
-        let posture = self.checker.manipulator.posture_at(position, &self.arms);
-        posture.err().map(|(_, shortfall)| shortfall.reason)
+        self.evaluator.reason(&self.arms, position)
     }
 }
 
-impl<L: Leg> Sampler<'_, L> {
-    /// Returns a box that contains every reachable position.
-    fn reach(&self) -> Option<[DVec2; 2]> {
-        let boxes = self.checker.manipulator.legs.iter().zip(&self.arms).map(|(leg, arm)| {
-            let [low, high] = leg.reach_box();
-            [low - *arm, high - *arm]
-        });
-        let [low, high] = boxes.reduce(|[a, b], [c, d]| [a.max(c), b.min(d)])?;
-        (low.x < high.x && low.y < high.y).then_some([low, high])
-    }
-
+impl Sampler<'_> {
     fn heatmap(&self, phi: f64, settings: HeatmapSettings) -> Heatmap {
         let mut heatmap = Heatmap {
             field: self.field,
@@ -186,7 +153,7 @@ impl<L: Leg> Sampler<'_, L> {
             edges: Vec::new(),
             cells: 0,
         };
-        let Some([low, high]) = self.reach() else {
+        let Some([low, high]) = self.evaluator.reach_box(&self.arms) else {
             return heatmap;
         };
         let size = high - low;
