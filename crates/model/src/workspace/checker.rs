@@ -252,7 +252,7 @@ impl<L: Leg> PoseChecker<L> {
     /// only if g7 is required.
     #[inline(always)]
     pub fn lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS]) -> PoseLanes<V> {
-        let (mut values, distals) = self.lanes_without_clearance_apart(position, arms);
+        let (mut values, distals) = self.lanes_without_clearance(position, arms);
         if self.thresholds.clearance.is_some() {
             let limit = position.x.splat(f64::INFINITY);
             values.clearance = Some(self.compute_clearance_apart(position, arms, &distals, limit));
