@@ -192,7 +192,7 @@ ALGORITHMS = {
     "pymoo SMS-EMOA, population 100": pymoo_algorithm(sms_emoa),
     "pymoo C-TAEA, 60 directions": pymoo_algorithm(c_taea),
     "fcmaes-core MODE, population 64": mode,
-    "BoTorch qLogEHVI, 5 at a time": model_based("qehvi"),
+    "BoTorch qLogEHVI, Gaussian process": model_based("qehvi"),
     "SMAC ParEGO, random forest": model_based("parego"),
 }
 
@@ -297,7 +297,8 @@ def table(arguments):
         reference = reference_front(architectures)
         whole = [hypervolume(reference), hypervolume(reference, logarithmic=True)]
         print(f"\n{architectures}: median (worst) fraction of the reference front's hypervolume\n")
-        budgets = [300, 1000, 6000, 30_000]
+        reached = {int(mark) for results in algorithms.values() for result in results for mark in result["hypervolumes"]}
+        budgets = [budget for budget in (300, 1000, 6000, 30_000) if budget in reached]
         heads = [f"{budget}, {seeds_of(algorithms, budget)} seeds | with log mass" for budget in budgets]
         print("| | " + " | ".join(heads) + " | 90 / 95 / 99 % after |")
         print("|---|" + "---:|---:|" * len(budgets) + "---:|")
@@ -310,8 +311,8 @@ def table(arguments):
                 for kind in range(2):
                     shares = [r["hypervolumes"][str(budget)][kind] / whole[kind] for r in results if str(budget) in r["hypervolumes"]]
                     cells.append(f"{100 * statistics.median(shares):.2f} ({100 * min(shares):.2f})" if shares else "–")
-            reached = " / ".join(evaluations_to(results, share, whole[0]) for share in (0.9, 0.95, 0.99))
-            print(f"| {name} | " + " | ".join(cells) + f" | {reached} |")
+            after = " / ".join(evaluations_to(results, share, whole[0]) for share in (0.9, 0.95, 0.99))
+            print(f"| {name} | " + " | ".join(cells) + f" | {after} |")
     if arguments.plot:
         plot(arguments.plot, cases)
 
@@ -346,26 +347,27 @@ def plot(path, cases):
 
     # Only cases with several algorithms are plotted.
     cases = {architectures: algorithms for architectures, algorithms in cases.items() if len(algorithms) > 1}
-    figure, axes = plt.subplots(1, len(cases), figsize=(2.5 + 5.5 * len(cases), 5.2), squeeze=False, layout="constrained")
+    figure, axes = plt.subplots(1, len(cases), figsize=(8.0 * len(cases), 4.6), squeeze=False, layout="constrained")
     for axis, (architectures, algorithms) in zip(axes[0], sorted(cases.items(), key=lambda case: -len(case[0]))):
         whole = hypervolume(reference_front(architectures))
+        longest = max(int(mark) for results in algorithms.values() for result in results for mark in result["hypervolumes"])
         for index, name in enumerate(name for name in ALGORITHMS if name in algorithms):
             marks, shares = curve(algorithms[name], whole)
             ours = name.startswith("Kinefront")
             missing = [100 * (1 - statistics.median(at)) for at in shares]
-            axis.plot(marks, missing, label=name, color=f"C{index}", lw=2.2 if ours else 1.3, ls="-" if ours else "--")
+            axis.plot(marks, missing, label=name.replace("`", ""), color=f"C{index}", lw=2.2 if ours else 1.3, ls="-" if ours else "--")
             axis.fill_between(
                 marks, [100 * (1 - min(at)) for at in shares], [100 * (1 - max(at)) for at in shares], color=f"C{index}", alpha=0.12
             )
         axis.set(xscale="log", yscale="log", title=architectures.replace(",", ", "), xlabel="evaluations")
         axis.set_ylabel("missing part of the reference front's hypervolume [%]")
-        ticks = [0.3, 1, 3, 10, 30]
+        ticks = [0.1, 0.3, 1, 3, 10, 30]
         axis.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
-        ticks = [250, 1000, 6000, 30_000]
+        ticks = [tick for tick in (250, 1000, 6000, 30_000) if tick <= longest]
         axis.set_xticks(ticks, [f"{tick}" for tick in ticks])
         axis.minorticks_off()
         axis.grid(alpha=0.3)
-        axis.legend(fontsize=8)
+        axis.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     figure.savefig(path, dpi=110)
 
 

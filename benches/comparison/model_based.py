@@ -14,7 +14,7 @@ REFERENCE = 2000.0
 
 
 def qehvi(job, evaluator, design_text, lower, upper):
-    """Run qLogEHVI with Gaussian processes of ln mass, radius and violation; 5 candidates at a time after 60 of a Sobol sample.
+    """Run qLogEHVI with Gaussian processes of ln mass, radius and violation; one candidate at a time after 60 of a Sobol sample.
 
     An evaluation has no noise, so that qNEHVI would compute the same improvement at many times the cost. That of qLogEHVI doubles with every
     candidate of a batch.
@@ -57,12 +57,17 @@ def qehvi(job, evaluator, design_text, lower, upper):
     evaluate(sample)
     # The hypervolume is that of the mass itself; ln mass is only what the model predicts.
     objective = GenericMCMultiOutputObjective(lambda y, X=None: torch.stack([-torch.exp(-y[..., 0]) / REFERENCE, y[..., 1]], dim=-1))
+    fitted = None
     while len(met) < job["evaluations"]:
         kinds = (lambda y: MixedSingleTaskGP(inputs, y, cat_dims=[5], outcome_transform=Standardize(1))) if several else (
             lambda y: SingleTaskGP(inputs, y, outcome_transform=Standardize(1))
         )
         model = ModelListGP(*(kinds(outputs[:, [k]]) for k in range(3)))
-        fit_gpytorch_mll(SumMarginalLogLikelihood(model.likelihood, model))
+        # The fit goes on from the last one, so that few steps are enough.
+        if fitted is not None:
+            model.load_state_dict(fitted, strict=False)
+        fit_gpytorch_mll(SumMarginalLogLikelihood(model.likelihood, model), optimizer_kwargs={"options": {"maxiter": 20}})
+        fitted = {name: value for name, value in model.state_dict().items() if "outcome_transform" not in name}
         reached = objective(outputs[outputs[:, 2] >= 0.0])
         gain = qLogExpectedHypervolumeImprovement(
             model=model,
@@ -72,12 +77,12 @@ def qehvi(job, evaluator, design_text, lower, upper):
             objective=objective,
             constraints=[lambda y: -y[..., 2]],
         )
-        options = {"q": min(5, job["evaluations"] - len(met)), "num_restarts": 2, "raw_samples": 64, "options": {"maxiter": 30}}
+        options = {"q": 1, "num_restarts": 2, "raw_samples": 64, "options": {"maxiter": 20}}
         if several:
             fixed = [{5: float(place)} for place in range(len(architectures))]
             candidates, _ = optimize_acqf_mixed(gain, bounds, fixed_features_list=fixed, **options)
         else:
-            candidates, _ = optimize_acqf(gain, bounds, sequential=True, **options)
+            candidates, _ = optimize_acqf(gain, bounds, **options)
         evaluate(candidates.detach())
     return met
 
