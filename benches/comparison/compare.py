@@ -259,6 +259,8 @@ def run(arguments):
     arguments.out.mkdir(parents=True, exist_ok=True)
     if arguments.only:
         names = [name for name in ALGORITHMS if any(part in name for part in arguments.only.split(","))]
+        if not names:
+            sys.exit(f"no algorithm's name contains any of {arguments.only}; there are: {'; '.join(ALGORITHMS)}")
     else:
         names = [name for name in ALGORITHMS if not name.startswith(EXPENSIVE)]
     jobs = []
@@ -297,8 +299,8 @@ def table(arguments):
         reference = reference_front(architectures)
         whole = [hypervolume(reference), hypervolume(reference, logarithmic=True)]
         print(f"\n{architectures}: median (worst) fraction of the reference front's hypervolume\n")
-        reached = {int(mark) for results in algorithms.values() for result in results for mark in result["hypervolumes"]}
-        budgets = [budget for budget in (300, 1000, 6000, 30_000) if budget in reached]
+        measured = marks_of(algorithms)
+        budgets = [budget for budget in (300, 1000, 6000, 30_000) if budget in measured]
         heads = [f"{budget}, {seeds_of(algorithms, budget)} seeds | with log mass" for budget in budgets]
         print("| | " + " | ".join(heads) + " | 90 / 95 / 99 % after |")
         print("|---|" + "---:|---:|" * len(budgets) + "---:|")
@@ -315,6 +317,11 @@ def table(arguments):
             print(f"| {name} | " + " | ".join(cells) + f" | {after} |")
     if arguments.plot:
         plot(arguments.plot, cases)
+
+
+def marks_of(algorithms):
+    """Return the numbers of evaluations after which any run was measured."""
+    return {int(mark) for results in algorithms.values() for result in results for mark in result["hypervolumes"]}
 
 
 def seeds_of(algorithms, budget):
@@ -350,7 +357,7 @@ def plot(path, cases):
     figure, axes = plt.subplots(1, len(cases), figsize=(8.0 * len(cases), 4.6), squeeze=False, layout="constrained")
     for axis, (architectures, algorithms) in zip(axes[0], sorted(cases.items(), key=lambda case: -len(case[0]))):
         whole = hypervolume(reference_front(architectures))
-        longest = max(int(mark) for results in algorithms.values() for result in results for mark in result["hypervolumes"])
+        measured = marks_of(algorithms)
         for index, name in enumerate(name for name in ALGORITHMS if name in algorithms):
             marks, shares = curve(algorithms[name], whole)
             ours = name.startswith("Kinefront")
@@ -363,7 +370,7 @@ def plot(path, cases):
         axis.set_ylabel("missing part of the reference front's hypervolume [%]")
         ticks = [0.1, 0.3, 1, 3, 10, 30]
         axis.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
-        ticks = [tick for tick in (250, 1000, 6000, 30_000) if tick <= longest]
+        ticks = [tick for tick in (250, 1000, 6000, 30_000) if tick in measured]
         axis.set_xticks(ticks, [f"{tick}" for tick in ticks])
         axis.minorticks_off()
         axis.grid(alpha=0.3)
