@@ -8,9 +8,14 @@ use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {
     let (design, pose) = text.split_once('\n').unwrap_or((text, ""));
-    let Ok(design) = Design::parse(design, WorkingMode::ALL_PLUS) else { return };
+    let Ok(design) = Design::parse(design, WorkingMode::ALL_PLUS) else {
+        return;
+    };
     assert!(design.values().iter().all(|value| value.is_finite()));
-    assert_eq!(Design::parse(&design.to_string(), WorkingMode::ALL_PLUS).expect("a design"), design);
+    assert_eq!(
+        Design::parse(&design.to_string(), WorkingMode::ALL_PLUS).expect("a design"),
+        design
+    );
     let Ok(pose) = pose.parse::<Pose>() else { return };
     if let Ok(found) = Model::default().pose(&design, &pose) {
         assert!(found.actuators.iter().all(|value| value.is_finite()));

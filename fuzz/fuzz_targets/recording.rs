@@ -7,9 +7,9 @@ use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(init: {
     let program = std::env::var_os("KINEFRONT").expect("KINEFRONT names the program");
-    kinefront::recording::unpack_with(program.into());
+    kinefront_recording::unpack_with(program.into());
 }, |bytes: &[u8]| {
     let mut file = tempfile::NamedTempFile::new().expect("a file");
     file.write_all(bytes).expect("a recording");
-    let _ = kinefront::recording::read_apart(file.path());
+    let _ = kinefront_recording::read_apart(file.path());
 });

@@ -1,7 +1,7 @@
 //! A run folder with any files, which a line of `===` separates, is opened, resumed and checked, or refused.
 #![no_main]
 
-use kinefront::study::{Resumption, RunFolder};
+use kinefront_study::{Resumption, RunFolder};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,7 +1,7 @@
 //! Every line of `evaluate --stdin` has an answer without a number that is not finite.
 #![no_main]
 
-use kinefront::export::EvaluationJson;
+use kinefront_export::EvaluationJson;
 use kinefront_model::evaluation::{GridChoice, Model, ModelSettings};
 use kinefront_model::mechanism::{Design, WorkingMode};
 use kinefront_model::workspace::Grid;
@@ -13,7 +13,9 @@ fuzz_target!(|line: &str| {
         ..ModelSettings::default()
     };
     let model = Model::new(settings).expect("a model");
-    let Ok(design) = Design::parse(line, WorkingMode::ALL_PLUS) else { return };
+    let Ok(design) = Design::parse(line, WorkingMode::ALL_PLUS) else {
+        return;
+    };
     // A platform or a link that is long compared with R takes many steps.
     if design.platform_radius.max(design.link_length) > 20.0 * design.base_radius {
         return;
@@ -23,6 +25,9 @@ fuzz_target!(|line: &str| {
     for key in ["mass_kg", "workspace_radius_m", "violation"] {
         assert!(json[key].is_number(), "{key} of {line}: {json}");
     }
-    let misses = found.constraints.iter().any(|result| result.required && result.margin < 0.0);
+    let misses = found
+        .constraints
+        .iter()
+        .any(|result| result.required && result.margin < 0.0);
     assert!(misses || found.is_feasible(), "{line}: {json}");
 });

@@ -1,7 +1,7 @@
 //! A study that is read is valid: its model can be built, and it reads back what it writes.
 #![no_main]
 
-use kinefront::study::Study;
+use kinefront_study::Study;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

@@ -3,7 +3,7 @@
 
 use std::io::Write;
 
-use kinefront::study::{Study, read_designs, read_table};
+use kinefront_study::{Study, read_designs, read_table};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -12,7 +12,11 @@ fuzz_target!(|bytes: &[u8]| {
     let study = Study::default();
     if let Ok(contents) = read_table(file.path(), &study) {
         for entry in contents.rows {
-            assert!(entry.row.mass.is_finite() && entry.row.radius.is_finite() && entry.row.violation.is_finite());
+            assert!(
+                entry.row.mass().is_finite()
+                    && entry.row.workspace_radius().is_finite()
+                    && entry.row.violation.is_finite()
+            );
             assert!(entry.row.margins.iter().flatten().all(|margin| margin.is_finite()));
         }
     }

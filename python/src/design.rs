@@ -6,42 +6,29 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString};
 
 use kinefront_export::{EvaluationJson, ExportSubject, Format, export};
-use kinefront_model::evaluation::Model;
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design};
 use kinefront_model::spatial::Pose;
-use kinefront_study::Study;
+use kinefront_study::PreparedStudy;
 
+use crate::convert::{from_serializable, grid_choice};
 use crate::errors::{InputError, of_design};
 use crate::poses;
-use crate::study::grid_choice;
-
-/// A study with its model, which designs share.
-pub(crate) struct StudyWithModel {
-    pub(crate) study: Study,
-    pub(crate) model: Model,
-}
 
 /// A design of a study.
 #[pyclass(name = "Design", module = "kinefront", frozen)]
 pub struct PyDesign {
-    shared: Arc<StudyWithModel>,
+    shared: Arc<PreparedStudy>,
     design: Design,
 }
 
 impl PyDesign {
-    pub(crate) fn new(shared: Arc<StudyWithModel>, design: Design) -> Self {
+    pub(crate) fn new(shared: Arc<PreparedStudy>, design: Design) -> Self {
         Self { shared, design }
     }
 
     pub(crate) fn design(&self) -> &Design {
         &self.design
     }
-}
-
-/// Returns a value of Python with the contents of a JSON text.
-pub(crate) fn of_json<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
-    let text = serde_json::to_string(value).map_err(|cause| InputError::new_err(cause.to_string()))?;
-    py.import("json")?.call_method1("loads", (text,))
 }
 
 #[pymethods]
@@ -73,30 +60,32 @@ impl PyDesign {
     #[pyo3(signature = (grid="reference"))]
     fn evaluate<'py>(&self, py: Python<'py>, grid: &str) -> PyResult<Bound<'py, PyAny>> {
         let grid = grid_choice(grid)?;
-        let evaluation = py.detach(|| self.shared.model.evaluate(&self.design, grid));
-        of_json(py, &EvaluationJson::new(&evaluation))
+        let evaluation = py.detach(|| self.shared.model().evaluate(&self.design, grid));
+        from_serializable(py, &EvaluationJson::new(&evaluation))
     }
 
     /// Evaluates the design at poses, an array of shape (n, 3) with x and y in metres and phi in radians.
     fn poses<'py>(&self, py: Python<'py>, poses: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
-        poses::evaluate(py, &self.shared.model, &self.design, poses)
+        poses::evaluate(py, self.shared.model(), &self.design, poses)
     }
 
     /// Writes the design in a format of other programs: a text, or bytes for glTF.
     #[pyo3(signature = (format, pose=None))]
     fn export<'py>(&self, py: Python<'py>, format: &str, pose: Option<[f64; 3]>) -> PyResult<Bound<'py, PyAny>> {
         let Some(format) = Format::find(format) else {
-            let known = Format::ALL.map(Format::key).join(", ");
+            let known: Vec<&str> = Format::ALL.iter().map(Format::key).collect();
+            let known = known.join(", ");
             return Err(InputError::new_err(format!(
                 "there is no format `{format}`; expected one of {known}"
             )));
         };
         let written = py.detach(|| {
-            let StudyWithModel { study, model } = &*self.shared;
-            let evaluation = model.evaluate(&self.design, kinefront_model::evaluation::GridChoice::Fine);
+            let evaluation = self
+                .shared
+                .model()
+                .evaluate(&self.design, kinefront_model::evaluation::GridChoice::Fine);
             let subject = ExportSubject {
-                study,
-                model,
+                study: &self.shared,
                 evaluation: &evaluation,
                 pose: pose.map(|[x, y, phi]| Pose::new(x, y, phi)),
             };
@@ -104,7 +93,7 @@ impl PyDesign {
         });
         let written = written.map_err(of_design)?;
         Ok(match String::from_utf8(written) {
-            Ok(text) if format != Format::Gltf => PyString::new(py, &text).into_any(),
+            Ok(text) if format.is_text() => PyString::new(py, &text).into_any(),
             Ok(text) => PyBytes::new(py, text.as_bytes()).into_any(),
             Err(bytes) => PyBytes::new(py, bytes.as_bytes()).into_any(),
         })

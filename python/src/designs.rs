@@ -8,6 +8,7 @@ use pyo3::types::{PyDict, PyString};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, FURTHER_VARIABLES};
 use kinefront_study::{Column, Study, read_design};
 
+use crate::convert::contiguous;
 use crate::design::PyDesign;
 use crate::errors::{InputError, of_design};
 use crate::table::unequal;
@@ -152,12 +153,4 @@ fn read_numbers(given: &Bound<'_, PyAny>) -> PyResult<Given<f64>> {
     }
     let numbers: PyReadonlyArray1<'_, f64> = contiguous(&numbers)?.extract()?;
     Ok(Given::Each(numbers.as_array().to_vec()))
-}
-
-/// Returns numbers as a contiguous and aligned array: a field of a structured array is neither.
-pub(crate) fn contiguous<'py>(given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    given
-        .py()
-        .import("numpy")?
-        .call_method1("require", (given, "float64", ["C", "A"]))
 }

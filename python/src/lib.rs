@@ -3,6 +3,7 @@
 //! Python sees these types without the prefix `Py`, which tells them from those of the crates that they wrap. The package adds what
 //! is simpler in Python: data frames, and the adapters to other libraries.
 
+mod convert;
 mod design;
 mod designs;
 mod errors;

@@ -6,15 +6,25 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use rayon::prelude::*;
 
-use kinefront_model::evaluation::{Constraint, Model, PoseEvaluation};
+use kinefront_model::evaluation::{Constraint, Model, PoseEvaluation, PoseScalar};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 
-use crate::designs::contiguous;
+use crate::convert::contiguous;
 use crate::errors::InputError;
 
 /// Number of poses that a thread evaluates at a time.
 const CHUNK: usize = 1024;
+
+/// Returns the name of the array of a scalar: the key of its quantity, or what this package called it first.
+fn name(scalar: PoseScalar) -> &'static str {
+    match scalar {
+        PoseScalar::Dexterity => "kappa",
+        PoseScalar::Determinant => "det_a",
+        PoseScalar::Reach => "limit_margin_m",
+        other => other.entry().quantity.key,
+    }
+}
 
 /// Evaluates a design at poses, whose rows are x, y \[m\] and φ \[rad\].
 pub(crate) fn evaluate<'py>(
@@ -55,7 +65,8 @@ pub(crate) fn evaluate<'py>(
         (found, margins)
     });
     let count = found.len();
-    let numbers = |value: fn(&PoseEvaluation) -> f64| -> Vec<f64> {
+    let numbers = |scalar: PoseScalar| -> Vec<f64> {
+        let value = |found: &PoseEvaluation| found.values.get(scalar).unwrap_or(f64::NAN);
         found
             .iter()
             .map(|found| found.as_ref().map_or(f64::NAN, value))
@@ -82,25 +93,9 @@ pub(crate) fn evaluate<'py>(
         });
         table.set_item(name, cube(py, points, count, [3, 2])?)?;
     }
-    table.set_item("kappa", numbers(|found| found.inverse_condition).into_pyarray(py))?;
-    table.set_item("det_a", numbers(|found| found.determinant).into_pyarray(py))?;
-    table.set_item("limit_margin_m", numbers(|found| found.limit_margin).into_pyarray(py))?;
-    table.set_item(
-        "k_xy_n_per_m",
-        numbers(|found| found.stiffness_values.k_xy).into_pyarray(py),
-    )?;
-    table.set_item(
-        "k_z_n_per_m",
-        numbers(|found| found.stiffness_values.k_z).into_pyarray(py),
-    )?;
-    table.set_item(
-        "k_phi_z_nm_per_rad",
-        numbers(|found| found.stiffness_values.k_phi_z).into_pyarray(py),
-    )?;
-    table.set_item(
-        "clearance_m",
-        numbers(|found| found.clearance.distance).into_pyarray(py),
-    )?;
+    for &scalar in PoseScalar::ALL {
+        table.set_item(name(scalar), numbers(scalar).into_pyarray(py))?;
+    }
     let stiffness = flat(36, &|found, all| {
         // Row by row, as arrays of NumPy are; the matrix is symmetric but for rounding.
         all.extend(found.stiffness.transpose().iter());

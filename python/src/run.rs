@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 use kinefront_study::{Cell, Column, RunFolder, RunReport, RunSummary, Study, TableRow, front_marks};
 
-use crate::design::of_json;
+use crate::convert::from_serializable;
 use crate::errors::of_run;
 use crate::study::PyStudy;
 use crate::table::PyTable;
@@ -79,7 +79,7 @@ impl PyRun {
         Ok(self.designs.get_or_init(|| made).clone_ref(py))
     }
 
-    /// The verified front, sorted by the workspace radius or the first objective, as in `front.csv`.
+    /// The verified front, sorted by the first objective, as in `front.csv`.
     #[getter]
     fn front(&self, py: Python<'_>) -> PyResult<Py<PyTable>> {
         if let Some(made) = self.front_table.get() {
@@ -104,7 +104,10 @@ impl PyRun {
     /// The contents of `run.json`; `None` for a run that has not ended.
     #[getter]
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        self.report.as_ref().map(|report| of_json(py, report)).transpose()
+        self.report
+            .as_ref()
+            .map(|report| from_serializable(py, report))
+            .transpose()
     }
 
     /// Path of the run folder, if there is one.

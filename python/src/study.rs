@@ -8,10 +8,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
 
-use kinefront_model::evaluation::{GridChoice, Quantity};
-use kinefront_study::{AlgorithmName, BUILTIN, Column, Row, Study, TableRow, sensitivity};
+use kinefront_model::evaluation::Quantity;
+use kinefront_study::{AlgorithmName, BUILTIN, Column, PreparedStudy, Row, Study, TableRow, sensitivity};
 
-use crate::design::{PyDesign, StudyWithModel, of_json};
+use crate::convert::{from_serializable, grid_choice};
+use crate::design::PyDesign;
 use crate::errors::{InputError, of_design, of_study};
 use crate::run::PyRun;
 use crate::table::PyTable;
@@ -23,31 +24,20 @@ const CHUNK: usize = 512;
 /// What to design, under which assumptions, and how to search.
 #[pyclass(name = "Study", module = "kinefront", frozen)]
 pub struct PyStudy {
-    shared: Arc<StudyWithModel>,
+    shared: Arc<PreparedStudy>,
 }
 
 impl PyStudy {
     pub(crate) fn new(study: Study) -> PyResult<Self> {
         // Every quantity is computed, as the methods return them.
-        let model = study.model().map_err(of_design)?.with_all_quantities();
+        let prepared = PreparedStudy::new(study).map_err(of_design)?;
         Ok(Self {
-            shared: Arc::new(StudyWithModel { study, model }),
+            shared: Arc::new(prepared.with_all_quantities()),
         })
     }
 
     fn study(&self) -> &Study {
-        &self.shared.study
-    }
-}
-
-/// Returns the grid of a name.
-pub(crate) fn grid_choice(name: &str) -> PyResult<GridChoice> {
-    match name {
-        "reference" => Ok(GridChoice::Reference),
-        "fine" => Ok(GridChoice::Fine),
-        _ => Err(InputError::new_err(format!(
-            "there is no grid `{name}`; expected `reference` or `fine`"
-        ))),
+        self.shared.study()
     }
 }
 
@@ -157,7 +147,7 @@ impl PyStudy {
     fn objective_columns(&self) -> Vec<String> {
         let objectives = self.study().objectives().into_iter();
         objectives
-            .map(|objective| Column::of_quantity(objective.quantity).name().into_owned())
+            .map(|objective| Column::Quantity(objective.quantity).name().into_owned())
             .collect()
     }
 
@@ -176,7 +166,7 @@ impl PyStudy {
     /// Settings of the optimizer.
     #[getter]
     fn optimizer<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        of_json(py, &self.study().optimizer)
+        from_serializable(py, &self.study().optimizer)
     }
 
     /// Reads one design from its text.
@@ -222,7 +212,7 @@ impl PyStudy {
                 let evaluate = || {
                     chunk
                         .par_iter()
-                        .map(|design| Row::new(0, &self.shared.model.evaluate(design, grid)))
+                        .map(|design| Row::new(0, &self.shared.model().evaluate(design, grid)))
                         .collect()
                 };
                 match &pool {
@@ -245,9 +235,9 @@ impl PyStudy {
     /// Evaluate a design at poses, an array of shape (n, 3) with x and y \[m\] and phi \[rad\].
     ///
     /// Returns arrays by name: `reachable` (n,), `actuators` (n, 3) \[m or rad\], the points `B` and `C` (n, 3, 2) \[m\], `kappa` (n,),
-    /// the inverse condition number, `det_a` (n,), `limit_margin_m` (n,), `k_xy_n_per_m`, `k_z_n_per_m`, `k_phi_z_nm_per_rad` (n,),
-    /// `clearance_m` (n,), the stiffness matrix `K` (n, 6, 6) in base axes with the linear components first, and `margins` (n, 8) of
-    /// the `constraints`, whose names are a list. All but `reachable` are NaN where a leg does not reach the pose.
+    /// the inverse condition number, `det_a` (n,), `limit_margin_m` (n,), the other scalars of a pose by the keys of their quantities (n,),
+    /// such as `k_xy_n_per_m` and `clearance_m`, the stiffness matrix `K` (n, 6, 6) in base axes with the linear components first, and `margins` (n, c) of
+    /// the c `constraints`, whose names are a list. All but `reachable` are NaN where a leg does not reach the pose.
     fn poses<'py>(
         &self,
         py: Python<'py>,
@@ -257,7 +247,7 @@ impl PyStudy {
         let [design] = designs::read(self.study(), design)?[..] else {
             return Err(InputError::new_err("expected one design"));
         };
-        poses::evaluate(py, &self.shared.model, &design, poses)
+        poses::evaluate(py, self.shared.model(), &design, poses)
     }
 
     /// Search for the front of the study; returns a `Run`.

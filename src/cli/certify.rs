@@ -7,10 +7,11 @@ use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-use kinefront::export::CertificateJson;
+use super::wire::CertificateJson;
 use kinefront_model::certify::{CertifyError, CertifyOptions};
-use kinefront_model::evaluation::{GridChoice, Model};
-use kinefront_model::mechanism::{Design, TextError, WorkingMode};
+use kinefront_model::evaluation::GridChoice;
+use kinefront_model::mechanism::{Design, TextError};
+use kinefront_study::PreparedStudy;
 
 use super::stream::{InputLine, answer, next_line};
 use super::{Ending, Failure, load_study, tables, to_json};
@@ -52,8 +53,7 @@ pub struct CertifyArguments {
 pub fn run(arguments: &CertifyArguments) -> Result<Ending, Failure> {
     let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
     let prover = Prover {
-        model: study.model().map_err(Failure::runtime)?,
-        mode: study.working_mode,
+        study: PreparedStudy::new(study).map_err(Failure::runtime)?,
         arguments,
     };
     match &arguments.design {
@@ -81,34 +81,34 @@ enum LineError {
 }
 
 struct Prover<'a> {
-    model: Model,
-    mode: WorkingMode,
+    study: PreparedStudy,
     arguments: &'a CertifyArguments,
 }
 
 impl Prover<'_> {
     fn certify(&self, text: &str) -> Result<CertificateJson, LineError> {
-        let design = Design::parse(text, self.mode)?;
+        let design = Design::parse(text, self.study.study().working_mode)?;
+        let model = self.study.model();
         let since = Instant::now();
-        let evaluation = self.model.evaluate(&design, GridChoice::Fine);
-        let home = self.model.home(&evaluation);
+        let evaluation = model.evaluate(&design, GridChoice::Fine);
+        let home = model.home(&evaluation);
         let phi_deg = self.arguments.phi_deg.or(evaluation.home_phi_deg);
         let options = CertifyOptions {
             // The constraints of an infeasible design are reported at an orientation of the grid.
             phi_deg: phi_deg.unwrap_or_else(|| (1e9 * home.phi.to_degrees()).round() / 1e9),
-            claimed_radius: self.arguments.radius.unwrap_or(evaluation.workspace_radius),
+            claimed_radius: self.arguments.radius.unwrap_or(evaluation.workspace_radius()),
             tolerance: self.arguments.tolerance,
             max_boxes: self.arguments.max_boxes as usize,
             ..CertifyOptions::default()
         };
-        let certificate = self.model.certify(&design, &options)?;
+        let certificate = model.certify(&design, &options)?;
         let homes = match self.arguments.all_homes {
-            true => Some(self.model.bound_of_homes(&design, certificate.lower)?),
+            true => Some(model.bound_of_homes(&design, certificate.lower)?),
             false => None,
         };
         let seconds = since.elapsed().as_secs_f64();
         Ok(CertificateJson::new(
-            &self.model,
+            model,
             &design,
             &options,
             &certificate,

@@ -4,8 +4,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use kinefront::recording::{RecordedRunError, is_recorded, read_apart};
-use kinefront::study::{Inspection, Repair, Resumption, RunControl, RunFolderError, TableRow};
+use kinefront_recording::{RecordedRunError, is_recorded, read_apart};
+use kinefront_study::{Inspection, Repair, Resumption, RunControl, RunFolderError, TableRow};
 use miette::miette;
 
 use super::optimize::perform;
@@ -169,7 +169,7 @@ pub struct UnpackArguments {
 
 /// Unpacks a recording; what is wrong with it is printed as one line.
 pub fn unpack(arguments: &UnpackArguments) -> Result<Ending, Failure> {
-    match kinefront::recording::unpack(&arguments.recording, &arguments.folder) {
+    match kinefront_recording::unpack(&arguments.recording, &arguments.folder) {
         Ok(()) => Ok(Ending::Done),
         Err(error) => {
             say(error);

@@ -3,9 +3,10 @@
 use std::ffi::OsString;
 use std::io::Write;
 
-use kinefront::export::EvaluationJson;
-use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
-use kinefront_model::mechanism::{Design, TextError, WorkingMode};
+use kinefront_export::EvaluationJson;
+use kinefront_model::evaluation::{Evaluation, GridChoice};
+use kinefront_model::mechanism::{Design, TextError};
+use kinefront_study::PreparedStudy;
 
 use super::stream::{answer, next_line};
 use super::{Ending, Failure, GridArgument, load_study, tables, to_json};
@@ -31,14 +32,13 @@ pub struct EvaluateArguments {
 
 pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
     let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
-    let mut model = study.model().map_err(Failure::runtime)?;
+    let mut study = PreparedStudy::new(study).map_err(Failure::runtime)?;
     if arguments.design.is_some() {
         // One design is told in full; a stream has what its study names.
-        model = model.with_all_quantities();
+        study = study.with_all_quantities();
     }
     let server = Server {
-        model,
-        mode: study.working_mode,
+        study,
         grid: arguments.grid.into(),
     };
     match &arguments.design {
@@ -53,7 +53,7 @@ pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
                     to_json(&EvaluationJson::new(&evaluation)).map_err(Failure::Runtime)?
                 )?;
             } else {
-                writeln!(out, "{}", tables::evaluation(&evaluation, &server.model))?;
+                writeln!(out, "{}", tables::evaluation(&evaluation, server.study.model()))?;
             }
         }
     }
@@ -61,15 +61,14 @@ pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
 }
 
 struct Server {
-    model: Model,
-    mode: WorkingMode,
+    study: PreparedStudy,
     grid: GridChoice,
 }
 
 impl Server {
     fn evaluate(&self, text: &str) -> Result<Evaluation, TextError> {
-        let design = Design::parse(text, self.mode)?;
-        Ok(self.model.evaluate(&design, self.grid))
+        let design = Design::parse(text, self.study.study().working_mode)?;
+        Ok(self.study.model().evaluate(&design, self.grid))
     }
 
     /// Writes one line for each line read, in order. For an invalid line it writes an error object and continues.

@@ -3,10 +3,11 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use kinefront::explorer::{InitialContent, Script, run as open_window};
-use kinefront::study::BUILTIN;
+use kinefront_explorer::{InitialContent, Script, run as open_window};
+use kinefront_study::BUILTIN;
 use miette::miette;
 
+use super::signals::at_end_signals;
 use super::{Ending, Failure, load_study};
 
 #[derive(Debug, Default, clap::Args)]
@@ -32,7 +33,7 @@ pub fn run(arguments: &ExploreArguments) -> Result<Ending, Failure> {
         Some(path) => Some(Script::read(path).map_err(Failure::input)?),
         None => None,
     };
-    open_window(subject(arguments)?, script).map_err(|words| Failure::Runtime(miette!("{words}")))?;
+    open_window(subject(arguments)?, script, at_end_signals).map_err(|words| Failure::Runtime(miette!("{words}")))?;
     Ok(Ending::Done)
 }
 
@@ -42,7 +43,7 @@ fn subject(arguments: &ExploreArguments) -> Result<InitialContent, Failure> {
         let is_study = path.is_file() && path.extension().is_some_and(|extension| extension == "toml");
         if !is_study {
             // Errors are reported before the window opens.
-            kinefront::explorer::open(path).map_err(Failure::input)?;
+            kinefront_explorer::open(path).map_err(Failure::input)?;
             return Ok(InitialContent::Run(path.clone()));
         }
     }

@@ -3,10 +3,10 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use kinefront::export::{ExportError, ExportSubject, Format, export, front_to_parquet};
-use kinefront::study::write_whole;
+use kinefront_export::{ExportError, ExportSubject, Format, export, front_to_parquet};
 use kinefront_model::evaluation::GridChoice;
 use kinefront_model::spatial::Pose;
+use kinefront_study::{PreparedStudy, write_whole};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use super::subject::SubjectArguments;
@@ -65,7 +65,12 @@ impl ExportArguments {
             .unwrap_or_default()
             .to_string_lossy()
             .to_lowercase();
-        let design = || Format::ALL.into_iter().find(|format| format.extension() == extension);
+        let design = || {
+            Format::ALL
+                .iter()
+                .copied()
+                .find(|format| format.extension() == extension)
+        };
         match extension.as_ref() {
             "csv" => Ok(ExportTarget::Csv),
             "parquet" => Ok(ExportTarget::Parquet),
@@ -88,7 +93,7 @@ impl ExportArguments {
             .extension()
             .is_some_and(|extension| extension.eq_ignore_ascii_case("gltf"));
         match target {
-            ExportTarget::Design(Format::Gltf) if is_gltf => Err(miette!(
+            ExportTarget::Design(format) if is_gltf && format.extension() == "glb" => Err(miette!(
                 help = "use the file extension .glb",
                 "{} has the extension of text glTF, but glTF is written in its binary form",
                 self.out.display()
@@ -131,11 +136,12 @@ pub fn run(arguments: &ExportArguments) -> Result<Ending, Failure> {
 
 fn design(arguments: &ExportArguments, format: Format) -> Result<Vec<u8>, Failure> {
     let (study, design, _) = arguments.subject.read().map_err(Failure::Input)?;
-    let model = study.model().map_err(Failure::runtime)?.with_all_quantities();
-    let evaluation = model.evaluate(&design, GridChoice::Fine);
+    let study = PreparedStudy::new(study)
+        .map_err(Failure::runtime)?
+        .with_all_quantities();
+    let evaluation = study.model().evaluate(&design, GridChoice::Fine);
     let subject = ExportSubject {
         study: &study,
-        model: &model,
         evaluation: &evaluation,
         pose: arguments.pose,
     };

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use kinefront::study::{EndReason, Merge, MergeError, RunControl};
+use kinefront_study::{EndReason, Merge, MergeError, RunControl};
 use miette::miette;
 
 use super::optimize::{RunOutput, perform, tell, write_failure};

@@ -18,6 +18,7 @@ mod stream;
 mod study;
 mod subject;
 mod tables;
+mod wire;
 
 use std::ffi::OsStr;
 use std::io::Write;
@@ -25,9 +26,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use kinefront::recording::{UNPACK_COMMAND, unpack_with};
-use kinefront::study::{BUILTIN, Study};
 use kinefront_model::evaluation::GridChoice;
+use kinefront_recording::{UNPACK_COMMAND, unpack_with};
+use kinefront_study::{BUILTIN, Study};
 use miette::{IntoDiagnostic, Report, Result, miette};
 
 /// Design explorer for planar parallel manipulators.

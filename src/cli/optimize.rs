@@ -7,12 +7,12 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use kinefront::recording::{Recorder, RunFileError, RunFiles};
-use kinefront::study::{
+use kinefront_model::mechanism::Architecture;
+use kinefront_recording::{Recorder, RunFileError, RunFiles};
+use kinefront_study::{
     AlgorithmName, EndReason, Event, ResumeError, Resumption, RunControl, RunFolderError, RunReport, RunSummary,
     RunWriter, Study, StudySearch, WriteError, spawn_search,
 };
-use kinefront_model::mechanism::Architecture;
 use miette::miette;
 
 use super::progress::Progress;
@@ -312,7 +312,7 @@ pub fn tell(
         writeln!(
             out,
             "{} evaluations ({} feasible) in {:.1} s{}, verified in {:.1} s; front: {} of {} verified designs kept, \
-             {} dropped by verification; hypervolume {:.1}{}",
+             {} dropped by verification; hypervolume {:.1} {}",
             last.map_or(0, |last| last.evaluations),
             last.map_or(0, |last| last.feasible),
             summary.times.search_s,
@@ -326,8 +326,7 @@ pub fn tell(
             summary.verified,
             summary.dropped,
             summary.verified_hypervolume,
-            // Other objectives have other units.
-            if study.asks_as_the_paper() { " kg m" } else { "" },
+            study.hypervolume_unit(),
         )?;
         if is_written {
             writeln!(out, "wrote {}", path.display())?;

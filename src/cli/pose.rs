@@ -3,7 +3,8 @@
 use std::ffi::OsString;
 use std::io::Write;
 
-use kinefront::export::{AssemblyModesJson, PoseReportJson};
+use super::wire::AssemblyModesJson;
+use kinefront_export::PoseReportJson;
 use kinefront_model::kinematics::assembly_modes;
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::{JointValues, Pose};

@@ -7,7 +7,7 @@ use std::thread::Builder;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use kinefront::study::GenerationSummary;
+use kinefront_study::GenerationSummary;
 
 use super::say;
 

@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::io::{self, BufRead, Write};
 
-use kinefront::study::{CATALOGUES, Study, StudyError};
 use kinefront_model::evaluation::{Better, Quantity};
 use kinefront_model::mechanism::Architecture;
+use kinefront_study::{CATALOGUES, Study, StudyError};
 
 /// Asks questions on a terminal; an empty answer takes the value in brackets.
 struct Dialogue<'a, R, W> {
@@ -48,7 +48,7 @@ impl<R: BufRead, W: Write> Dialogue<'_, R, W> {
     fn number(&mut self, question: &str, initial: &str) -> io::Result<f64> {
         self.ask(question, initial, |answer| match answer.parse::<f64>() {
             Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
-            _ => Err(format!("`{answer}` is no number above 0")),
+            _ => Err(format!("`{answer}` is not a number above 0")),
         })
     }
 }
@@ -228,7 +228,8 @@ mod tests {
     fn empty_answers_ask_the_paper_s_question() {
         let (text, _) = answer(&"\n".repeat(12)).expect("a study");
         let study = Study::parse(&text, "answers").expect("a study");
-        assert!(study.asks_as_the_paper() && study.architectures.len() == Architecture::ALL.len());
+        assert_eq!(study.objectives(), Study::default().objectives());
+        assert!(study.constraints.is_empty() && study.architectures.len() == Architecture::ALL.len());
     }
 
     #[test]

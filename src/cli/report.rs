@@ -4,10 +4,10 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use indicatif::ProgressBar;
-use kinefront::report::{Options, Report, ReportError, Source, free};
+use kinefront_report::{Options, Report, ReportError, Source, free};
 use miette::Report as Words;
 
-use super::{Ending, Failure, say};
+use super::{Ending, Failure, load_study, say};
 
 const SENSITIVITY: usize = 2000;
 const PICTURE_WIDTH: u32 = 800;
@@ -32,8 +32,8 @@ pub struct ReportArguments {
     /// Replace an existing report.
     #[arg(long)]
     replace: bool,
-    /// Number of evaluations of each search for the sensitivity to assumptions; 0 omits the sensitivity [default: 2000; 0 for
-    /// studies with other objectives than mass and the largest workspace].
+    /// Number of evaluations of each search for the sensitivity to assumptions of a study with two objectives; 0 omits the
+    /// sensitivity [default: 2000 with --paper, otherwise 0].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=10_000_000))]
     sensitivity: Option<u32>,
     /// Width in pixels of the pictures of designs.
@@ -93,8 +93,11 @@ fn evaluations(asked: u32) -> Option<usize> {
 pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
     let folder = arguments.folder();
     free(&folder, arguments.replace).map_err(failure)?;
-    let mut options = Options {
-        sensitivity: arguments.sensitivity.map_or(Some(SENSITIVITY), evaluations),
+    let options = Options {
+        sensitivity: match arguments.sensitivity {
+            Some(asked) => evaluations(asked),
+            None => arguments.paper.then_some(SENSITIVITY),
+        },
         picture: [arguments.picture_width, arguments.picture_width * 3 / 4],
         scale: arguments.scale,
         command: arguments.command(),
@@ -107,7 +110,8 @@ pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
     spinner.enable_steady_tick(std::time::Duration::from_millis(200));
     let mut tell = |words: &str| spinner.set_message(words.to_owned());
     let report = if arguments.paper {
-        Report::of_paper(options, &mut tell)
+        let study = load_study(None).map_err(Failure::Input)?;
+        Report::from_scratch(&study, options, &mut tell)
     } else {
         let sources: Result<Vec<Source>, ReportError> = arguments.runs.iter().map(|run| Source::read(run)).collect();
         sources.and_then(|sources| {
@@ -118,9 +122,6 @@ pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
                         source.name
                     ));
                 }
-            }
-            if sources.iter().any(|source| !source.study.asks_as_the_paper()) {
-                options.sensitivity = arguments.sensitivity.and_then(evaluations);
             }
             Report::make(&sources, options, &mut tell)
         })
@@ -142,7 +143,7 @@ fn failure(error: ReportError) -> Failure {
             | ReportError::Table(_)
             | ReportError::Differing { .. }
             | ReportError::NothingFeasible
-            | ReportError::Sensitivity(_)
+            | ReportError::Sensitivity { .. }
             | ReportError::Occupied(_)
     );
     let report = Words::from_err(error);

@@ -3,9 +3,11 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use kinefront::recording::record_design;
-use kinefront::scene::Field;
 use kinefront_model::evaluation::GridChoice;
+use kinefront_recording::record_design;
+use kinefront_scene::Field;
+
+use kinefront_study::PreparedStudy;
 
 use super::subject::SubjectArguments;
 use super::{Ending, Failure, exists_already};
@@ -15,7 +17,7 @@ pub struct ShowArguments {
     #[command(flatten)]
     subject: SubjectArguments,
     /// Field whose heatmap is shown first.
-    #[arg(long, default_value = Field::InverseCondition.key(), value_parser = field)]
+    #[arg(long, default_value = Field::DEXTERITY.key(), value_parser = field)]
     field: Field,
     /// Show the proof of the workspace first.
     #[arg(long, conflicts_with = "field")]
@@ -27,7 +29,7 @@ pub struct ShowArguments {
 
 fn field(text: &str) -> Result<Field, String> {
     Field::find(text).ok_or_else(|| {
-        let known: Vec<&str> = Field::ALL.iter().map(|field| field.key()).collect();
+        let known: Vec<&str> = Field::all().map(Field::key).collect();
         format!("expected one of {}", known.join(", "))
     })
 }
@@ -37,8 +39,8 @@ pub fn run(arguments: &ShowArguments) -> Result<Ending, Failure> {
         return Err(exists_already(&arguments.record));
     }
     let (study, design, heading) = arguments.subject.read().map_err(Failure::Input)?;
-    let model = study.model().map_err(Failure::runtime)?;
-    let evaluation = model.evaluate(&design, GridChoice::Fine);
+    let study = PreparedStudy::new(study).map_err(Failure::runtime)?;
+    let evaluation = study.model().evaluate(&design, GridChoice::Fine);
     let first = (!arguments.proof).then_some(arguments.field);
     record_design(&arguments.record, &study, &evaluation, &heading, first).map_err(Failure::runtime)?;
     writeln!(std::io::stdout(), "wrote {}", arguments.record.display())?;

@@ -1,10 +1,10 @@
 //! Signals that end a run: Ctrl-C (SIGINT), SIGTERM, and SIGHUP.
 
+use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use kinefront::signals::at_end_signals;
-use kinefront::study::RunControl;
+use kinefront_study::RunControl;
 
 use super::{Failure, say};
 
@@ -16,7 +16,7 @@ pub const INTERRUPTED: u8 = 130;
 pub fn interrupt_on_signals(control: &Arc<RunControl>, quiet: bool) -> Result<(), Failure> {
     let control = Arc::clone(control);
     let is_second = AtomicBool::new(false);
-    at_end_signals(move || {
+    at_end_signals(Box::new(move || {
         if is_second.swap(true, Ordering::SeqCst) {
             std::process::exit(INTERRUPTED.into());
         }
@@ -24,6 +24,43 @@ pub fn interrupt_on_signals(control: &Arc<RunControl>, quiet: bool) -> Result<()
         if !quiet {
             say("interrupted: completing the files (a second signal quits immediately)");
         }
-    })
+    }))
     .map_err(Failure::runtime)
+}
+
+/// Calls `end` at each of these signals, on a thread of its own. A signal that the caller ignores, as `nohup` does with SIGHUP,
+/// stays ignored.
+///
+/// # Errors
+/// The I/O error if the handler cannot be installed.
+#[cfg(unix)]
+pub fn at_end_signals(end: Box<dyn Fn() + Send>) -> io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let ignored = ignored_signals();
+    let handled = [SIGINT, SIGTERM, SIGHUP]
+        .into_iter()
+        .filter(|signal| ignored & (1 << (signal - 1)) == 0);
+    let mut signals = signal_hook::iterator::Signals::new(handled)?;
+    std::thread::Builder::new()
+        .name("kinefront-signals".to_owned())
+        .spawn(move || signals.forever().for_each(|_| end()))?;
+    Ok(())
+}
+
+/// Returns the set of the signals that this process ignores, as Linux states it; empty elsewhere.
+#[cfg(unix)]
+fn ignored_signals() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .unwrap_or(0)
+}
+
+/// Calls `end` at each of these signals, on a thread of its own.
+///
+/// # Errors
+/// The I/O error if the handler cannot be installed.
+#[cfg(not(unix))]
+pub fn at_end_signals(end: Box<dyn Fn() + Send>) -> io::Result<()> {
+    ctrlc::set_handler(end).map_err(io::Error::other)
 }

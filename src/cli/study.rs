@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use kinefront::study::{BUILTIN, Builtin, Study, write_whole};
+use kinefront_study::{BUILTIN, Builtin, Study, write_whole};
 use miette::miette;
 
 use super::{Ending, Failure, exists_already, load_study, question};

@@ -3,8 +3,8 @@
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
-use kinefront::study::{RunFolder, Study, read_designs};
 use kinefront_model::mechanism::Design;
+use kinefront_study::{RunFolder, Study, read_designs};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use super::load_study;

@@ -1,14 +1,15 @@
 //! Result tables for the terminal.
 
+use super::wire::CertificateJson;
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{CellAlignment, Table};
-use kinefront::export::CertificateJson;
-use kinefront::study::{FrontMember, RunSummary, Study};
-use kinefront::text::{self, number};
-use kinefront_model::evaluation::{Bound, Evaluation, Model, PoseEvaluation, Quantity, Unreachable};
+use kinefront_model::certify::Verdict;
+use kinefront_model::evaluation::{Bound, Evaluation, Model, PoseEvaluation, PoseScalar, Quantity, Unreachable};
 use kinefront_model::kinematics::AssemblyMode;
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
+use kinefront_scene::text::{self, number};
+use kinefront_study::{FrontMember, RunSummary, Study};
 
 fn table(header: impl IntoIterator<Item = impl Into<comfy_table::Cell>>, right: &[usize]) -> Table {
     let mut table = Table::new();
@@ -40,7 +41,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         "mass in motion".to_owned(),
         format!(
             "{:.3} kg (legs {:.3}, platform {:.3})",
-            evaluation.mass,
+            evaluation.mass(),
             model.legs_mass(design),
             model.platform_mass(design)
         ),
@@ -49,7 +50,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         (Some(home), Some(phi_deg)) => {
             facts.add_row([
                 "regular workspace".to_owned(),
-                format!("R_w = {:.5} m", evaluation.workspace_radius),
+                format!("R_w = {:.5} m", evaluation.workspace_radius()),
             ]);
             let centre = home.position;
             facts.add_row([
@@ -61,10 +62,16 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             facts.add_row(["regular workspace", "none: the design is infeasible"]);
         }
     }
-    for entry in Quantity::all().map(Quantity::entry) {
-        let is_told_elsewhere =
-            entry.constraint.is_some() || entry.unit == "kg" || entry.quantity == Quantity::WorkspaceRadius;
-        if let Some(value) = evaluation.quantities.get(entry.quantity).filter(|_| !is_told_elsewhere) {
+    let told_elsewhere = [
+        Quantity::Mass,
+        Quantity::LegsMass,
+        Quantity::PlatformMass,
+        Quantity::WorkspaceRadius,
+    ];
+    let is_fact = |quantity: &Quantity| quantity.constraint().is_none() && !told_elsewhere.contains(quantity);
+    for quantity in Quantity::all().filter(is_fact) {
+        let entry = quantity.entry();
+        if let Some(value) = evaluation.quantities.get(quantity) {
             facts.add_row([
                 entry.label.to_owned(),
                 format!("{} {}", text::number(value), entry.unit),
@@ -103,7 +110,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         [
             "",
             "constraint",
-            "smallest value",
+            "worst value",
             "threshold",
             "unit",
             "margin",
@@ -149,21 +156,18 @@ pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseEvaluation, Unrea
             point(report.c[leg]),
         ]);
     }
-    facts.add_row(["limit margin".to_owned(), format!("{:.6} m", report.limit_margin)]);
-    facts.add_row([
-        "inverse condition".to_owned(),
-        format!("{:.6}", report.inverse_condition),
-    ]);
-    facts.add_row([
-        "k_xy".to_owned(),
-        format!("{} N/m", number(report.stiffness_values.k_xy)),
-    ]);
-    facts.add_row(["k_z".to_owned(), format!("{} N/m", number(report.stiffness_values.k_z))]);
-    facts.add_row([
-        "k_φz".to_owned(),
-        format!("{} N·m/rad", number(report.stiffness_values.k_phi_z)),
-    ]);
-    facts.add_row(["clearance".to_owned(), text::clearance(&report.clearance)]);
+    // The clearance has a row of its own, with the members between which it is.
+    let scalars = PoseScalar::ALL
+        .iter()
+        .filter(|scalar| **scalar != PoseScalar::Clearance);
+    for scalar in scalars {
+        if let Some(value) = report.values.get(*scalar) {
+            let entry = scalar.entry();
+            let words = format!("{} {}", number(value), entry.quantity.unit);
+            facts.add_row([entry.label.to_owned(), words.trim_end().to_owned()]);
+        }
+    }
+    facts.add_row(["clearance".to_owned(), text::clearance(&report.nearest)]);
     let mut stiffness = table(["K", "x", "y", "z", "φx", "φy", "φz"], &[1, 2, 3, 4, 5, 6]);
     for (i, name) in ["fx", "fy", "fz", "mx", "my", "mz"].into_iter().enumerate() {
         let mut row = vec![name.to_owned()];
@@ -202,12 +206,9 @@ pub fn assembly_modes(design: &Design, values: [f64; 3], modes: &[AssemblyMode])
 pub fn front(study: &Study, summary: &RunSummary) -> String {
     const MOST_ROWS: usize = 20;
     // Mass and workspace radius have columns in any case.
-    let others: Vec<Quantity> = study
-        .objectives()
-        .into_iter()
-        .map(|objective| objective.quantity)
-        .filter(|quantity| !matches!(quantity, Quantity::Mass | Quantity::WorkspaceRadius))
-        .collect();
+    let has_column = |quantity: &Quantity| [Quantity::Mass, Quantity::WorkspaceRadius].contains(quantity);
+    let objectives = study.objectives().into_iter().map(|objective| objective.quantity);
+    let others: Vec<Quantity> = objectives.filter(|quantity| !has_column(quantity)).collect();
     let titles = others.iter().map(|quantity| quantity.entry());
     let titles = titles.map(|entry| format!("{} {}", entry.label, entry.unit).trim().to_owned());
     let headings = ["#", "architecture", "mass kg", "R_w m"].map(str::to_owned).into_iter();
@@ -222,8 +223,8 @@ pub fn front(study: &Study, summary: &RunSummary) -> String {
         let mut row = vec![
             id.to_string(),
             evaluation.design.architecture.to_string(),
-            format!("{:.2}", evaluation.mass),
-            format!("{:.4}", evaluation.workspace_radius),
+            format!("{:.2}", evaluation.mass()),
+            format!("{:.4}", evaluation.workspace_radius()),
         ];
         row.extend(others.iter().map(|&quantity| {
             let value = evaluation.quantities.get(quantity);
@@ -255,10 +256,11 @@ pub fn front(study: &Study, summary: &RunSummary) -> String {
 
 /// The bounds of a workspace radius and the verdict on it, as sentences.
 pub fn certificate(found: &CertificateJson) -> String {
-    let verdict = match (found.verdict, found.why) {
-        ("open", Some("budget")) => "open: the number of boxes was used up".to_owned(),
-        ("open", _) => "open: a constraint equals its threshold to the precision of a double".to_owned(),
-        (verdict, _) => verdict.to_owned(),
+    let verdict = match found.found {
+        Verdict::Proved => "proved",
+        Verdict::Refuted => "refuted",
+        Verdict::OpenBudget => "open: the number of boxes was used up",
+        Verdict::OpenPrecision => "open: a constraint equals its threshold to the precision of a double",
     };
     let upper = found
         .upper_m

@@ -102,7 +102,7 @@ fn damage_is_never_read_as_less_data() {
 /// The table of a small run, cut at every byte: the run resumes or is refused, and is never another one.
 #[test]
 fn a_table_cut_at_every_byte_resumes() {
-    use kinefront::study::Resumption;
+    use kinefront_study::Resumption;
     let folder = folder();
     let study = folder.path().join("tiny.toml");
     let text = "name = \"tiny\"\narchitectures = [\"3-PRR\"]\n\

@@ -116,7 +116,7 @@ fn a_page_holds_everything_and_loads_nothing() {
             .collect();
         let ends = [f64::min as fn(f64, f64) -> f64, f64::max].map(|pick| masses.iter().copied().reduce(pick));
         for mass in ends.into_iter().flatten() {
-            let text = kinefront::text::number(mass);
+            let text = kinefront_scene::text::number(mass);
             assert!(
                 page.contains(&format!("mass <b>{text}</b> kg")),
                 "{architecture}: no {text} kg"
@@ -166,7 +166,7 @@ fn runs_are_put_together_where_they_ask_for_the_same() {
 fn the_papers_study_is_compared_with_the_paper() {
     let folder = folder();
     let study = small_study(folder.path());
-    let paper = kinefront::study::BUILTIN[0].text;
+    let paper = kinefront_study::BUILTIN[0].text;
     let references = &paper[paper.find("[[references]]").expect("references")..];
     let text = std::fs::read_to_string(&study).expect("a study");
     std::fs::write(&study, format!("{text}{references}")).expect("a study");
@@ -276,14 +276,14 @@ fn a_report_answers_the_question_of_its_study() {
     assert_eq!(pictures, designs);
     report(&[&run], &folder.path().join("refused"), &["--sensitivity", "100"])
         .code(2)
-        .stderr(contains("leave out"));
+        .stderr(contains("Leave out --sensitivity"));
 
     let (_, out, page, _) = of_question(
         "stiff",
         "architectures = [\"3-PRR\"]\nobjectives = [{ minimize = \"mass_kg\" }, { maximize = \"k_xy_n_per_m\" }]\n\
          workspace.region = { kind = \"disc\", radius_m = 0.3 }\nconstraints.footprint_m = { at_most = 4.0 }\n",
     );
-    for figure in ["front-mass-kg-k-xy-n-per-m", "lengths-3-prr", "bars-3-prr"] {
+    for figure in ["fronts", "front-3-prr", "lengths-3-prr", "bars-3-prr"] {
         assert!(out.join(format!("figures/{figure}.png")).exists(), "{figure}");
     }
     assert!(page.contains("as large as possible") && page.contains("at most 4 m") && page.contains("hypervolume"));

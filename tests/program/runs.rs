@@ -5,6 +5,8 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use kinefront_model::evaluation::PoseScalar;
+
 use super::support::{check, folder, kinefront, optimize, program, small_study};
 
 fn rows(path: &Path) -> Vec<csv::StringRecord> {
@@ -91,7 +93,7 @@ fn a_run_leaves_its_files() {
 /// random pose of a reported disc is infeasible.
 #[test]
 fn a_front_with_pockets_is_proved() {
-    use kinefront::study::{RunFolder, Study};
+    use kinefront_study::{RunFolder, Study};
     let folder = folder();
     let out = folder.path().join("run");
     kinefront()
@@ -130,7 +132,7 @@ fn a_front_with_pockets_is_proved() {
     let model = Study::default().model().expect("a model");
     for entry in &front {
         let certified = entry.certified.expect("a certificate");
-        assert!(certified.is_proved && certified.lower == entry.row.radius);
+        assert!(certified.is_proved && certified.lower == entry.row.workspace_radius());
         let phi = entry.row.phi.expect("a home").to_radians();
         let mut state = entry.id as u64;
         let mut next = || {
@@ -140,20 +142,21 @@ fn a_front_with_pockets_is_proved() {
             (state >> 11) as f64 / (1u64 << 53) as f64
         };
         for _ in 0..2000 {
-            let (radius, theta) = (entry.row.radius * next().sqrt(), std::f64::consts::TAU * next());
+            let (radius, theta) = (
+                entry.row.workspace_radius() * next().sqrt(),
+                std::f64::consts::TAU * next(),
+            );
             let turn = 10f64.to_radians() * (2.0 * next() - 1.0);
             let pose = kinefront_model::spatial::Pose::new(radius * theta.cos(), radius * theta.sin(), phi + turn);
             let found = model.pose(&entry.row.design, &pose).expect("a reachable pose");
-            let values = found.stiffness_values;
-            let limit = |threshold: f64| (1.0 - 1e-9) * threshold;
-            assert!(
-                found.inverse_condition >= limit(0.1)
-                    && values.k_xy >= limit(1e6)
-                    && values.k_z >= limit(1e5)
-                    && values.k_phi_z >= limit(10.0 / 1f64.to_radians()),
-                "#{} at {pose:?}",
-                entry.id
-            );
+            let limits = [
+                (PoseScalar::Dexterity, 0.1),
+                (PoseScalar::StiffnessXy, 1e6),
+                (PoseScalar::StiffnessZ, 1e5),
+                (PoseScalar::StiffnessPhiZ, 10.0 / 1f64.to_radians()),
+            ];
+            let keeps = |(scalar, limit): (PoseScalar, f64)| found.values[scalar] >= (1.0 - 1e-9) * limit;
+            assert!(limits.into_iter().all(keeps), "#{} at {pose:?}", entry.id);
         }
     }
     // Without proofs, the radii are those of the fine grid, and the last columns are empty.

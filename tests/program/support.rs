@@ -11,8 +11,7 @@ use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The paper's design II.
-pub const DESIGN: &str = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056";
+pub use kinefront_testkit::DESIGN;
 
 /// Returns the program without any setting of the caller's environment that Rerun would use.
 pub fn kinefront() -> assert_cmd::Command {
@@ -28,10 +27,7 @@ pub fn folder() -> TempDir {
 /// Writes a small study, which runs quickly and has all three architectures, and returns its path.
 pub fn small_study(folder: &Path) -> PathBuf {
     let path = folder.join("small.toml");
-    let text = "name = \"small\"\n[grid.reference]\nphi_step_deg = 5\ndirections = 12\nray_steps = 20\nhalvings = 6\n\
-                [grid.fine]\nphi_step_deg = 2.5\ndirections = 24\nray_steps = 40\nhalvings = 8\n\
-                [optimizer]\nevaluations = 600\nseed = 5\n";
-    std::fs::write(&path, text).expect("a study file");
+    std::fs::write(&path, kinefront_testkit::small_study(600)).expect("a study file");
     path
 }
 
@@ -58,6 +54,15 @@ pub fn optimize(study: &Path, out: &Path, more: &[&str]) -> Value {
     )
 }
 
+/// The cases of a repeated test: all where `KINEFRONT_THOROUGH` is set, as every night; otherwise `count` of them, evenly spread.
+pub fn sample<Cases: ExactSizeIterator>(cases: Cases, count: usize) -> impl Iterator<Item = Cases::Item> {
+    let step = match std::env::var_os("KINEFRONT_THOROUGH") {
+        Some(_) => 1,
+        None => cases.len().div_ceil(count),
+    };
+    cases.step_by(step)
+}
+
 /// Returns a Python interpreter that has `modules`, or prints a message on what is missing and returns `None`.
 ///
 /// `KINEFRONT_PYTHON` names the interpreter; if `KINEFRONT_REQUIRE_PYTHON` is set, a missing one is a failure.
@@ -72,7 +77,7 @@ pub fn python(modules: &[&str]) -> Option<Command> {
         return Some(Command::new(interpreter));
     }
     let message = format!(
-        "skipped: {interpreter} with {} was not found (see README, Tests)",
+        "skipped: {interpreter} with {} was not found (see CONTRIBUTING.md)",
         modules.join(", ")
     );
     assert!(std::env::var_os("KINEFRONT_REQUIRE_PYTHON").is_none(), "{message}");
@@ -111,7 +116,7 @@ pub fn node(package: &str) -> Option<Command> {
     if found {
         return Some(make());
     }
-    let message = format!("skipped: Node.js with {package} was not found (see README, Tests)");
+    let message = format!("skipped: Node.js with {package} was not found (see CONTRIBUTING.md)");
     assert!(std::env::var_os("KINEFRONT_REQUIRE_NODE").is_none(), "{message}");
     eprintln!("{message}");
     None

@@ -12,13 +12,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::support::{
-    DESIGN, check, folder, kinefront, optimize, program, report, resume, signal, small_study, start, tables, wait_for,
+    DESIGN, check, folder, kinefront, optimize, program, report, resume, sample, signal, small_study, start, tables,
+    wait_for,
 };
-
-/// Number of runs that are killed; `KINEFRONT_KILLS` asks for more.
-fn kills() -> u64 {
-    std::env::var("KINEFRONT_KILLS").map_or(24, |count| count.parse().expect("a number"))
-}
 
 /// Killed at any moment of its start, search, verification or end, and resumed on any number of threads, a run leaves the
 /// files of a run that was never stopped.
@@ -33,7 +29,7 @@ fn a_run_that_is_killed_and_resumed_is_the_run_that_was_not() {
         optimize(&study, &whole, &arguments);
         let duration = since.elapsed();
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        for kill in 0..kills().div_ceil(3) {
+        for kill in sample(0..67_u32, 3) {
             let run = folder.path().join(format!("{algorithm}-{kill}"));
             let mut child = start(&study, &run, &arguments);
             std::thread::sleep(duration.mul_f64(random.next_u32() as f64 / f64::from(u32::MAX)));
@@ -321,7 +317,7 @@ fn a_recording_can_be_thinned_or_left_out() {
         check(run).success();
     }
     let recorded = |run: &Path| {
-        kinefront::recording::read_apart(&run.join("recording.rrd"))
+        kinefront_recording::read_apart(&run.join("recording.rrd"))
             .expect("a recording")
             .1
             .len()

@@ -126,6 +126,6 @@ fn the_whole_window_runs_shows_a_design_and_saves() {
         with > 3 * without + 4000,
         "{without} pixels of a heatmap before, {with} after"
     );
-    let recorded = kinefront::recording::read_run(&recording).expect("a recording of Kinefront");
+    let recorded = kinefront_recording::read_run(&recording).expect("a recording of Kinefront");
     assert_eq!(recorded.designs.len(), 600);
 }

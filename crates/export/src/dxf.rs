@@ -1,16 +1,28 @@
 //! The plan view for CAD, in millimetres, with one layer for each kind of object. The file is DXF release 12, which
 //! every CAD program reads: for later releases the library omits table handles that some programs require.
 
-use crate::AnyError;
 use ::dxf::entities::{Circle, Entity, EntityType, Line, Polyline, Text, Vertex};
 use ::dxf::enums::AcadVersion;
 use ::dxf::tables::Layer;
 use ::dxf::{Color, Drawing, Point};
 use glam::{DVec2, DVec3};
 
-use super::Prepared;
+use super::format::{AnyError, Format};
+use super::prepared::Prepared;
 use kinefront_scene::text::number;
 use kinefront_scene::{Part, Scene, SolidShape};
+
+pub(super) const FORMAT: Format = Format {
+    key: "dxf",
+    file: "design.dxf",
+    name: "DXF",
+    title: "DXF, plan view",
+    lost: Some("joints, masses, actuators and heights; the file contains only the plan view"),
+    is_text: true,
+    needs_bars: false,
+    joints_from_zero: false,
+    write,
+};
 
 /// Millimetres per metre.
 const MM: f64 = 1e3;
@@ -27,7 +39,7 @@ const LAYERS: [(&str, u8); 8] = [
     ("TEXT", 2),
 ];
 
-pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
+fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let design = &subject.evaluation.design;
     let scene = &subject.scene;
     let mut sheet = Sheet::new();
@@ -72,7 +84,7 @@ fn facts(subject: &Prepared) -> Vec<String> {
     let mut facts = vec![
         subject.title(),
         "lengths in mm".to_owned(),
-        format!("mass in motion {} kg", number(evaluation.mass)),
+        format!("mass in motion {} kg", number(evaluation.mass())),
     ];
     if let Some(cylinder) = subject.cylinder {
         let region = match &subject.corners {

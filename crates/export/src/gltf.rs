@@ -1,6 +1,5 @@
 //! glTF 2.0, binary: a node for every body, coloured by part, and the tour of the workspace as an animation.
 
-use crate::AnyError;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -12,17 +11,30 @@ use json::validation::Checked::Valid;
 use json::validation::USize64;
 use json::{Accessor, Index, Node};
 
-use super::Prepared;
+use super::format::{AnyError, Format};
+use super::prepared::Prepared;
 use kinefront_model::spatial::unit;
 use kinefront_scene::palette;
 use kinefront_scene::{Frame, Mesh, Part, Solid, linkage};
+
+pub(super) const FORMAT: Format = Format {
+    key: "gltf",
+    file: "design.glb",
+    name: "glTF",
+    title: "glTF, for viewers and CAD",
+    lost: Some("joints, masses and actuators; the file contains only geometry and an animation"),
+    is_text: false,
+    needs_bars: false,
+    joints_from_zero: false,
+    write,
+};
 
 /// Duration of the tour \[s\].
 const TOUR_SECONDS: f64 = 12.0;
 /// Number of segments of the circle that shows the regular workspace.
 const CIRCLE: usize = 96;
 
-pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
+fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let mut file = File::default();
     let mut nodes = Vec::new();
     let mut bodies = Vec::new();

@@ -1,14 +1,26 @@
 //! MJCF for MuJoCo: legs as trees, the platform free in the plane, the connections at `C_1` to `C_3` as equality constraints, and
 //! actuators as position servos whose gain is the study's actuator stiffness.
 
+use super::format::{AnyError, Format};
+use super::prepared::{Prepared, inertial, joint_axis, joint_name, rgba};
 use super::xml::Element;
-use super::{Format, Prepared, inertial, joint_axis, joint_name, rgba};
-use crate::AnyError;
 use glam::DVec2;
 use kinefront_model::mechanism::JointKind;
 use kinefront_scene::{Body, Joint, Solid, SolidShape};
 
-pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
+pub(super) const FORMAT: Format = Format {
+    key: "mjcf",
+    file: "design.xml",
+    name: "MJCF",
+    title: "MJCF, for MuJoCo",
+    lost: None,
+    is_text: true,
+    needs_bars: true,
+    joints_from_zero: false,
+    write,
+};
+
+fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let root = Element::new("mujoco")
         .with("model", subject.identifier())
         .children(settings())
@@ -21,7 +33,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
                 .with("joint", format!("platform_{axis}"))
         })))
         .child(Element::new("keyframe").child(start(subject)));
-    root.document(&subject.preamble(Format::Mjcf))
+    root.document(&FORMAT.preamble(subject))
 }
 
 /// Units, integrator, no contacts, and the stiffness of the closures.

@@ -1,15 +1,30 @@
 //! SDF: a link for every body and a joint for every joint, including the joints that close the loops.
 
+use super::format::{AnyError, Format};
+use super::prepared::{Prepared, inertial, joint_axis, joint_name, place, rgba, text};
 use super::xml::{Element, numbers};
-use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, text};
-use crate::AnyError;
 use kinefront_model::mechanism::JointKind;
 use kinefront_scene::{Body, Frame, Joint, Solid, SolidShape};
+
+pub(super) const FORMAT: Format = Format {
+    key: "sdf",
+    file: "design.sdf",
+    name: "SDF",
+    title: "SDF, for Gazebo",
+    lost: Some(
+        "the stiffness of the actuators, and which joints are actuated; Gazebo's default physics engine does not close loops, that \
+         of Gazebo Classic does",
+    ),
+    is_text: true,
+    needs_bars: true,
+    joints_from_zero: true,
+    write,
+};
 
 /// Value that means "no limit" where the format requires a number.
 const UNLIMITED: f64 = 1e16;
 
-pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
+fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let linkage = &subject.linkage;
     let mut model = Element::new("model").with("name", subject.identifier()).child(
         Element::new("link")
@@ -68,7 +83,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         // The newest version that Gazebo Classic reads, and Gazebo Classic closes loops.
         .with("version", "1.7")
         .child(model)
-        .document(&subject.preamble(Format::Sdf))
+        .document(&FORMAT.preamble(subject))
 }
 
 fn pose(x: f64, y: f64, angle: f64) -> String {

@@ -1,18 +1,33 @@
 //! URDF: the tree that remains when the loops are cut at `C_2` and `C_3`.
 
-use crate::AnyError;
 use glam::DVec2;
 
+use super::format::{AnyError, Format};
+use super::prepared::{Prepared, inertial, joint_axis, joint_name, place, rgba, text};
 use super::xml::{Element, numbers};
-use super::{Format, Prepared, inertial, joint_axis, joint_name, place, rgba, text};
 use kinefront_model::mechanism::JointKind;
 use kinefront_scene::{Body, Joint, Linkage, Solid, SolidShape};
+
+pub(super) const FORMAT: Format = Format {
+    key: "urdf",
+    file: "design.urdf",
+    name: "URDF",
+    title: "URDF, for ROS",
+    lost: Some(
+        "the closed loops (URDF describes trees, so the platform is attached to leg 1, and legs 2 and 3 end free at C2 and C3); the \
+         stiffness of the actuators, and which joints are actuated; the effort and velocity limits are placeholders",
+    ),
+    is_text: true,
+    needs_bars: true,
+    joints_from_zero: true,
+    write,
+};
 
 /// Limits of force or torque and of speed for all joints: the format requires them and the study does not define them.
 const EFFORT: f64 = 1e4;
 const SPEED: f64 = 10.0;
 
-pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
+fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let linkage = &subject.linkage;
     let mut robot = Element::new("robot").with("name", subject.identifier()).child(
         Element::new("link")
@@ -41,7 +56,7 @@ pub(super) fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
             0.0,
         ));
     }
-    robot.document(&subject.preamble(Format::Urdf))
+    robot.document(&FORMAT.preamble(subject))
 }
 
 /// The joint of a body of a leg to its parent; its value is 0 at the exported pose.

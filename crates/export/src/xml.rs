@@ -1,10 +1,10 @@
 //! A tree of XML elements, written with indentation.
 
-use crate::AnyError;
+use super::format::AnyError;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
 
-use super::text;
+use super::prepared::text;
 
 /// An XML element.
 #[derive(Debug, Clone, Default)]

@@ -19,8 +19,8 @@ fn main() -> Result<(), TextError> {
         let active: Vec<&str> = evaluation.active().map(|constraint| constraint.name()).collect();
         println!(
             "{name}: {:.1} kg, R_w {:.4} m, limited by {}",
-            evaluation.mass,
-            evaluation.workspace_radius,
+            evaluation.mass(),
+            evaluation.workspace_radius(),
             active.join(" and ")
         );
         assert!(evaluation.is_feasible() && !active.is_empty());

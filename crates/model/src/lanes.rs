@@ -406,7 +406,7 @@ impl InstructionSet {
 
     /// Returns all supported instruction sets, from the baseline to the widest.
     pub fn available() -> Vec<Self> {
-        #[allow(unused_mut)]
+        #[allow(unused_mut, reason = "processors without wider registers add nothing")]
         let mut sets = vec![pulp::Arch::Scalar];
         #[cfg(target_arch = "x86_64")]
         {
@@ -428,7 +428,7 @@ impl InstructionSet {
             pulp::Arch::V4(_) => "AVX-512",
             #[cfg(target_arch = "aarch64")]
             pulp::Arch::Neon(_) => "NEON",
-            #[allow(unreachable_patterns)]
+            #[allow(unreachable_patterns, reason = "the sets of other processors are not compiled")]
             _ => "other",
         }
     }

@@ -33,6 +33,9 @@ pub const ANCHOR_DIRECTIONS: [DVec2; LEGS] = [
 /// √3/2, the cosine of 30°.
 pub const HALF_SQRT_3: f64 = 0.866_025_403_784_438_6;
 
+/// Largest magnitude of a reported distance, and upper limit for the dimensions of members \[m\].
+pub(crate) const NUMBER_LIMIT: f64 = 1e100;
+
 /// Pose of the platform frame in the base frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {

@@ -82,6 +82,7 @@ mod nsga2;
 mod population;
 mod problem;
 mod random;
+mod run;
 mod selection;
 mod variation;
 
@@ -93,5 +94,6 @@ pub use front_de::{FrontDe, FrontDeSettings};
 pub use hypervolume::hypervolume;
 pub use moga2::{Moga2, Moga2Settings};
 pub use nsga2::{Nsga2, Nsga2Settings};
-pub use problem::{Algorithm, Candidate, Evaluated, Objectives, Outcome, Problem, Target, Variable, run};
+pub use problem::{Algorithm, Candidate, Evaluated, Objectives, Outcome, Problem, Target, Variable};
+pub use run::run;
 pub use selection::{groups, knee, ranking, spread};

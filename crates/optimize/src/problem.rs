@@ -2,8 +2,6 @@
 
 use std::ops::Deref;
 
-use super::Archive;
-
 /// One variable of a problem.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Variable {
@@ -171,29 +169,4 @@ pub trait Algorithm: Send {
     /// Receives the outcomes of the candidates returned by the last call of [`Algorithm::ask`], in the same order and
     /// with the values as completed. The last generation may be truncated.
     fn tell(&mut self, evaluated: Vec<Evaluated>);
-}
-
-/// Runs `algorithm` on `problem` for `evaluations` evaluations in the current thread and returns the archive of the
-/// non-dominated feasible candidates.
-pub fn run(problem: &impl Problem, algorithm: &mut (impl Algorithm + ?Sized), evaluations: usize) -> Archive {
-    let mut archive = Archive::default();
-    let mut done = 0;
-    while done < evaluations {
-        let mut candidates = algorithm.ask();
-        candidates.truncate(evaluations - done);
-        let evaluated: Vec<Evaluated> = candidates
-            .into_iter()
-            .map(|candidate| {
-                let x = problem.completed(candidate);
-                let outcome = problem.evaluate(&x);
-                Evaluated { x, outcome }
-            })
-            .collect();
-        for (offset, candidate) in evaluated.iter().enumerate() {
-            archive.insert(done + offset, &candidate.x, &candidate.outcome);
-        }
-        done += evaluated.len();
-        algorithm.tell(evaluated);
-    }
-    archive
 }

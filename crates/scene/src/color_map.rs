@@ -1,6 +1,7 @@
 //! The colours of a field, and its legend.
 
-use super::{Field, Scale};
+use super::Field;
+use kinefront_model::evaluation::Scale;
 
 /// What the legend of a field shows.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::field::free_stiffness;
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::kinematics::Jacobian;
-use kinefront_model::mechanism::AnyLeg;
+use kinefront_model::mechanism::{AnyLeg, Manipulator};
 use kinefront_model::spatial::{Pose, smaller_eigenvalue, unit};
 use kinefront_model::stiffness::PlanarStiffness;
 
@@ -75,7 +75,7 @@ const LARGEST: f64 = 0.24;
 /// design without a regular workspace.
 pub fn ellipsoids(model: &Model, evaluation: &Evaluation, kind: EllipsoidKind) -> Option<EllipsoidSet> {
     let home = evaluation.home?;
-    let radius = evaluation.workspace_radius;
+    let radius = evaluation.workspace_radius();
     let points = std::iter::once(DVec2::ZERO)
         .chain((0..6).map(|k| unit(f64::from(k) * std::f64::consts::FRAC_PI_3) * 0.5 * radius))
         .chain((0..12).map(|k| unit(f64::from(k) * std::f64::consts::FRAC_PI_6) * 0.97 * radius));
@@ -83,10 +83,11 @@ pub fn ellipsoids(model: &Model, evaluation: &Evaluation, kind: EllipsoidKind) -
         position: home.position + offset,
         phi: home.phi,
     });
-    let checker = model.checker::<AnyLeg>(&evaluation.design);
+    let manipulator = Manipulator::<AnyLeg>::new(&evaluation.design, &model.legs);
+    let stiffness_model = model.stiffness(&evaluation.design)?;
     let at = |pose: Pose| {
-        let posture = checker.manipulator.posture(&pose).ok()?;
-        let stiffness = checker.stiffness_at(&posture, &Jacobian::new(&posture));
+        let posture = manipulator.posture(&pose).ok()?;
+        let stiffness = stiffness_model.stiffness(&posture, &Jacobian::new(&posture));
         ellipsoid(pose, &stiffness, kind)
     };
     let ellipsoids: Vec<Ellipsoid> = poses.filter_map(at).collect();

@@ -35,7 +35,7 @@ mod workspace;
 pub use color_map::{ColorMap, FieldLegend};
 pub use dimensions::dimension_lines;
 pub use ellipsoid::{Ellipsoid, EllipsoidKind, EllipsoidSet, ellipsoids};
-pub use field::{Field, Scale};
+pub use field::Field;
 pub use heatmap::{Edge, Heatmap, HeatmapSettings};
 pub use kinefront_model::kinematics::AssemblyMode;
 pub use linkage::{Body, Closure, Frame, Joint, Linkage, MassBar, linkage};

@@ -5,9 +5,8 @@ use glam::DVec2;
 use super::Solid;
 use super::manipulator::Sizes;
 use kinefront_model::evaluation::{Model, Unreachable};
-use kinefront_model::mechanism::{AnyLeg, Design, JointKind, Leg, LegBody, LegPart, Manipulator, MemberKind};
+use kinefront_model::mechanism::{AnyLeg, CrossSection, Design, JointKind, LegBody, LegPart, Manipulator, MemberKind};
 use kinefront_model::spatial::{LEGS, Pose, Rotation};
-use kinefront_model::stiffness::CrossSection;
 
 /// A planar frame, given in the base frame or in the frame of another body.
 #[derive(Debug, Clone, Copy, PartialEq)]

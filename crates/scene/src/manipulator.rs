@@ -5,10 +5,9 @@ use glam::{DVec2, DVec3};
 use super::{Label, Line, Nearest, Part, Scene, Solid, SolidShape};
 use crate::text::number;
 use kinefront_model::clearance::{BodySettings, Clearance, Neighbour};
-use kinefront_model::evaluation::{Model, Unreachable};
-use kinefront_model::mechanism::{AnyLeg, Design, Leg, LegPart, Manipulator, MemberKind, TravelKind};
+use kinefront_model::evaluation::{Model, PoseScalar, Unreachable};
+use kinefront_model::mechanism::{AnyLeg, CrossSections, Design, Leg, LegPart, Manipulator, MemberKind, TravelKind};
 use kinefront_model::spatial::{Pose, unit};
-use kinefront_model::stiffness::CrossSections;
 
 /// Distance from a member's axis to the end of a pin, as a multiple of the member's radius.
 const PIN: f64 = 1.2;
@@ -268,7 +267,7 @@ fn nearest(model: &Model, design: &Design, clearance: &Clearance) -> Nearest {
     Nearest {
         line,
         text: format!("{} mm", number(1e3 * clearance.distance)),
-        too_near: clearance.distance < model.thresholds.clearance.unwrap_or(0.0),
+        too_near: clearance.distance < model.thresholds.get(PoseScalar::Clearance).unwrap_or(0.0),
     }
 }
 

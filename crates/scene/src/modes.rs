@@ -1,6 +1,6 @@
 //! Assembly modes of a design: those that belong to the joint values of a pose, and their number over a slice of the joint space.
 
-use kinefront_model::evaluation::Model;
+use kinefront_model::evaluation::{Model, PoseScalar};
 use kinefront_model::kinematics::{AssemblyMode, assembly_modes};
 use kinefront_model::mechanism::{Architecture, Design, JointKind, WorkingMode};
 use kinefront_model::spatial::{LEGS, Pose};
@@ -79,7 +79,11 @@ pub fn example(model: &Model, architecture: Architecture) -> Option<(Design, Pos
     };
     let rated = designs.flat_map(poses).filter_map(|(design, pose)| {
         let found = model.pose(&design, &pose).ok()?;
-        Some((found.inverse_condition.min(2.0 * found.limit_margin), design, pose))
+        Some((
+            found.values[PoseScalar::Dexterity].min(2.0 * found.values[PoseScalar::Reach]),
+            design,
+            pose,
+        ))
     });
     let best = rated.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
     Some((best.1, best.2))

@@ -1,6 +1,7 @@
 //! Formatting of numbers and names for display.
 
 use kinefront_model::clearance::Clearance;
+use kinefront_model::evaluation::{Quantity, QuantityValues};
 use kinefront_model::mechanism::{Architecture, DesignVariable};
 
 /// Formats a number with four significant digits: in decimal notation from 0.001 up to 100 000, otherwise in scientific
@@ -32,6 +33,20 @@ pub fn short(value: f64) -> String {
         let text = format!("{value:.2e}");
         text.replace(".00e", "e").replace("0e", "e")
     }
+}
+
+/// Writes a quantity with its name and unit, for example `mass 12.34 kg`.
+pub fn quantity(quantity: Quantity, value: f64) -> String {
+    let entry = quantity.entry();
+    format!("{} {} {}", entry.short, number(value), entry.unit)
+        .trim_end()
+        .to_owned()
+}
+
+/// Writes those of some quantities that a design has, for example `mass 12.34 kg, R_w 0.31 m`.
+pub fn quantities(shown: impl IntoIterator<Item = Quantity>, values: &QuantityValues) -> String {
+    let text = |shown| Some(quantity(shown, values.get(shown)?));
+    shown.into_iter().filter_map(text).collect::<Vec<_>>().join(", ")
 }
 
 /// Writes a clearance, for example `12.3 mm from leg1_link to leg2_link` or

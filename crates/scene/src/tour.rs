@@ -3,7 +3,7 @@
 use super::RegularCylinder;
 use kinefront_model::evaluation::Model;
 use kinefront_model::kinematics::forward;
-use kinefront_model::mechanism::{AnyLeg, Design, JointKind, Leg, Manipulator};
+use kinefront_model::mechanism::{AnyLeg, Design, JointKind, Manipulator};
 use kinefront_model::spatial::{Pose, unit};
 
 /// Poses along the regular workspace.

@@ -23,7 +23,7 @@ pub fn regular_workspace(evaluation: &Evaluation, rotation_range_deg: f64) -> Op
     let home = evaluation.home?;
     Some(RegularCylinder {
         centre: home.position,
-        radius: evaluation.workspace_radius,
+        radius: evaluation.workspace_radius(),
         phi: home.phi,
         phi_range: rotation_range_deg.to_radians(),
     })

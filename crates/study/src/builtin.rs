@@ -1,7 +1,5 @@
 //! Built-in studies, embedded in the binary.
 
-use super::{Study, StudyError};
-
 /// A built-in study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Builtin {
@@ -15,39 +13,39 @@ pub struct Builtin {
 pub const BUILTIN: [Builtin; 9] = [
     Builtin {
         name: "paper",
-        text: include_str!("../../../assets/studies/paper.toml"),
+        text: include_str!("../assets/studies/paper.toml"),
     },
     Builtin {
         name: "paper-bounds-as-printed",
-        text: include_str!("../../../assets/studies/paper-bounds-as-printed.toml"),
+        text: include_str!("../assets/studies/paper-bounds-as-printed.toml"),
     },
     Builtin {
         name: "paper-without-collisions",
-        text: include_str!("../../../assets/studies/paper-without-collisions.toml"),
+        text: include_str!("../assets/studies/paper-without-collisions.toml"),
     },
     Builtin {
         name: "aluminium-pick-and-place",
-        text: include_str!("../../../assets/studies/aluminium-pick-and-place.toml"),
+        text: include_str!("../assets/studies/aluminium-pick-and-place.toml"),
     },
     Builtin {
         name: "lightest-for-a-rectangle",
-        text: include_str!("../../../assets/studies/lightest-for-a-rectangle.toml"),
+        text: include_str!("../assets/studies/lightest-for-a-rectangle.toml"),
     },
     Builtin {
         name: "tubes-from-a-catalogue",
-        text: include_str!("../../../assets/studies/tubes-from-a-catalogue.toml"),
+        text: include_str!("../assets/studies/tubes-from-a-catalogue.toml"),
     },
     Builtin {
         name: "three-objectives",
-        text: include_str!("../../../assets/studies/three-objectives.toml"),
+        text: include_str!("../assets/studies/three-objectives.toml"),
     },
     Builtin {
         name: "alignment-stage",
-        text: include_str!("../../../assets/studies/alignment-stage.toml"),
+        text: include_str!("../assets/studies/alignment-stage.toml"),
     },
     Builtin {
         name: "all-planar-architectures",
-        text: include_str!("../../../assets/studies/all-planar-architectures.toml"),
+        text: include_str!("../assets/studies/all-planar-architectures.toml"),
     },
 ];
 
@@ -60,13 +58,5 @@ impl Builtin {
     /// Returns the built-in study with the given name, if there is one.
     pub fn find(name: &str) -> Option<Builtin> {
         BUILTIN.into_iter().find(|builtin| builtin.name == name)
-    }
-
-    /// Parses the study.
-    ///
-    /// # Errors
-    /// [`StudyError`]; the tests make sure that no built-in study causes one.
-    pub fn study(&self) -> Result<Study, StudyError> {
-        Study::parse(self.text, self.name)
     }
 }

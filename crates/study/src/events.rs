@@ -3,8 +3,6 @@
 use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
 
-use kinefront_model::evaluation::Quantity;
-
 use super::{FrontMember, FrontProofs, Row, Study, TableRow};
 use kinefront_optimize::{Objectives, knee, spread};
 
@@ -20,7 +18,7 @@ pub enum Event {
     Evaluated(Batch),
     /// A generation is complete.
     Generation(GenerationSummary),
-    /// The archive of non-dominated designs changed. Its members are sorted by mass; their workspace radii are those of
+    /// The archive of non-dominated designs changed. Its members are in the order of the first objective; their workspace radii are those of
     /// the reference grid.
     Front(Vec<Arc<TableRow>>),
     /// The front is being verified on the fine grid, and its workspaces are being proved.
@@ -79,7 +77,7 @@ pub struct GenerationSummary {
     pub feasible: usize,
     /// Number of non-dominated designs.
     pub front_size: usize,
-    /// Hypervolume of the front on the reference grid \[kg·m\].
+    /// Hypervolume of the front on the reference grid, in the product of the units of the objectives.
     pub hypervolume: f64,
 }
 
@@ -126,14 +124,14 @@ pub struct RunSummary {
     pub threads: usize,
     /// State of the run after each generation.
     pub history: Vec<GenerationSummary>,
-    /// The front, verified on the fine grid, thinned to evenly spread designs and proved, sorted by `R_w`.
+    /// The front, verified on the fine grid, thinned to evenly spread designs and proved, in the order of the first objective.
     pub front: Vec<FrontMember>,
     /// Number of designs of the verified front before it was thinned.
     pub verified: usize,
     /// Number of designs that are non-dominated on the reference grid but were dropped by the verification, because
     /// they are infeasible or dominated on the fine grid.
     pub dropped: usize,
-    /// Hypervolume of the verified front before it was thinned \[kg·m\].
+    /// Hypervolume of the verified front before it was thinned.
     pub verified_hypervolume: f64,
     /// What the proofs of the workspaces of the front found; `None` if the study asks for none.
     pub proofs: Option<FrontProofs>,
@@ -170,18 +168,21 @@ impl RunSummary {
     }
 }
 
-/// Returns the mark of each design of a front: `lightest`, `knee`, `largest`, or empty for all others; the best design in another
-/// objective has the mark `best_` with its key.
+/// Returns the mark of each design of a front: `knee`, what the best designs in the objectives are called, and an empty text for all
+/// others. Where each of several objectives has a word for its best design, as `lightest` and `largest`, these are the marks;
+/// otherwise `best_` with the key of the quantity.
 pub fn front_marks(study: &Study, objectives: &[Objectives]) -> Vec<String> {
+    let asked = study.objectives();
+    let words: Option<Vec<&str>> = asked.iter().map(|objective| objective.superlative()).collect();
+    let words = words.filter(|words| words.len() > 1);
     let mut marks = vec![String::new(); objectives.len()];
-    for (place, objective) in study.objectives().into_iter().enumerate().rev() {
+    for (place, objective) in asked.iter().enumerate().rev() {
         let value = |member: &usize| objectives[*member][place];
         let best = (0..marks.len()).min_by(|a, b| value(a).total_cmp(&value(b)));
         if let Some(best) = best {
-            marks[best] = match objective.quantity {
-                Quantity::Mass if study.asks_as_the_paper() => "lightest".to_owned(),
-                Quantity::WorkspaceRadius if study.asks_as_the_paper() => "largest".to_owned(),
-                quantity => format!("best_{}", quantity.entry().key),
+            marks[best] = match &words {
+                Some(words) => words[place].to_owned(),
+                None => format!("best_{}", objective.quantity.entry().key),
             };
         }
     }

@@ -4,8 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::{DesignProblem, Row, TableRow};
-use kinefront_model::certify::{Certificate, Verdict};
+use super::{CertifiedRadius, DesignProblem, Row, TableRow};
 use kinefront_model::evaluation::{Evaluation, Objective};
 use kinefront_optimize::Objectives;
 
@@ -25,17 +24,6 @@ pub struct FrontMember {
     pub certified: Option<CertifiedRadius>,
 }
 
-/// Bounds of the workspace radius at the home orientation of a design.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CertifiedRadius {
-    /// Radius \[m\] of a disc in which every pose is proved feasible.
-    pub lower: f64,
-    /// Distance \[m\] of a pose that is proved infeasible, if one was found.
-    pub upper: Option<f64>,
-    /// Whether the proof is complete: the bounds are as close as the tolerance asks, or the radius of the fine grid is proved.
-    pub is_proved: bool,
-}
-
 /// What the certificates of a front found.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrontProofs {
@@ -48,7 +36,7 @@ pub struct FrontProofs {
     /// Designs that were left out: nothing is proved about them, or with the proved radius another design of the front is
     /// lighter and has a larger workspace.
     pub dropped: usize,
-    /// Hypervolume of `front.csv` \[kg·m\].
+    /// Hypervolume of `front.csv` in the product of the units of the objectives, whatever the key says.
     pub hypervolume_kg_m: f64,
     /// Designs for which a pose within the radius of the fine grid was proved infeasible.
     pub refuted: Vec<RefutedDesign>,
@@ -86,7 +74,7 @@ impl FrontMember {
         Self {
             id,
             generation: 0,
-            reference_radius: evaluation.workspace_radius,
+            reference_radius: evaluation.workspace_radius(),
             evaluation,
             certified: None,
         }
@@ -115,38 +103,6 @@ impl FrontMember {
 
     pub(super) fn is_proved(&self) -> bool {
         self.certified.is_some_and(|certified| certified.is_proved)
-    }
-}
-
-impl CertifiedRadius {
-    /// The text of a proof that is complete.
-    pub const PROVED: &str = "proved";
-    /// The text of a proof that is not complete.
-    pub const OPEN: &str = "open";
-
-    /// Takes the bounds of a certificate with a tolerance.
-    pub fn new(certificate: &Certificate, tolerance: f64) -> Self {
-        Self {
-            lower: certificate.lower,
-            upper: certificate.upper,
-            is_proved: certificate.verdict == Verdict::Proved || certificate.is_closed(tolerance),
-        }
-    }
-
-    /// The state of the proof in tables: `proved` or `open`.
-    pub fn state(&self) -> &'static str {
-        if self.is_proved { Self::PROVED } else { Self::OPEN }
-    }
-}
-
-impl fmt::Display for CertifiedRadius {
-    /// Writes the state of the proof and its bounds as a sentence.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: every pose within {:.5} m is feasible", self.state(), self.lower)?;
-        match self.upper {
-            Some(upper) => write!(f, ", and one at {upper:.5} m is not"),
-            None => write!(f, ", and no infeasible pose was found"),
-        }
     }
 }
 

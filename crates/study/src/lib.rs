@@ -1,11 +1,34 @@
 //! Studies: the study file, the run of a study on its own thread, and the run folder.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use std::sync::mpsc::sync_channel;
+//!
+//! use kinefront_study::{Event, RunControl, Study, spawn};
+//!
+//! let study = Study::parse("architectures = [\"3-PRR\"]\n[optimizer]\nevaluations = 60", "mine")?;
+//! let (sender, events) = sync_channel(64);
+//! let worker = spawn(study, Arc::new(RunControl::default()), vec![sender])?;
+//! let mut evaluated = 0;
+//! for event in events {
+//!     match &*event {
+//!         Event::Evaluated(batch) => evaluated += batch.rows.len(),
+//!         Event::Finished(summary) => assert!(summary.front.len() > 1),
+//!         _ => {}
+//!     }
+//! }
+//! worker.join().expect("the worker ends");
+//! assert_eq!(evaluated, 60);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod builtin;
+mod certified;
 mod control;
-mod error;
+mod durable;
 mod events;
-mod file;
 mod front;
+mod prepared;
 mod problem;
 mod prove;
 mod replay;
@@ -15,31 +38,35 @@ mod search;
 pub mod sensitivity;
 mod settings;
 mod stopping;
+mod study;
+mod sum;
 mod table;
 
 pub use builtin::{BUILTIN, Builtin};
+pub use certified::CertifiedRadius;
 pub use control::RunControl;
-pub use error::StudyError;
+pub use durable::{WriteError, partial_path, write_whole};
 pub use events::{Batch, EndReason, Event, GenerationSummary, RunSummary, RunTimes, Started, Subscriber, front_marks};
-pub use file::Study;
-pub use front::{CertifiedRadius, FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
+pub use front::{FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
+pub use prepared::PreparedStudy;
 pub use problem::DesignProblem;
 pub use prove::FrontProver;
 pub use replay::ReplayError;
 pub use run::{spawn, spawn_search};
 pub use run_folder::{
-    Checkpoint, Difference, FileSum, FileSums, Finding, HypervolumeReference, Inspection, Merge, MergeError, MergedRun,
-    Repair, ResumeError, Resumption, RunFolder, RunFolderError, RunReport, RunWriter, WriteError, partial_path,
-    write_whole,
+    Checkpoint, FileSums, Finding, HypervolumeReference, Inspection, Merge, MergeError, MergedRun, Repair, ResumeError,
+    Resumption, RunFolder, RunFolderError, RunReport, RunWriter,
 };
 pub use search::{SearchError, StudySearch, keep_runners_up};
 pub use settings::{
     ActuatorSection, AlgorithmName, Bounds, BuiltinCatalogue, CATALOGUES, CatalogueChoice, CatalogueFault,
-    CatalogueRow, Check, Fault, GridSection, Grids, HypervolumeSection, Initial, LengthChoice, LimitChoice, Limits,
+    CatalogueRow, Check, GridSection, Grids, HypervolumeSection, Initial, LengthChoice, LimitChoice, Limits,
     MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, ReferenceDesign, RegionKind, RegionSection,
     RequirementSection, SectionChoice, SectionKind, SectionsSection, Setting, Stagnation, StiffnessChoice,
     TelescopicBar, Tie, VariableChoice, Variables, WorkspaceSection, settings,
 };
+pub use study::{Fault, Study, StudyError};
+pub use sum::{Difference, FileSum};
 pub use table::{
     Cell, Column, ColumnType, Row, RowError, TableContents, TableError, TableFault, TableRow, read_design,
     read_designs, read_run_table, read_table, table_bytes,

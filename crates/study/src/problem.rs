@@ -6,7 +6,8 @@
 
 use super::{Study, Tie};
 use kinefront_model::evaluation::{
-    Better, Bound, Evaluation, GridChoice, Model, Objective, Quantity, QuantityLimit, SizingRanges, WorkspaceTarget,
+    Better, Bound, Evaluation, GridChoice, Model, Objective, PoseScalar, Quantity, QuantityLimit, SizingRanges,
+    WorkspaceTarget,
 };
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, DesignError, DesignVariable, WorkingMode};
 use kinefront_model::workspace::GridError;
@@ -188,14 +189,9 @@ impl DesignProblem {
 
     /// Whether the mass is an objective and no objective asks for thick bars, so that the lightest bars are best.
     fn seeks_light_bars(&self) -> bool {
-        let asks_for_stiffness = |objective: &Objective| {
-            let stiff = [
-                Quantity::StiffnessXy,
-                Quantity::StiffnessZ,
-                Quantity::StiffnessPhiZ,
-                Quantity::DisplacementMax,
-            ];
-            stiff.contains(&objective.quantity)
+        let asks_for_stiffness = |objective: &Objective| match objective.quantity {
+            Quantity::Worst(scalar) => scalar.entry().is_of_bars,
+            _ => false,
         };
         let is_mass = |objective: &Objective| objective.quantity == Quantity::Mass && objective.goal == Better::Lower;
         let objectives = &self.model.objectives;
@@ -210,7 +206,7 @@ impl DesignProblem {
                 Quantity::Mass,
                 Quantity::LegsMass,
                 Quantity::PlatformMass,
-                Quantity::Footprint,
+                Quantity::Worst(PoseScalar::Footprint),
             ];
             matches!(limit.bound, Bound::AtMost(_)) && quantities.contains(&limit.quantity)
         };

@@ -136,7 +136,7 @@ impl<'a> FrontProver<'a> {
             constraint,
             margin: self.model.margin_at(design, &violation.pose, constraint),
         };
-        let mut steps = [0.05 * evaluation.workspace_radius, 0.2 * half];
+        let mut steps = [0.05 * evaluation.workspace_radius(), 0.2 * half];
         for _ in 0..12 {
             let mut has_moved = true;
             while has_moved {
@@ -149,7 +149,7 @@ impl<'a> FrontProver<'a> {
                         _ => pose.phi = (pose.phi + sign * steps[1]).clamp(home - half, home + half),
                     }
                     let margin = self.model.margin_at(design, &pose, constraint);
-                    if pose.position.distance(centre) <= evaluation.workspace_radius && margin < pocket.margin {
+                    if pose.position.distance(centre) <= evaluation.workspace_radius() && margin < pocket.margin {
                         pocket = Pocket { pose, margin, ..pocket };
                         has_moved = true;
                     }
@@ -163,7 +163,7 @@ impl<'a> FrontProver<'a> {
     /// Returns the design with the least thickened bars whose proved radius is almost the verified one, and the increase.
     fn thicken(&self, member: &FrontMember, pocket: &Pocket) -> Option<(FrontMember, f64)> {
         let verified = &member.evaluation;
-        let wanted = RESTORED * verified.workspace_radius;
+        let wanted = RESTORED * verified.workspace_radius();
         THICKENINGS.into_iter().find_map(|increase| {
             let design = self.thickened(&verified.design, increase)?;
             // Where the pocket stays one, there is nothing to prove.
@@ -181,7 +181,7 @@ impl<'a> FrontProver<'a> {
             }
             let mut instead = FrontMember {
                 evaluation,
-                reference_radius: self.model.evaluate(&design, GridChoice::Reference).workspace_radius,
+                reference_radius: self.model.evaluate(&design, GridChoice::Reference).workspace_radius(),
                 ..member.clone()
             };
             instead.report(
@@ -210,7 +210,7 @@ impl<'a> FrontProver<'a> {
         design.with_dimensions(values).ok()
     }
 
-    /// Returns the front with the proved radii, sorted by mass, and what was found. Thickened designs get the ids from
+    /// Returns the front with the proved radii, in the order of the first objective, and what was found. Thickened designs get the ids from
     /// `next_id` on; `reference` is the reference point of the hypervolume.
     pub fn conclude(self, mut next_id: usize, reference: Objectives) -> (Vec<FrontMember>, FrontProofs) {
         let mut proofs = FrontProofs {
@@ -237,7 +237,7 @@ impl<'a> FrontProver<'a> {
         }
         let mut archive = Archive::default();
         for (place, member) in members.iter().enumerate() {
-            if member.evaluation.workspace_radius > 0.0 {
+            if member.evaluation.workspace_radius() > 0.0 {
                 archive.insert(place, &[], &DesignProblem::outcome(&member.evaluation));
             }
         }

@@ -273,7 +273,7 @@ fn verify(
                     id,
                     generation: entry.row.generation as usize,
                     evaluation,
-                    reference_radius: entry.row.radius,
+                    reference_radius: entry.row.workspace_radius(),
                     certified: None,
                 },
             );

@@ -2,6 +2,17 @@
 
 use crate::{LengthChoice, StiffnessChoice, Study, TelescopicBar};
 
+/// What an alternative can change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effect {
+    /// The evaluation of a design.
+    Evaluation,
+    /// Which designs are searched.
+    Search,
+    /// The random seed of the search alone, so that all differences are due to chance.
+    Chance,
+}
+
 /// An alternative to one assumption of a study.
 #[derive(Debug, Clone, Copy)]
 pub struct Alternative {
@@ -9,15 +20,15 @@ pub struct Alternative {
     pub name: &'static str,
     /// What the alternative changes and, where it is not obvious, why one might choose it.
     pub meaning: &'static str,
-    /// Whether the alternative can change the evaluation of a design, rather than only the search.
-    pub affects_evaluation: bool,
+    /// What the alternative can change.
+    pub effect: Effect,
     change: fn(&mut Study),
 }
 
 impl Alternative {
     /// Whether only the random seed differs, so that all differences are due to chance.
     pub fn is_chance(&self) -> bool {
-        self.meaning == SEED
+        self.effect == Effect::Chance
     }
 }
 
@@ -55,20 +66,20 @@ pub const ALTERNATIVES: [Alternative; 15] = [
     Alternative {
         name: "K_act / 10",
         meaning: "actuators ten times softer",
-        affects_evaluation: true,
+        effect: Effect::Evaluation,
         change: |study| scale_actuators(study, 0.1),
     },
     Alternative {
         name: "K_act × 10",
         meaning: "actuators ten times stiffer",
-        affects_evaluation: true,
+        effect: Effect::Evaluation,
         change: |study| scale_actuators(study, 10.0),
     },
     Alternative {
         name: "other stiffness definition",
         meaning: "stiffness from the blocks of the compliance matrix (all other directions free) instead of the \
                   blocks of the stiffness matrix (all other directions held), or vice versa",
-        affects_evaluation: true,
+        effect: Effect::Evaluation,
         change: |study| {
             study.model.stiffness_definition = match study.model.stiffness_definition {
                 StiffnessChoice::Stiffness => StiffnessChoice::Compliance,
@@ -79,31 +90,31 @@ pub const ALTERNATIVES: [Alternative; 15] = [
     Alternative {
         name: "isotropic length",
         meaning: "the Jacobian normalised with the isotropic characteristic length",
-        affects_evaluation: true,
+        effect: Effect::Evaluation,
         change: |study| study.model.characteristic_length = LengthChoice::Isotropic,
     },
     Alternative {
         name: LARGER_PLATFORM,
         meaning: "a lower bound of r of 0.5 m instead of the one of the study",
-        affects_evaluation: false,
+        effect: Effect::Search,
         change: |study| study.bounds.r_m[0] = study.bounds.r_m[0].max(0.5),
     },
     Alternative {
         name: "telescopic bar L_b",
         meaning: "the beam of a telescopic leg as long as the fully extended leg, whatever the pose",
-        affects_evaluation: true,
+        effect: Effect::Evaluation,
         change: |study| study.model.telescopic_bar = TelescopicBar::Longest,
     },
     Alternative {
         name: "φ_c = 0",
         meaning: "the home orientation fixed, with the platform triangle parallel to the base triangle",
-        affects_evaluation: true,
+        effect: Effect::Evaluation,
         change: |study| study.workspace.home_phi_deg = Some(0.0),
     },
     Alternative {
         name: LARGER_TORQUE,
         meaning: "a required torque about z of 100 N·m instead of the one of the study",
-        affects_evaluation: true,
+        effect: Effect::Evaluation,
         change: |study| {
             // A threshold that is set explicitly does not depend on the torque.
             if study.requirements.k_phi_z_min_nm_per_rad.is_none() {
@@ -114,19 +125,19 @@ pub const ALTERNATIVES: [Alternative; 15] = [
     Alternative {
         name: ONE_PLATFORM_BAR,
         meaning: "only one platform bar counted in the mass",
-        affects_evaluation: true,
+        effect: Effect::Evaluation,
         change: |study| study.model.platform_bars = 1,
     },
     Alternative {
         name: "G − 7 %",
         meaning: "a smaller shear modulus",
-        affects_evaluation: true,
+        effect: Effect::Evaluation,
         change: |study| study.material.shear_modulus_pa *= 0.93,
     },
     Alternative {
         name: CLEAR,
         meaning: "a clearance of 5 mm between members that are not joined, which the study does not require",
-        affects_evaluation: true,
+        effect: Effect::Evaluation,
         change: |study| {
             study.requirements.clearance_min_m.get_or_insert(CLEARANCE);
         },
@@ -134,25 +145,25 @@ pub const ALTERNATIVES: [Alternative; 15] = [
     Alternative {
         name: COLLIDING,
         meaning: "no clearance required, unlike in the study",
-        affects_evaluation: true,
+        effect: Effect::Evaluation,
         change: |study| study.requirements.clearance_min_m = None,
     },
     Alternative {
         name: "seed + 1",
         meaning: SEED,
-        affects_evaluation: false,
+        effect: Effect::Chance,
         change: |study| study.optimizer.seed += 1,
     },
     Alternative {
         name: "seed + 2",
         meaning: SEED,
-        affects_evaluation: false,
+        effect: Effect::Chance,
         change: |study| study.optimizer.seed += 2,
     },
     Alternative {
         name: "seed + 3",
         meaning: SEED,
-        affects_evaluation: false,
+        effect: Effect::Chance,
         change: |study| study.optimizer.seed += 3,
     },
 ];

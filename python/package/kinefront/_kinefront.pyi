@@ -68,6 +68,8 @@ class Study:
     def poses(self, design: Design | str, poses: NDArray[np.float64]) -> dict[str, Any]:
         """Evaluate a design at poses (n, 3): x and y in metres, phi in radians. Return arrays by name, all with n as first axis.
 
+        They are reachable, actuators, B, C, K, margins (in the order of constraints), and every scalar of a pose.
+
         >>> at = Study.paper().poses("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056", np.array([[0.0, 0.0, 0.0], [9.0, 0.0, 0.0]]))
         >>> at["reachable"].tolist(), at["K"].shape, at["kappa"].round(3).tolist()
         ([True, False], (2, 6, 6), [0.985, nan])

@@ -13,9 +13,14 @@ mod search;
 use forms::ProvedForms;
 
 use crate::enclosure::{PoseEnclosure, TaylorModel, VARIABLES};
-use crate::evaluation::{Constraint, Evaluation, Model};
+use crate::evaluation::{Constraint, Evaluation, Model, PoseScalar, Thresholds};
 use crate::mechanism::Design;
 use crate::spatial::Pose;
+
+/// Returns a scalar that a study limits at every pose and that proofs do not cover.
+pub fn uncovered(thresholds: &Thresholds) -> Option<PoseScalar> {
+    forms::uncovered(thresholds)
+}
 
 /// What to prove.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,7 +64,7 @@ impl CertifyOptions {
     pub fn of(evaluation: &Evaluation) -> Option<Self> {
         Some(Self {
             phi_deg: evaluation.home_phi_deg?,
-            claimed_radius: evaluation.workspace_radius,
+            claimed_radius: evaluation.workspace_radius(),
             ..Self::default()
         })
     }
@@ -97,7 +102,7 @@ pub enum Verdict {
     OpenPrecision,
 }
 
-/// A box that a proof has done with.
+/// A box that a proof has finished with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExaminedBox {
     /// Lower ends: distance from the centre \[m\], direction \[rad\], orientation \[rad\].
@@ -135,7 +140,7 @@ pub trait ProofObserver {
         false
     }
 
-    /// Takes a box that the proof has done with.
+    /// Takes a box that the proof has finished with.
     fn examined(&mut self, _: &ExaminedBox) {}
 }
 
@@ -157,11 +162,9 @@ pub enum CertifyError {
     /// A bar is so thin or so thick that its compliance has no usable value.
     #[error("a bar of the design is so thin or so thick that its stiffness has no usable value")]
     Degenerate,
-    /// The study bounds values that proofs do not cover.
-    #[error(
-        "the study bounds the reach, the transmission or the displacement at every pose, which proofs do not cover"
-    )]
-    Uncovered,
+    /// The study limits a scalar at every pose that proofs do not cover.
+    #[error("the study limits `{}` at every pose, which proofs do not cover", .0.entry().quantity.key)]
+    Uncovered(PoseScalar),
     /// An option is out of range.
     #[error("{name} is {value}; it must be {expected}")]
     Option {
@@ -213,7 +216,7 @@ impl Model {
         self.certify_observed(design, options, &mut ())
     }
 
-    /// Proves bounds like [`Model::certify`] under the eyes of an observer, who may end the proof early; it is open then.
+    /// Proves bounds like [`Model::certify`] with an observer, which may end the proof early; it is open then.
     ///
     /// # Errors
     /// As [`Model::certify`].
@@ -223,8 +226,8 @@ impl Model {
         options: &CertifyOptions,
         observer: &mut dyn ProofObserver,
     ) -> Result<Certificate, CertifyError> {
-        if self.thresholds.further.is_some() {
-            return Err(CertifyError::Uncovered);
+        if let Some(scalar) = uncovered(&self.thresholds) {
+            return Err(CertifyError::Uncovered(scalar));
         }
         let check = |name, value: f64, valid: bool, expected| {
             if valid {

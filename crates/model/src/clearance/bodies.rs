@@ -2,16 +2,15 @@
 
 use glam::{DVec2, DVec3};
 
-use super::NUMBER_LIMIT;
 use super::capsule::{Capsule, Clearance, MemberId, Neighbour};
 use super::distance::{may_be_nearer, squared};
 use super::layers::BodySettings;
 use crate::lanes::{Planar, Real};
 use crate::mechanism::{
-    Architecture, Design, DistalLanes, Geometry, Leg, Manipulator, MemberAxis, MemberKind, Members, Posture,
+    Architecture, CrossSections, Design, DistalLanes, Geometry, Leg, Manipulator, MemberAxis, MemberKind, Members,
+    Posture,
 };
-use crate::spatial::{LEGS, nearest_on_segment};
-use crate::stiffness::CrossSections;
+use crate::spatial::{LEGS, NUMBER_LIMIT, nearest_on_segment};
 
 /// Number of rows of members: the proximal members of the legs, the distal members of the legs, and the platform bars.
 pub(crate) const ROWS: usize = 3;

@@ -20,6 +20,3 @@ pub use bodies::Bodies;
 pub(crate) use bodies::{DISTAL, PLATFORM, PROXIMAL, ROWS, kinds, pairs_not_joined};
 pub use capsule::{Capsule, Clearance, MemberId, Neighbour};
 pub use layers::{BodySettings, Layers};
-
-/// Largest magnitude of a reported distance, and upper limit for the dimensions of members \[m\].
-pub(crate) const NUMBER_LIMIT: f64 = 1e100;

@@ -103,7 +103,7 @@ impl Model {
 mod tests {
     use super::*;
     use crate::evaluation::GridChoice;
-    use crate::stiffness::CrossSection;
+    use crate::mechanism::CrossSection;
 
     #[test]
     fn members_have_the_dimensions_and_masses_of_the_design() {

@@ -5,35 +5,29 @@
 //!
 //! let design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056".parse()?;
 //! let evaluation = Model::default().evaluate(&design, GridChoice::Reference);
-//! assert!((evaluation.mass - 479.47).abs() < 0.01);
-//! assert!((evaluation.workspace_radius - 1.2201).abs() < 1e-4);
+//! assert!((evaluation.mass() - 479.47).abs() < 0.01);
+//! assert!((evaluation.workspace_radius() - 1.2201).abs() < 1e-4);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod constraint;
-mod golden_section;
-mod growth;
-mod lightest;
-mod listed;
+mod evaluate;
 mod members;
 mod model;
 mod pose;
-mod pose_columns;
 mod quantities;
 mod quantity;
 mod sizing;
-mod sizing_exactly;
-mod sizing_prescribed;
 mod worst;
 
+pub use crate::pose::{
+    Better, Constraint, ConstraintSet, MarginUnit, PoseScalar, PoseScalarEntry, PoseScalars, PoseValues, QuantityEntry,
+    Reference, Scale, Scope, Thresholds,
+};
 pub use crate::stiffness::Contribution;
-pub use constraint::{Constraint, ConstraintResult};
 pub use members::MemberReport;
 pub use model::{GridChoice, Model, ModelSettings};
 pub use pose::{PoseEvaluation, PosedDesign, Unreachable};
-pub use quantity::{
-    Better, Bound, LimitResult, Objective, Quantity, QuantityEntry, QuantityLimit, QuantitySet, QuantityValues, Scope,
-};
+pub use quantity::{Bound, LimitResult, Objective, Quantity, QuantityLimit, QuantitySet, QuantityValues};
 pub use sizing::{SizingRanges, WorkspaceTarget};
 
 use crate::clearance::Clearance;
@@ -45,11 +39,6 @@ use crate::spatial::Pose;
 pub struct Evaluation {
     /// The evaluated design.
     pub design: Design,
-    /// `f1`: mass in motion \[kg\].
-    pub mass: f64,
-    /// `f2`: regular workspace radius `R_w` \[m\]; 0 for a design without a workspace. For a prescribed region, the radius of
-    /// the largest disc about the centre within it.
-    pub workspace_radius: f64,
     /// Centre and home orientation of the workspace; `None` for a design without one.
     pub home: Option<Pose>,
     /// Home orientation `φ_c` exactly as on the grid \[deg\], in \[0, 360); `None` for a design without a workspace.
@@ -57,7 +46,7 @@ pub struct Evaluation {
     /// The nearest pair of members that are not joined, at the pose of the smallest clearance; `None` if no pose has one.
     pub nearest: Option<Clearance>,
     /// Reports of the constraints, in the order of [`Constraint::ALL`].
-    pub constraints: [ConstraintResult; Constraint::ALL.len()],
+    pub constraints: [ConstraintResult; Constraint::COUNT],
     /// Quantities: those that an evaluation always determines, and those that the study asks for.
     pub quantities: QuantityValues,
     /// The objectives of the study, as they are minimised.
@@ -77,9 +66,19 @@ impl Evaluation {
         self.violation <= 0.0
     }
 
+    /// Returns `f1`: mass in motion \[kg\].
+    pub fn mass(&self) -> f64 {
+        self.quantities.get(Quantity::Mass).unwrap_or(0.0)
+    }
+
+    /// Returns `f2`: regular workspace radius `R_w` \[m\]; 0 for a design without a workspace. For a prescribed region, the radius of
+    /// the largest disc about the centre within it.
+    pub fn workspace_radius(&self) -> f64 {
+        self.quantities.get(Quantity::WorkspaceRadius).unwrap_or(0.0)
+    }
+
     /// Replaces the workspace radius by another one, for example one that is proved, in every value that depends on it alone.
     pub fn set_workspace_radius(&mut self, radius: f64, objectives: &[Objective]) {
-        self.workspace_radius = radius;
         self.quantities.set(Quantity::WorkspaceRadius, Some(radius));
         for (value, objective) in self.objectives.iter_mut().zip(objectives) {
             if objective.quantity == Quantity::WorkspaceRadius {
@@ -105,5 +104,32 @@ impl Evaluation {
             .iter()
             .filter(|report| report.active)
             .map(|report| report.constraint)
+    }
+}
+
+/// One constraint of one design: its smallest value over the regular workspace, and the pose at which it occurs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConstraintResult {
+    /// The constraint.
+    pub constraint: Constraint,
+    /// Smallest value; `None` if no reachable pose has one.
+    pub value: Option<f64>,
+    /// Smallest value allowed.
+    pub threshold: f64,
+    /// Whether the study requires the constraint. A constraint that is not required is never violated and never active.
+    pub required: bool,
+    /// Relative margin ([`Constraint::margin`]); −1 if there is no value.
+    pub margin: f64,
+    /// Whether the constraint is among those that fail first just beyond `R_w` in the home window; for an infeasible
+    /// design, among those that prevent the best window from having a workspace.
+    pub active: bool,
+    /// Pose at which the value occurs; `None` for g1, which applies to the design as a whole.
+    pub pose: Option<Pose>,
+}
+
+impl ConstraintResult {
+    /// Returns the margin, if the study requires the constraint.
+    pub fn required_margin(&self) -> Option<f64> {
+        self.required.then_some(self.margin)
     }
 }

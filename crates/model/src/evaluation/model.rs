@@ -2,17 +2,18 @@
 
 use glam::DVec2;
 
-use super::{Better, Evaluation, Objective, Quantity, QuantityLimit, QuantitySet, worst};
+use super::{Better, Evaluation, Objective, PoseScalar, Quantity, QuantityLimit, QuantitySet, Thresholds};
 use crate::clearance::{Bodies, BodySettings};
 use crate::kinematics::{CharacteristicLength, Jacobian};
-use crate::lanes::InstructionSet;
-use crate::mechanism::{AnyLeg, Assembly, Design, Geometry, Leg, LegSettings, Manipulator};
+use crate::lanes::{InstructionSet, Planar, Real};
+use crate::mechanism::{
+    AnyLeg, Assembly, CrossSection, CrossSections, Design, Geometry, Leg, LegSettings, Manipulator,
+};
+use crate::pose::{PoseChecker, ScalarSet, computed};
 use crate::spatial::{LEGS, Pose, Rotation};
 use crate::stiffness::planar::ActuatorStiffness;
-use crate::stiffness::{CrossSection, CrossSections, Material, RailSettings, StiffnessDefinition, StiffnessModel};
-use crate::workspace::{
-    Grid, GridError, PoseChecker, PoseEvaluator, Region, Thresholds, WorkspaceSampling, WorkspaceSpec,
-};
+use crate::stiffness::{Material, RailSettings, StiffnessDefinition, StiffnessModel};
+use crate::workspace::{Grid, GridError, PoseEvaluator, Region, WorkspaceSampling, WorkspaceSpec};
 
 /// All inputs of an evaluation other than the design. The default is the model of the paper, with the choices of this
 /// program where the paper leaves something open (docs/model.md, section 11).
@@ -36,7 +37,7 @@ pub struct ModelSettings {
     pub stiffness_definition: StiffnessDefinition,
     /// Characteristic length.
     pub characteristic_length: CharacteristicLength,
-    /// Thresholds of g3 … g7.
+    /// Limits of the scalars at each pose.
     pub thresholds: Thresholds,
     /// In-plane force of the study's requirement \[N\], used for displacements; the thresholds already account for it.
     pub in_plane_force: f64,
@@ -116,14 +117,11 @@ impl Default for ModelSettings {
             platform_bars: 3,
             stiffness_definition: StiffnessDefinition::Stiffness,
             characteristic_length: CharacteristicLength::PlatformRadius,
-            thresholds: Thresholds {
-                inverse_condition: 0.1,
-                k_xy: 1e6,
-                k_z: 1e5,
-                k_phi_z: 10.0 / 1f64.to_radians(),
-                clearance: None,
-                further: None,
-            },
+            thresholds: Thresholds::NONE
+                .with(PoseScalar::Dexterity, 0.1)
+                .with(PoseScalar::StiffnessXy, 1e6)
+                .with(PoseScalar::StiffnessZ, 1e5)
+                .with(PoseScalar::StiffnessPhiZ, 10.0 / 1f64.to_radians()),
             in_plane_force: 100.0,
             workspace: WorkspaceSpec {
                 region: Region::Largest,
@@ -226,22 +224,8 @@ impl Model {
         section.mass_per_length(self.material.density, radius) * length
     }
 
-    /// Evaluates a design on one of the grids.
-    pub fn evaluate(&self, design: &Design, grid: GridChoice) -> Evaluation {
-        self.evaluate_with(design, grid, InstructionSet::best())
-    }
-
-    /// Evaluates a design like [`Model::evaluate`], with a given instruction set, which changes no bit of the result.
-    pub fn evaluate_with(&self, design: &Design, grid: GridChoice, instructions: InstructionSet) -> Evaluation {
-        with_leg!(design.architecture, L => {
-            let mut checker = self.checker::<L>(design);
-            checker.instructions = instructions;
-            worst::evaluate(self, &checker, design, self.sampling(grid))
-        })
-    }
-
     /// Prepares the design for evaluation at many poses.
-    pub fn checker<L: Leg>(&self, design: &Design) -> PoseChecker<L> {
+    pub(crate) fn checker<L: Leg>(&self, design: &Design) -> PoseChecker<L> {
         let manipulator = Manipulator::new(design, &self.legs);
         PoseChecker {
             manipulator,
@@ -255,23 +239,24 @@ impl Model {
             assembly: worst_assembly(&manipulator.legs, &self.legs.geometry),
             in_plane_force: self.in_plane_force,
             thresholds: self.thresholds,
+            asked: ScalarSet::default(),
+            computed: computed(&self.thresholds, ScalarSet::default()),
             instructions: InstructionSet::best(),
         }
     }
 
-    /// Prepares the design for evaluation at many poses, whatever its legs are, with a definition of the stiffness values and with
-    /// the clearance that is required \[m\]; without one, the clearance is not computed.
-    pub fn pose_evaluator(
-        &self,
-        design: &Design,
-        definition: StiffnessDefinition,
-        clearance: Option<f64>,
-    ) -> Box<dyn PoseEvaluator> {
+    /// Prepares the design for evaluation at many poses, whatever its legs are.
+    pub fn pose_evaluator(&self, design: &Design) -> Box<dyn PoseEvaluator> {
+        with_leg!(design.architecture, L => Box::new(self.checker::<L>(design)))
+    }
+
+    /// Returns `k_xy` at a position in the orientation of `arms`, by the formulas of every scalar but the clearance, on any type of
+    /// number: on one that counts operations, they are the operations of a pose.
+    #[doc(hidden)]
+    pub fn run_formulas<V: Real>(&self, design: &Design, position: Planar<V>, arms: [Planar<V>; LEGS]) -> V {
         with_leg!(design.architecture, L => {
-            let mut checker = self.checker::<L>(design);
-            checker.definition = definition;
-            checker.thresholds.clearance = clearance;
-            Box::new(checker)
+            let (found, _) = self.checker::<L>(design).core_lanes(position, &arms);
+            found.scalars[PoseScalar::StiffnessXy]
         })
     }
 
@@ -292,7 +277,7 @@ impl Model {
         Bodies::new(design, &self.legs.geometry, &self.bodies, &self.sections)
     }
 
-    /// Returns what g1 compares, for the leg that comes off worst.
+    /// Returns what g1 compares, for the leg that is worst off.
     pub fn assembly(&self, design: &Design) -> Assembly {
         let legs = [0, 1, 2].map(|index| AnyLeg::new(design, &self.legs, index));
         worst_assembly(&legs, &self.legs.geometry)
@@ -359,7 +344,7 @@ impl Model {
     }
 }
 
-/// Returns what g1 compares, for the leg that comes off worst.
+/// Returns what g1 compares, for the leg that is worst off.
 fn worst_assembly<L: Leg>(legs: &[L; LEGS], geometry: &Geometry) -> Assembly {
     let first = legs[0].assembly();
     // A symmetric design has the same values for all legs, which rounding must not tell apart.

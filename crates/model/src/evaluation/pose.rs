@@ -2,16 +2,15 @@
 
 use nalgebra::Matrix6;
 
-use super::{Constraint, Model};
+use super::{Constraint, Model, PoseScalar, PoseValues};
 use crate::clearance::Clearance;
 use crate::kinematics::Jacobian;
-use crate::mechanism::{AnyLeg, Design, Leg as _, ReachReason, Shortfall};
+use crate::mechanism::{AnyLeg, Design, ReachReason, Shortfall};
+use crate::pose::{PoseChecker, ScalarSet};
 use crate::spatial::{LEGS, Pose};
-use crate::stiffness::StiffnessValues;
-use crate::workspace::PoseChecker;
 
 /// Values of a design at a reachable pose.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct PoseEvaluation {
     /// Actuator values \[m or rad\].
     pub actuators: [f64; LEGS],
@@ -19,16 +18,10 @@ pub struct PoseEvaluation {
     pub b: [[f64; 2]; LEGS],
     /// `C_i` in the base frame \[m\].
     pub c: [[f64; 2]; LEGS],
-    /// Limit margin: smallest distance to a joint limit or to the end of reach \[m\].
-    pub limit_margin: f64,
-    /// `κ_F⁻¹`.
-    pub inverse_condition: f64,
-    /// `det A / ℓ`.
-    pub determinant: f64,
-    /// `k_xy`, `k_z`, `k_φz`.
-    pub stiffness_values: StiffnessValues,
-    /// Clearance of the nearest pair of members that are not joined.
-    pub clearance: Clearance,
+    /// All scalars.
+    pub values: PoseValues,
+    /// The nearest pair of members that are not joined.
+    pub nearest: Clearance,
     /// Stiffness matrix `K` at `P` in base axes, linear components first.
     pub stiffness: Matrix6<f64>,
 }
@@ -101,33 +94,24 @@ impl PosedDesign {
             .posture(pose)
             .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
         let jacobian = Jacobian::new(&posture);
-        let stiffness = checker.stiffness_at(&posture, &jacobian);
         Ok(PoseEvaluation {
             actuators: [0, 1, 2].map(|i| checker.manipulator.legs[i].joint_values(&posture.legs[i])[driven]),
             b: posture.legs.map(|leg| leg.chain.b.to_array()),
             c: posture.arms.map(|arm| (pose.position + arm).to_array()),
-            limit_margin: posture.limit_margin,
-            inverse_condition: jacobian.inverse_condition(checker.length),
-            determinant: jacobian.determinant() / checker.length,
-            stiffness_values: stiffness.stiffness_values(checker.definition),
-            clearance: checker.nearest(pose.position, &posture),
-            stiffness: stiffness.matrix(),
+            values: checker.values_at(pose.position, &posture, &jacobian, ScalarSet::all()),
+            nearest: checker.nearest(pose.position, &posture),
+            stiffness: checker.stiffness_at(&posture, &jacobian).matrix(),
         })
     }
 
     /// Returns the margins of all constraints at a pose that is reached, in the order of [`Constraint::ALL`]; that of `det_sign` is
     /// the absolute value.
-    pub fn margins(&self, found: &PoseEvaluation) -> [f64; Constraint::ALL.len()] {
+    pub fn margins(&self, found: &PoseEvaluation) -> [f64; Constraint::COUNT] {
         Constraint::ALL.map(|constraint| {
-            let value = match constraint {
-                Constraint::Assembly => self.checker.assembly.value,
-                Constraint::Reach => found.limit_margin,
-                Constraint::Dexterity => found.inverse_condition,
-                Constraint::StiffnessXy => found.stiffness_values.k_xy,
-                Constraint::StiffnessZ => found.stiffness_values.k_z,
-                Constraint::StiffnessPhiZ => found.stiffness_values.k_phi_z,
-                Constraint::DeterminantSign => found.determinant.abs(),
-                Constraint::Clearance => found.clearance.distance,
+            let value = match constraint.scalar() {
+                None => self.checker.assembly.value,
+                Some(scalar @ PoseScalar::Determinant) => found.values[scalar].abs(),
+                Some(scalar) => found.values[scalar],
             };
             let threshold = constraint.threshold(&self.checker.assembly, &self.checker.thresholds);
             constraint.margin(value, threshold, &self.design)

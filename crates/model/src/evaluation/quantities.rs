@@ -2,33 +2,34 @@
 
 use glam::DVec2;
 
-use super::{Constraint, ConstraintResult, Model, Quantity, QuantityValues};
+use super::{Better, Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues};
 use crate::mechanism::{Design, Leg};
-use crate::workspace::{
-    FurtherColumns, Grid, OrientationLanes, PoseChecker, Positions, RegularWorkspace, ValueColumns,
-};
+use crate::pose::PoseChecker;
+use crate::workspace::{Grid, Positions, RegularWorkspace, ValueColumns};
 
-/// Returns the quantities of a design that its constraints and dimensions determine.
+/// Returns the quantities of a design that its constraints and dimensions determine, as far as the study asks for them.
 pub(super) fn known(
     model: &Model,
     height: f64,
     design: &Design,
     workspace_radius: f64,
-    constraints: &[ConstraintResult; Constraint::ALL.len()],
+    constraints: &[ConstraintResult; Constraint::COUNT],
 ) -> QuantityValues {
-    let asked = |quantity: Quantity| model.quantities.contains(quantity);
+    let asked = |quantity: Quantity| quantity.is_always_known() || model.quantities.contains(quantity);
     let mut values = QuantityValues::default();
-    for quantity in Quantity::all() {
+    for quantity in Quantity::all().filter(|quantity| asked(*quantity)) {
         let value = match quantity {
             Quantity::Mass => Some(model.mass(design)),
-            Quantity::LegsMass => Some(model.legs_mass(design)).filter(|_| asked(quantity)),
-            Quantity::PlatformMass => Some(model.platform_mass(design)).filter(|_| asked(quantity)),
-            Quantity::Height => Some(height).filter(|_| asked(quantity)),
+            Quantity::LegsMass => Some(model.legs_mass(design)),
+            Quantity::PlatformMass => Some(model.platform_mass(design)),
+            Quantity::Height => Some(height),
             Quantity::WorkspaceRadius => Some(workspace_radius),
-            _ => quantity
-                .entry()
-                .constraint
-                .and_then(|constraint| constraints[constraint as usize].value),
+            Quantity::Assembly | Quantity::Worst(_) => {
+                let constraint = quantity.constraint();
+                constraint.and_then(|constraint| constraints[constraint as usize].value)
+            }
+            // It is a mean over the region, which only some designs have.
+            Quantity::DexterityMean => None,
         };
         values.set(quantity, value);
     }
@@ -50,35 +51,27 @@ pub(super) fn add_of_region<L: Leg>(
         let mean = dexterity_mean(model, checker, found, home, grid);
         values.set(Quantity::DexterityMean, Some(mean));
     }
-    let of_poses = [
-        Quantity::TransmissionMin,
-        Quantity::DisplacementMax,
-        Quantity::Footprint,
-    ];
-    if !of_poses.into_iter().any(asked) {
-        return;
-    }
-    let mut columns = FurtherColumns::default();
-    let farthest_anchor = |most: f64, leg: &L| most.max(leg.frame().anchor_distance);
-    let base = checker.manipulator.legs.iter().fold(0.0, farthest_anchor);
-    let (mut transmission, mut displacement, mut outermost) = (f64::INFINITY, 0.0f64, base);
-    for index in found.orientation_grid.window(home) {
-        let oriented = OrientationLanes {
-            arms: &found.orientations[index].arms,
-            sign: found.home_sign,
-        };
-        checker.further(oriented, positions, &mut columns);
-        // The padding repeats the first position.
-        let least = |least: f64, value: &f64| least.min(*value);
-        let most = |most: f64, value: &f64| most.max(*value);
-        transmission = columns.transmission.iter().fold(transmission, least);
-        displacement = columns.displacement.iter().fold(displacement, most);
-        outermost = columns.outermost.iter().fold(outermost, most);
-    }
-    for (quantity, value) in of_poses.into_iter().zip([transmission, displacement, outermost]) {
-        if asked(quantity) {
-            values.set(quantity, Some(value));
+    let indices = positions.indices();
+    for &scalar in PoseScalar::on_demand() {
+        if !asked(Quantity::Worst(scalar)) {
+            continue;
         }
+        let of_orientation = |index: usize| {
+            let arms = &found.orientations[index].arms;
+            checker
+                .worst(scalar, arms, &positions.xs, &positions.ys, &indices)
+                .value
+        };
+        let least = found
+            .orientation_grid
+            .window(home)
+            .map(of_orientation)
+            .fold(f64::INFINITY, f64::min);
+        let value = match scalar.entry().quantity.better {
+            Better::Higher => least,
+            Better::Lower => -least,
+        };
+        values.set(Quantity::Worst(scalar), Some(value));
     }
 }
 
@@ -113,7 +106,7 @@ fn dexterity_mean<L: Leg>(
         let arms = &found.orientations[index].arms;
         checker.at_positions(arms, &positions.xs, &positions.ys, &mut columns);
         let mean: f64 = columns
-            .inverse_conditions()
+            .column(PoseScalar::Dexterity)
             .iter()
             .zip(&weighted)
             .map(|(value, (_, weight))| weight * value)

@@ -1,151 +1,111 @@
 //! The quantities of a design: what it is worth (docs/model.md, section 6.5).
 //!
-//! Objectives, limits, columns of tables, axes, filters and fields follow from [`Quantity::entry`]. A further quantity is an
-//! entry of the table and a value in [`quantities`](super::quantities).
+//! Objectives, limits, columns of tables, axes, filters and fields follow from [`Quantity::entry`]. A further quantity over poses is an
+//! entry of the table of scalars ([`PoseScalar`]); any other is an entry here, with its value in
+//! [`quantities`](super::quantities).
 
-use super::Constraint;
-
-/// A number that a design is worth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Quantity {
-    /// Mass in motion.
-    Mass,
-    /// Radius of the regular workspace.
-    WorkspaceRadius,
-    /// Least inverse condition number.
-    Dexterity,
-    /// Least translational stiffness in the plane.
-    StiffnessXy,
-    /// Least translational stiffness out of the plane.
-    StiffnessZ,
-    /// Least rotational stiffness about z.
-    StiffnessPhiZ,
-    /// Smallest clearance.
-    Clearance,
-    /// Smallest distance to a joint limit or to the end of reach.
-    Reach,
-    /// Least determinant.
-    Determinant,
-    /// Mass of the bars and rails of all legs.
-    LegsMass,
-    /// Mass of the platform bars.
-    PlatformMass,
-    /// Height of the stack of layers.
-    Height,
-    /// Mean inverse condition number.
-    DexterityMean,
-    /// Largest displacement under the in-plane force.
-    DisplacementMax,
-    /// Least transmission.
-    TransmissionMin,
-    /// Radius of the area that the machine needs.
-    Footprint,
-}
-
-/// Over what a quantity is taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scope {
-    /// The design alone, whatever its pose.
-    Design,
-    /// All poses of the region, of which the quantity is the least or the largest value. Its limit bounds the poses of the
-    /// largest disc.
-    Poses,
-    /// The region as a whole.
-    Region,
-}
-
-/// Direction in which the values of a quantity are better.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Better {
-    /// Smaller values are better.
-    Lower,
-    /// Larger values are better.
-    Higher,
-}
-
-/// What there is to know about a quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct QuantityEntry {
-    /// The quantity.
-    pub quantity: Quantity,
-    /// Name with the unit, as in study files and tables.
-    pub key: &'static str,
-    /// Unit; empty for a number without one.
-    pub unit: &'static str,
-    /// Name to display, without the unit.
-    pub label: &'static str,
-    /// What it is, in one sentence.
-    pub meaning: &'static str,
-    /// Over what it is taken.
-    pub scope: Scope,
-    /// Which values are better.
-    pub better: Better,
-    /// The constraint of which it is the value.
-    pub constraint: Option<Constraint>,
-}
+use crate::pose::{Better, Constraint, PoseScalar, QuantityEntry, Reference, Scope};
 
 macro_rules! quantities {
-    ($($quantity:ident $key:literal [$unit:literal] $label:literal $scope:ident $better:ident $constraint:expr, $meaning:literal;)*) => {
-        const TABLE: &[QuantityEntry] = &[$(QuantityEntry {
-            quantity: Quantity::$quantity,
-            key: $key,
-            unit: $unit,
-            label: $label,
-            meaning: $meaning,
-            scope: Scope::$scope,
-            better: Better::$better,
-            constraint: $constraint,
-        }),*];
+    ($($(#[$doc:meta])* $quantity:ident = $entry:expr;)*) => {
+        /// A number that a design is worth.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Quantity {
+            $($(#[$doc])* $quantity,)*
+            /// The worst value of a scalar over the poses of the region.
+            Worst(PoseScalar),
+        }
+
+        /// Quantities that are not the worst value of a scalar.
+        const OTHERS: &[Quantity] = &[$(Quantity::$quantity),*];
+
+        const TABLE: &[QuantityEntry] = &[$($entry),*];
+
+        impl Quantity {
+            /// Returns the place of the quantity in an array of [`Quantity::COUNT`] values; the order has no meaning.
+            pub fn index(self) -> usize {
+                match self {
+                    $(Quantity::$quantity => Other::$quantity as usize,)*
+                    Quantity::Worst(scalar) => OTHERS.len() + scalar as usize,
+                }
+            }
+        }
+
+        enum Other {
+            $($quantity),*
+        }
     };
 }
 
 quantities! {
-    Mass "mass_kg" ["kg"] "mass in motion" Design Lower None,
-        "Mass of the bars of the legs and of the platform.";
-    WorkspaceRadius "workspace_radius_m" ["m"] "R_w" Region Higher None,
-        "Radius of the regular workspace; for a prescribed region, of the largest disc about the centre within it.";
-    Dexterity "dexterity" [""] "dexterity" Poses Higher Some(Constraint::Dexterity),
-        "Least inverse condition number of the normalised Jacobian (g3).";
-    StiffnessXy "k_xy_n_per_m" ["N/m"] "k_xy" Poses Higher Some(Constraint::StiffnessXy),
-        "Least translational stiffness in the plane (g4).";
-    StiffnessZ "k_z_n_per_m" ["N/m"] "k_z" Poses Higher Some(Constraint::StiffnessZ),
-        "Least translational stiffness out of the plane (g5).";
-    StiffnessPhiZ "k_phi_z_nm_per_rad" ["N·m/rad"] "k_φz" Poses Higher Some(Constraint::StiffnessPhiZ),
-        "Least rotational stiffness about z (g6).";
-    Clearance "clearance_m" ["m"] "clearance" Poses Higher Some(Constraint::Clearance),
-        "Smallest clearance of members that are not joined (g7).";
-    Reach "reach_m" ["m"] "reach" Poses Higher Some(Constraint::Reach),
-        "Smallest distance to a joint limit or to the end of reach (g2).";
-    Determinant "determinant" [""] "det A" Poses Higher Some(Constraint::DeterminantSign),
-        "Least determinant of the direct Jacobian, divided by the characteristic length.";
-    LegsMass "legs_mass_kg" ["kg"] "mass of the legs" Design Lower None,
-        "Mass of the bars and rails of all legs.";
-    PlatformMass "platform_mass_kg" ["kg"] "mass of the platform" Design Lower None,
-        "Mass of the platform bars.";
-    Height "height_m" ["m"] "height" Design Lower None,
-        "Height of the stack of layers, from the lowest to the highest point of any member.";
-    DexterityMean "dexterity_mean" [""] "mean dexterity" Region Higher None,
-        "Mean of the inverse condition number over the region, the global conditioning index of Gosselin and Angeles.";
-    DisplacementMax "displacement_max_m" ["m"] "largest displacement" Poses Lower None,
-        "Largest displacement of P under the in-plane force of the requirements, in its most compliant direction.";
-    TransmissionMin "transmission_min" [""] "least transmission" Poses Higher None,
-        "Least transmission of a leg: the speed along its last link for a unit speed of the joint that the actuator moves.";
-    Footprint "footprint_m" ["m"] "footprint" Region Lower None,
-        "Radius of the smallest circle about O that holds the base and all members at every pose of the region.";
+    /// Mass in motion.
+    Mass = QuantityEntry::new("mass_kg", "kg", "mass in motion", Scope::Design, Better::Lower,
+        "Mass of the bars of the legs and of the platform.").logarithmic().reference(Reference::Mass).short("mass").superlative("lightest");
+    /// Radius of the regular workspace.
+    WorkspaceRadius = QuantityEntry::new("workspace_radius_m", "m", "R_w", Scope::Region, Better::Higher,
+        "Radius of the regular workspace; for a prescribed region, of the largest disc about the centre within it.")
+        .reference(Reference::LinkLength(1.0)).superlative("largest");
+    /// Mass of the bars and rails of all legs.
+    LegsMass = QuantityEntry::new("legs_mass_kg", "kg", "mass of the legs", Scope::Design, Better::Lower,
+        "Mass of the bars and rails of all legs.").logarithmic().reference(Reference::Mass);
+    /// Mass of the platform bars.
+    PlatformMass = QuantityEntry::new("platform_mass_kg", "kg", "mass of the platform", Scope::Design, Better::Lower,
+        "Mass of the platform bars.").logarithmic().reference(Reference::Mass);
+    /// Height of the stack of layers.
+    Height = QuantityEntry::new("height_m", "m", "height", Scope::Design, Better::Lower,
+        "Height of the stack of layers, from the lowest to the highest point of any member.")
+        .reference(Reference::BarRadius(20.0));
+    /// Mean inverse condition number.
+    DexterityMean = QuantityEntry::new("dexterity_mean", "", "mean dexterity", Scope::Region, Better::Higher,
+        "Mean of the inverse condition number over the region, the global conditioning index of Gosselin and Angeles.")
+        .below(1.0);
+    /// Length that a leg and the platform bridge, the value of g1.
+    Assembly = QuantityEntry::new("assembly_m", "m", "assembly", Scope::Design, Better::Higher,
+        "Length that a leg and the platform bridge together, of which g1 requires the distance from the base to O.");
 }
 
+/// The quantities of the first version, in the order of their columns, which is a contract; later ones follow in the order of the
+/// tables.
+const FIRST: [Quantity; 16] = [
+    Quantity::Mass,
+    Quantity::WorkspaceRadius,
+    Quantity::Worst(PoseScalar::Dexterity),
+    Quantity::Worst(PoseScalar::StiffnessXy),
+    Quantity::Worst(PoseScalar::StiffnessZ),
+    Quantity::Worst(PoseScalar::StiffnessPhiZ),
+    Quantity::Worst(PoseScalar::Clearance),
+    Quantity::Worst(PoseScalar::Reach),
+    Quantity::Worst(PoseScalar::Determinant),
+    Quantity::LegsMass,
+    Quantity::PlatformMass,
+    Quantity::Height,
+    Quantity::DexterityMean,
+    Quantity::Worst(PoseScalar::Displacement),
+    Quantity::Worst(PoseScalar::Transmission),
+    Quantity::Worst(PoseScalar::Footprint),
+];
+
 impl Quantity {
-    /// All quantities, in the order of the table.
+    /// Number of quantities.
+    pub const COUNT: usize = TABLE.len() + PoseScalar::COUNT;
+
+    /// All quantities, in the order of their columns.
     pub fn all() -> impl Iterator<Item = Quantity> {
-        TABLE.iter().map(|entry| entry.quantity)
+        let worst = PoseScalar::ALL.iter().map(|&scalar| Quantity::Worst(scalar));
+        let later = OTHERS
+            .iter()
+            .copied()
+            .chain(worst)
+            .filter(|quantity| !FIRST.contains(quantity));
+        FIRST.into_iter().chain(later)
     }
 
-    /// Number of quantities.
-    pub const COUNT: usize = TABLE.len();
-
-    /// The entry of the quantity in the table.
+    /// The entry of the quantity in its table.
     pub fn entry(self) -> &'static QuantityEntry {
-        &TABLE[self as usize]
+        match self {
+            Quantity::Worst(scalar) => &scalar.entry().quantity,
+            other => &TABLE[other.index()],
+        }
     }
 
     /// Returns the quantity of a key.
@@ -154,24 +114,42 @@ impl Quantity {
     }
 
     /// Returns the quantity that is the value of a constraint.
-    pub fn of_constraint(constraint: Constraint) -> Option<Quantity> {
-        Self::all().find(|quantity| quantity.entry().constraint == Some(constraint))
+    pub fn of_constraint(constraint: Constraint) -> Quantity {
+        constraint.scalar().map_or(Quantity::Assembly, Quantity::Worst)
+    }
+
+    /// Returns the constraint of which the quantity is the value.
+    pub fn constraint(self) -> Option<Constraint> {
+        match self {
+            Quantity::Assembly => Some(Constraint::Assembly),
+            Quantity::Worst(scalar) => Constraint::of_scalar(scalar),
+            _ => None,
+        }
     }
 
     /// Returns whether every evaluation determines the quantity; all others are computed only if they are asked for.
     pub fn is_always_known(self) -> bool {
-        self.entry().constraint.is_some() || matches!(self, Quantity::Mass | Quantity::WorkspaceRadius)
+        match self {
+            Quantity::Mass | Quantity::WorkspaceRadius | Quantity::Assembly => true,
+            Quantity::Worst(scalar) => PoseScalar::ALWAYS.contains(&scalar),
+            _ => false,
+        }
     }
 }
 
 /// A set of quantities.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct QuantitySet(u32);
+pub struct QuantitySet(u64);
+
+const _: () = assert!(
+    Quantity::COUNT <= u64::BITS as usize,
+    "a set of quantities has a bit for each"
+);
 
 impl QuantitySet {
     /// Returns whether the set contains a quantity.
     pub fn contains(self, quantity: Quantity) -> bool {
-        self.0 & (1 << quantity as u32) != 0
+        self.0 & (1 << quantity.index()) != 0
     }
 
     /// Iterates over the quantities in the order of the table.
@@ -189,30 +167,48 @@ impl FromIterator<Quantity> for QuantitySet {
     fn from_iter<I: IntoIterator<Item = Quantity>>(quantities: I) -> Self {
         let bits = quantities
             .into_iter()
-            .fold(0, |bits, quantity| bits | 1 << quantity as u32);
+            .fold(0, |bits, quantity| bits | 1 << quantity.index());
         Self(bits)
     }
 }
 
-/// The quantities of a design; `None` where it has none or it was not asked for.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct QuantityValues([Option<f64>; Quantity::COUNT]);
+/// The quantities of a design, without those that it does not have or that were not asked for.
+#[derive(Clone, Copy)]
+pub struct QuantityValues {
+    /// NaN stands for no value.
+    values: [f64; Quantity::COUNT],
+}
+
+impl Default for QuantityValues {
+    fn default() -> Self {
+        Self {
+            values: [f64::NAN; Quantity::COUNT],
+        }
+    }
+}
+
+impl PartialEq for QuantityValues {
+    fn eq(&self, other: &Self) -> bool {
+        Quantity::all().all(|quantity| self.get(quantity) == other.get(quantity))
+    }
+}
+
+impl std::fmt::Debug for QuantityValues {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let known = Quantity::all().filter_map(|quantity| Some((quantity.entry().key, self.get(quantity)?)));
+        f.debug_map().entries(known).finish()
+    }
+}
 
 impl QuantityValues {
     /// Returns a quantity.
     pub fn get(&self, quantity: Quantity) -> Option<f64> {
-        self.0[quantity as usize]
-    }
-
-    /// Returns those quantities that are computed only if they are asked for.
-    pub fn asked_for(&self) -> Self {
-        let rest = Quantity::all().filter(|quantity| !quantity.is_always_known());
-        rest.map(|quantity| (quantity, self.get(quantity))).collect()
+        Some(self.values[quantity.index()]).filter(|value| !value.is_nan())
     }
 
     /// Sets a quantity; a number that is not finite is no value.
     pub(super) fn set(&mut self, quantity: Quantity, value: Option<f64>) {
-        self.0[quantity as usize] = value.filter(|value| value.is_finite());
+        self.values[quantity.index()] = value.filter(|value| value.is_finite()).unwrap_or(f64::NAN);
     }
 }
 
@@ -236,6 +232,22 @@ pub struct Objective {
 }
 
 impl Objective {
+    /// Returns what the best design of a front is called, if there is a word for it.
+    pub fn superlative(&self) -> Option<&'static str> {
+        let entry = self.quantity.entry();
+        entry.superlative.filter(|_| entry.better == self.goal)
+    }
+
+    /// Returns what the best design of a front is called, for a person.
+    pub fn best_name(&self) -> String {
+        let short = self.quantity.entry().short;
+        match (self.superlative(), self.goal) {
+            (Some(word), _) => word.to_owned(),
+            (None, Better::Lower) => format!("least {short}"),
+            (None, Better::Higher) => format!("most {short}"),
+        }
+    }
+
     /// Returns the value that is minimised: the negative of a quantity that is to be large, and 0 without a value.
     pub fn minimised(&self, value: Option<f64>) -> f64 {
         match (self.goal, value) {
@@ -318,10 +330,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_table_is_in_the_order_of_the_quantities_and_its_keys_name_the_unit() {
-        for (place, entry) in TABLE.iter().enumerate() {
-            assert_eq!(entry.quantity as usize, place);
-            assert_eq!(Quantity::find(entry.key), Some(entry.quantity));
+    fn the_keys_name_the_unit() {
+        for quantity in Quantity::all() {
+            let entry = quantity.entry();
+            assert_eq!(Quantity::find(entry.key), Some(quantity));
             let suffix = match entry.unit {
                 "" => "",
                 "kg" => "_kg",
@@ -332,6 +344,7 @@ mod tests {
             };
             assert!(entry.key.ends_with(suffix), "{}", entry.key);
         }
+        assert_eq!(Quantity::all().count(), Quantity::COUNT);
         assert_eq!(QuantitySet::all().iter().count(), Quantity::COUNT);
     }
 }

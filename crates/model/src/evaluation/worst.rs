@@ -1,16 +1,14 @@
-//! Report of an evaluation, derived from the search: smallest values and the poses where they occur, active
-//! constraints, violation.
+//! The worst values of the constraints of a design and the poses where they occur, derived from the search of its workspace; which
+//! constraints are active, and by how much they are violated.
 
 use glam::DVec2;
 
-use super::{Constraint, ConstraintResult, Evaluation, LimitResult, Model, quantities};
+use super::{Better, Constraint, ConstraintResult, Model, PoseScalar, PoseValues};
 use crate::clearance::Clearance;
 use crate::mechanism::{Design, Leg};
+use crate::pose::PoseChecker;
 use crate::spatial::Pose;
-use crate::workspace::{
-    Grid, OrientationLanes, PoseChecker, PoseValues, Positions, Region, RegularWorkspace, ValueColumns,
-    WorkspaceSampling, search, search_prescribed,
-};
+use crate::workspace::{Grid, OrientationLanes, Positions, RegularWorkspace, ValueColumns};
 
 /// Largest number of rings of a disc, besides its centre, on which values are evaluated; smooth fields need no more.
 const MAX_RINGS: f64 = 24.0;
@@ -21,88 +19,19 @@ const SMALLEST_VIOLATION: f64 = 1e-9;
 /// Margins that differ from the worst one by no more than this are active over a prescribed region.
 const ACTIVE: f64 = 1e-3;
 
-/// Evaluates the design that is prepared in `checker`.
-pub(super) fn evaluate<L: Leg>(
-    model: &Model,
-    checker: &PoseChecker<L>,
-    design: &Design,
-    sampling: &WorkspaceSampling,
-) -> Evaluation {
-    let symmetric = model.is_symmetric(design);
-    let (found, worst) = match sampling.spec().region {
-        Region::Largest => (search(checker, sampling, design.base_radius, symmetric), None),
-        _ => {
-            let (found, worst) = search_prescribed(checker, sampling, design.base_radius, symmetric);
-            (found, Some(worst))
-        }
-    };
-    let assembled = checker.assembly.value >= checker.assembly.threshold;
-    let reporter = ConstraintSearch {
-        model,
-        checker,
-        design,
-        found: &found,
-    };
-    let grid = sampling.grid();
-    let (constraints, mut violation, home) = match (found.home, worst) {
-        (Some(home), None) if assembled => (reporter.over_workspace(home, grid), 0.0, Some(home)),
-        (Some(home), Some(worst)) => {
-            let (constraints, violation) = reporter.over_region(home, worst);
-            (constraints, violation, Some(home).filter(|_| violation == 0.0))
-        }
-        _ => {
-            let (constraints, violation) = reporter.at_best_centre();
-            (constraints, violation, None)
-        }
-    };
-    let workspace_radius = if home.is_some() { found.radius } else { 0.0 };
-    let height = checker.bodies.height();
-    let mut quantities = quantities::known(model, height, design, workspace_radius, &constraints);
-    if let Some(home) = home {
-        let positions = reporter.positions(grid);
-        quantities::add_of_region(&mut quantities, model, checker, &found, home, &positions, grid);
-    }
-    let limits: Vec<LimitResult> = model
-        .limits
-        .iter()
-        .map(|limit| limit.result(quantities.get(limit.quantity)))
-        .collect();
-    violation += limits.iter().map(|limit| (-limit.margin).max(0.0)).sum::<f64>();
-    let home_phi_deg = home.map(|home| found.orientations[home].phi_deg);
-    let centre = model.workspace.centre;
-    Evaluation {
-        design: *design,
-        mass: model.mass(design),
-        workspace_radius,
-        home: home_phi_deg.map(|phi_deg| Pose::new(centre.x, centre.y, phi_deg.to_radians())),
-        home_phi_deg,
-        nearest: constraints[Constraint::Clearance as usize]
-            .pose
-            .and_then(|pose| reporter.nearest(pose)),
-        constraints,
-        objectives: model
-            .objectives
-            .iter()
-            .map(|objective| objective.minimised(quantities.get(objective.quantity)))
-            .collect(),
-        quantities,
-        limits,
-        violation,
-    }
+/// Looks for the worst values of the constraints of a design whose workspace was searched.
+pub(super) struct ConstraintSearch<'a, L> {
+    pub model: &'a Model,
+    pub checker: &'a PoseChecker<L>,
+    pub design: &'a Design,
+    pub found: &'a RegularWorkspace,
 }
 
-struct ConstraintSearch<'a, L> {
-    model: &'a Model,
-    checker: &'a PoseChecker<L>,
-    design: &'a Design,
-    found: &'a RegularWorkspace,
-}
-
-type ConstraintResults = [ConstraintResult; Constraint::ALL.len()];
+type ConstraintResults = [ConstraintResult; Constraint::COUNT];
 
 impl<L: Leg> ConstraintSearch<'_, L> {
     /// Returns the nearest pair of members at a pose that the search has found reachable.
-    fn nearest(&self, pose: Pose) -> Option<Clearance> {
+    pub fn nearest(&self, pose: Pose) -> Option<Clearance> {
         // At the very end of a leg's reach, rounding decides whether the leg reaches the pose; slightly nearer to the
         // centre it does.
         let inwards = (self.model.workspace.centre - pose.position).clamp_length_max(1e-9 * self.design.base_radius);
@@ -148,7 +77,11 @@ impl<L: Leg> ConstraintSearch<'_, L> {
 
     /// Lowers a report to the value at a pose, if that is smaller.
     fn lower(&self, report: &mut ConstraintResult, value: f64, pose: impl FnOnce() -> Pose) {
-        if report.value.is_none_or(|smallest| value < smallest) {
+        let is_worse = |than: f64| match report.constraint.better() {
+            Better::Higher => value < than,
+            Better::Lower => value > than,
+        };
+        if report.value.is_none_or(is_worse) {
             report.value = Some(value);
             report.margin = report.constraint.margin(value, report.threshold, self.design);
             report.pose = Some(pose());
@@ -179,7 +112,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
     }
 
     /// Returns the positions over which the smallest values are determined, padded.
-    fn positions(&self, grid: &Grid) -> Positions {
+    pub fn positions(&self, grid: &Grid) -> Positions {
         let found = self.found;
         let mut disc = Positions::default();
         if !found.samples.is_empty() {
@@ -207,7 +140,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
     }
 
     /// Returns the smallest values over the regular workspace. The constraints that fail just beyond it are active.
-    fn over_workspace(&self, home: usize, grid: &Grid) -> ConstraintResults {
+    pub fn over_workspace(&self, home: usize, grid: &Grid) -> ConstraintResults {
         let mut reports = self.smallest_over(home, &self.positions(grid));
         self.mark_beyond(&mut reports, self.found.home_sign);
         reports
@@ -215,7 +148,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
 
     /// Returns the smallest values over a prescribed region whose worst margin is `worst`, and the violation. The constraints
     /// with the worst margin are active.
-    fn over_region(&self, home: usize, worst: f64) -> (ConstraintResults, f64) {
+    pub fn over_region(&self, home: usize, worst: f64) -> (ConstraintResults, f64) {
         let mut positions = Positions::default();
         positions.extend(&self.found.samples);
         positions.pad();
@@ -237,7 +170,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
         let found = self.found;
         let sign = found.home_sign;
         let mut reports = self.blank();
-        let indices: Vec<f64> = (0..disc.xs.len()).map(|index| index as f64).collect();
+        let indices = disc.indices();
         for index in found.orientation_grid.window(home) {
             let orientation = &found.orientations[index];
             let oriented = OrientationLanes {
@@ -246,11 +179,28 @@ impl<L: Leg> ConstraintSearch<'_, L> {
             };
             let clearance = reports[Constraint::Clearance as usize].value.unwrap_or(f64::INFINITY);
             let minima = self.checker.smallest(oriented, &disc.xs, &disc.ys, &indices, clearance);
-            for (report, minimum) in reports[Constraint::Reach as usize..].iter_mut().zip(minima) {
+            for report in &mut reports {
+                let Some(scalar) = report.constraint.scalar() else {
+                    continue;
+                };
+                let (minimum, sign) = match minima.get(scalar as usize) {
+                    Some(minimum) => (*minimum, 1.0),
+                    None if report.required => {
+                        let worst = self
+                            .checker
+                            .worst(scalar, &orientation.arms, &disc.xs, &disc.ys, &indices);
+                        let sign = match scalar.entry().quantity.better {
+                            Better::Higher => 1.0,
+                            Better::Lower => -1.0,
+                        };
+                        (worst, sign)
+                    }
+                    None => continue,
+                };
                 if minimum.value.is_finite() {
                     let (x, y) = (disc.xs[minimum.index], disc.ys[minimum.index]);
                     let pose = || Pose::new(x, y, orientation.phi_deg.to_radians());
-                    self.lower(report, minimum.value, pose);
+                    self.lower(report, sign * minimum.value, pose);
                 }
             }
         }
@@ -280,7 +230,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
     /// The best orientation is the one with the smallest shortfall at the centre, the best window the one with the
     /// smallest mean shortfall. The constraints that fail at a centre pose of the best window are active; if there are
     /// none, those that fail just beyond the limits that the search recorded.
-    fn at_best_centre(&self) -> (ConstraintResults, f64) {
+    pub fn at_best_centre(&self) -> (ConstraintResults, f64) {
         let found = self.found;
         let centre = self.model.workspace.centre;
         let shortfalls: Vec<(f64, f64)> = (0..found.orientations.len())
@@ -369,56 +319,28 @@ impl<L: Leg> ConstraintSearch<'_, L> {
         }
     }
 
-    /// Returns the sum of the relative shortfalls of g2 … g7 at a pose, and the sign of `det A` (0 if it vanishes or
+    /// Returns the sum of the relative shortfalls of the limits at a pose, and the sign of `det A` (0 if it vanishes or
     /// the pose is unreachable).
     fn shortfall(&self, values: &Result<PoseValues, f64>) -> (f64, f64) {
-        const AT_POSES: [Constraint; 5] = [
-            Constraint::Dexterity,
-            Constraint::StiffnessXy,
-            Constraint::StiffnessZ,
-            Constraint::StiffnessPhiZ,
-            Constraint::Clearance,
-        ];
         let thresholds = &self.checker.thresholds;
-        let further = thresholds.further;
-        let required = || AT_POSES.iter().filter(|constraint| constraint.is_required(thresholds));
         match values {
             Ok(values) => {
-                let sum = required()
-                    .filter_map(|constraint| {
-                        let threshold = constraint.threshold(&self.checker.assembly, thresholds);
-                        let value = constraint.value(values, 1.0)?;
-                        // The shortfall is at most that of a constraint missed entirely, as at an unreachable pose.
-                        Some((-constraint.margin(value, threshold, self.design)).clamp(0.0, 1.0))
-                    })
-                    .sum::<f64>();
-                let of_further = further.zip(values.further).map_or(0.0, |(limits, further)| {
-                    let missed =
-                        |limit: Option<f64>, excess: f64| limit.map_or(0.0, |limit| (-excess / limit).clamp(0.0, 1.0));
-                    let reach = limits.limit_margin.unwrap_or(0.0) - values.limit_margin;
-                    (reach / self.design.base_radius).clamp(0.0, 1.0)
-                        + missed(
-                            limits.transmission,
-                            further.transmission - limits.transmission.unwrap_or(0.0),
-                        )
-                        + missed(
-                            limits.displacement,
-                            limits.displacement.unwrap_or(0.0) - further.displacement,
-                        )
-                });
-                (
-                    sum + of_further,
-                    if values.determinant == 0.0 {
-                        0.0
-                    } else {
-                        values.determinant.signum()
-                    },
-                )
+                let missed = |(scalar, threshold): (PoseScalar, f64)| {
+                    // The shortfall is at most that of a constraint missed entirely, as at an unreachable pose.
+                    let margin = scalar.margin(values.get(scalar)?, threshold, self.design);
+                    Some((-margin).clamp(0.0, 1.0))
+                };
+                let sum = thresholds.iter().filter_map(missed).sum();
+                let determinant = values[PoseScalar::Determinant];
+                (sum, if determinant == 0.0 { 0.0 } else { determinant.signum() })
             }
-            // At an unreachable pose no other constraint has a value: each counts as missed entirely.
+            // At an unreachable pose no other scalar has a value: each of the constraints with an id counts as missed entirely.
             Err(limit_margin) => {
-                let missed = Constraint::Reach.margin(*limit_margin, 0.0, self.design);
-                (required().count() as f64 - missed, 0.0)
+                let of_reach = PoseScalar::Reach.margin(*limit_margin, 0.0, self.design);
+                let others = thresholds
+                    .iter()
+                    .filter(|(scalar, _)| *scalar != PoseScalar::Reach && Constraint::of_scalar(*scalar).is_some());
+                (others.count() as f64 - of_reach, 0.0)
             }
         }
     }

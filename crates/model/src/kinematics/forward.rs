@@ -4,7 +4,7 @@
 use nalgebra::Vector3;
 
 use super::Jacobian;
-use crate::mechanism::{Architecture, JointKind, Leg, Manipulator};
+use crate::mechanism::{AnyLeg, Architecture, JointKind, Manipulator};
 use crate::spatial::{LEGS, Pose};
 
 /// Reason why no pose was found.
@@ -32,9 +32,9 @@ pub enum ForwardError {
 /// # Errors
 /// Returns a [`ForwardError`] if a leg does not reach the pose of an iteration, if `A` is singular there, or if the
 /// method does not converge within 50 iterations.
-pub fn forward<L: Leg>(
+pub fn forward(
     architecture: Architecture,
-    manipulator: &Manipulator<L>,
+    manipulator: &Manipulator<AnyLeg>,
     target: [f64; LEGS],
     start: Pose,
     tolerance: f64,

@@ -2,42 +2,12 @@
 
 use glam::DVec2;
 
-use super::{
-    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegSettings, MemberKind, Members, Shortfall, Travel,
-};
-use crate::enclosure::{MembersEnclosure, PlanarModel, TaylorModel};
+use super::chain_enclosure::{ChainEnclosure, LegFrameEnclosure};
+use super::joint::{JointKind, JointPoint};
+use super::{Design, DesignVariable, LegBody, LegFrame, LegSettings, MemberKind, Members, Shortfall, Travel};
+use crate::enclosure::{MembersEnclosure, PlanarModel};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{Pose, Rotation};
-
-/// Kind of a joint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum JointKind {
-    /// Prismatic joint, with the joint value in metres and the stiffness of its actuator in N/m.
-    Prismatic,
-    /// Revolute joint about z, with the joint value in radians and the stiffness of its actuator in N·m/rad.
-    Revolute,
-}
-
-impl JointKind {
-    /// Returns the unit of the joint value.
-    pub fn unit(self) -> &'static str {
-        match self {
-            JointKind::Prismatic => "m",
-            JointKind::Revolute => "rad",
-        }
-    }
-}
-
-/// Point of a leg at which a revolute joint can be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum JointPoint {
-    /// `A_i`.
-    A,
-    /// `B_i`; a telescopic leg has `B_i = A_i`.
-    B,
-    /// `C_i`.
-    C,
-}
 
 /// What is known of a chain without any lengths.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -203,45 +173,6 @@ pub struct ChainLanes<V: Real> {
     pub limit_margin: V,
     /// Lanes where the chain reaches the pose.
     pub reachable: V::Mask,
-}
-
-/// Largest number of functions that tell whether a chain reaches a pose.
-pub const REACH_FORMS: usize = 4;
-
-/// A bar from `A_i` to `B_i` over a box of poses, in the distal axes and in multiples of `L_b`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ProximalEnclosure {
-    /// Vector from `A_i` to `B_i`.
-    pub vector: PlanarModel,
-    /// Unit vector along the bar.
-    pub direction: PlanarModel,
-    /// Length, ≥ 0.
-    pub length: TaylorModel,
-    /// Distance from `A_i` to `B_i` along `direction`.
-    pub offset: TaylorModel,
-}
-
-/// A chain over a box of poses; lengths are multiples of `L_b` unless stated otherwise.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ChainEnclosure {
-    /// Each of these is positive exactly where the chain reaches the pose within its limits; those that do not exist are 1.
-    pub reach: [TaylorModel; REACH_FORMS],
-    /// Unit vector along the distal bar, in base axes.
-    pub tangent: PlanarModel,
-    /// Distance from `B_i` to `C_i` along `tangent`.
-    pub offset: TaylorModel,
-    /// Length of the distal bar in the beam model, ≥ 0.
-    pub beam: TaylorModel,
-    /// The same length with the sign of `offset`.
-    pub signed_beam: TaylorModel,
-    /// Distances of the slider from the two ends of its rail, for chains on rails \[m\].
-    pub slider: Option<[TaylorModel; 2]>,
-    /// Bar from `A_i` to `B_i`, for chains that have one.
-    pub proximal: Option<ProximalEnclosure>,
-    /// Unit vectors along which the prismatic joints move the platform, in the distal axes.
-    pub guides: [Option<PlanarModel>; 3],
-    /// Square of the lever of the first joint about the line of the distal bar, where it has a narrower form than the general one.
-    pub lever_square: Option<TaylorModel>,
 }
 
 /// Distal bar of a leg, as the members of the leg need it.

@@ -8,19 +8,19 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use glam::DVec2;
 
-use super::chain::{Assembly, Chain, ChainDescription, ChainLanes, DistalLanes, JointKind, JointPoint, LockedLeg};
+use super::chain::{Assembly, Chain, ChainDescription, ChainLanes, DistalLanes};
+use super::joint::{JointKind, JointPoint};
 use super::leg::{BarLoads, Leg, LegLanes, LegPosture, LineLoads};
-use super::{
-    Design, EnclosedLoads, LegBody, LegEnclosure, LegFrame, LegFrameEnclosure, LegSettings, Members, Shortfall, Travel,
-};
-use crate::enclosure::{MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, cross as cross_models, dot};
+use super::leg_enclosure::{EnclosedLoads, LegEnclosure};
+use super::{Design, LegFrame, LegFrameEnclosure, LegSettings, Members, Shortfall};
+use crate::enclosure::{PlanarModel, PoseEnclosure, TaylorModel, cross as cross_models, dot};
 use crate::lanes::{Planar, Real};
 use crate::spatial::cross;
 
 /// A leg whose joint `DRIVEN` (0, 1, 2 from the base) is driven.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DrivenLeg<C, const DRIVEN: usize> {
-    chain: C,
+    pub(super) chain: C,
 }
 
 /// Number to which the rule applies: a double, several at once, or an enclosure.
@@ -177,22 +177,18 @@ impl<C: Chain, const DRIVEN: usize> DrivenLeg<C, DRIVEN> {
     }
 }
 
-impl<C: Chain, const DRIVEN: usize> Leg for DrivenLeg<C, DRIVEN> {
-    const MAY_BE_ON_RAILS: bool = Self::CHAIN.is_on_rails();
-
-    fn new(design: &Design, settings: &LegSettings, index: usize) -> Self {
-        let frame = LegFrame::new(design, &settings.geometry, index);
-        Self {
-            chain: C::new(frame, design, settings),
-        }
+impl<C: Chain, const DRIVEN: usize> DrivenLeg<C, DRIVEN> {
+    /// Returns the place of the driven joint: 0, 1 or 2 from the base.
+    pub(super) fn driven(&self) -> usize {
+        DRIVEN
     }
 
-    fn inverse(&self, c: DVec2, arm: DVec2) -> Result<LegPosture, Shortfall> {
-        let (posture, beyond) = self.solve(c, arm)?;
-        beyond.map_or(Ok(posture), Err)
-    }
-
-    fn solve(&self, c: DVec2, arm: DVec2) -> Result<(LegPosture, Option<Shortfall>), Shortfall> {
+    /// Solves the inverse kinematics like [`Leg::inverse`], also beyond the limits of joints; tells which limit is violated, if one
+    /// is.
+    ///
+    /// # Errors
+    /// Returns the [`Shortfall`] if the working mode has no real solution, or if a direction of the leg is undefined.
+    pub(super) fn solve(&self, c: DVec2, arm: DVec2) -> Result<(LegPosture, Option<Shortfall>), Shortfall> {
         let (chain, beyond) = self.chain.solve(c, arm)?;
         let tangent = chain.distal.direction;
         let enter = |vector: DVec2| [tangent.dot(vector), cross(tangent, vector)];
@@ -232,8 +228,91 @@ impl<C: Chain, const DRIVEN: usize> Leg for DrivenLeg<C, DRIVEN> {
         Ok((posture, beyond))
     }
 
-    fn locked(&self, value: f64) -> LockedLeg {
-        self.chain.locked(DRIVEN, value)
+    /// Encloses the leg over a box of poses.
+    pub(super) fn enclose(
+        frame: &LegFrameEnclosure,
+        design: &Design,
+        settings: &LegSettings,
+        pose: &PoseEnclosure,
+    ) -> LegEnclosure {
+        let arm = frame.arm(pose);
+        let chain = C::enclose(frame, design, settings, pose.position, arm);
+        // As multiples of r: along the distal bar, and the moment of its line.
+        let multiple = frame.arm_multiple;
+        let (along, across) = (
+            dot(arm, chain.tangent).scaled(multiple),
+            cross_models(arm, chain.tangent).scaled(multiple),
+        );
+        if Self::IS_ALONG_DISTAL {
+            let transmission_square = match (chain.lever_square, chain.guides[DRIVEN], chain.proximal) {
+                (Some(square), ..) => square,
+                (None, Some([x, _]), _) => x.squared(),
+                (None, None, Some(bar)) => bar.vector[1].squared(),
+                (None, None, None) => TaylorModel::exactly(0.0),
+            };
+            return LegEnclosure {
+                u: chain.tangent,
+                moment: across,
+                along,
+                across,
+                transmission_square,
+                loads: None,
+                arm,
+                chain,
+            };
+        }
+        let radius = frame.platform_radius;
+        let chord: Option<PlanarModel> = chain.proximal.filter(|_| Self::IS_ALONG_CHORD).map(|bar| {
+            let chord = [bar.vector[0] + chain.offset, bar.vector[1]];
+            let to_unit = dot(chord, chord).sqrt().reciprocal();
+            chord.map(|part| part * to_unit)
+        });
+        let line = Self::line(&DistalGeometry {
+            arm: [along.scaled(radius), -across.scaled(radius)],
+            offset: chain.offset,
+            proximal: chain.proximal.map(|bar| [bar.vector, bar.direction]),
+            chord,
+            guides: chain.guides,
+        });
+        let [x, y] = line.u;
+        let normal = [-chain.tangent[1], chain.tangent[0]];
+        let [about_a, about_b, about_c, about_p] = line.moments;
+        LegEnclosure {
+            u: [0, 1].map(|k| chain.tangent[k] * x + normal[k] * y),
+            moment: about_p.scaled(frame.per_platform_radius),
+            along,
+            across,
+            transmission_square: line.transmission.squared(),
+            loads: Some(EnclosedLoads {
+                distal: [x, about_c + chain.signed_beam * y, about_c],
+                proximal: [
+                    chain
+                        .proximal
+                        .map_or(TaylorModel::exactly(0.0), |bar| dot(line.u, bar.direction)),
+                    about_a,
+                    about_b,
+                ],
+                platform: [x * along - y * across, about_c, about_p],
+            }),
+            arm,
+            chain,
+        }
+    }
+}
+
+impl<C: Chain, const DRIVEN: usize> Leg for DrivenLeg<C, DRIVEN> {
+    const MAY_BE_ON_RAILS: bool = Self::CHAIN.is_on_rails();
+
+    fn new(design: &Design, settings: &LegSettings, index: usize) -> Self {
+        let frame = LegFrame::new(design, &settings.geometry, index);
+        Self {
+            chain: C::new(frame, design, settings),
+        }
+    }
+
+    fn inverse(&self, c: DVec2, arm: DVec2) -> Result<LegPosture, Shortfall> {
+        let (posture, beyond) = self.solve(c, arm)?;
+        beyond.map_or(Ok(posture), Err)
     }
 
     #[inline(always)]
@@ -317,106 +396,9 @@ impl<C: Chain, const DRIVEN: usize> Leg for DrivenLeg<C, DRIVEN> {
         }
     }
 
-    fn enclose(
-        frame: &LegFrameEnclosure,
-        design: &Design,
-        settings: &LegSettings,
-        pose: &PoseEnclosure,
-    ) -> LegEnclosure {
-        let arm = frame.arm(pose);
-        let chain = C::enclose(frame, design, settings, pose.position, arm);
-        // As multiples of r: along the distal bar, and the moment of its line.
-        let multiple = frame.arm_multiple;
-        let (along, across) = (
-            dot(arm, chain.tangent).scaled(multiple),
-            cross_models(arm, chain.tangent).scaled(multiple),
-        );
-        if Self::IS_ALONG_DISTAL {
-            let transmission_square = match (chain.lever_square, chain.guides[DRIVEN], chain.proximal) {
-                (Some(square), ..) => square,
-                (None, Some([x, _]), _) => x.squared(),
-                (None, None, Some(bar)) => bar.vector[1].squared(),
-                (None, None, None) => TaylorModel::exactly(0.0),
-            };
-            return LegEnclosure {
-                u: chain.tangent,
-                moment: across,
-                along,
-                across,
-                transmission_square,
-                loads: None,
-                arm,
-                chain,
-            };
-        }
-        let radius = frame.platform_radius;
-        let chord: Option<PlanarModel> = chain.proximal.filter(|_| Self::IS_ALONG_CHORD).map(|bar| {
-            let chord = [bar.vector[0] + chain.offset, bar.vector[1]];
-            let to_unit = dot(chord, chord).sqrt().reciprocal();
-            chord.map(|part| part * to_unit)
-        });
-        let line = Self::line(&DistalGeometry {
-            arm: [along.scaled(radius), -across.scaled(radius)],
-            offset: chain.offset,
-            proximal: chain.proximal.map(|bar| [bar.vector, bar.direction]),
-            chord,
-            guides: chain.guides,
-        });
-        let [x, y] = line.u;
-        let normal = [-chain.tangent[1], chain.tangent[0]];
-        let [about_a, about_b, about_c, about_p] = line.moments;
-        LegEnclosure {
-            u: [0, 1].map(|k| chain.tangent[k] * x + normal[k] * y),
-            moment: about_p.scaled(frame.per_platform_radius),
-            along,
-            across,
-            transmission_square: line.transmission.squared(),
-            loads: Some(EnclosedLoads {
-                distal: [x, about_c + chain.signed_beam * y, about_c],
-                proximal: [
-                    chain
-                        .proximal
-                        .map_or(TaylorModel::exactly(0.0), |bar| dot(line.u, bar.direction)),
-                    about_a,
-                    about_b,
-                ],
-                platform: [x * along - y * across, about_c, about_p],
-            }),
-            arm,
-            chain,
-        }
-    }
-
-    fn enclose_members(
-        frame: &LegFrameEnclosure,
-        design: &Design,
-        settings: &LegSettings,
-        leg: &LegEnclosure,
-        anchor: PlanarModel,
-        tip: PlanarModel,
-    ) -> MembersEnclosure {
-        C::enclose_members(frame, design, settings, &leg.chain, anchor, tip)
-    }
-
     #[inline(always)]
     fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
         self.chain.members(c, distal)
-    }
-
-    fn joint_values(&self, posture: &LegPosture) -> [f64; 3] {
-        self.chain.joint_values(&posture.chain, posture.arm)
-    }
-
-    fn joint_limits(&self) -> [Option<[f64; 2]>; 3] {
-        self.chain.joint_limits()
-    }
-
-    fn bodies(&self, posture: &LegPosture) -> Vec<LegBody> {
-        self.chain.bodies(&posture.chain, posture.arm, DRIVEN)
-    }
-
-    fn travels(&self, posture: &LegPosture) -> Vec<Travel> {
-        self.chain.travels(&posture.chain)
     }
 
     fn frame(&self) -> &LegFrame {

@@ -2,142 +2,10 @@
 
 use glam::DVec2;
 
-use super::chain::{Assembly, ChainLanes, ChainPosture, DistalLanes, JointKind, LockedLeg};
-use super::{Design, Geometry, LegEnclosure, LegFrame, LegFrameEnclosure, MemberKind, Members};
-use crate::enclosure::{MembersEnclosure, PlanarModel, PoseEnclosure};
+use super::chain::{Assembly, ChainLanes, ChainPosture, DistalLanes};
+use super::{Design, LegFrame, LegSettings, Members, Shortfall};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{LEGS, Pose, Rotation};
-
-/// Length of a telescopic bar in the beam model (docs/model.md, section 11).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BarLength {
-    /// Current length `ρ_i` of the leg.
-    Current,
-    /// Largest length `L_b`, independent of the pose.
-    Longest,
-}
-
-/// Settings of the legs that the study fixes in addition to the design vector.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LegSettings {
-    /// Beam length of a telescopic leg.
-    pub telescopic_bar: BarLength,
-    /// Smallest length of a telescopic leg as a fraction of `L_b`, in \[0, 1).
-    pub telescopic_shortest: f64,
-    /// Arrangement of the joints and travel of the guides.
-    pub geometry: Geometry,
-}
-
-impl Default for LegSettings {
-    fn default() -> Self {
-        Self {
-            telescopic_bar: BarLength::Current,
-            telescopic_shortest: 0.5,
-            geometry: Geometry::default(),
-        }
-    }
-}
-
-/// Geometric part or joint of a leg, in the base frame \[m\].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum LegPart {
-    /// Slider on a rail of the base.
-    Slider {
-        /// Centre.
-        at: DVec2,
-        /// Unit vector along the rail.
-        axis: DVec2,
-        /// Whether it is driven.
-        actuated: bool,
-    },
-    /// Part of a telescopic leg that is attached to the base.
-    Tube {
-        /// End at the base.
-        from: DVec2,
-        /// End from which the rod protrudes.
-        to: DVec2,
-    },
-    /// Part of a telescopic leg that moves along the tube; if the leg is short, a part of the rod is inside the tube.
-    Rod {
-        /// End inside or behind the tube.
-        from: DVec2,
-        /// End at the platform.
-        to: DVec2,
-    },
-    /// Carriage on a guide that moves.
-    Carriage {
-        /// Centre.
-        at: DVec2,
-        /// Unit vector along the guide.
-        axis: DVec2,
-        /// Kind of the member that the guide is.
-        on: MemberKind,
-        /// Whether it is driven.
-        actuated: bool,
-    },
-    /// Bar on which a carriage moves.
-    GuideBar {
-        /// One end.
-        from: DVec2,
-        /// The other end.
-        to: DVec2,
-        /// Kind of the member.
-        kind: MemberKind,
-    },
-    /// Bar between the base joint and the next one.
-    Crank {
-        /// End at the base.
-        from: DVec2,
-        /// End at the link.
-        to: DVec2,
-    },
-    /// Bar between the proximal member and the platform.
-    Link {
-        /// Proximal end.
-        from: DVec2,
-        /// End at the platform.
-        to: DVec2,
-    },
-    /// Joint.
-    Joint {
-        /// Position.
-        at: DVec2,
-        /// Whether the joint is actuated.
-        actuated: bool,
-        /// Kinds of the two members that it connects; the same kind twice if the second one is the base.
-        joins: [MemberKind; 2],
-    },
-}
-
-/// Joint between a body and the preceding body of the leg, or the base.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LegJoint {
-    /// Kind: a prismatic joint moves along the body's x axis, a revolute joint turns about z at the body's origin.
-    pub kind: JointKind,
-    /// Whether the joint is driven.
-    pub is_driven: bool,
-    /// Joint value \[m or rad\].
-    pub value: f64,
-    /// Smallest and largest value, if the joint has limits.
-    pub limits: Option<[f64; 2]>,
-}
-
-/// Rigid body of a leg at a posture, in the base frame.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LegBody {
-    /// Name, for example `crank`.
-    pub name: &'static str,
-    /// Kind of the member that the body belongs to.
-    pub kind: MemberKind,
-    /// Origin of the body's frame \[m\].
-    pub origin: DVec2,
-    /// Unit vector along the x axis of the body's frame.
-    pub axis: DVec2,
-    /// Joint to the preceding body, or to the base.
-    pub joint: LegJoint,
-    /// Parts and joints that the body consists of.
-    pub parts: Vec<LegPart>,
-}
 
 /// Posture of one leg at a pose that it reaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -203,61 +71,7 @@ impl<V: Real> LegLanes<V> {
     }
 }
 
-/// Reason why a leg does not reach a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ReachReason {
-    /// The links are too short, so that the inverse kinematics has no real solution.
-    OutOfReach,
-    /// A prismatic joint would be below its lower limit.
-    BelowLimit,
-    /// A prismatic joint would be above its upper limit.
-    AboveLimit,
-    /// Two joints of the leg coincide, so that the direction of the leg is undefined.
-    Degenerate,
-}
-
-/// Distance by which a leg fails to reach a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shortfall {
-    /// Limit margin: signed distance to the violated limit \[m\], ≤ 0.
-    pub limit_margin: f64,
-    /// Violated limit.
-    pub reason: ReachReason,
-}
-
-/// Travel of a prismatic joint in the base frame \[m\].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Travel {
-    /// What moves, or on what.
-    pub kind: TravelKind,
-    /// Position at the lower limit.
-    pub from: DVec2,
-    /// Position at the upper limit.
-    pub to: DVec2,
-}
-
-impl Travel {
-    /// Returns the travel of a slider.
-    pub(super) fn of_rail(frame: &LegFrame) -> Self {
-        let [from, to] = frame.rail_ends();
-        Self {
-            kind: TravelKind::Rail,
-            from,
-            to,
-        }
-    }
-}
-
-/// What a prismatic joint moves along.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TravelKind {
-    /// A slider along a rail of the base.
-    Rail,
-    /// The end of a telescopic leg along the current direction of the leg.
-    Stroke,
-}
-
-/// Leg of a manipulator; a value holds the constants of one leg of one design.
+/// What the loops over poses need of a leg; a value holds the constants of one leg of one design. The rest is asked of [`AnyLeg`](super::AnyLeg).
 pub trait Leg: Copy + Send + Sync {
     /// Whether the first joint of the leg can be a slider on a rail of the base.
     const MAY_BE_ON_RAILS: bool;
@@ -273,52 +87,11 @@ pub trait Leg: Copy + Send + Sync {
     /// direction of the leg is undefined.
     fn inverse(&self, c: DVec2, arm: DVec2) -> Result<LegPosture, Shortfall>;
 
-    /// Solves the inverse kinematics like [`Leg::inverse`], also beyond the limits of joints; tells which limit is violated, if one
-    /// is.
-    ///
-    /// # Errors
-    /// Returns the [`Shortfall`] if the working mode has no real solution, or if a direction of the leg is undefined.
-    fn solve(&self, c: DVec2, arm: DVec2) -> Result<(LegPosture, Option<Shortfall>), Shortfall>;
-
-    /// Returns what the leg requires of the platform while its driven joint is locked at a value \[m or rad\].
-    fn locked(&self, value: f64) -> LockedLeg;
-
     /// Solves the inverse kinematics at several poses at once, with `C_i` at `position + arm`.
     fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> LegLanes<V>;
 
-    /// Encloses a leg of a design over a box of poses.
-    fn enclose(
-        frame: &LegFrameEnclosure,
-        design: &Design,
-        settings: &LegSettings,
-        pose: &PoseEnclosure,
-    ) -> LegEnclosure;
-
-    /// Encloses the axes of the members of a leg over a box of poses, relative to `P` and in multiples of `L_b`: `anchor` is
-    /// `A_i`, and `tip` is `C_i`.
-    fn enclose_members(
-        frame: &LegFrameEnclosure,
-        design: &Design,
-        settings: &LegSettings,
-        leg: &LegEnclosure,
-        anchor: PlanarModel,
-        tip: PlanarModel,
-    ) -> MembersEnclosure;
-
     /// Returns the axes of the leg's members at several poses at once, with the end of the leg at `c`.
     fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V>;
-
-    /// Returns the values of the three joints from base to platform \[m or rad\], angles in (−π, π].
-    fn joint_values(&self, posture: &LegPosture) -> [f64; 3];
-
-    /// Returns the smallest and largest values of the joints that have limits \[m\].
-    fn joint_limits(&self) -> [Option<[f64; 2]>; 3];
-
-    /// Returns the rigid bodies of the leg, from the base to the platform.
-    fn bodies(&self, posture: &LegPosture) -> Vec<LegBody>;
-
-    /// Returns the travels of the prismatic joints that the scene shows.
-    fn travels(&self, posture: &LegPosture) -> Vec<Travel>;
 
     /// Returns the place of the leg in the manipulator.
     fn frame(&self) -> &LegFrame;

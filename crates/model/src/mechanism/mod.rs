@@ -2,38 +2,44 @@
 //!
 //! A leg is a chain of three joints of which one is driven ([`DrivenLeg`]). To add an architecture of a known chain, add a line to the
 //! list `architectures!` below; for a new chain, also add a file to `chains` with a type that implements [`Chain`]. No other module
-//! of the library names an individual chain: code that needs a leg is generic over `L: Leg`, and is called with [`AnyLeg`], or
-//! through `with_leg!` where its speed matters (docs/model.md, section 2).
+//! of the library names an individual chain: code that needs a leg uses [`AnyLeg`], but for the loops over poses, which are generic over
+//! `L: Leg` and entered through `with_leg!` (docs/model.md, section 2).
 
+mod body;
 mod chain;
+mod chain_enclosure;
 mod chains;
 mod design;
 mod driven_leg;
-mod enclosed;
 mod geometry;
+mod joint;
 mod leg;
+mod leg_enclosure;
 mod member;
+mod section;
+mod settings;
+mod shortfall;
 mod text;
 
+pub use body::{LegBody, LegJoint, LegPart, Travel, TravelKind};
 pub use chain::{
-    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
-    JointPoint, LockedKind, LockedLeg, ProximalEnclosure, ProximalLanes, REACH_FORMS, Solved,
+    Assembly, BarPosture, Chain, ChainDescription, ChainLanes, ChainPosture, DistalLanes, LockedKind, LockedLeg,
+    ProximalLanes, Solved,
 };
+pub use chain_enclosure::{ChainEnclosure, LegFrameEnclosure, ProximalEnclosure, REACH_FORMS};
 pub use design::{DESIGN_VARIABLES, Design, DesignError, DesignVariable, FURTHER_VARIABLES, WorkingMode};
 pub use driven_leg::DrivenLeg;
-pub use enclosed::{EnclosedLoads, LegEnclosure, LegFrameEnclosure};
 pub use geometry::{Arrangement, Geometry, LegFrame};
-pub use leg::{
-    BarLength, BarLoads, Leg, LegBody, LegJoint, LegLanes, LegPart, LegPosture, LegSettings, LineLoads, Manipulator,
-    Posture, ReachReason, Shortfall, Travel, TravelKind,
-};
+pub use joint::{JointKind, JointPoint};
+pub use leg::{BarLoads, Leg, LegLanes, LegPosture, LineLoads, Manipulator, Posture};
+pub use leg_enclosure::{EnclosedLoads, LegEnclosure};
 pub use member::{MemberAxis, MemberKind, Members};
+pub use section::{Catalogue, CatalogueEntry, CatalogueError, CrossSection, CrossSections, Wall};
+pub use settings::{BarLength, LegSettings};
+pub use shortfall::{ReachReason, Shortfall};
 pub use text::TextError;
 
-use glam::DVec2;
-
 use crate::enclosure::{MembersEnclosure, PlanarModel, PoseEnclosure};
-use crate::lanes::{LaneJob, Planar, Real};
 use chains::{PprChain, PrpChain, PrrChain, RppChain, RprChain, RrpChain, RrrChain};
 
 macro_rules! architectures {
@@ -111,7 +117,7 @@ macro_rules! architectures {
             }
 
             /// Encloses a leg of `design` over a box of poses.
-            fn enclosed(
+            pub fn enclose(
                 frame: &LegFrameEnclosure,
                 design: &Design,
                 settings: &LegSettings,
@@ -125,8 +131,9 @@ macro_rules! architectures {
                 }
             }
 
-            /// Encloses the members of a leg of `design` over a box of poses.
-            fn enclosed_members(
+            /// Encloses the axes of the members of a leg of `design` over a box of poses, relative to `P` and in multiples of
+            /// `L_b`: `anchor` is `A_i`, and `tip` is `C_i`.
+            pub fn enclose_members(
                 frame: &LegFrameEnclosure,
                 design: &Design,
                 settings: &LegSettings,
@@ -145,7 +152,7 @@ macro_rules! architectures {
         }
 
         /// The legs that are compiled into the loops over poses, because studies of the paper use them most.
-        pub mod fast {
+        pub(crate) mod fast {
             $(
                 #[doc = concat!("Leg of a ", $fast_name, ".")]
                 pub type $fast = super::DrivenLeg<super::chains::$fast_chain, $fast_driven>;
@@ -153,7 +160,6 @@ macro_rules! architectures {
         }
 
         /// Runs an expression with a type alias bound to the leg type with which an architecture is evaluated fastest.
-        #[macro_export]
         macro_rules! with_leg {
             ($d architecture:expr, $d alias:ident => $d body:expr) => {
                 match $d architecture {
@@ -213,6 +219,9 @@ architectures! { $;
         PprSecond "3-P_PR" PprChain 1,
     }
 }
+
+// Below the macro `visit!`, which it uses.
+mod any_leg;
 
 impl Architecture {
     /// Returns the letters of the joints, for example `PRR`.
@@ -288,115 +297,5 @@ impl Architecture {
 impl std::fmt::Display for Architecture {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.pad(self.name())
-    }
-}
-
-/// Inverse kinematics of a leg at several poses at once, as a function of its own.
-struct LegJob<'a, L, V> {
-    leg: &'a L,
-    position: Planar<V>,
-    arm: Planar<V>,
-}
-
-impl<L: Leg, V: Real> LaneJob for LegJob<'_, L, V> {
-    type Output = LegLanes<V>;
-
-    #[inline(always)]
-    fn run(self) -> LegLanes<V> {
-        self.leg.lanes(self.position, self.arm)
-    }
-}
-
-/// Members of a leg at several poses at once, as a function of its own.
-struct MembersJob<'a, L, V> {
-    leg: &'a L,
-    c: Planar<V>,
-    distal: DistalLanes<V>,
-}
-
-impl<L: Leg, V: Real> LaneJob for MembersJob<'_, L, V> {
-    type Output = Members<V>;
-
-    #[inline(always)]
-    fn run(self) -> Members<V> {
-        self.leg.members(self.c, &self.distal)
-    }
-}
-
-impl Leg for AnyLeg {
-    const MAY_BE_ON_RAILS: bool = true;
-
-    fn new(design: &Design, settings: &LegSettings, index: usize) -> Self {
-        Self::of(design, settings, index)
-    }
-
-    fn inverse(&self, c: DVec2, arm: DVec2) -> Result<LegPosture, Shortfall> {
-        visit!(self, leg => leg.inverse(c, arm))
-    }
-
-    fn solve(&self, c: DVec2, arm: DVec2) -> Result<(LegPosture, Option<Shortfall>), Shortfall> {
-        visit!(self, leg => leg.solve(c, arm))
-    }
-
-    fn locked(&self, value: f64) -> LockedLeg {
-        visit!(self, leg => leg.locked(value))
-    }
-
-    #[inline(always)]
-    fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> LegLanes<V> {
-        visit!(self, leg => position.x.call_apart(LegJob { leg, position, arm }))
-    }
-
-    fn enclose(
-        frame: &LegFrameEnclosure,
-        design: &Design,
-        settings: &LegSettings,
-        pose: &PoseEnclosure,
-    ) -> LegEnclosure {
-        Self::enclosed(frame, design, settings, pose)
-    }
-
-    fn enclose_members(
-        frame: &LegFrameEnclosure,
-        design: &Design,
-        settings: &LegSettings,
-        leg: &LegEnclosure,
-        anchor: PlanarModel,
-        tip: PlanarModel,
-    ) -> MembersEnclosure {
-        Self::enclosed_members(frame, design, settings, leg, anchor, tip)
-    }
-
-    #[inline(always)]
-    fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
-        visit!(self, leg => c.x.call_apart(MembersJob { leg, c, distal: *distal }))
-    }
-
-    fn joint_values(&self, posture: &LegPosture) -> [f64; 3] {
-        visit!(self, leg => leg.joint_values(posture))
-    }
-
-    fn joint_limits(&self) -> [Option<[f64; 2]>; 3] {
-        visit!(self, leg => leg.joint_limits())
-    }
-
-    fn bodies(&self, posture: &LegPosture) -> Vec<LegBody> {
-        visit!(self, leg => leg.bodies(posture))
-    }
-
-    fn travels(&self, posture: &LegPosture) -> Vec<Travel> {
-        visit!(self, leg => leg.travels(posture))
-    }
-
-    fn frame(&self) -> &LegFrame {
-        visit!(self, leg => leg.frame())
-    }
-
-    fn reach_box(&self) -> [DVec2; 2] {
-        visit!(self, leg => leg.reach_box())
-    }
-
-    fn assembly(&self) -> Assembly {
-        visit!(self, leg => leg.assembly())
     }
 }

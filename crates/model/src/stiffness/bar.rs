@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix6;
 
-use super::CrossSection;
+use crate::mechanism::CrossSection;
 
 /// Isotropic material.
 #[derive(Debug, Clone, Copy, PartialEq)]

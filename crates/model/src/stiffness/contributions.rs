@@ -7,7 +7,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::StiffnessModel;
-use super::planar::symmetric;
+use super::blocks::symmetric;
 use crate::kinematics::Jacobian;
 use crate::mechanism::Posture;
 use crate::spatial::LEGS;

@@ -6,19 +6,19 @@
 //! once, reduced to the three values that the constraints need.
 
 mod bar;
+mod blocks;
 mod contributions;
 pub mod joint_model;
 mod lanes;
 pub mod planar;
 mod rail;
-mod section;
+mod reduced;
 
 pub use bar::{BarCompliance, Material};
 pub use contributions::{Contribution, LegContributions};
 pub(crate) use lanes::NoSliders;
 pub use planar::{ActuatorStiffness, PlanarStiffness, StiffnessModel};
 pub use rail::{RailSettings, RailSupports};
-pub use section::{Catalogue, CatalogueEntry, CatalogueError, CrossSection, CrossSections, Wall};
 
 /// Definition of the stiffness along and about an axis (docs/model.md, section 4.5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,8 +6,9 @@
 use glam::DVec2;
 use nalgebra::Matrix6;
 
-use super::{BarCompliance, CrossSection};
+use super::BarCompliance;
 use crate::lanes::{Planar, Real};
+use crate::mechanism::CrossSection;
 
 /// How the ends of the spans of a rail are supported. Every support keeps the rail from turning about its own axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,9 +7,9 @@
 use glam::DVec2;
 use pulp::{Simd, WithSimd};
 
-use super::PoseChecker;
 use crate::lanes::{Lanes, MAX_LANES, Planar, Real, padded_length};
 use crate::mechanism::Leg;
+use crate::pose::{Better, EXAMINED_ALWAYS, PoseChecker, PoseScalar, PoseScalars, ScalarSet};
 use crate::spatial::LEGS;
 
 /// Orientation in which poses are evaluated.
@@ -38,7 +38,7 @@ impl OrientationLanes<'_> {
 
 /// Determines which poses are feasible. The result is the number of poses before the first infeasible one, or `count` if all are
 /// feasible or `marks` are written.
-struct Feasible<'a, L, const FURTHER: bool> {
+struct Feasible<'a, L, const ALL: bool> {
     checker: &'a PoseChecker<L>,
     oriented: OrientationLanes<'a>,
     xs: &'a [f64],
@@ -48,7 +48,7 @@ struct Feasible<'a, L, const FURTHER: bool> {
     marks: Option<&'a mut [f64]>,
 }
 
-impl<L: Leg, const FURTHER: bool> WithSimd for Feasible<'_, L, FURTHER> {
+impl<L: Leg, const ALL: bool> WithSimd for Feasible<'_, L, ALL> {
     type Output = usize;
 
     #[inline(always)]
@@ -58,9 +58,10 @@ impl<L: Leg, const FURTHER: bool> WithSimd for Feasible<'_, L, FURTHER> {
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         let mut marks = self.marks.map(|marks| Lanes::<S>::column_mut(marks));
         let groups = self.count.div_ceil(Lanes::<S>::COUNT);
+        let limited = self.checker.computed;
         for (group, (x, y)) in xs.iter().zip(ys).take(groups).enumerate() {
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            let good = self.checker.feasible_lanes::<_, FURTHER>(position, &arms, sign);
+            let good = self.checker.feasible_lanes::<_, ALL>(position, &arms, sign, limited);
             if let Some(marks) = &mut marks {
                 one.select(good, zero).store(&mut marks[group]);
                 continue;
@@ -83,12 +84,12 @@ pub(crate) struct Minimum {
     pub index: usize,
 }
 
-/// Number of quantities whose smallest value is determined.
-const QUANTITIES: usize = 7;
+/// Number of scalars that every evaluation determines.
+const SCALARS: usize = PoseScalar::ALWAYS.len();
 
-/// Smallest limit margin, `κ_F⁻¹`, `k_xy`, `k_z`, `k_φz`, `det A / ℓ` (multiplied by the required sign) and clearance,
-/// which is determined whether g7 is required or not.
-pub(crate) type Minima = [Minimum; QUANTITIES];
+/// Smallest values of the scalars that every evaluation determines, in their order: `det A / ℓ` multiplied by the required sign, and
+/// the clearance whether g7 is required or not.
+pub(crate) type Minima = [Minimum; SCALARS];
 
 struct Smallest<'a, L> {
     checker: &'a PoseChecker<L>,
@@ -108,51 +109,102 @@ impl<L: Leg> WithSimd for Smallest<'_, L> {
     fn with_simd<S: Simd>(self, simd: S) -> Minima {
         let (arms, sign) = self.oriented.lanes(simd);
         let infinite = sign.splat(f64::INFINITY);
-        let mut values = [infinite; QUANTITIES];
-        values[QUANTITIES - 1] = sign.splat(self.clearance);
-        let mut indices = [sign.splat(0.0); QUANTITIES];
+        let mut values = [infinite; SCALARS];
+        values[PoseScalar::Clearance as usize] = sign.splat(self.clearance);
+        let mut indices = [sign.splat(0.0); SCALARS];
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         for ((x, y), index) in xs.iter().zip(ys).zip(Lanes::<S>::column(self.indices)) {
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
             let index = Lanes::load(simd, index);
-            let (found, distals) = self.checker.lanes_without_clearance(position, &arms);
+            let (found, distals) = self.checker.core_lanes(position, &arms);
             let reachable = found.reachable;
             // Only a clearance below the smallest one so far matters, and none matters at an unreachable pose.
-            let limit = values[6].select(reachable, sign.splat(f64::NEG_INFINITY));
+            let limit = values[PoseScalar::Clearance as usize].select(reachable, sign.splat(f64::NEG_INFINITY));
             let clearance = self.checker.compute_clearance_up_to(position, &arms, &distals, limit);
-            macro_rules! lower {
-                ($($k:literal: $value:expr,)+) => {$({
-                    let smaller = values[$k].exceeds($value);
-                    values[$k] = $value.select(smaller, values[$k]);
-                    indices[$k] = index.select(smaller, indices[$k]);
-                })+};
-            }
-            lower! {
-                0: found.limit_margin,
-                1: found.inverse_condition.select(reachable, infinite),
-                2: found.k_xy.select(reachable, infinite),
-                3: found.k_z.select(reachable, infinite),
-                4: found.k_phi_z.select(reachable, infinite),
-                5: (found.determinant * sign).select(reachable, infinite),
-                6: clearance.select(reachable, infinite),
+            // Where a leg does not reach the pose, nothing but the limit margin is known.
+            let mut scalars = found.scalars;
+            scalars[PoseScalar::Determinant] = scalars[PoseScalar::Determinant] * sign;
+            scalars[PoseScalar::Clearance] = clearance;
+            for k in 0..SCALARS {
+                let scalar = PoseScalar::ALWAYS[k];
+                let value = match scalar {
+                    PoseScalar::Reach => scalars[scalar],
+                    _ => scalars[scalar].select(reachable, infinite),
+                };
+                let smaller = values[k].exceeds(value);
+                values[k] = value.select(smaller, values[k]);
+                indices[k] = index.select(smaller, indices[k]);
             }
         }
-        let mut minima = [Minimum {
-            value: f64::INFINITY,
-            index: 0,
-        }; QUANTITIES];
-        let mut lanes = [[0.0; MAX_LANES]; 2];
+        let mut minima = [Minimum::NONE; SCALARS];
         for (minimum, (value, index)) in minima.iter_mut().zip(values.into_iter().zip(indices)) {
-            value.store(&mut Lanes::<S>::column_mut(&mut lanes[0])[0]);
-            index.store(&mut Lanes::<S>::column_mut(&mut lanes[1])[0]);
-            for lane in 0..Lanes::<S>::COUNT {
-                let (value, index) = (lanes[0][lane], lanes[1][lane] as usize);
-                if value < minimum.value || (value == minimum.value && index < minimum.index) {
-                    *minimum = Minimum { value, index };
-                }
-            }
+            *minimum = Minimum::over_lanes(value, index);
         }
         minima
+    }
+}
+
+/// Determines the worst value of a scalar that is computed on demand.
+struct Worst<'a, L> {
+    checker: &'a PoseChecker<L>,
+    arms: &'a [DVec2; LEGS],
+    scalar: PoseScalar,
+    xs: &'a [f64],
+    ys: &'a [f64],
+    indices: &'a [f64],
+}
+
+impl<L: Leg> WithSimd for Worst<'_, L> {
+    type Output = Minimum;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Minimum {
+        let zero = Lanes::all(simd, 0.0);
+        let arms = [
+            Planar::splat(zero, self.arms[0]),
+            Planar::splat(zero, self.arms[1]),
+            Planar::splat(zero, self.arms[2]),
+        ];
+        let sign = zero.splat(match self.scalar.entry().quantity.better {
+            Better::Higher => 1.0,
+            Better::Lower => -1.0,
+        });
+        let set = ScalarSet::default().with(self.scalar);
+        let (mut least, mut least_index) = (zero.splat(f64::INFINITY), zero);
+        let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
+        for ((x, y), index) in xs.iter().zip(ys).zip(Lanes::<S>::column(self.indices)) {
+            let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
+            let mut scalars = PoseScalars::splat(zero);
+            self.checker.fill_on_demand(set, position, &arms, &mut scalars);
+            let value = scalars[self.scalar] * sign;
+            let smaller = least.exceeds(value);
+            least = value.select(smaller, least);
+            least_index = Lanes::load(simd, index).select(smaller, least_index);
+        }
+        Minimum::over_lanes(least, least_index)
+    }
+}
+
+impl Minimum {
+    const NONE: Minimum = Minimum {
+        value: f64::INFINITY,
+        index: 0,
+    };
+
+    /// Returns the smallest of the values in all lanes, with the smallest index among equals.
+    #[inline(always)]
+    fn over_lanes<S: Simd>(value: Lanes<S>, index: Lanes<S>) -> Self {
+        let mut lanes = [[0.0; MAX_LANES]; 2];
+        value.store(&mut Lanes::<S>::column_mut(&mut lanes[0])[0]);
+        index.store(&mut Lanes::<S>::column_mut(&mut lanes[1])[0]);
+        let mut minimum = Self::NONE;
+        for lane in 0..Lanes::<S>::COUNT {
+            let (value, index) = (lanes[0][lane], lanes[1][lane] as usize);
+            if value < minimum.value || (value == minimum.value && index < minimum.index) {
+                minimum = Minimum { value, index };
+            }
+        }
+        minimum
     }
 }
 
@@ -186,8 +238,8 @@ impl<L: Leg> PoseChecker<L> {
         marks: Option<&mut [f64]>,
     ) -> usize {
         macro_rules! run {
-            ($further:literal) => {
-                self.instructions.run(Feasible::<L, $further> {
+            ($all:literal) => {
+                self.instructions.run(Feasible::<L, $all> {
                     checker: self,
                     oriented,
                     xs,
@@ -197,7 +249,11 @@ impl<L: Leg> PoseChecker<L> {
                 })
             };
         }
-        if self.thresholds.further.is_some() {
+        if self
+            .thresholds
+            .iter()
+            .any(|(scalar, _)| !EXAMINED_ALWAYS.contains(&scalar))
+        {
             run!(true)
         } else {
             run!(false)
@@ -223,6 +279,27 @@ impl<L: Leg> PoseChecker<L> {
             ys,
             indices,
             clearance,
+        })
+    }
+
+    /// Returns the worst value of a scalar that is computed on demand over many positions in one orientation, as [`Self::smallest`]
+    /// does for the others, and with its sign reversed where smaller values are better.
+    pub(crate) fn worst(
+        &self,
+        scalar: PoseScalar,
+        arms: &[DVec2; LEGS],
+        xs: &[f64],
+        ys: &[f64],
+        indices: &[f64],
+    ) -> Minimum {
+        assert!(xs.len() == ys.len() && xs.len() == indices.len() && xs.len().is_multiple_of(MAX_LANES));
+        self.instructions.run(Worst {
+            checker: self,
+            arms,
+            scalar,
+            xs,
+            ys,
+            indices,
         })
     }
 }

@@ -3,13 +3,12 @@
 use glam::DVec2;
 use pulp::{Simd, WithSimd};
 
-use super::further::FurtherValues;
-use super::{PoseChecker, PoseLanes, PoseValues, Thresholds};
-use crate::clearance::NUMBER_LIMIT;
 use crate::lanes::{Lanes, MAX_LANES, Planar, Real, padded_length};
 use crate::mechanism::Leg;
-use crate::spatial::LEGS;
-use crate::stiffness::StiffnessValues;
+use crate::pose::{
+    Better, PoseChecker, PoseLanes, PoseScalar, PoseScalars, PoseValues, ScalarSet, Thresholds, finite, is_within,
+};
+use crate::spatial::{LEGS, NUMBER_LIMIT};
 
 /// Positions, one column for each component.
 #[derive(Debug, Default)]
@@ -45,6 +44,11 @@ impl Positions {
         self.ys.truncate(count);
     }
 
+    /// Returns the indices of the positions, with those of the padding, as numbers.
+    pub fn indices(&self) -> Vec<f64> {
+        (0..self.xs.len()).map(|index| index as f64).collect()
+    }
+
     /// Pads the columns to the length that loops read. The padding repeats the first position, which changes no
     /// smallest value.
     pub fn pad(&mut self) {
@@ -55,40 +59,22 @@ impl Positions {
     }
 }
 
-/// Values at many poses, one padded column for each quantity.
+/// Scalars at many poses, one padded column for each; those that were not computed have no column.
 #[derive(Debug, Clone, Default)]
 pub struct ValueColumns {
-    /// 1 where every leg reaches the pose, 0 elsewhere; there only `limit_margin` is meaningful.
+    /// 1 where every leg reaches the pose, 0 elsewhere; there only the limit margin is meaningful.
     reachable: Vec<f64>,
-    limit_margin: Vec<f64>,
-    determinant: Vec<f64>,
-    inverse_condition: Vec<f64>,
-    k_xy: Vec<f64>,
-    k_z: Vec<f64>,
-    k_phi_z: Vec<f64>,
-    /// Empty if no clearance is required.
-    clearance: Vec<f64>,
-    /// Transmission and displacement; empty if no limit of further values is required.
-    further: [Vec<f64>; 2],
+    scalars: PoseScalars<Vec<f64>>,
+    computed: ScalarSet,
 }
 
 impl ValueColumns {
-    fn resize(&mut self, length: usize, thresholds: &Thresholds) {
-        let length_if = |required: bool| if required { length } else { 0 };
-        self.clearance.resize(length_if(thresholds.clearance.is_some()), 0.0);
-        for column in &mut self.further {
-            column.resize(length_if(thresholds.further.is_some()), 0.0);
-        }
-        for column in [
-            &mut self.reachable,
-            &mut self.limit_margin,
-            &mut self.determinant,
-            &mut self.inverse_condition,
-            &mut self.k_xy,
-            &mut self.k_z,
-            &mut self.k_phi_z,
-        ] {
-            column.resize(length, 0.0);
+    fn resize(&mut self, length: usize, computed: ScalarSet) {
+        self.computed = computed;
+        self.reachable.resize(length, 0.0);
+        for &scalar in PoseScalar::ALL {
+            let length = if computed.contains(scalar) { length } else { 0 };
+            self.scalars[scalar].resize(length, 0.0);
         }
     }
 
@@ -97,99 +83,76 @@ impl ValueColumns {
     /// # Errors
     /// Returns the limit margin \[m\], which is at most 0, if a leg does not reach the pose.
     pub fn get(&self, index: usize) -> Result<PoseValues, f64> {
+        let number = |scalar: PoseScalar| self.scalars[scalar].get(index).copied().unwrap_or(f64::NAN);
         if self.reachable[index] == 0.0 {
             // Where the distance is beyond the number range, `-NUMBER_LIMIT` is reported instead.
-            let limit_margin = self.limit_margin[index];
+            let limit_margin = number(PoseScalar::Reach);
             return Err(if limit_margin > -NUMBER_LIMIT {
                 limit_margin.min(0.0)
             } else {
                 -NUMBER_LIMIT
             });
         }
-        Ok(PoseValues {
-            limit_margin: self.limit_margin[index],
-            determinant: self.determinant[index],
-            inverse_condition: self.inverse_condition[index],
-            stiffness_values: StiffnessValues {
-                k_xy: self.k_xy[index],
-                k_z: self.k_z[index],
-                k_phi_z: self.k_phi_z[index],
-            },
-            clearance: self.clearance.get(index).copied(),
-            further: self.further[0].get(index).map(|&transmission| FurtherValues {
-                transmission,
-                displacement: self.further[1][index],
-            }),
+        Ok(PoseValues::new(PoseScalars::from_fn(number), self.computed))
+    }
+
+    /// Returns whether the pose `index` is reached, has the sign `sign` of `det A` or any other than 0 if there is none yet, and keeps
+    /// limits of scalars that were computed; notes its sign.
+    pub(crate) fn keeps(&self, index: usize, limits: &[(PoseScalar, f64)], sign: &mut Option<f64>) -> bool {
+        if self.reachable[index] == 0.0 {
+            return false;
         }
-        .finite())
-    }
-
-    /// Returns the ratios of `k_xy`, `k_z` and `k_φz` to their thresholds at the first `count` poses, one column each.
-    /// A ratio is `f64::MAX` where a leg does not reach the pose, because it is not the stiffness that is insufficient
-    /// there.
-    pub(crate) fn stiffness_ratios(&self, thresholds: &Thresholds, count: usize) -> [Vec<f64>; 3] {
-        [
-            (&self.k_xy, thresholds.k_xy),
-            (&self.k_z, thresholds.k_z),
-            (&self.k_phi_z, thresholds.k_phi_z),
-        ]
-        .map(|(column, threshold)| {
-            column
+        let value = |scalar: PoseScalar| finite(scalar, self.scalars[scalar][index]);
+        let determinant = value(PoseScalar::Determinant);
+        determinant != 0.0
+            && *sign.get_or_insert(determinant.signum()) == determinant.signum()
+            && limits
                 .iter()
-                .zip(&self.reachable)
-                .take(count)
-                .map(|(value, reachable)| {
-                    // If one operand is NaN, `max` returns the other one.
-                    let fraction = (value / threshold.max(f64::MIN_POSITIVE)).max(0.0);
-                    if *reachable > 0.0 {
-                        fraction.min(f64::MAX)
-                    } else {
-                        f64::MAX
-                    }
-                })
-                .collect()
-        })
+                .all(|&(scalar, limit)| is_within(scalar, value(scalar), limit))
     }
 
-    /// Returns the inverse condition numbers; meaningless where a leg does not reach the pose.
-    pub(crate) fn inverse_conditions(&self) -> &[f64] {
-        &self.inverse_condition
-    }
-
-    /// Returns the ratios of the displacement allowed to that at the first `count` poses, as [`Self::stiffness_ratios`] does
-    /// for the stiffness; none if the study does not bound the displacement.
-    pub(crate) fn displacement_ratios(&self, thresholds: &Thresholds, count: usize) -> Vec<f64> {
-        let Some(limit) = thresholds.further.and_then(|further| further.displacement) else {
-            return Vec::new();
+    /// Returns the ratio of a scalar to its threshold at the first `count` poses, or of the threshold to the scalar where smaller
+    /// values are better. It is `f64::MAX` where a leg does not reach the pose, because it is not this scalar that is insufficient
+    /// there.
+    fn ratios(&self, scalar: PoseScalar, threshold: f64, count: usize) -> Vec<f64> {
+        let better = scalar.entry().quantity.better;
+        let ratio = |value: f64| match better {
+            // If one operand is NaN, `max` returns the other one.
+            Better::Higher => (value / threshold.max(f64::MIN_POSITIVE)).max(0.0),
+            Better::Lower => threshold / value,
         };
-        let ratio = |(displacement, reachable): (&f64, &f64)| {
-            if *reachable > 0.0 {
-                (limit / displacement).min(f64::MAX)
-            } else {
-                f64::MAX
-            }
-        };
-        self.further[1]
-            .iter()
-            .zip(&self.reachable)
-            .take(count)
-            .map(ratio)
+        let column = self.scalars[scalar].iter().zip(&self.reachable).take(count);
+        column
+            .map(|(value, reachable)| {
+                if *reachable > 0.0 {
+                    ratio(*value).min(f64::MAX)
+                } else {
+                    f64::MAX
+                }
+            })
             .collect()
+    }
+
+    /// Returns these ratios for the limited scalars that thicker bars improve, one column each.
+    pub(crate) fn bar_ratios(&self, thresholds: &Thresholds, count: usize) -> Vec<Vec<f64>> {
+        thresholds
+            .iter()
+            .filter(|(scalar, _)| scalar.entry().is_of_bars)
+            .map(|(scalar, threshold)| self.ratios(scalar, threshold, count))
+            .collect()
+    }
+
+    /// Returns the column of a scalar, which is empty if it was not computed; meaningless where a leg does not reach the pose.
+    pub(crate) fn column(&self, scalar: PoseScalar) -> &[f64] {
+        &self.scalars[scalar]
     }
 
     #[inline(always)]
     fn writer<S: Simd>(&mut self) -> ColumnWriter<'_, S> {
-        let [transmission, displacement] = &mut self.further;
         ColumnWriter {
             reachable: Lanes::<S>::column_mut(&mut self.reachable),
-            limit_margin: Lanes::<S>::column_mut(&mut self.limit_margin),
-            determinant: Lanes::<S>::column_mut(&mut self.determinant),
-            inverse_condition: Lanes::<S>::column_mut(&mut self.inverse_condition),
-            k_xy: Lanes::<S>::column_mut(&mut self.k_xy),
-            k_z: Lanes::<S>::column_mut(&mut self.k_z),
-            k_phi_z: Lanes::<S>::column_mut(&mut self.k_phi_z),
-            clearance: Lanes::<S>::column_mut(&mut self.clearance),
-            further: [transmission, displacement].map(|column| Lanes::<S>::column_mut(column)),
+            scalars: self.scalars.each_mut().map(|column| Lanes::<S>::column_mut(column)),
+            computed: self.computed,
         }
     }
 }
@@ -199,33 +162,20 @@ type Group<S> = [<S as Simd>::f64s; 2];
 
 struct ColumnWriter<'a, S: Simd> {
     reachable: &'a mut [Group<S>],
-    limit_margin: &'a mut [Group<S>],
-    determinant: &'a mut [Group<S>],
-    inverse_condition: &'a mut [Group<S>],
-    k_xy: &'a mut [Group<S>],
-    k_z: &'a mut [Group<S>],
-    k_phi_z: &'a mut [Group<S>],
-    clearance: &'a mut [Group<S>],
-    further: [&'a mut [Group<S>]; 2],
+    scalars: PoseScalars<&'a mut [Group<S>]>,
+    computed: ScalarSet,
 }
 
 impl<S: Simd> ColumnWriter<'_, S> {
     #[inline(always)]
-    fn put(&mut self, group: usize, values: PoseLanes<Lanes<S>>) {
-        let (one, zero) = (values.limit_margin.splat(1.0), values.limit_margin.splat(0.0));
+    fn put(&mut self, group: usize, values: &PoseLanes<Lanes<S>>) {
+        let margin = values.scalars[PoseScalar::Reach];
+        let (one, zero) = (margin.splat(1.0), margin.splat(0.0));
         one.select(values.reachable, zero).store(&mut self.reachable[group]);
-        values.limit_margin.store(&mut self.limit_margin[group]);
-        values.determinant.store(&mut self.determinant[group]);
-        values.inverse_condition.store(&mut self.inverse_condition[group]);
-        values.k_xy.store(&mut self.k_xy[group]);
-        values.k_z.store(&mut self.k_z[group]);
-        values.k_phi_z.store(&mut self.k_phi_z[group]);
-        if let Some(clearance) = values.clearance {
-            clearance.store(&mut self.clearance[group]);
-        }
-        if let Some(further) = values.further {
-            further.transmission.store(&mut self.further[0][group]);
-            further.displacement.store(&mut self.further[1][group]);
+        for &scalar in PoseScalar::ALL {
+            if self.computed.contains(scalar) {
+                values.scalars[scalar].store(&mut self.scalars[scalar][group]);
+            }
         }
     }
 }
@@ -323,6 +273,7 @@ impl<L: Leg> WithSimd for AtPoses<'_, L> {
                 )
             }
         };
+        let computed = self.values.computed;
         let mut writer = self.values.writer::<S>();
         for group in 0..xs.len() {
             let position = Planar::new(Lanes::load(simd, &xs[group]), Lanes::load(simd, &ys[group]));
@@ -333,7 +284,7 @@ impl<L: Leg> WithSimd for AtPoses<'_, L> {
                     Planar::new(Lanes::load(simd, &x2[group]), Lanes::load(simd, &y2[group])),
                 ];
             }
-            writer.put(group, self.checker.lanes(position, &arms));
+            writer.put(group, &self.checker.lanes(position, &arms, computed));
         }
     }
 }
@@ -353,7 +304,7 @@ impl<L: Leg> PoseChecker<L> {
 
     fn run_at_poses(&self, xs: &[f64], ys: &[f64], arms: PoseArms<'_>, values: &mut ValueColumns) {
         assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MAX_LANES));
-        values.resize(xs.len(), &self.thresholds);
+        values.resize(xs.len(), self.computed);
         self.instructions.run(AtPoses {
             checker: self,
             xs,

@@ -1,27 +1,50 @@
-//! The values of one design at poses, for callers that are not written over the type of its legs.
+//! The scalars of one design at poses, whatever its legs are.
 
 use glam::DVec2;
 
-use super::{PoseChecker, PoseValues, ValueColumns};
-use crate::lanes::Planar;
+use super::ValueColumns;
+use crate::kinematics::Jacobian;
+use crate::lanes::{InstructionSet, Planar};
 use crate::mechanism::{Leg, ReachReason};
-use crate::spatial::{LEGS, Rotation};
+use crate::pose::{PoseChecker, PoseScalar, PoseValues, Thresholds};
+use crate::spatial::{LEGS, NUMBER_LIMIT, Rotation};
 
-/// Computes the values of one design at poses, whatever its legs are.
+/// One design, prepared for evaluation at many poses, whatever its legs are.
 ///
-/// A [`PoseChecker`] does the same for callers that know the type of the legs. Its loops are compiled once more, for every type and
-/// every instruction set, in each crate that calls them; through this trait, all crates share those of this one.
+/// The loops over poses are compiled for every type of legs and every instruction set once, in this crate; all others use them
+/// through this trait. A position that a leg does not reach has no values but its limit margin \[m\], which is at most 0.
 pub trait PoseEvaluator: Sync {
     /// Returns `C_i − P` in base axes \[m\] at the platform orientation `rotation`.
     fn arms(&self, rotation: &Rotation) -> [DVec2; LEGS];
+
+    /// Returns the limits of the scalars.
+    fn thresholds(&self) -> &Thresholds;
+
+    /// Computes a scalar besides those that every evaluation determines and those that are limited.
+    fn ask_for(&mut self, scalar: PoseScalar);
+
+    /// Selects an instruction set, which changes no bit of a result.
+    fn use_instructions(&mut self, instructions: InstructionSet);
 
     /// Computes the values at many positions \[m\] in the orientation of `arms`. The columns have equal lengths, a multiple of
     /// [`MAX_LANES`](crate::lanes::MAX_LANES).
     fn evaluate_positions(&self, arms: &[DVec2; LEGS], xs: &[f64], ys: &[f64], values: &mut ValueColumns);
 
-    /// Returns the values at one position \[m\], which are those of [`PoseEvaluator::evaluate_positions`] to the bit; `None` if a
-    /// leg does not reach it.
-    fn evaluate_position(&self, arms: &[DVec2; LEGS], position: DVec2) -> Option<PoseValues>;
+    /// Returns the values at one position \[m\], which are those of [`PoseEvaluator::evaluate_positions`] to the bit.
+    ///
+    /// # Errors
+    /// The limit margin of a position that is not reached.
+    fn evaluate_position(&self, arms: &[DVec2; LEGS], position: DVec2) -> Result<PoseValues, f64>;
+
+    /// Returns the values at one position \[m\] by the closed form as it is defined, with which the others are compared.
+    ///
+    /// # Errors
+    /// The limit margin of a position that is not reached.
+    fn evaluate_plainly(&self, arms: &[DVec2; LEGS], position: DVec2) -> Result<PoseValues, f64>;
+
+    /// Returns the sign of `det A` at a position \[m\] by the closed form as it is defined, if the pose is feasible in every other
+    /// respect.
+    fn feasible_sign(&self, arms: &[DVec2; LEGS], position: DVec2) -> Option<f64>;
 
     /// Returns whether every leg reaches a position \[m\].
     fn reaches(&self, arms: &[DVec2; LEGS], position: DVec2) -> bool;
@@ -38,12 +61,44 @@ impl<L: Leg> PoseEvaluator for PoseChecker<L> {
         self.manipulator.arms(rotation)
     }
 
+    fn thresholds(&self) -> &Thresholds {
+        &self.thresholds
+    }
+
+    fn ask_for(&mut self, scalar: PoseScalar) {
+        PoseChecker::ask_for(self, scalar);
+    }
+
+    fn use_instructions(&mut self, instructions: InstructionSet) {
+        self.instructions = instructions;
+    }
+
     fn evaluate_positions(&self, arms: &[DVec2; LEGS], xs: &[f64], ys: &[f64], values: &mut ValueColumns) {
         self.at_positions(arms, xs, ys, values);
     }
 
-    fn evaluate_position(&self, arms: &[DVec2; LEGS], position: DVec2) -> Option<PoseValues> {
-        self.lanes(position.into(), &arms.map(Planar::from)).reached()
+    #[expect(
+        clippy::manual_clamp,
+        reason = "a margin that is not a number becomes the largest shortfall"
+    )]
+    fn evaluate_position(&self, arms: &[DVec2; LEGS], position: DVec2) -> Result<PoseValues, f64> {
+        let computed = self.computed;
+        let found = self.lanes(position.into(), &arms.map(Planar::from), computed);
+        if found.reachable {
+            Ok(PoseValues::new(found.scalars, computed))
+        } else {
+            Err(found.scalars[PoseScalar::Reach].max(-NUMBER_LIMIT).min(0.0))
+        }
+    }
+
+    fn evaluate_plainly(&self, arms: &[DVec2; LEGS], position: DVec2) -> Result<PoseValues, f64> {
+        let posture = self.manipulator.posture_at(position, arms);
+        let posture = posture.map_err(|(_, shortfall)| shortfall.limit_margin)?;
+        Ok(self.values_at(position, &posture, &Jacobian::new(&posture), self.computed))
+    }
+
+    fn feasible_sign(&self, arms: &[DVec2; LEGS], position: DVec2) -> Option<f64> {
+        PoseChecker::feasible_sign(self, position, arms)
     }
 
     fn reaches(&self, arms: &[DVec2; LEGS], position: DVec2) -> bool {

@@ -7,7 +7,6 @@
 use glam::DVec2;
 
 use super::WorkspaceSampling;
-use crate::mechanism::{Leg, Manipulator};
 use crate::spatial::{LEGS, Rotation, unit};
 
 /// Workspace radius and the radii of all windows.
@@ -22,10 +21,11 @@ pub struct PlainWorkspace {
 
 /// Marches all rays and returns the radii of all windows.
 ///
+/// `arms_at` returns `C_i − P` in base axes \[m\] at an orientation of the platform.
 /// `feasible_sign` returns the sign of `det A` for a position of `P` and the arms of an orientation if the pose is
 /// feasible, otherwise `None`. `step_base` is the base radius `R`, of which the ray step is a fraction.
-pub fn plain<L: Leg>(
-    manipulator: &Manipulator<L>,
+pub fn plain(
+    arms_at: impl Fn(&Rotation) -> [DVec2; LEGS],
     sampling: &WorkspaceSampling,
     step_base: f64,
     feasible_sign: impl Fn(DVec2, &[DVec2; LEGS]) -> Option<f64>,
@@ -35,7 +35,7 @@ pub fn plain<L: Leg>(
     let step = step_base / grid.ray_steps() as f64;
     let rays: Vec<(f64, f64)> = (0..count)
         .map(|k| {
-            let arms = manipulator.arms(&Rotation::new((k as f64 * grid.phi_step_deg()).to_radians()));
+            let arms = arms_at(&Rotation::new((k as f64 * grid.phi_step_deg()).to_radians()));
             let Some(sign) = feasible_sign(spec.centre, &arms) else {
                 return (0.0, 0.0);
             };

@@ -10,9 +10,11 @@ use super::batch::OrientationLanes;
 use super::columns::Positions;
 use super::region::{RegionPositions, directions};
 use super::regular::{Orientation, RegularWorkspace, orientations};
-use super::{Grid, PoseChecker, Region, ValueColumns, WorkspaceSampling, WorkspaceSpec};
+use super::{Grid, Region, ValueColumns, WorkspaceSampling, WorkspaceSpec};
 use crate::lanes::{Lanes, MAX_LANES, Planar, Real};
 use crate::mechanism::Leg;
+use crate::pose::{Better, EXAMINED_ALWAYS, MarginUnit, PoseChecker, PoseScalar, ScalarSet};
+use crate::spatial::LEGS;
 
 /// Margin of a window that a singularity cuts: as if a constraint were missed entirely.
 const CUT: f64 = -1.0;
@@ -191,9 +193,13 @@ pub fn search_prescribed<L: Leg>(
 /// Returns the sign of `det A` in each orientation; that of an unreachable pose is positive, which makes no difference.
 fn signs(values: &ValueColumns, count: usize) -> Vec<f64> {
     let sign = |k: usize| {
-        values
-            .get(k)
-            .map_or(1.0, |values| if values.determinant < 0.0 { -1.0 } else { 1.0 })
+        values.get(k).map_or(1.0, |values| {
+            if values[PoseScalar::Determinant] < 0.0 {
+                -1.0
+            } else {
+                1.0
+            }
+        })
     };
     (0..count).map(sign).collect()
 }
@@ -214,10 +220,13 @@ impl<L: Leg> WithSimd for WorstMargin<'_, L> {
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let (arms, sign) = self.oriented.lanes(simd);
         let mut least = sign.splat(f64::INFINITY);
+        let limited = self.checker.computed;
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         for (x, y) in xs.iter().zip(ys) {
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            let margin = self.checker.margin_lanes(position, &arms, sign, self.base_radius);
+            let margin = self
+                .checker
+                .margin_lanes(position, &arms, sign, self.base_radius, limited);
             least = margin.smaller(least);
         }
         let mut lanes = [0.0; MAX_LANES];
@@ -240,59 +249,72 @@ impl<L: Leg> PoseChecker<L> {
         })
     }
 
-    /// Returns the worst margin of the required constraints at several poses at once, no less than −1, and less than −1 where a
-    /// leg does not reach the pose. Margins of lengths are divided by `base_radius`.
+    /// Returns the worst margin of the limits at several poses at once, no less than −1, and less than −1 where a leg does not reach
+    /// the pose. Margins of lengths are divided by `base_radius`. `set` are the scalars that are limited.
     #[inline(always)]
-    fn margin_lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; 3], sign: V, base_radius: f64) -> V {
-        let (values, distals) = self.lanes_without_clearance(position, arms);
-        let least = &self.thresholds;
+    fn margin_lanes<V: Real>(
+        &self,
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
+        sign: V,
+        base_radius: f64,
+        set: ScalarSet,
+    ) -> V {
+        let (mut values, distals) = self.core_lanes(position, arms);
+        let scalars = &mut values.scalars;
         let none = sign.splat(-1.0);
         let per_length = sign.splat(1.0 / base_radius);
         // A margin that is not a number counts as a constraint that is missed entirely.
-        let mut worst = (values.limit_margin * per_length).larger(none);
+        let mut worst = (scalars[PoseScalar::Reach] * per_length).larger(none);
         let unreached = none + worst.smaller(sign.splat(0.0));
-        macro_rules! lower {
-            ($value:expr, $threshold:expr) => {
-                let threshold = $threshold;
-                let margin = if threshold > 0.0 {
-                    ($value - sign.splat(threshold)) * sign.splat(1.0 / threshold)
-                } else {
-                    $value - sign.splat(threshold)
-                };
-                worst = worst.smaller(margin.larger(none));
-            };
+        for scalar in [
+            PoseScalar::Dexterity,
+            PoseScalar::StiffnessXy,
+            PoseScalar::StiffnessPhiZ,
+            PoseScalar::StiffnessZ,
+        ] {
+            let margin = limit_margin(scalar, scalars[scalar], self.thresholds.bound(scalar), per_length);
+            worst = worst.smaller(margin.larger(none));
         }
-        lower!(values.inverse_condition, least.inverse_condition);
-        lower!(values.k_xy, least.k_xy);
-        lower!(values.k_phi_z, least.k_phi_z);
-        lower!(values.k_z, least.k_z);
         // The determinant must not vanish, so that a margin of 0 is one that is missed.
-        let determinant = values.determinant * sign;
+        let determinant = scalars[PoseScalar::Determinant] * sign;
         let vanishing = sign.splat(-f64::MIN_POSITIVE);
         worst = worst.smaller(
             determinant
                 .select(determinant.exceeds(sign.splat(0.0)), determinant.smaller(vanishing))
                 .larger(none),
         );
-        if let Some(further) = &least.further {
-            let found = self.further_lanes(position, arms);
-            if let Some(limit) = further.limit_margin {
-                worst = worst.smaller(((values.limit_margin - sign.splat(limit)) * per_length).larger(none));
-            }
-            if let Some(limit) = further.transmission {
-                lower!(found.transmission, limit);
-            }
-            if let Some(limit) = further.displacement {
-                let margin = (sign.splat(limit) - found.displacement) * sign.splat(1.0 / limit);
+        self.fill_on_demand(set, position, arms, scalars);
+        for &scalar in PoseScalar::ALL {
+            if let Some(threshold) = self.thresholds.get(scalar)
+                && !EXAMINED_ALWAYS.contains(&scalar)
+            {
+                let margin = limit_margin(scalar, scalars[scalar], threshold, per_length);
                 worst = worst.smaller(margin.larger(none));
             }
         }
-        if let Some(threshold) = least.clearance {
+        if let Some(threshold) = self.thresholds.get(PoseScalar::Clearance) {
             let limit = worst * sign.splat(base_radius) + sign.splat(threshold);
             let limit = limit.select(values.reachable, sign.splat(f64::NEG_INFINITY));
             let clearance = self.compute_clearance_apart(position, arms, &distals, limit);
             worst = worst.smaller(((clearance - sign.splat(threshold)) * per_length).larger(none));
         }
         worst.select(values.reachable, unreached)
+    }
+}
+
+/// Returns the margin of a limit at several poses at once, as [`PoseScalar::margin`] defines it; infinite without a limit.
+#[inline(always)]
+fn limit_margin<V: Real>(scalar: PoseScalar, value: V, threshold: f64, per_length: V) -> V {
+    let entry = scalar.entry();
+    let limit = value.splat(threshold);
+    let excess = match entry.quantity.better {
+        Better::Higher => value - limit,
+        Better::Lower => limit - value,
+    };
+    match entry.margin {
+        MarginUnit::BaseRadius => excess * per_length,
+        MarginUnit::Threshold if threshold > 0.0 => excess * value.splat(1.0 / threshold),
+        MarginUnit::Threshold => excess,
     }
 }

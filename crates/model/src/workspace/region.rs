@@ -32,7 +32,7 @@ pub enum Region {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polygon(Arc<[DVec2]>);
 
-/// Why corners are no polygon.
+/// Why corners do not form a polygon.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PolygonError {
     /// Fewer than three corners.

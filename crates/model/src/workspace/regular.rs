@@ -13,22 +13,10 @@ use glam::DVec2;
 use super::batch::OrientationLanes;
 use super::region::directions;
 use super::rings::{Reach, Rings};
-use super::{ArmColumns, Grid, OrientationGrid, PoseChecker, Region, ValueColumns, WorkspaceSampling};
+use super::{ArmColumns, Grid, OrientationGrid, ValueColumns, WorkspaceSampling};
 use crate::mechanism::Leg;
+use crate::pose::{PoseChecker, PoseScalar};
 use crate::spatial::{LEGS, Rotation};
-
-/// Centre, rotation range and home orientation of the regular workspace (docs/model.md, sections 7.1 and 11).
-#[derive(Debug, Clone, PartialEq)]
-pub struct WorkspaceSpec {
-    /// Region of positions about the centre.
-    pub region: Region,
-    /// Rotation range `Δφ` \[deg\].
-    pub rotation_range_deg: f64,
-    /// Centre of the region in the base frame \[m\].
-    pub centre: DVec2,
-    /// Home orientation `φ_c` \[deg\] if it is prescribed; `None` selects the best one.
-    pub home_phi_deg: Option<f64>,
-}
 
 /// An orientation of the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,12 +72,11 @@ pub(super) fn orientations<L: Leg>(
         .collect();
     let arms = ArmColumns::new(orientations.iter().map(|orientation| orientation.arms));
     let centres = checker.in_orientations(centre, &arms);
+    let limits: Vec<(PoseScalar, f64)> = checker.thresholds.iter().collect();
     for (index, orientation) in orientations.iter_mut().enumerate() {
-        orientation.centre_sign = centres
-            .get(index)
-            .ok()
-            .filter(|values| values.determinant != 0.0 && checker.thresholds.are_met_by(values))
-            .map(|values| values.determinant.signum());
+        let mut sign = None;
+        let is_feasible = centres.keeps(index, &limits, &mut sign);
+        orientation.centre_sign = sign.filter(|_| is_feasible);
     }
     (orientations, centres)
 }

@@ -9,8 +9,9 @@
 use glam::DVec2;
 
 use super::batch::OrientationLanes;
-use super::{Grid, PoseChecker, Positions};
+use super::{Grid, Positions};
 use crate::mechanism::Leg;
+use crate::pose::PoseChecker;
 
 /// Directions and step of all rays, with a buffer for the positions of a few rings.
 #[derive(Debug)]

@@ -3,11 +3,11 @@
 use kinefront_model::certify::{Certificate, CertifyOptions, Verdict};
 use kinefront_model::clearance::Layers;
 use kinefront_model::enclosure::{Interval, PoseEnclosure, TaylorModel};
-use kinefront_model::evaluation::{Constraint, GridChoice, Model};
+use kinefront_model::evaluation::{Constraint, GridChoice, Model, PoseScalar};
 use kinefront_model::kinematics::CharacteristicLength;
-use kinefront_model::mechanism::{Design, WorkingMode};
+use kinefront_model::mechanism::{CrossSection, Design, WorkingMode};
 use kinefront_model::spatial::Pose;
-use kinefront_model::stiffness::{CrossSection, RailSettings, RailSupports, StiffnessDefinition};
+use kinefront_model::stiffness::{RailSettings, RailSupports, StiffnessDefinition};
 use proptest::prelude::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -196,12 +196,12 @@ fn other_models() -> Vec<(&'static str, Model)> {
         ),
         (
             "a clearance in the layers by default",
-            model(|settings| settings.thresholds.clearance = Some(0.005)),
+            model(|settings| settings.thresholds.set(PoseScalar::Clearance, Some(0.005))),
         ),
         (
             "a clearance in one plane",
             model(|settings| {
-                settings.thresholds.clearance = Some(0.005);
+                settings.thresholds.set(PoseScalar::Clearance, Some(0.005));
                 settings.bodies.layers = Layers::ONE_PLANE;
             }),
         ),
@@ -365,13 +365,13 @@ fn other_studies_are_certified() {
         let evaluation = model.evaluate(&design, GridChoice::Fine);
         let options = CertifyOptions {
             phi_deg: evaluation.home_phi_deg.expect("a home"),
-            claimed_radius: evaluation.workspace_radius,
+            claimed_radius: evaluation.workspace_radius(),
             ..CertifyOptions::default()
         };
         let found = model.certify(&design, &options).expect("a certificate");
         let upper = found.upper.expect("an infeasible pose");
-        println!("{} claimed, [{}, {upper}]", evaluation.workspace_radius, found.lower);
-        assert!((upper / evaluation.workspace_radius - 1.0).abs() < 0.01);
+        println!("{} claimed, [{}, {upper}]", evaluation.workspace_radius(), found.lower);
+        assert!((upper / evaluation.workspace_radius() - 1.0).abs() < 0.01);
         assert!(found.is_closed(1e-4));
     }
     let far = CertifyOptions {
@@ -396,12 +396,12 @@ fn other_definitions_are_certified() {
         .into_par_iter()
         .map(|(name, model, design)| {
             let evaluation = model.evaluate(&design, GridChoice::Fine);
-            let Some(phi_deg) = evaluation.home_phi_deg.filter(|_| evaluation.workspace_radius > 0.0) else {
+            let Some(phi_deg) = evaluation.home_phi_deg.filter(|_| evaluation.workspace_radius() > 0.0) else {
                 return false;
             };
             let options = CertifyOptions {
                 phi_deg,
-                claimed_radius: evaluation.workspace_radius,
+                claimed_radius: evaluation.workspace_radius(),
                 max_boxes: 50_000,
                 ..CertifyOptions::default()
             };
@@ -410,14 +410,14 @@ fn other_definitions_are_certified() {
             let violation = found.violation.expect("an infeasible pose");
             println!(
                 "{name}, {design}: {} claimed, [{}, {upper}] by {}, {} boxes, {:?}",
-                evaluation.workspace_radius,
+                evaluation.workspace_radius(),
                 found.lower,
                 violation.constraint.id(),
                 found.boxes,
                 found.verdict
             );
             assert!(model.margin_at(&design, &violation.pose, violation.constraint) < 1e-12);
-            assert!(upper < 1.01 * evaluation.workspace_radius);
+            assert!(upper < 1.01 * evaluation.workspace_radius());
             for pose in random_poses(&model, found.lower, phi_deg, POSES) {
                 assert!(holds(&model, &design, &pose, -1e-9), "{name}, {design}: {pose:?}");
             }
@@ -474,10 +474,10 @@ fn the_bound_of_all_homes_encloses_the_radius() {
 
     // Without thresholds, det A may have another sign at each home: the bound is above the radius of the best one.
     let free = model(|settings| {
-        settings.thresholds.inverse_condition = 0.0;
-        settings.thresholds.k_xy = 0.0;
-        settings.thresholds.k_z = 0.0;
-        settings.thresholds.k_phi_z = 0.0;
+        settings.thresholds.set(PoseScalar::Dexterity, Some(0.0));
+        settings.thresholds.set(PoseScalar::StiffnessXy, Some(0.0));
+        settings.thresholds.set(PoseScalar::StiffnessZ, Some(0.0));
+        settings.thresholds.set(PoseScalar::StiffnessPhiZ, Some(0.0));
     });
     let design: Design = "3-RRR R=1 r=0.4 Lb=1.2 rj=0.03 rp=0.03".parse().expect("a design");
     let best = free.evaluate(&design, GridChoice::Fine);
@@ -520,10 +520,10 @@ fn extreme_settings_are_certified() {
     assert!(wide.upper.expect("an infeasible pose") < paper.lower);
     let free = certify(
         |settings| {
-            settings.thresholds.inverse_condition = 0.0;
-            settings.thresholds.k_xy = 0.0;
-            settings.thresholds.k_z = 0.0;
-            settings.thresholds.k_phi_z = 0.0;
+            settings.thresholds.set(PoseScalar::Dexterity, Some(0.0));
+            settings.thresholds.set(PoseScalar::StiffnessXy, Some(0.0));
+            settings.thresholds.set(PoseScalar::StiffnessZ, Some(0.0));
+            settings.thresholds.set(PoseScalar::StiffnessPhiZ, Some(0.0));
         },
         29.5,
     );

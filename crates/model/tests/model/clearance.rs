@@ -1,15 +1,14 @@
 //! Compares clearances with those of the oracle.
 
 use kinefront_model::clearance::{BodySettings, Layers};
-use kinefront_model::evaluation::{Model, ModelSettings};
-use kinefront_model::mechanism::{Architecture, Arrangement, Design, Leg, WorkingMode};
+use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar};
+use kinefront_model::mechanism::{Architecture, Arrangement, Design, WorkingMode};
 use kinefront_model::spatial::{Pose, Rotation};
-use kinefront_model::with_leg;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::oracle::{Fault, Found, oracle};
 use crate::strategies;
+use kinefront_testkit::oracle::{Fault, Found, oracle};
 
 /// Number of poses of each architecture.
 const POSES: usize = 100_000;
@@ -83,16 +82,11 @@ impl Random {
 
 /// Returns the clearance that evaluations compute, by their loop over poses with a single pose.
 fn in_lanes(model: &Model, design: &Design, pose: &Pose) -> Option<f64> {
-    fn of<L: Leg>(model: &Model, design: &Design, pose: &Pose) -> Option<f64> {
-        let mut checker = model.checker::<L>(design);
-        checker.thresholds.clearance = Some(0.0);
-        let [a, b, c] = checker.manipulator.arms(&Rotation::new(pose.phi));
-        checker
-            .lanes::<f64>(pose.position.into(), &[a.into(), b.into(), c.into()])
-            .reached()?
-            .clearance
-    }
-    with_leg!(design.architecture, L => of::<L>(model, design, pose))
+    let mut evaluator = model.pose_evaluator(design);
+    evaluator.ask_for(PoseScalar::Clearance);
+    let arms = evaluator.arms(&Rotation::new(pose.phi));
+    let values = evaluator.evaluate_position(&arms, pose.position).ok()?;
+    values.get(PoseScalar::Clearance)
 }
 
 /// Compares random poses of random designs; returns the number of poses with an overlap and, for each fault of the
@@ -109,7 +103,7 @@ fn compare(architecture: Architecture, poses: usize, faults: &[Fault]) -> (usize
                 continue;
             };
             // Within rounding of a singularity of a leg, its directions are undefined and the last digits are lost.
-            if report.limit_margin < 1e-9 {
+            if report.values[PoseScalar::Reach] < 1e-9 {
                 continue;
             }
             let Found {
@@ -117,7 +111,7 @@ fn compare(architecture: Architecture, poses: usize, faults: &[Fault]) -> (usize
                 pair,
                 second,
             } = oracle(&model, &design, &pose, &report, Fault::None);
-            let told = report.clearance;
+            let told = report.nearest;
             assert!(
                 (told.distance - wanted).abs() < 1e-9,
                 "{design} at {pose:?}: {} between {:?} instead of {wanted} between {pair:?}",
@@ -224,7 +218,7 @@ fn touching_is_zero() {
             design.leg_bar_radius = 0.01;
             let clearance = |design: &Design| {
                 let report = model.pose(design, &pose).ok()?;
-                Some(report.clearance)
+                Some(report.nearest)
             };
             // Only pairs of legs: both radii are r_j, and no other pair may become the nearest as r_j grows.
             let legs = |pair: [String; 2]| {

@@ -1,11 +1,10 @@
 //! Compares the closed form of the stiffness with the general 6×6 form.
 
 use kinefront_model::kinematics::Jacobian;
-use kinefront_model::mechanism::{AnyLeg, Design, LegPosture, LegSettings, Manipulator};
+use kinefront_model::mechanism::{AnyLeg, CrossSections, Design, LegPosture, LegSettings, Manipulator};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::{
-    ActuatorStiffness, CrossSections, Material, PlanarStiffness, RailSettings, StiffnessDefinition, StiffnessModel,
-    joint_model,
+    ActuatorStiffness, Material, PlanarStiffness, RailSettings, StiffnessDefinition, StiffnessModel, joint_model,
 };
 use nalgebra::{Matrix2, Matrix6};
 use proptest::prelude::*;

@@ -1,9 +1,9 @@
 //! Every chain and driven joint, compared with values from an independent program (tests/fixtures/README.md).
 
-use kinefront_model::evaluation::{GridChoice, Model, ModelSettings};
+use kinefront_model::evaluation::{GridChoice, Model, ModelSettings, PoseScalar};
 use kinefront_model::kinematics::Jacobian;
 use kinefront_model::mechanism::{
-    AnyLeg, Architecture, Arrangement, Design, FURTHER_VARIABLES, Leg, LegSettings, Manipulator, WorkingMode,
+    AnyLeg, Architecture, Arrangement, Design, FURTHER_VARIABLES, LegSettings, Manipulator, WorkingMode,
 };
 use kinefront_model::stiffness::StiffnessDefinition;
 use serde_json::Value;
@@ -118,14 +118,14 @@ fn stiffness_agrees() {
         let compliant = model(&case, |model| {
             model.stiffness_definition = StiffnessDefinition::Compliance
         });
-        let free = compliant.pose(&design, &pose).expect("reachable").stiffness_values;
+        let free = compliant.pose(&design, &pose).expect("reachable").values;
         for (value, key) in [
-            (report.stiffness_values.k_xy, "k_xy"),
-            (report.stiffness_values.k_z, "k_z"),
-            (report.stiffness_values.k_phi_z, "k_phi_z"),
-            (free.k_xy, "k_xy_compliance"),
-            (free.k_z, "k_z_compliance"),
-            (free.k_phi_z, "k_phi_z_compliance"),
+            (report.values[PoseScalar::StiffnessXy], "k_xy"),
+            (report.values[PoseScalar::StiffnessZ], "k_z"),
+            (report.values[PoseScalar::StiffnessPhiZ], "k_phi_z"),
+            (free[PoseScalar::StiffnessXy], "k_xy_compliance"),
+            (free[PoseScalar::StiffnessZ], "k_z_compliance"),
+            (free[PoseScalar::StiffnessPhiZ], "k_phi_z_compliance"),
         ] {
             let wanted = number(&case[key]);
             assert!(
@@ -147,16 +147,16 @@ fn masses_and_workspaces_agree() {
             (GridChoice::Fine, "workspace_radius_fine_grid"),
         ] {
             let found = model.evaluate(&design, grid);
-            close(found.mass, number(&case["mass"]), 1e-12, "mass");
+            close(found.mass(), number(&case["mass"]), 1e-12, "mass");
             // The second design of an architecture is known on the reference grid alone.
             let Some(wanted) = case[key].as_f64() else {
                 assert_eq!(grid, GridChoice::Fine);
                 continue;
             };
             assert!(
-                (found.workspace_radius - wanted).abs() <= tolerance,
+                (found.workspace_radius() - wanted).abs() <= tolerance,
                 "{design}: {key} {} instead of {wanted}",
-                found.workspace_radius
+                found.workspace_radius()
             );
         }
     }

@@ -8,7 +8,6 @@ mod forms;
 mod joints;
 mod lanes;
 mod legs;
-mod oracle;
 mod quantities;
 mod reference;
 mod regions;

@@ -1,7 +1,7 @@
 //! Quantities of designs, each against a direct computation from joints, matrices and poses, one pose at a time.
 
 use kinefront_model::evaluation::{
-    Bound, Constraint, Evaluation, GridChoice, Model, Quantity, QuantityLimit, QuantitySet, Scope,
+    Bound, Constraint, Evaluation, GridChoice, Model, PoseScalar, Quantity, QuantityLimit, QuantitySet,
 };
 use kinefront_model::mechanism::{Architecture, Design, JointKind, MemberKind};
 use kinefront_model::spatial::{Pose, unit};
@@ -23,7 +23,7 @@ fn model() -> Model {
 
 /// The poses over which quantities are taken: 24 rings at most, in the directions and orientations of the reference grid.
 fn poses(evaluation: &Evaluation) -> Vec<Pose> {
-    let (radius, home) = (evaluation.workspace_radius, evaluation.home_phi_deg.expect("a home"));
+    let (radius, home) = (evaluation.workspace_radius(), evaluation.home_phi_deg.expect("a home"));
     let rings = (50.0 * radius / evaluation.design.base_radius).ceil().clamp(1.0, 24.0) as u32;
     let mut poses = Vec::new();
     for k in -4..=4 {
@@ -110,24 +110,48 @@ fn least_values_are_those_of_single_poses() {
             })
         }
     };
-    check(Quantity::Dexterity, 1e-9, at(|found| found.inverse_condition));
-    check(Quantity::StiffnessXy, 1e-9, at(|found| found.stiffness_values.k_xy));
-    check(Quantity::StiffnessZ, 1e-9, at(|found| found.stiffness_values.k_z));
     check(
-        Quantity::StiffnessPhiZ,
+        Quantity::Worst(PoseScalar::Dexterity),
         1e-9,
-        at(|found| found.stiffness_values.k_phi_z),
+        at(|found| found.values[PoseScalar::Dexterity]),
     );
-    check(Quantity::Clearance, 1e-9, at(|found| found.clearance.distance));
-    check(Quantity::Reach, 1e-6, at(|found| found.limit_margin));
-    check(Quantity::Determinant, 1e-9, at(|found| found.determinant.abs()));
-    check(Quantity::WorkspaceRadius, 0.0, |_, found| found.workspace_radius);
+    check(
+        Quantity::Worst(PoseScalar::StiffnessXy),
+        1e-9,
+        at(|found| found.values[PoseScalar::StiffnessXy]),
+    );
+    check(
+        Quantity::Worst(PoseScalar::StiffnessZ),
+        1e-9,
+        at(|found| found.values[PoseScalar::StiffnessZ]),
+    );
+    check(
+        Quantity::Worst(PoseScalar::StiffnessPhiZ),
+        1e-9,
+        at(|found| found.values[PoseScalar::StiffnessPhiZ]),
+    );
+    check(
+        Quantity::Worst(PoseScalar::Clearance),
+        1e-9,
+        at(|found| found.nearest.distance),
+    );
+    check(
+        Quantity::Worst(PoseScalar::Reach),
+        1e-6,
+        at(|found| found.values[PoseScalar::Reach]),
+    );
+    check(
+        Quantity::Worst(PoseScalar::Determinant),
+        1e-9,
+        at(|found| found.values[PoseScalar::Determinant].abs()),
+    );
+    check(Quantity::WorkspaceRadius, 0.0, |_, found| found.workspace_radius());
 }
 
 /// The displacement under a force in the most compliant direction, from the inverse of the whole stiffness matrix.
 #[test]
 fn the_displacement_is_that_of_the_inverse_stiffness() {
-    check(Quantity::DisplacementMax, 1e-8, |model, evaluation| {
+    check(Quantity::Worst(PoseScalar::Displacement), 1e-8, |model, evaluation| {
         let of_pose = |model: &Model, design: &Design, pose: &Pose| {
             let stiffness = model.pose(design, pose).expect("reachable").stiffness;
             let compliance = stiffness.try_inverse().expect("regular");
@@ -141,7 +165,7 @@ fn the_displacement_is_that_of_the_inverse_stiffness() {
 /// The transmission of a leg, from the joints: the component along the last link of the way that the driven point takes.
 #[test]
 fn the_transmission_is_that_of_the_joints() {
-    check(Quantity::TransmissionMin, 1e-9, |model, evaluation| {
+    check(Quantity::Worst(PoseScalar::Transmission), 1e-9, |model, evaluation| {
         least(model, evaluation, |model, design, pose| {
             let found = model.pose(design, pose).expect("reachable");
             let anchor = |leg: usize| {
@@ -175,7 +199,7 @@ fn the_transmission_is_that_of_the_joints() {
 
 #[test]
 fn the_footprint_holds_the_base_and_all_members() {
-    check(Quantity::Footprint, 1e-9, |model, evaluation| {
+    check(Quantity::Worst(PoseScalar::Footprint), 1e-9, |model, evaluation| {
         let farthest = poses(evaluation).into_iter().flat_map(|pose| {
             let members = model.members(&evaluation.design, &pose).expect("reachable");
             members.into_iter().map(|member| {
@@ -196,7 +220,7 @@ fn the_footprint_holds_the_base_and_all_members() {
 #[test]
 fn the_mean_dexterity_is_the_integral_over_the_region() {
     check(Quantity::DexterityMean, 2e-3, |model, evaluation| {
-        let (design, radius) = (&evaluation.design, evaluation.workspace_radius);
+        let (design, radius) = (&evaluation.design, evaluation.workspace_radius());
         let home = evaluation.home_phi_deg.expect("a home");
         let (rings, directions, turns) = (40, 72, 16);
         let (mut sum, mut total) = (0.0, 0.0);
@@ -207,7 +231,7 @@ fn the_mean_dexterity_is_the_integral_over_the_region() {
                 for direction in 0..directions {
                     let at = unit((360.0 * f64::from(direction) / f64::from(directions)).to_radians()) * distance;
                     let found = model.pose(design, &Pose::new(at.x, at.y, phi.to_radians()));
-                    sum += distance * found.expect("reachable").inverse_condition;
+                    sum += distance * found.expect("reachable").values[PoseScalar::Dexterity];
                     total += distance;
                 }
             }
@@ -246,28 +270,42 @@ fn limits_of_poses_bound_the_workspace() {
         })
         .evaluate(&design, GridChoice::Reference)
     };
-    let stiff = bounded(|settings| settings.thresholds.further.get_or_insert_default().displacement = Some(6e-5));
-    assert!(stiff.quantities.get(Quantity::DisplacementMax).expect("a value") <= 6e-5);
-    assert!(stiff.workspace_radius > 0.0 && stiff.workspace_radius < free.workspace_radius);
-    let driven = bounded(|settings| settings.thresholds.further.get_or_insert_default().transmission = Some(0.5));
-    assert!(driven.quantities.get(Quantity::TransmissionMin).expect("a value") >= 0.5);
-    assert!(driven.workspace_radius > 0.0 && driven.workspace_radius < free.workspace_radius);
-    let inside = bounded(|settings| settings.thresholds.further.get_or_insert_default().limit_margin = Some(0.3));
+    let stiff = bounded(|settings| settings.thresholds.set(PoseScalar::Displacement, Some(6e-5)));
+    assert!(
+        stiff
+            .quantities
+            .get(Quantity::Worst(PoseScalar::Displacement))
+            .expect("a value")
+            <= 6e-5
+    );
+    assert!(stiff.workspace_radius() > 0.0 && stiff.workspace_radius() < free.workspace_radius());
+    let driven = bounded(|settings| settings.thresholds.set(PoseScalar::Transmission, Some(0.5)));
+    assert!(
+        driven
+            .quantities
+            .get(Quantity::Worst(PoseScalar::Transmission))
+            .expect("a value")
+            >= 0.5
+    );
+    assert!(driven.workspace_radius() > 0.0 && driven.workspace_radius() < free.workspace_radius());
+    let inside = bounded(|settings| settings.thresholds.set(PoseScalar::Reach, Some(0.3)));
     assert!(inside.constraint(Constraint::Reach).value.expect("a value") >= 0.3);
     // A proof that leaves a bound out would prove too much.
     let model = strategies::model(|settings| {
-        settings.thresholds.further.get_or_insert_default().transmission = Some(0.5);
+        settings.thresholds.set(PoseScalar::Transmission, Some(0.5));
     });
     let options = kinefront_model::certify::CertifyOptions::of(&driven).expect("a workspace");
     assert_eq!(
         model.certify(&design, &options),
-        Err(kinefront_model::certify::CertifyError::Uncovered)
+        Err(kinefront_model::certify::CertifyError::Uncovered(
+            PoseScalar::Transmission
+        ))
     );
     // The same limits of a prescribed disc.
-    let radius = driven.workspace_radius;
+    let radius = driven.workspace_radius();
     for (share, holds) in [(0.999, true), (1.001, false)] {
         let model = strategies::model(|settings| {
-            settings.thresholds.further.get_or_insert_default().transmission = Some(0.5);
+            settings.thresholds.set(PoseScalar::Transmission, Some(0.5));
             settings.workspace.region = Region::Disc(share * radius);
         });
         assert_eq!(
@@ -291,12 +329,12 @@ fn limits_of_designs_make_them_infeasible_by_their_relative_shortfall() {
     let mass = Model::default().mass(&design);
     assert!(with(Quantity::Mass, Bound::AtMost(mass)).is_feasible());
     let heavy = with(Quantity::Mass, Bound::AtMost(0.8 * mass));
-    assert!((heavy.violation - 0.25).abs() < 1e-12 && heavy.workspace_radius > 0.0);
-    let wide = with(Quantity::Footprint, Bound::AtMost(1.0));
-    let footprint = wide.quantities.get(Quantity::Footprint).expect("a value");
+    assert!((heavy.violation - 0.25).abs() < 1e-12 && heavy.workspace_radius() > 0.0);
+    let wide = with(Quantity::Worst(PoseScalar::Footprint), Bound::AtMost(1.0));
+    let footprint = wide
+        .quantities
+        .get(Quantity::Worst(PoseScalar::Footprint))
+        .expect("a value");
     assert!((wide.violation - (footprint - 1.0)).abs() < 1e-12);
     assert!(with(Quantity::DexterityMean, Bound::AtLeast(0.1)).is_feasible());
-    for entry in Quantity::all().map(Quantity::entry) {
-        assert!(entry.scope != Scope::Design || entry.constraint.is_none());
-    }
 }

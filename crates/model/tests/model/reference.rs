@@ -1,7 +1,7 @@
 //! Compares results with values from independent programs (tests/fixtures/README.md) and with the designs of the paper.
 
 use kinefront_model::certify::CertifyOptions;
-use kinefront_model::evaluation::{GridChoice, Model};
+use kinefront_model::evaluation::{GridChoice, Model, PoseScalar};
 use kinefront_model::mechanism::{Design, WorkingMode};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::StiffnessDefinition;
@@ -81,21 +81,21 @@ fn poses_agree_with_the_finite_element_solver() {
             }
         }
         close(
-            report.inverse_condition,
+            report.values[PoseScalar::Dexterity],
             number(&case["inverse_condition"]),
             1e-9,
             "inverse condition",
         );
         let off = difference(&report.stiffness, &matrix(&case["stiffness_matrix"]));
         assert!(off < 1e-7, "{design} at {pose:?}: stiffness off by {off:e}");
-        let soft = compliance.pose(&design, &pose).expect("reachable").stiffness_values;
+        let soft = compliance.pose(&design, &pose).expect("reachable").values;
         for (value, key) in [
-            (report.stiffness_values.k_xy, "k_xy"),
-            (report.stiffness_values.k_z, "k_z"),
-            (report.stiffness_values.k_phi_z, "k_phi_z"),
-            (soft.k_xy, "k_xy_compliance"),
-            (soft.k_z, "k_z_compliance"),
-            (soft.k_phi_z, "k_phi_z_compliance"),
+            (report.values[PoseScalar::StiffnessXy], "k_xy"),
+            (report.values[PoseScalar::StiffnessZ], "k_z"),
+            (report.values[PoseScalar::StiffnessPhiZ], "k_phi_z"),
+            (soft[PoseScalar::StiffnessXy], "k_xy_compliance"),
+            (soft[PoseScalar::StiffnessZ], "k_z_compliance"),
+            (soft[PoseScalar::StiffnessPhiZ], "k_phi_z_compliance"),
         ] {
             let wanted = number(&case[key]);
             assert!(
@@ -121,15 +121,15 @@ fn designs_agree_on_both_grids_and_both_definitions() {
         let evaluate = |model: &Model, grid| model.evaluate(&design, grid);
         let reference = evaluate(&model, GridChoice::Reference);
         let plain = |model: &Model| plain_search(model, &design).radius;
-        close(reference.mass, number(&case["mass"]), 1e-12, "mass");
+        close(reference.mass(), number(&case["mass"]), 1e-12, "mass");
         for (radius, key) in [
-            (reference.workspace_radius, "workspace_radius_reference_grid"),
+            (reference.workspace_radius(), "workspace_radius_reference_grid"),
             (
-                evaluate(&model, GridChoice::Fine).workspace_radius,
+                evaluate(&model, GridChoice::Fine).workspace_radius(),
                 "workspace_radius_fine_grid",
             ),
             (
-                evaluate(&compliance, GridChoice::Reference).workspace_radius,
+                evaluate(&compliance, GridChoice::Reference).workspace_radius(),
                 "workspace_radius_compliance_definition",
             ),
             // The plain search must agree with the same values.
@@ -233,21 +233,26 @@ fn the_table_of_the_paper() {
         let fine = model.evaluate(&design, GridChoice::Fine);
         println!(
             "{:6}  {:7.1} / {:7.2}      {:.3} / {:.4} / {:.4}",
-            row.name, row.paper.0, reference.mass, row.paper.1, reference.workspace_radius, fine.workspace_radius
+            row.name,
+            row.paper.0,
+            reference.mass(),
+            row.paper.1,
+            reference.workspace_radius(),
+            fine.workspace_radius()
         );
-        assert!((reference.mass - row.model.0).abs() < 0.005);
-        assert!((reference.workspace_radius - row.model.1).abs() < 5e-5);
-        assert!((fine.workspace_radius - row.model.2).abs() < 5e-5);
+        assert!((reference.mass() - row.model.0).abs() < 0.005);
+        assert!((reference.workspace_radius() - row.model.1).abs() < 5e-5);
+        assert!((fine.workspace_radius() - row.model.2).abs() < 5e-5);
         // The masses agree within the effect of half a millimetre, the rounding of a printed bar radius.
-        assert!((reference.mass / row.paper.0 - 1.0).abs() < 0.025);
+        assert!((reference.mass() / row.paper.0 - 1.0).abs() < 0.025);
         if row.name == "ID-I" {
             // The workspace radius is twice the printed one. It is limited by dexterity, which does not depend on the
             // stiffness of the actuators.
-            assert!(reference.workspace_radius / row.paper.1 > 2.0);
+            assert!(reference.workspace_radius() / row.paper.1 > 2.0);
             let active: Vec<&str> = fine.active().map(|constraint| constraint.id()).collect();
             assert_eq!(active, ["g3"]);
         } else {
-            assert!((reference.workspace_radius / row.paper.1 - 1.0).abs() < 0.013);
+            assert!((reference.workspace_radius() / row.paper.1 - 1.0).abs() < 0.013);
         }
     }
 }

@@ -35,7 +35,7 @@ fn designs(count: usize) -> Vec<(Design, f64)> {
         let architecture = Architecture::ALL[k as usize % 3];
         let mode = WorkingMode::new([true, k % 4 != 1, true]);
         let design = Design::new(architecture, mode, values).expect("a design");
-        let radius = model.evaluate(&design, GridChoice::Reference).workspace_radius;
+        let radius = model.evaluate(&design, GridChoice::Reference).workspace_radius();
         if radius > 0.0 {
             found.push((design, radius));
         }
@@ -193,7 +193,7 @@ fn bars_for_a_region_hold_on_its_grid_and_not_with_less() {
         // No pair of radii about it is lighter and holds.
         for k in 1..=40 {
             let leg = 1.0 + 0.01 * f64::from(k - 20);
-            let mass_left = found.mass * (1.0 - 1e-6) - model.legs_mass(&thinner(leg, 1.0));
+            let mass_left = found.mass() * (1.0 - 1e-6) - model.legs_mass(&thinner(leg, 1.0));
             let share = mass_left / model.platform_mass(&sized);
             if share > 0.0 {
                 let other = thinner(leg, share.sqrt());
@@ -233,7 +233,7 @@ fn the_lightest_pair_of_two_lists_is_the_one_found_by_trying_all() {
                 );
                 let found = model.evaluate(&pair.expect("a design"), GridChoice::Reference);
                 if found.is_feasible() {
-                    lightest = lightest.min(found.mass);
+                    lightest = lightest.min(found.mass());
                 }
             }
         }
@@ -313,7 +313,7 @@ fn the_scale_of_a_sized_geometry_is_the_lightest() {
             let other = model.evaluate(&other, GridChoice::Reference);
             // On the reference grid the number of rings changes with the scale, so that the mass is not quite smooth.
             assert!(
-                !other.is_feasible() || other.mass >= found.mass * (1.0 - 2e-4),
+                !other.is_feasible() || other.mass() >= found.mass() * (1.0 - 2e-4),
                 "{} is lighter than {sized}",
                 other.design
             );

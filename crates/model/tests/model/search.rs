@@ -2,13 +2,12 @@
 //! orientation.
 
 use glam::DVec2;
-use kinefront_model::evaluation::{Constraint, GridChoice, Model};
+use kinefront_model::evaluation::{Constraint, GridChoice, Model, PoseScalar};
 use kinefront_model::lanes::InstructionSet;
-use kinefront_model::mechanism::{Architecture, Design, Leg, WorkingMode};
+use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
 use kinefront_model::spatial::LEGS;
-use kinefront_model::with_leg;
+use kinefront_model::workspace::Grid;
 use kinefront_model::workspace::plain::{PlainWorkspace, plain};
-use kinefront_model::workspace::{Grid, PoseChecker};
 use kinefront_optimize::{Variable, sobol};
 use proptest::prelude::*;
 use rayon::prelude::*;
@@ -24,28 +23,22 @@ enum Form {
     Reduced,
 }
 
-fn plain_of<L: Leg>(model: &Model, design: &Design, form: Form) -> PlainWorkspace {
-    let checker: PoseChecker<L> = model.checker(design);
+fn plain_in(model: &Model, design: &Design, form: Form) -> PlainWorkspace {
+    let evaluator = model.pose_evaluator(design);
     let good = |position: DVec2, arms: &[DVec2; LEGS]| match form {
-        Form::Plain => checker.feasible_sign(position, arms),
+        Form::Plain => evaluator.feasible_sign(arms, position),
         Form::Reduced => {
-            let [a, b, c] = *arms;
-            let values = checker
-                .lanes::<f64>(position.into(), &[a.into(), b.into(), c.into()])
-                .reached()?;
-            (values.determinant != 0.0 && checker.thresholds.are_met_by(&values)).then(|| values.determinant.signum())
+            let values = evaluator.evaluate_position(arms, position).ok()?;
+            let determinant = values[PoseScalar::Determinant];
+            (determinant != 0.0 && evaluator.thresholds().are_met_by(&values)).then(|| determinant.signum())
         }
     };
     plain(
-        &checker.manipulator,
+        |rotation| evaluator.arms(rotation),
         model.sampling(GridChoice::Reference),
         design.base_radius,
         good,
     )
-}
-
-fn plain_in(model: &Model, design: &Design, form: Form) -> PlainWorkspace {
-    with_leg!(design.architecture, L => plain_of::<L>(model, design, form))
 }
 
 pub fn plain_search(model: &Model, design: &Design) -> PlainWorkspace {
@@ -66,11 +59,11 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
     for instructions in InstructionSet::available() {
         let found = model.evaluate_with(design, GridChoice::Reference, instructions);
         if !assembled {
-            prop_assert_eq!(found.workspace_radius, 0.0);
+            prop_assert_eq!(found.workspace_radius(), 0.0);
             continue;
         }
         prop_assert_eq!(
-            found.workspace_radius,
+            found.workspace_radius(),
             wanted.radius,
             "{}: {}",
             design,
@@ -92,11 +85,12 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
 fn same(model: &Model, design: &Design) -> Result<(), String> {
     let found = model.evaluate(design, GridChoice::Reference);
     let wanted = plain_search(model, design);
-    let close = |radius: f64| (found.workspace_radius - radius).abs() <= 1e-9 * wanted.radius;
+    let close = |radius: f64| (found.workspace_radius() - radius).abs() <= 1e-9 * wanted.radius;
     if !close(wanted.radius) {
         return Err(format!(
             "{design}: {} instead of {}",
-            found.workspace_radius, wanted.radius
+            found.workspace_radius(),
+            wanted.radius
         ));
     }
     if let Some(phi_deg) = found.home_phi_deg {
@@ -166,7 +160,7 @@ proptest! {
     fn also_where_bodies_must_not_collide(design in design(0.01), bodies in bodies(), clearance in 0.0..0.05) {
         let model = model(|settings| {
             settings.bodies = bodies;
-            settings.thresholds.clearance = Some(clearance);
+            settings.thresholds.set(PoseScalar::Clearance, Some(clearance));
         });
         same(&model, &design).map_err(TestCaseError::fail)?;
     }
@@ -188,7 +182,7 @@ proptest! {
         let model = model(|settings| {
             settings.reference_grid = Grid::new(phi_step_deg, directions, ray_steps, halvings).expect("a grid");
             settings.bodies = bodies;
-            settings.thresholds.clearance = clearance;
+            settings.thresholds.set(PoseScalar::Clearance, clearance);
             settings.workspace.rotation_range_deg = 2.0 * f64::from(half_window) * phi_step_deg;
             if off_centre {
                 settings.workspace.centre = DVec2::new(0.1, -0.05);
@@ -205,7 +199,7 @@ proptest! {
         let model = model(|settings| settings.workspace.home_phi_deg = Some(home as f64 * 2.5));
         let found = model.evaluate(&design, GridChoice::Reference);
         prop_assume!(design.link_length + design.platform_radius >= 0.5 * design.base_radius);
-        prop_assert_eq!(found.workspace_radius, wanted);
+        prop_assert_eq!(found.workspace_radius(), wanted);
     }
 
     /// The values of an evaluation are consistent with the workspace that it reports.
@@ -213,12 +207,12 @@ proptest! {
     fn reports_are_consistent(design in design(0.0), bodies in bodies(), clearance in clearance()) {
         let model = model(|settings| {
             settings.bodies = bodies;
-            settings.thresholds.clearance = clearance;
+            settings.thresholds.set(PoseScalar::Clearance, clearance);
         });
         let found = model.evaluate(&design, GridChoice::Reference);
         prop_assert_eq!(found.is_feasible(), found.violation == 0.0);
         prop_assert_eq!(found.is_feasible(), found.home.is_some());
-        prop_assert!(found.violation.is_finite() && found.mass.is_finite());
+        prop_assert!(found.violation.is_finite() && found.mass().is_finite());
         for report in &found.constraints {
             prop_assert!(report.margin.is_finite() && report.value.is_none_or(f64::is_finite));
             if found.is_feasible() {
@@ -247,8 +241,12 @@ fn a_given_home_is_kept() {
     for (home, equal) in [(30.0, true), (-330.0, true), (20.0, false)] {
         let model = model(|settings| settings.workspace.home_phi_deg = Some(home));
         let found = model.evaluate(&design, GridChoice::Reference);
-        assert_eq!(found.workspace_radius == best.workspace_radius, equal, "home {home}");
-        assert!(found.workspace_radius <= best.workspace_radius && found.is_feasible());
+        assert_eq!(
+            found.workspace_radius() == best.workspace_radius(),
+            equal,
+            "home {home}"
+        );
+        assert!(found.workspace_radius() <= best.workspace_radius() && found.is_feasible());
         assert_eq!(found.home_phi_deg, Some(if equal { 30.0 } else { home }));
     }
 }
@@ -271,11 +269,13 @@ fn lifting_the_active_constraint_enlarges_the_workspace() {
         let before = Model::default().evaluate(&design, GridChoice::Fine);
         assert!(before.active().any(|active| active == constraint), "{text}");
         let eased = model(|settings| {
-            settings.thresholds.inverse_condition *= 0.5;
-            settings.thresholds.k_xy *= 0.5;
+            for scalar in [PoseScalar::Dexterity, PoseScalar::StiffnessXy] {
+                let limit = settings.thresholds.get(scalar).map(|limit| 0.5 * limit);
+                settings.thresholds.set(scalar, limit);
+            }
         });
         let after = eased.evaluate(&design, GridChoice::Fine);
-        assert!(after.workspace_radius > before.workspace_radius + 1e-5, "{text}");
+        assert!(after.workspace_radius() > before.workspace_radius() + 1e-5, "{text}");
     }
 }
 
@@ -287,7 +287,7 @@ fn a_zero_radius_is_infeasible_and_finite() {
     ] {
         let found = Model::default().evaluate(&text.parse().expect("a design"), GridChoice::Reference);
         assert!(!found.is_feasible());
-        assert!(found.mass > 0.0 && found.violation > 0.0);
+        assert!(found.mass() > 0.0 && found.violation > 0.0);
         assert_eq!(found.constraint(Constraint::StiffnessXy).value, Some(0.0));
         assert_eq!(found.constraint(Constraint::StiffnessXy).margin, -1.0);
     }
@@ -309,7 +309,7 @@ fn sizes_beyond_measure_stay_finite() {
             let design: Design = format!("{architecture} {lengths}").parse().expect("a design");
             let found = model.evaluate(&design, GridChoice::Reference);
             assert!(
-                found.workspace_radius.is_finite() && found.violation.is_finite() && found.mass.is_finite(),
+                found.workspace_radius().is_finite() && found.violation.is_finite() && found.mass().is_finite(),
                 "{design}"
             );
             for report in &found.constraints {
@@ -337,9 +337,9 @@ fn a_disc_of_many_base_radii_is_searched() {
     let design: Design = "3-RRR R=0.001 r=1 Lb=1 rj=0.1 rp=0.1".parse().expect("a design");
     let found = Model::default().evaluate(&design, GridChoice::Reference);
     assert!(
-        found.workspace_radius > 100.0 * design.base_radius,
+        found.workspace_radius() > 100.0 * design.base_radius,
         "{}",
-        found.workspace_radius
+        found.workspace_radius()
     );
 }
 

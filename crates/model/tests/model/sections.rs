@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use kinefront_model::certify::CertifyOptions;
-use kinefront_model::evaluation::{GridChoice, Model};
-use kinefront_model::mechanism::{AnyLeg, Design};
-use kinefront_model::spatial::Pose;
-use kinefront_model::stiffness::{
-    Catalogue, CatalogueEntry, CatalogueError, CrossSection, CrossSections, Wall, joint_model,
+use kinefront_model::evaluation::{GridChoice, Model, PoseScalar};
+use kinefront_model::mechanism::{
+    AnyLeg, Catalogue, CatalogueEntry, CatalogueError, CrossSection, CrossSections, Design, Manipulator, Wall,
 };
+use kinefront_model::spatial::Pose;
+use kinefront_model::stiffness::joint_model;
 use proptest::prelude::*;
 use serde_json::Value;
 
@@ -29,9 +29,11 @@ fn model_with(sections: CrossSections) -> Model {
 }
 
 fn joint_form(model: &Model, design: &Design, pose: &Pose) -> nalgebra::Matrix6<f64> {
-    let checker = model.checker::<AnyLeg>(design);
-    let posture = checker.manipulator.posture(pose).expect("reachable");
-    joint_model::stiffness(&checker.stiffness.expect("stiff"), design.architecture, &posture).expect("regular")
+    let posture = Manipulator::<AnyLeg>::new(design, &model.legs)
+        .posture(pose)
+        .expect("reachable");
+    let stiffness = model.stiffness(design).expect("stiff");
+    joint_model::stiffness(&stiffness, design.architecture, &posture).expect("regular")
 }
 
 #[test]
@@ -51,8 +53,12 @@ fn hollow_bars_agree_with_the_finite_element_solver() {
         let wanted = matrix(&case["stiffness_matrix"]);
         let error = difference(&found.stiffness, &wanted);
         assert!(error < 1e-7, "case {index}: {error}");
-        let values = found.stiffness_values;
-        for (value, key) in [(values.k_xy, "k_xy"), (values.k_z, "k_z"), (values.k_phi_z, "k_phi_z")] {
+        let values = found.values;
+        for (value, key) in [
+            (values[PoseScalar::StiffnessXy], "k_xy"),
+            (values[PoseScalar::StiffnessZ], "k_z"),
+            (values[PoseScalar::StiffnessPhiZ], "k_phi_z"),
+        ] {
             close(value, number(&case[key]), 1e-7, key);
         }
         let general = joint_form(&model, &design, &pose);
@@ -139,7 +145,7 @@ fn the_certificate_of_square_tubes_agrees_with_the_grid() {
             legs: CrossSection::SquareTube(Wall::Ratio(0.3)),
             platform: CrossSection::Tube(Wall::Ratio(0.4)),
         };
-        settings.thresholds.clearance = Some(0.005);
+        settings.thresholds.set(PoseScalar::Clearance, Some(0.005));
     });
     for text in [
         "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.04 rp=0.06",
@@ -147,14 +153,14 @@ fn the_certificate_of_square_tubes_agrees_with_the_grid() {
     ] {
         let design: Design = text.parse().expect("a design");
         let evaluation = model.evaluate(&design, GridChoice::Fine);
-        assert!(evaluation.workspace_radius > 0.1, "{text}");
+        assert!(evaluation.workspace_radius() > 0.1, "{text}");
         let options = CertifyOptions::of(&evaluation).expect("a workspace");
         let certificate = model.certify(&design, &options).expect("a certificate");
         assert!(certificate.is_closed(1e-3), "{text}: {certificate:?}");
         let upper = certificate.upper.expect("a limit");
-        assert!(upper >= evaluation.workspace_radius * (1.0 - 2e-3), "{text}: {upper}");
+        assert!(upper >= evaluation.workspace_radius() * (1.0 - 2e-3), "{text}: {upper}");
         assert!(
-            certificate.lower <= evaluation.workspace_radius * (1.0 + 1e-9),
+            certificate.lower <= evaluation.workspace_radius() * (1.0 + 1e-9),
             "{text}"
         );
     }
@@ -173,7 +179,7 @@ proptest! {
         });
         let found = [&round, &square].map(|model| model.pose(&design, &pose));
         prop_assume!(found.iter().all(Result::is_ok));
-        let [inside, found] = found.map(|report| report.map_or(f64::NAN, |report| report.clearance.distance));
+        let [inside, found] = found.map(|report| report.map_or(f64::NAN, |report| report.nearest.distance));
         // The radii of two sliders are the largest.
         let radii = 3.0 * design.leg_bar_radius.max(design.platform_bar_radius);
         prop_assert!(found <= inside + 1e-12, "{found} > {inside}");

@@ -20,7 +20,7 @@ fn sized(model: &Model, design: &Design, target: WorkspaceTarget) -> Option<Desi
 
 fn radius(model: &Model, design: &Design) -> f64 {
     let evaluation = model.evaluate(design, GridChoice::Reference);
-    evaluation.workspace_radius
+    evaluation.workspace_radius()
 }
 
 /// No pair of radii on a fine lattice that reaches the same workspace radius is lighter by more than 1 %.

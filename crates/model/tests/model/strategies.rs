@@ -3,10 +3,10 @@
 use kinefront_model::clearance::{BodySettings, Layers};
 use kinefront_model::evaluation::{Model, ModelSettings};
 use kinefront_model::mechanism::{
-    Architecture, Arrangement, BarLength, Design, FURTHER_VARIABLES, LegSettings, WorkingMode,
+    Architecture, Arrangement, BarLength, CrossSection, Design, FURTHER_VARIABLES, LegSettings, Wall, WorkingMode,
 };
 use kinefront_model::spatial::Pose;
-use kinefront_model::stiffness::{CrossSection, RailSettings, RailSupports, Wall};
+use kinefront_model::stiffness::{RailSettings, RailSupports};
 use proptest::prelude::*;
 
 /// A property over the part of the design space where it applies: `cases` designs and poses that it applies to, or the test

@@ -14,10 +14,10 @@ use glam::DVec2;
 use self::contour::{chains, contour};
 use self::mesh::{FieldMesh, NodeGrid, Surface};
 use super::Field;
-use kinefront_model::evaluation::Model;
+use kinefront_model::evaluation::{Model, PoseScalar, PoseValues};
 use kinefront_model::mechanism::{Design, ReachReason};
 use kinefront_model::spatial::{LEGS, Pose, Rotation};
-use kinefront_model::workspace::{PoseEvaluator, PoseValues, ValueColumns};
+use kinefront_model::workspace::{PoseEvaluator, ValueColumns};
 
 /// Resolution of a heatmap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,7 +99,8 @@ struct Sampler<'a> {
 impl<'a> Sampler<'a> {
     /// Prepares the design for the values that the field needs.
     fn new(model: &'a Model, design: &'a Design, field: Field, phi: f64) -> Self {
-        let evaluator = model.pose_evaluator(design, field.definition(model), field.clearance(model));
+        let mut evaluator = model.pose_evaluator(design);
+        field.ask(evaluator.as_mut());
         Self {
             model,
             design,
@@ -112,7 +113,7 @@ impl<'a> Sampler<'a> {
     fn of(&self, values: &PoseValues) -> Sample {
         Sample {
             value: self.field.value(self.model, self.design, values),
-            determinant: values.determinant,
+            determinant: values[PoseScalar::Determinant],
         }
     }
 }
@@ -127,7 +128,7 @@ impl Surface for Sampler<'_> {
     }
 
     fn at(&self, position: DVec2) -> Option<Sample> {
-        let values = self.evaluator.evaluate_position(&self.arms, position)?;
+        let values = self.evaluator.evaluate_position(&self.arms, position).ok()?;
         Some(self.of(&values))
     }
 

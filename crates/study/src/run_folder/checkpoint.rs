@@ -4,7 +4,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::{FileSum, MergedRun, PROGRESS, WriteError, write_whole};
+use super::{MergedRun, PROGRESS};
+use crate::FileSum;
+use crate::{WriteError, write_whole};
 
 /// Contents of `progress.json`: what was on the disk at the last checkpoint of a run in progress. The file is removed
 /// once all files of the run are complete.

@@ -5,8 +5,10 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use super::sum::checksum;
-use super::{DESIGNS, FileSum, WriteError};
+use super::DESIGNS;
+use crate::FileSum;
+use crate::WriteError;
+use crate::sum::checksum;
 use crate::table::{Column, append_row, table_bytes};
 use crate::{Batch, Study};
 

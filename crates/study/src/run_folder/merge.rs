@@ -3,29 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
-use super::{FileSum, RunFolder, RunFolderError, RunWriter, WriteError, write_whole};
+use super::{MergedRun, RunFolder, RunFolderError, RunWriter};
 use crate::{ReplayError, Row, Study, StudySearch, TableError, TableRow};
+use crate::{WriteError, write_whole};
 use kinefront_optimize::{Archive, Outcome};
 
 /// Name of the file that states from which run each design of a merged folder comes.
 const ORIGINS: &str = "origins.csv";
-
-/// A run whose designs a merged folder holds.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct MergedRun {
-    /// Name of its folder.
-    pub run: String,
-    /// Random seed.
-    pub seed: u64,
-    /// Designs evaluated.
-    pub evaluations: usize,
-    /// Designs that were kept.
-    pub kept: usize,
-    /// Sum of its table of designs; `None` for a run that states none.
-    pub designs: Option<FileSum>,
-}
 
 /// Why runs cannot be joined.
 #[derive(Debug, thiserror::Error)]

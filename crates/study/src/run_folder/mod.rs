@@ -10,23 +10,19 @@
 mod check;
 mod checkpoint;
 mod design_table;
-mod durable;
 mod merge;
 mod read;
 mod report;
 mod resume;
-mod sum;
 mod write;
 
 pub use check::{Finding, Inspection, Repair};
 pub use checkpoint::Checkpoint;
-pub use durable::{partial_path, write_whole};
-pub use merge::{Merge, MergeError, MergedRun};
+pub use merge::{Merge, MergeError};
 pub use read::{RunFolder, RunFolderError};
-pub use report::{FileSums, HypervolumeReference, RunReport};
+pub use report::{FileSums, HypervolumeReference, MergedRun, RunReport};
 pub use resume::{ResumeError, Resumption};
-pub use sum::{Difference, FileSum};
-pub use write::{RunWriter, WriteError};
+pub use write::RunWriter;
 
 /// File of the study as run.
 const STUDY: &str = "study.toml";

@@ -6,12 +6,11 @@ use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
 
-use super::{
-    Checkpoint, DESIGNS, Difference, FRONT, FileSum, FileSums, MergedRun, PROGRESS, RECORDING, REPORT, RunReport, STUDY,
-};
+use super::{Checkpoint, DESIGNS, FRONT, FileSums, MergedRun, PROGRESS, RECORDING, REPORT, RunReport, STUDY};
 use crate::{
     Column, Study, StudyError, TableContents, TableError, TableFault, read_run_table, read_table, table_bytes,
 };
+use crate::{Difference, FileSum};
 
 /// A run on disk.
 ///
@@ -19,7 +18,7 @@ use crate::{
 /// use kinefront_study::RunFolder;
 ///
 /// let run = RunFolder::open("run".as_ref())?;
-/// let heaviest = run.designs()?.rows.into_iter().map(|entry| entry.row.mass).fold(0.0, f64::max);
+/// let heaviest = run.designs()?.rows.into_iter().map(|entry| entry.row.mass()).fold(0.0, f64::max);
 /// println!("{}: at most {heaviest} kg", run.study().name);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{FileSum, MergedRun};
+use crate::FileSum;
 use crate::{AlgorithmName, EndReason, FrontProofs, GenerationSummary, ObjectiveChoice, RunSummary, RunTimes, Study};
 use kinefront_model::evaluation::Objective;
 use kinefront_model::mechanism::Architecture;
@@ -39,9 +39,9 @@ pub struct RunReport {
     pub front_verified: usize,
     /// Reference point of the hypervolumes.
     pub hypervolume_reference: HypervolumeReference,
-    /// Hypervolume of the front on the reference grid \[kg·m\].
+    /// Hypervolume of the front on the reference grid in the product of the units of the objectives, whatever the key says.
     pub hypervolume_kg_m: f64,
-    /// Hypervolume of the verified front \[kg·m\].
+    /// Hypervolume of the verified front in the product of the units of the objectives, whatever the key says.
     pub verified_hypervolume_kg_m: f64,
     /// Times taken by the stages of the run.
     pub times: RunTimes,
@@ -56,8 +56,8 @@ pub struct RunReport {
     /// What the proofs of the workspaces of the front found; `None` if the study asks for none.
     #[serde(default)]
     pub proofs: Option<FrontProofs>,
-    /// Objectives of the study, and their values at the reference point; absent for those of the paper.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    /// Objectives of the study, and their values at the reference point; none in a report of earlier versions on the default ones.
+    #[serde(default)]
     pub objectives: Vec<ReportedObjective>,
     /// The runs whose designs the folder holds; absent for a folder of one run.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -126,11 +126,7 @@ impl RunReport {
             record_every: None,
             files: None,
             proofs: summary.proofs.clone(),
-            objectives: if study.asks_as_the_paper() {
-                Vec::new()
-            } else {
-                reported_objectives(study)
-            },
+            objectives: reported_objectives(study),
             merged: Vec::new(),
         }
     }
@@ -150,4 +146,19 @@ fn reported_objectives(study: &Study) -> Vec<ReportedObjective> {
         .zip(reference.iter())
         .map(of)
         .collect()
+}
+
+/// A run whose designs a merged folder holds.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MergedRun {
+    /// Name of its folder.
+    pub run: String,
+    /// Random seed.
+    pub seed: u64,
+    /// Designs evaluated.
+    pub evaluations: usize,
+    /// Designs that were kept.
+    pub kept: usize,
+    /// Sum of its table of designs; `None` for a run that states none.
+    pub designs: Option<FileSum>,
 }

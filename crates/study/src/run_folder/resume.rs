@@ -5,8 +5,9 @@ use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 use super::design_table::{DesignTable, open_locked};
-use super::durable::remove;
-use super::{DESIGNS, FRONT, RECORDING, RunFolder, RunFolderError, RunWriter, WriteError};
+use super::{DESIGNS, FRONT, RECORDING, RunFolder, RunFolderError, RunWriter};
+use crate::WriteError;
+use crate::durable::remove;
 use crate::{EndReason, ReplayError, StudySearch, TableError};
 
 /// A run that can be resumed: its folder is locked, and its designs were replayed.

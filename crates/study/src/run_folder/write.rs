@@ -6,13 +6,12 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::design_table::{DesignTable, open_locked};
-use super::durable::{remove, sync_folder};
-use super::{
-    Checkpoint, DESIGNS, FRONT, FileSum, FileSums, MergedRun, PROGRESS, RECORDING, REPORT, RunReport, STUDY,
-    write_whole,
-};
+use super::{Checkpoint, DESIGNS, FRONT, FileSums, MergedRun, PROGRESS, RECORDING, REPORT, RunReport, STUDY};
+use crate::FileSum;
+use crate::durable::{remove, sync_folder};
 use crate::table::{Cell, Column, table_bytes};
 use crate::{Event, RunSummary, Study};
+use crate::{WriteError, write_whole};
 
 /// Time between two checkpoints: at most the designs of this time are lost when the power fails.
 const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(5);
@@ -20,49 +19,6 @@ const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(5);
 /// A checkpoint waits until this many times the duration of the last one has passed, so that a slow disk takes at most
 /// 2 % of the time of a run.
 const CHECKPOINT_SHARE: u32 = 50;
-
-/// Error of writing a run folder.
-#[derive(Debug, thiserror::Error)]
-pub enum WriteError {
-    /// The folder already holds a run.
-    #[error(
-        "{} already holds a run ({found}); continue it with --resume, choose another folder, or move that one away",
-        path.display()
-    )]
-    Occupied {
-        /// Path of the folder.
-        path: PathBuf,
-        /// Name of a file of the run that it holds.
-        found: &'static str,
-    },
-    /// Another process writes the run.
-    #[error("{} is in use: another process writes its run", .0.display())]
-    InUse(PathBuf),
-    /// The table is no longer the one that is being written.
-    #[error("{} was changed by another program while the run wrote it: {message}", path.display())]
-    Changed {
-        /// Path of the file.
-        path: PathBuf,
-        /// What is different.
-        message: String,
-    },
-    /// A file cannot be written.
-    #[error("cannot write {}: {cause}", path.display())]
-    Write {
-        /// Path of the file.
-        path: PathBuf,
-        /// Cause of the error.
-        cause: io::Error,
-    },
-}
-
-impl WriteError {
-    /// Converts an I/O error of the file at `path`.
-    pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> Self {
-        let path = path.to_owned();
-        move |cause| Self::Write { path, cause }
-    }
-}
 
 /// A run folder that is being written. It stays locked until the writer is dropped.
 #[derive(Debug)]

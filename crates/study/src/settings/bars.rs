@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use kinefront_model::stiffness::{Catalogue, CatalogueEntry, CrossSection, CrossSections, Wall};
+use kinefront_model::mechanism::{Catalogue, CatalogueEntry, CrossSection, CrossSections, Wall};
 
 /// Shape of a cross-section.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -88,7 +88,7 @@ pub struct BuiltinCatalogue {
 pub const CATALOGUES: [BuiltinCatalogue; 1] = [BuiltinCatalogue {
     name: "en-10255-medium",
     source: "EN 10255:2004, table 2: steel tubes for welding and threading, medium series (M)",
-    text: include_str!("../../../../assets/catalogues/en-10255-medium.csv"),
+    text: include_str!("../../assets/catalogues/en-10255-medium.csv"),
 }];
 
 /// Why a catalogue cannot be used.
@@ -100,9 +100,9 @@ pub enum CatalogueFault {
     /// The file is not CSV with the columns of a catalogue.
     #[error("{0}; the columns of a catalogue are name, outer_mm, wall_mm and, if known, kg_per_m")]
     Csv(#[from] csv::Error),
-    /// The entries are no catalogue.
+    /// The entries do not form a catalogue.
     #[error(transparent)]
-    Entries(#[from] kinefront_model::stiffness::CatalogueError),
+    Entries(#[from] kinefront_model::mechanism::CatalogueError),
 }
 
 fn builtin_names() -> String {

@@ -2,9 +2,7 @@
 //! of studies follow.
 
 mod bars;
-mod compare;
 mod declare;
-mod faults;
 mod list;
 mod optimizer;
 mod question;
@@ -17,9 +15,9 @@ pub use bars::{
     SectionsSection,
 };
 pub use declare::{Check, Initial, Setting};
-pub use faults::Fault;
 pub use list::settings;
 pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnation};
+pub(crate) use question::unknown_quantity;
 pub use question::{LimitChoice, Limits, ObjectiveChoice};
 pub use region::{RegionKind, RegionSection};
 pub use sections::{

@@ -3,11 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::declare::{Check, Initial, section};
-use crate::Study;
-use kinefront_model::evaluation::{Better, Objective, Quantity};
-use kinefront_model::mechanism::DesignVariable;
-
-use kinefront_optimize::{CmaEsSettings, FrontDeSettings, Moga2Settings, Nsga2Settings, Objectives};
+use kinefront_optimize::{CmaEsSettings, FrontDeSettings, Moga2Settings, Nsga2Settings};
 
 /// Name of an algorithm.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -146,34 +142,5 @@ section! {
             /// quantities that are maximised, and for others a value that few designs exceed.
             reference: Vec<f64>, Check::Finite, Initial::AsText;
         }
-    }
-}
-
-impl Study {
-    /// Returns the reference point of the hypervolume, as it is minimised: the reference mass \[kg\] and 0 for the paper's
-    /// objectives.
-    pub fn hypervolume_reference(&self) -> Objectives {
-        let of_objective = |(place, objective): (usize, Objective)| {
-            let stated = self
-                .hypervolume
-                .reference
-                .as_ref()
-                .and_then(|values| values.get(place).copied());
-            let value = stated.unwrap_or(match (objective.goal, objective.quantity) {
-                (Better::Higher, _) => return 0.0,
-                (_, Quantity::Mass | Quantity::LegsMass | Quantity::PlatformMass) => self.hypervolume.reference_mass_kg,
-                (_, Quantity::Footprint) => 2.0 * self.range(DesignVariable::BaseRadius)[1],
-                (_, Quantity::DisplacementMax) => 2.0 * self.requirements.in_plane_displacement_m,
-                (_, Quantity::Height) => 20.0 * self.thickest_bars().into_iter().fold(0.0, f64::max),
-                (_, Quantity::WorkspaceRadius) => self.range(DesignVariable::LinkLength)[1],
-                (_, Quantity::Dexterity | Quantity::DexterityMean | Quantity::TransmissionMin) => 1.0,
-                (_, Quantity::StiffnessXy) => 100.0 * self.thresholds().k_xy,
-                (_, Quantity::StiffnessZ) => 100.0 * self.thresholds().k_z,
-                (_, Quantity::StiffnessPhiZ) => 100.0 * self.thresholds().k_phi_z,
-                (_, Quantity::Clearance | Quantity::Reach | Quantity::Determinant) => 1.0,
-            });
-            objective.minimised(Some(value))
-        };
-        Objectives::new(self.objectives().into_iter().enumerate().map(of_objective))
     }
 }

@@ -4,9 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::Study;
-use kinefront_model::evaluation::{Better, Bound, Objective, Quantity, QuantityLimit, QuantitySet, Scope};
-use kinefront_model::workspace::{FurtherLimits, Thresholds};
+use kinefront_model::evaluation::{Better, Bound, Objective, Quantity};
 
 /// An objective of a study: the key of the quantity that is minimised or maximised.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -19,8 +17,8 @@ pub enum ObjectiveChoice {
 }
 
 impl ObjectiveChoice {
-    /// The objectives of the paper: little mass, and a large workspace.
-    pub fn of_paper() -> Vec<Self> {
+    /// The objectives of a study that states none: little mass, and a large workspace.
+    pub fn defaults() -> Vec<Self> {
         vec![
             Self::Minimize(Quantity::Mass.entry().key.to_owned()),
             Self::Maximize(Quantity::WorkspaceRadius.entry().key.to_owned()),
@@ -34,7 +32,8 @@ impl ObjectiveChoice {
         }
     }
 
-    fn objective(&self) -> Option<Objective> {
+    /// Returns the objective; `None` if no quantity has the key.
+    pub fn objective(&self) -> Option<Objective> {
         Some(Objective {
             quantity: Quantity::find(self.key())?,
             goal: match self {
@@ -57,98 +56,19 @@ pub struct LimitChoice {
     pub at_most: Option<f64>,
 }
 
+impl LimitChoice {
+    /// Iterates over the bounds that are stated.
+    pub fn bounds(&self) -> impl Iterator<Item = Bound> + use<> {
+        let bounds = [self.at_least.map(Bound::AtLeast), self.at_most.map(Bound::AtMost)];
+        bounds.into_iter().flatten()
+    }
+}
+
 /// Limits by the key of their quantity.
 pub type Limits = BTreeMap<String, LimitChoice>;
 
-impl Study {
-    /// Returns the objectives of the study; a study without faults has one to three.
-    pub fn objectives(&self) -> Vec<Objective> {
-        self.objectives.iter().filter_map(ObjectiveChoice::objective).collect()
-    }
-
-    /// Whether the workspaces of the front are proved: proofs cover the largest disc and the constraints of the paper.
-    pub fn certifies(&self) -> bool {
-        let covered = self.thresholds().further.is_none();
-        // A radius that is exactly at its limit would fall below it by the tolerance of the proof.
-        let bounds_radius = self.limits().any(|limit| limit.quantity == Quantity::WorkspaceRadius);
-        self.workspace.certify && !self.workspace.region.is_prescribed() && covered && !bounds_radius
-    }
-
-    /// Whether the study asks the paper's question: mass against the radius of the largest disc.
-    pub fn asks_as_the_paper(&self) -> bool {
-        self.objectives == ObjectiveChoice::of_paper()
-    }
-
-    /// Iterates over the limits of the study.
-    pub fn limits(&self) -> impl Iterator<Item = QuantityLimit> {
-        self.constraints.iter().flat_map(|(key, limits)| {
-            let quantity = Quantity::find(key);
-            let bounds = [limits.at_least.map(Bound::AtLeast), limits.at_most.map(Bound::AtMost)];
-            bounds.into_iter().flatten().filter_map(move |bound| {
-                Some(QuantityLimit {
-                    quantity: quantity?,
-                    bound,
-                })
-            })
-        })
-    }
-
-    /// Returns the quantities that an evaluation has to determine besides those that it always does.
-    pub fn asked_quantities(&self) -> QuantitySet {
-        let named = self.named_quantities();
-        named.iter().filter(|quantity| !quantity.is_always_known()).collect()
-    }
-
-    /// Returns the quantities that the study names: in its objectives, its limits, and those to be reported.
-    pub fn named_quantities(&self) -> QuantitySet {
-        let of_objectives = self.objectives().into_iter().map(|objective| objective.quantity);
-        let of_limits = self.limits().map(|limit| limit.quantity);
-        let reported = self.quantities.iter().filter_map(|key| Quantity::find(key));
-        of_objectives.chain(of_limits).chain(reported).collect()
-    }
-
-    /// Returns the limits that hold for the region as a whole, not for each of its poses.
-    pub fn limits_of_designs(&self) -> Vec<QuantityLimit> {
-        self.limits().filter(|limit| !bounds_poses(limit)).collect()
-    }
-
-    /// Applies the limits that hold for each pose to thresholds.
-    pub(crate) fn bound_poses(&self, thresholds: &mut Thresholds) {
-        for limit in self.limits().filter(bounds_poses) {
-            let threshold = limit.threshold();
-            match limit.quantity {
-                Quantity::Dexterity => thresholds.inverse_condition = threshold,
-                Quantity::StiffnessXy => thresholds.k_xy = threshold,
-                Quantity::StiffnessZ => thresholds.k_z = threshold,
-                Quantity::StiffnessPhiZ => thresholds.k_phi_z = threshold,
-                Quantity::Clearance => thresholds.clearance = Some(threshold),
-                Quantity::Reach => further(thresholds).limit_margin = Some(threshold),
-                Quantity::TransmissionMin => further(thresholds).transmission = Some(threshold),
-                Quantity::DisplacementMax => further(thresholds).displacement = Some(threshold),
-                _ => {}
-            }
-        }
-    }
-}
-
-fn further(thresholds: &mut Thresholds) -> &mut FurtherLimits {
-    thresholds.further.get_or_insert_default()
-}
-
-/// Whether a limit is one of each pose of the region: that of the least value of a quantity over poses from below, or that of the
-/// largest value from above.
-fn bounds_poses(limit: &QuantityLimit) -> bool {
-    let entry = limit.quantity.entry();
-    let from = match limit.bound {
-        Bound::AtLeast(_) => Better::Higher,
-        Bound::AtMost(_) => Better::Lower,
-    };
-    // No study bounds the determinant from below: the sign rule does.
-    entry.scope == Scope::Poses && entry.better == from && limit.quantity != Quantity::Determinant
-}
-
 /// Explains that a key names no quantity, and names the nearest one.
-pub(super) fn unknown_quantity(key: &str) -> String {
+pub(crate) fn unknown_quantity(key: &str) -> String {
     let keys = || Quantity::all().map(|quantity| quantity.entry().key);
     let stem = |key: &str| {
         let units = [
@@ -176,12 +96,12 @@ pub(super) fn unknown_quantity(key: &str) -> String {
         } else {
             format!("is stated in {}", entry.unit)
         };
-        return format!("is no quantity; the {} {unit}: `{}`", entry.label, entry.key);
+        return format!("is not a quantity; the {} {unit}: `{}`", entry.label, entry.key);
     }
     let nearest = keys().max_by(|a, b| strsim::jaro_winkler(a, key).total_cmp(&strsim::jaro_winkler(b, key)));
     let known: Vec<&str> = keys().collect();
     format!(
-        "is no quantity; did you mean `{}`? The quantities are {}",
+        "is not a quantity; did you mean `{}`? The quantities are {}",
         nearest.unwrap_or_default(),
         known.join(", ")
     )

@@ -4,11 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use super::RegionSection;
 use super::declare::{Check, Initial, section};
+use kinefront_model::evaluation::Quantity;
 use kinefront_model::mechanism::{
-    Arrangement, DESIGN_VARIABLES, Design, DesignVariable, FURTHER_VARIABLES, TextError, WorkingMode,
+    Arrangement, CrossSection, DESIGN_VARIABLES, Design, DesignVariable, FURTHER_VARIABLES, TextError, WorkingMode,
 };
 use kinefront_model::spatial::LEGS;
-use kinefront_model::stiffness::{CrossSection, Material, RailSettings, RailSupports};
+use kinefront_model::stiffness::{Material, RailSettings, RailSupports};
 use kinefront_model::workspace::{Grid, GridError};
 
 section! {
@@ -360,5 +361,16 @@ impl ReferenceDesign {
     /// [`TextError`]; this does not occur for a study that was read without faults.
     pub fn parse(&self, default_mode: WorkingMode) -> Result<Design, TextError> {
         Design::parse(&self.design, default_mode)
+    }
+
+    /// Iterates over the quantities that the source of the design states.
+    pub fn stated(&self) -> impl Iterator<Item = (Quantity, f64)> {
+        let stated = [
+            (Quantity::Mass, self.mass_kg),
+            (Quantity::WorkspaceRadius, self.workspace_radius_m),
+        ];
+        stated
+            .into_iter()
+            .filter_map(|(quantity, value)| Some((quantity, value?)))
     }
 }

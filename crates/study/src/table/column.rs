@@ -1,23 +1,21 @@
 //! The columns of a table of designs: the one definition that CSV, Parquet, recordings, window and terminal follow.
 
 use std::borrow::Cow;
-use std::fmt;
 
 use crate::Study;
-use kinefront_model::evaluation::{Better, Constraint, Quantity, QuantitySet};
+use kinefront_model::evaluation::{Better, Constraint, Quantity, QuantitySet, Scale};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable, FURTHER_VARIABLES};
-
-use super::TableRow;
 
 /// A column of a table of designs.
 ///
 /// ```
+/// use kinefront_model::evaluation::Quantity;
 /// use kinefront_study::{Column, ColumnType, Study};
 ///
 /// let names: Vec<_> = Column::of_designs(&Study::default()).map(Column::name).collect();
 /// assert_eq!(names[..5], ["id", "generation", "architecture", "working_mode", "R"]);
-/// assert_eq!(Column::find("mass_kg"), Some(Column::Mass));
-/// assert_eq!(Column::Mass.kind(), ColumnType::Number);
+/// assert_eq!(Column::find("mass_kg"), Some(Column::Quantity(Quantity::Mass)));
+/// assert_eq!(Column::Quantity(Quantity::Mass).kind(), ColumnType::Number);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Column {
@@ -31,23 +29,17 @@ pub enum Column {
     WorkingMode,
     /// One of the variables of a design \[m, or deg for an angle\].
     Dimension(DesignVariable),
-    /// Mass in motion \[kg\].
-    Mass,
-    /// Workspace radius `R_w` \[m\].
-    WorkspaceRadius,
     /// Home orientation `φ_c` \[deg\].
     HomePhi,
     /// Whether the design is feasible.
     Feasible,
     /// Relative margin of a constraint; missing where the study does not require the constraint.
     Margin(Constraint),
-    /// Smallest value of a constraint over the regular workspace; that of g7 is the clearance \[m\].
-    Value(Constraint),
     /// Ids of the active constraints, joined by `+`.
     Active,
     /// Constraint violation; 0 for a feasible design.
     Violation,
-    /// A quantity that has no column of its own above, of a study that names it.
+    /// A quantity; those that are not known of every design have a column where a study names them.
     Quantity(Quantity),
     /// Workspace radius on the reference grid \[m\], in a verified front.
     ReferenceRadius,
@@ -82,53 +74,21 @@ pub enum ColumnType {
     Text,
 }
 
-/// One value of a row.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Cell {
-    /// There is no value; an empty text in CSV.
-    Missing,
-    /// A whole number.
-    Integer(u64),
-    /// A floating-point number, written as the shortest text that parses to the same number.
-    Number(f64),
-    /// True or false.
-    Flag(bool),
-    /// A text.
-    Text(Cow<'static, str>),
-}
-
-impl From<Option<f64>> for Cell {
-    fn from(number: Option<f64>) -> Self {
-        number.map_or(Cell::Missing, Cell::Number)
-    }
-}
-
-impl fmt::Display for Cell {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Cell::Missing => Ok(()),
-            Cell::Integer(number) => number.fmt(f),
-            Cell::Number(number) => number.fmt(f),
-            Cell::Flag(flag) => flag.fmt(f),
-            Cell::Text(text) => text.fmt(f),
-        }
-    }
-}
-
 impl Column {
     /// The columns of every table of designs, in their order; the columns of `designs.csv` begin with them.
     pub fn common() -> impl Iterator<Item = Column> {
         [Self::Id, Self::Generation, Self::Architecture, Self::WorkingMode]
             .into_iter()
             .chain(DESIGN_VARIABLES.map(Self::Dimension))
-            .chain([Self::Mass, Self::WorkspaceRadius, Self::HomePhi, Self::Feasible])
+            .chain([Quantity::Mass, Quantity::WorkspaceRadius].map(Self::Quantity))
+            .chain([Self::HomePhi, Self::Feasible])
     }
 
     /// The columns of `designs.csv` of every study, in their order.
     fn of_every_study() -> impl Iterator<Item = Column> {
         Self::common()
             .chain(Constraint::ALL.map(Self::Margin))
-            .chain(Constraint::ALL.map(Self::Value))
+            .chain(Constraint::ALL.map(|constraint| Self::Quantity(Quantity::of_constraint(constraint))))
             .chain([Self::Active, Self::Violation])
     }
 
@@ -156,22 +116,10 @@ impl Column {
         Self::Certificate,
     ];
 
-    /// The columns of those quantities that have no other column.
+    /// The columns of those quantities that not every study has.
     fn further(quantities: QuantitySet) -> impl Iterator<Item = Column> {
-        let columns = quantities.iter().map(Self::of_quantity).collect::<Vec<_>>();
-        columns.into_iter().filter(|column| matches!(column, Self::Quantity(_)))
-    }
-
-    /// The column of a quantity.
-    pub fn of_quantity(quantity: Quantity) -> Column {
-        match quantity {
-            Quantity::Mass => Self::Mass,
-            Quantity::WorkspaceRadius => Self::WorkspaceRadius,
-            quantity => quantity
-                .entry()
-                .constraint
-                .map_or(Self::Quantity(quantity), Self::Value),
-        }
+        let named = quantities.iter().filter(|quantity| !quantity.is_always_known());
+        named.map(Self::Quantity).collect::<Vec<_>>().into_iter()
     }
 
     /// Every column that a table may have.
@@ -184,18 +132,19 @@ impl Column {
     }
 
     /// The numerical columns that an axis, a filter or a column of the window can show: mass and workspace radius, dimensions,
-    /// margins, values of constraints, the quantities among `further`, then the others.
-    pub fn quantities(further: QuantitySet) -> impl Iterator<Item = Column> {
-        [Self::Mass, Self::WorkspaceRadius]
+    /// margins, clearance, and what else is known of every design, then the other quantities among `named`.
+    pub fn quantities(named: QuantitySet) -> impl Iterator<Item = Column> {
+        let clearance = Quantity::of_constraint(Constraint::Clearance);
+        let others = named
+            .iter()
+            .filter(move |quantity| ![Quantity::Mass, Quantity::WorkspaceRadius, clearance].contains(quantity));
+        [Quantity::Mass, Quantity::WorkspaceRadius]
+            .map(Self::Quantity)
             .into_iter()
             .chain(DESIGN_VARIABLES.map(Self::Dimension))
             .chain(Constraint::ALL.map(Self::Margin))
-            .chain([Self::Value(Constraint::Clearance), Self::HomePhi, Self::Violation])
-            .chain(further.iter().map(Self::of_quantity).filter(|column| {
-                let is_listed =
-                    [Self::Mass, Self::WorkspaceRadius, Self::Value(Constraint::Clearance)].contains(column);
-                !is_listed
-            }))
+            .chain([Self::Quantity(clearance), Self::HomePhi, Self::Violation])
+            .chain(others.map(Self::Quantity))
     }
 
     /// The column of a name.
@@ -216,15 +165,15 @@ impl Column {
             Self::Architecture => "architecture",
             Self::WorkingMode => "working_mode",
             Self::Dimension(variable) => variable.key(),
-            Self::Mass => "mass_kg",
-            Self::WorkspaceRadius => "workspace_radius_m",
             Self::HomePhi => "phi_deg",
             Self::Feasible => "feasible",
             Self::Margin(constraint) => return Cow::Owned(format!("margin_{}", constraint.id())),
-            Self::Value(constraint) => return Cow::Owned(format!("value_{}", constraint.id())),
             Self::Active => "active",
             Self::Violation => "violation",
-            Self::Quantity(quantity) => quantity.entry().key,
+            Self::Quantity(quantity) => match quantity.constraint() {
+                Some(constraint) => return Cow::Owned(format!("value_{}", constraint.id())),
+                None => quantity.entry().key,
+            },
             Self::ReferenceRadius => "workspace_radius_reference_m",
             Self::Mark => "mark",
             Self::CertifiedLower => "certified_lower_m",
@@ -246,11 +195,8 @@ impl Column {
             }
             Self::Feasible | Self::OnJointFront | Self::Verified | Self::Starred => ColumnType::Flag,
             Self::Dimension(_)
-            | Self::Mass
-            | Self::WorkspaceRadius
             | Self::HomePhi
             | Self::Margin(_)
-            | Self::Value(_)
             | Self::Violation
             | Self::Quantity(_)
             | Self::ReferenceRadius
@@ -263,14 +209,8 @@ impl Column {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Dimension(variable) if variable.is_angle() => "°",
-            Self::Dimension(_)
-            | Self::WorkspaceRadius
-            | Self::ReferenceRadius
-            | Self::CertifiedLower
-            | Self::CertifiedUpper => "m",
-            Self::Mass => "kg",
+            Self::Dimension(_) | Self::ReferenceRadius | Self::CertifiedLower | Self::CertifiedUpper => "m",
             Self::HomePhi => "°",
-            Self::Value(constraint) => constraint.unit(),
             Self::Quantity(quantity) => quantity.entry().unit,
             _ => "",
         }
@@ -282,30 +222,21 @@ impl Column {
             // A chain may not have a further variable.
             return FURTHER_VARIABLES.contains(&variable);
         }
+        if let Self::Quantity(quantity) = self {
+            return ![Quantity::Mass, Quantity::WorkspaceRadius].contains(&quantity);
+        }
         matches!(
             self,
-            Self::HomePhi
-                | Self::Margin(_)
-                | Self::Value(_)
-                | Self::Quantity(_)
-                | Self::CertifiedLower
-                | Self::CertifiedUpper
+            Self::HomePhi | Self::Margin(_) | Self::Quantity(_) | Self::CertifiedLower | Self::CertifiedUpper
         )
     }
 
     /// Name to display, without the unit.
     fn label(self) -> Cow<'static, str> {
         match self {
-            Self::Mass => "mass in motion".into(),
-            Self::WorkspaceRadius => "R_w".into(),
             Self::Dimension(variable) => variable.symbol().into(),
             Self::HomePhi => "φ_c".into(),
             Self::Margin(constraint) => format!("margin {}", constraint.id()).into(),
-            Self::Value(Constraint::Clearance) => "clearance".into(),
-            Self::Value(constraint) => match Quantity::of_constraint(constraint) {
-                Some(quantity) => quantity.entry().label.into(),
-                None => format!("value {}", constraint.id()).into(),
-            },
             Self::Quantity(quantity) => quantity.entry().label.into(),
             _ => self.name(),
         }
@@ -322,7 +253,7 @@ impl Column {
     /// Short name for the heading of a narrow axis.
     pub fn short(self) -> Cow<'static, str> {
         match self {
-            Self::Mass => "mass".into(),
+            Self::Quantity(quantity) => quantity.entry().short.into(),
             Self::Margin(Constraint::DeterminantSign) => "det A".into(),
             Self::Margin(constraint) => constraint.id().into(),
             _ => self.label(),
@@ -332,8 +263,8 @@ impl Column {
     /// Direction in which the values are better, if there is one.
     pub fn better(self) -> Option<Better> {
         match self {
-            Self::Mass | Self::Violation => Some(Better::Lower),
-            Self::WorkspaceRadius | Self::Margin(_) | Self::Value(_) => Some(Better::Higher),
+            Self::Violation => Some(Better::Lower),
+            Self::Margin(_) => Some(Better::Higher),
             Self::Quantity(quantity) => Some(quantity.entry().better),
             _ => None,
         }
@@ -341,38 +272,10 @@ impl Column {
 
     /// Whether the values differ by orders of magnitude, so that a logarithmic axis suits them.
     pub fn is_logarithmic(self) -> bool {
-        matches!(
-            self,
-            Self::Mass
-                | Self::Violation
-                | Self::Value(Constraint::StiffnessXy | Constraint::StiffnessZ | Constraint::StiffnessPhiZ)
-                | Self::Quantity(Quantity::LegsMass | Quantity::PlatformMass | Quantity::DisplacementMax)
-        )
-    }
-
-    /// The value of an entry. Missing for the columns that only some tables have: whoever writes such a table adds the
-    /// cells itself.
-    pub fn cell(self, entry: &TableRow) -> Cell {
-        let row = &entry.row;
         match self {
-            Self::Id => Cell::Integer(entry.id as u64),
-            Self::Generation => Cell::Integer(u64::from(row.generation)),
-            Self::Architecture => Cell::Text(row.design.architecture.name().into()),
-            Self::WorkingMode => Cell::Text(row.design.working_mode.to_string().into()),
-            Self::Feasible => Cell::Flag(row.is_feasible()),
-            Self::Active => {
-                let active: Vec<&str> = row.active_constraints().map(Constraint::id).collect();
-                Cell::Text(active.join("+").into())
-            }
-            Self::ReferenceRadius => entry.reference_radius.into(),
-            Self::CertifiedLower => entry.certified.map(|certified| certified.lower).into(),
-            Self::CertifiedUpper => entry.certified.and_then(|certified| certified.upper).into(),
-            Self::Certificate => match entry.certified {
-                Some(certified) => Cell::Text(certified.state().into()),
-                None => Cell::Missing,
-            },
-            Self::Mark | Self::OnJointFront | Self::Verified | Self::Starred | Self::Note => Cell::Missing,
-            _ => row.number(self).into(),
+            Self::Violation => true,
+            Self::Quantity(quantity) => quantity.entry().scale == Scale::Logarithmic,
+            _ => false,
         }
     }
 }

@@ -1,11 +1,13 @@
 //! Tables of designs: their columns, their rows, and the reading and writing of both.
 
+mod cell;
 mod column;
 mod read;
 mod row;
 mod write;
 
-pub use column::{Cell, Column, ColumnType};
+pub use cell::Cell;
+pub use column::{Column, ColumnType};
 pub use read::{TableContents, TableError, TableFault, read_designs, read_run_table, read_table};
 pub use row::{Row, RowError, TableRow, read_design};
 pub(super) use write::append_row;

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::Column;
 use crate::{CertifiedRadius, Study};
-use kinefront_model::evaluation::{Constraint, Evaluation, Quantity, QuantityValues};
+use kinefront_model::evaluation::{Constraint, ConstraintSet, Evaluation, Quantity, QuantityValues};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignError, TextError};
 use kinefront_optimize::Objectives;
 
@@ -15,21 +15,15 @@ pub struct Row {
     pub generation: u32,
     /// The design.
     pub design: Design,
-    /// Mass in motion \[kg\].
-    pub mass: f64,
-    /// Workspace radius `R_w` \[m\]; 0 for an infeasible design.
-    pub radius: f64,
     /// Home orientation `φ_c` \[deg\]; `None` for an infeasible design.
     pub phi: Option<f64>,
     /// Constraint violation; 0 for a feasible design.
     pub violation: f64,
     /// Relative margins in the order of [`Constraint::ALL`]; `None` for a constraint that the study does not require.
-    pub margins: [Option<f64>; Constraint::ALL.len()],
-    /// Smallest values in the order of [`Constraint::ALL`]; `None` if no pose has one, and where they are not stored.
-    pub values: [Option<f64>; Constraint::ALL.len()],
-    /// Bit set of the active constraints; the lowest bit is that of the first constraint.
-    pub active: u8,
-    /// Quantities that the study names and that have no other column.
+    pub margins: [Option<f64>; Constraint::COUNT],
+    /// The active constraints.
+    pub active: ConstraintSet,
+    /// Quantities that every evaluation determines, and those that the study names.
     pub quantities: QuantityValues,
     /// The objectives of the study, as they are minimised.
     pub objectives: Objectives,
@@ -44,7 +38,7 @@ pub enum RowError {
     /// The architecture or the working mode is unknown.
     #[error(transparent)]
     Text(#[from] TextError),
-    /// The dimensions are no design.
+    /// The dimensions are not those of a design.
     #[error(transparent)]
     Design(#[from] DesignError),
 }
@@ -68,14 +62,11 @@ impl Row {
         Self {
             generation: generation.try_into().unwrap_or(u32::MAX),
             design: evaluation.design,
-            mass: evaluation.mass,
-            radius: evaluation.workspace_radius,
             phi: evaluation.home_phi_deg,
             violation: evaluation.violation,
             margins: evaluation.constraints.map(|result| result.required_margin()),
-            values: evaluation.constraints.map(|result| result.value),
-            active: bits(evaluation.active()),
-            quantities: evaluation.quantities.asked_for(),
+            active: evaluation.active().collect(),
+            quantities: evaluation.quantities,
             objectives: Objectives::new(evaluation.objectives.iter().copied()),
         }
     }
@@ -93,7 +84,7 @@ impl Row {
         let design = read_design(study, &text, &number)?;
         let expected = |column: Column| number(column).ok_or(RowError::Value(column));
         let thresholds = study.thresholds();
-        let mut margins = [None; Constraint::ALL.len()];
+        let mut margins = [None; Constraint::COUNT];
         for (margin, constraint) in margins.iter_mut().zip(Constraint::ALL) {
             if constraint.is_required(&thresholds) {
                 *margin = Some(expected(Column::Margin(constraint))?);
@@ -101,22 +92,22 @@ impl Row {
         }
         let active = text(Column::Active).unwrap_or_default();
         let named = |constraint: &Constraint| active.split('+').any(|id| id == constraint.id());
-        let objectives = study.objectives().into_iter().map(|objective| {
-            let column = Column::of_quantity(objective.quantity);
-            objective.minimised(number(column))
-        });
-        let further = Quantity::all().filter(|quantity| matches!(Column::of_quantity(*quantity), Column::Quantity(_)));
+        let objectives = study
+            .objectives()
+            .into_iter()
+            .map(|objective| objective.minimised(number(Column::Quantity(objective.quantity))));
+        // Every design has these two.
+        for quantity in [Quantity::Mass, Quantity::WorkspaceRadius] {
+            expected(Column::Quantity(quantity))?;
+        }
         Ok(Self {
             generation: generation.try_into().unwrap_or(u32::MAX),
             design,
-            mass: expected(Column::Mass)?,
-            radius: expected(Column::WorkspaceRadius)?,
             phi: number(Column::HomePhi),
             violation: expected(Column::Violation)?,
             margins,
-            values: Constraint::ALL.map(|constraint| number(Column::Value(constraint))),
-            active: bits(Constraint::ALL.into_iter().filter(named)),
-            quantities: further
+            active: Constraint::ALL.into_iter().filter(named).collect(),
+            quantities: Quantity::all()
                 .map(|quantity| (quantity, number(Column::Quantity(quantity))))
                 .collect(),
             objectives: Objectives::new(objectives),
@@ -128,10 +119,20 @@ impl Row {
         self.violation <= 0.0
     }
 
+    /// Mass in motion \[kg\].
+    pub fn mass(&self) -> f64 {
+        self.quantities.get(Quantity::Mass).unwrap_or(0.0)
+    }
+
+    /// Workspace radius `R_w` \[m\]; 0 for an infeasible design.
+    pub fn workspace_radius(&self) -> f64 {
+        self.quantities.get(Quantity::WorkspaceRadius).unwrap_or(0.0)
+    }
+
     /// Smallest clearance of members that are not joined \[m\], whether or not the study requires a clearance; `None` if
     /// no pose has one, and for tables of earlier versions.
     pub fn clearance(&self) -> Option<f64> {
-        self.values[Constraint::Clearance as usize]
+        self.quantities.get(Quantity::of_constraint(Constraint::Clearance))
     }
 
     /// Value of a numerical column, if the design has one.
@@ -141,23 +142,12 @@ impl Row {
                 let has_it = self.design.architecture.has(variable);
                 has_it.then(|| self.design.value(variable))
             }
-            Column::Mass => Some(self.mass),
-            Column::WorkspaceRadius => Some(self.radius),
             Column::HomePhi => self.phi,
             Column::Margin(constraint) => self.margins[constraint as usize],
-            Column::Value(constraint) => self.values[constraint as usize],
             Column::Violation => Some(self.violation),
             Column::Quantity(quantity) => self.quantities.get(quantity),
             _ => None,
         }
-    }
-
-    /// Returns the active constraints.
-    pub fn active_constraints(&self) -> impl Iterator<Item = Constraint> {
-        let active = self.active;
-        Constraint::ALL
-            .into_iter()
-            .filter(move |&constraint| active & bits([constraint]) != 0)
     }
 }
 
@@ -189,13 +179,6 @@ pub fn read_design<'a>(
     given
         .into_iter()
         .try_fold(design, |design, (variable, value)| Ok(design.with(variable, value)?))
-}
-
-/// Returns a bit set of constraints.
-fn bits(constraints: impl IntoIterator<Item = Constraint>) -> u8 {
-    constraints
-        .into_iter()
-        .fold(0, |bits, constraint| bits | 1 << constraint as u8)
 }
 
 /// A row of `designs.csv` or `front.csv`.

@@ -10,8 +10,8 @@ use crate::clearance::{DISTAL, PLATFORM, PROXIMAL, ROWS, kinds, pairs_not_joined
 use crate::enclosure::{
     AxisEnclosure, Interval, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, difference, dot, sum,
 };
-use crate::evaluation::{Constraint, Model};
-use crate::mechanism::{AnyLeg, Design, Leg, LegEnclosure, LegFrameEnclosure, LegSettings, MemberKind};
+use crate::evaluation::{Constraint, Model, PoseScalar};
+use crate::mechanism::{AnyLeg, Design, LegEnclosure, LegFrameEnclosure, LegSettings, MemberKind};
 use crate::spatial::LEGS;
 
 /// What g7 needs of a design. Lengths are multiples of `L_b` unless stated otherwise.
@@ -47,7 +47,7 @@ pub(super) struct MemberBoxes {
 impl Separations {
     /// Returns `None` if the study requires no clearance.
     pub fn new(model: &Model, design: &Design) -> Option<Self> {
-        let clearance = Interval::exactly(model.thresholds.clearance?);
+        let clearance = Interval::exactly(model.thresholds.get(PoseScalar::Clearance)?);
         let exactly = Interval::exactly;
         let bodies = &model.bodies;
         let to_unit = exactly(1.0) / exactly(design.link_length);

@@ -1,12 +1,12 @@
 //! Compliances of a design as intervals.
 
+use super::bars::per_length;
 use super::rails::RailCompliances;
 use crate::certify::CertifyError;
 use crate::enclosure::Interval;
-use crate::evaluation::Model;
+use crate::evaluation::{Model, PoseScalar};
 use crate::mechanism::{Design, JointKind};
 use crate::spatial::LEGS;
-use crate::stiffness::{CrossSection, Material};
 
 /// Compliances of a design, as multiples of two units.
 pub(super) struct Compliances {
@@ -74,7 +74,7 @@ impl Compliances {
         if !(unit.lower > 0.0 && unit.upper < 1e60 && bend.lower > 0.0 && bend.upper < 1e60) {
             return Err(CertifyError::Degenerate);
         }
-        let thresholds = &model.thresholds;
+        let limit = |scalar: PoseScalar| exactly(model.thresholds.get(scalar).unwrap_or(0.0));
         Ok(Self {
             actuator: actuator / unit,
             leg_axial: link * leg[0] / unit,
@@ -95,36 +95,11 @@ impl Compliances {
                     per_multiple: one / multiple,
                 }
             }),
-            in_plane: exactly(thresholds.k_xy) * unit,
-            rotation: exactly(thresholds.k_phi_z) * unit / radius.square(),
-            vertical: exactly(thresholds.k_z) * bend * link.square(),
+            in_plane: limit(PoseScalar::StiffnessXy) * unit,
+            rotation: limit(PoseScalar::StiffnessPhiZ) * unit / radius.square(),
+            vertical: limit(PoseScalar::StiffnessZ) * bend * link.square(),
             leg: [link * leg[1] / bend, link * leg[2] / bend],
             rail: RailCompliances::new(model, design, [unit, bend]),
         })
     }
-}
-
-/// Returns the axial, bending and torsional compliance per length of a bar, with the wall ratio as the double that the model uses.
-pub(super) fn per_length(material: &Material, section: &CrossSection, radius: f64) -> [Interval; 3] {
-    let exactly = Interval::exactly;
-    let (one, squared) = (exactly(1.0), exactly(radius).square());
-    let [e, g] = [material.youngs_modulus, material.shear_modulus].map(exactly);
-    let wall = exactly(section.wall_ratio(radius));
-    let inner = one - wall;
-    let filled = wall * (one + inner);
-    let (outline, gyration, torsion) = if section.is_square() {
-        let middle = one + inner;
-        let torsion = wall * middle * middle.square() * squared.square();
-        (exactly(4.0), exactly(3.0), Some(torsion))
-    } else {
-        (Interval::PI, exactly(4.0), None)
-    };
-    let (mut area, mut inertia) = (outline * squared, outline * squared * squared / gyration);
-    // Each operation rounds outwards, so that a solid bar does without those that do not change it.
-    if section.wall_ratio(radius) < 1.0 {
-        area = area * filled;
-        inertia = inertia * filled * (one + inner.square());
-    }
-    let torsion = torsion.unwrap_or(exactly(2.0) * inertia);
-    [one / (e * area), one / (e * inertia), one / (g * torsion)]
 }

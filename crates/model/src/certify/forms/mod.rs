@@ -3,6 +3,7 @@
 //! They are cleared of roots and quotients where this keeps the enclosures narrow, and are written apart from those that the
 //! evaluation uses.
 
+mod bars;
 mod clearance;
 mod compliances;
 mod rails;
@@ -13,23 +14,34 @@ use compliances::Compliances;
 
 use super::CertifyError;
 use crate::enclosure::{Interval, PoseEnclosure, TaylorModel, VARIABLES, cross, dot};
-use crate::evaluation::{Constraint, Model};
+use crate::evaluation::{Constraint, ConstraintSet, Model, PoseScalar, Thresholds};
 use crate::kinematics::CharacteristicLength;
-use crate::mechanism::{AnyLeg, Design, Leg, LegEnclosure, LegFrameEnclosure};
+use crate::mechanism::{AnyLeg, Design, LegEnclosure, LegFrameEnclosure};
 use crate::spatial::{LEGS, Pose};
+
+/// The scalars whose limits have forms. The reach and the sign of `det A` have forms of their own.
+const COVERED: [PoseScalar; 5] = [
+    PoseScalar::Dexterity,
+    PoseScalar::StiffnessXy,
+    PoseScalar::StiffnessZ,
+    PoseScalar::StiffnessPhiZ,
+    PoseScalar::Clearance,
+];
+
+/// Returns a limited scalar that has no form.
+pub(super) fn uncovered(thresholds: &Thresholds) -> Option<PoseScalar> {
+    let mut limited = thresholds.iter().map(|(scalar, _)| scalar);
+    limited.find(|scalar| !COVERED.contains(scalar))
+}
 
 /// Which constraints are proved on a box, and therefore on every part of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct ProvedForms(u8);
+pub(super) struct ProvedForms(ConstraintSet);
 
 impl ProvedForms {
-    fn bit(constraint: Constraint) -> u8 {
-        1 << constraint as u8
-    }
-
     /// Everything but one constraint, where no other is of interest.
     pub fn all_but(constraint: Constraint) -> Self {
-        Self(!Self::bit(constraint))
+        Self(ConstraintSet::default().with(constraint).complement())
     }
 
     /// Adds the constraints that, of those that are open on a box, its polynomials tell to hold at `ε`.
@@ -42,17 +54,18 @@ impl ProvedForms {
             let holds = value.value(epsilon) - value.remainder > 0.0;
             !holds
         });
-        Self(!fails.fold(0, |bits, (constraint, _)| bits | Self::bit(*constraint)) | self.0)
+        let fails: ConstraintSet = fails.map(|(constraint, _)| *constraint).collect();
+        Self(self.0.or(fails.complement()))
     }
 
     /// Whether every constraint is proved.
     pub fn is_all(self) -> bool {
-        self.0 == u8::MAX
+        self.0 == ConstraintSet::all()
     }
 
     /// Whether a constraint is proved.
     pub fn contains(self, constraint: Constraint) -> bool {
-        self.0 & Self::bit(constraint) != 0
+        self.0.contains(constraint)
     }
 
     /// Adds what is proved on a box on which `found` was enclosed.
@@ -61,11 +74,9 @@ impl ProvedForms {
         if !found.is_complete {
             return self;
         }
-        let open = found
-            .open()
-            .fold(0, |bits, (constraint, _)| bits | Self::bit(*constraint));
+        let open: ConstraintSet = found.open().map(|(constraint, _)| *constraint).collect();
         // What a leg reaches is part of every other constraint, and is enclosed in any case.
-        Self(self.0 | !(open | Self::bit(Constraint::Reach)))
+        Self(self.0.or(open.with(Constraint::Reach).complement()))
     }
 }
 
@@ -145,7 +156,7 @@ impl<'a> Forms<'a> {
     /// Takes the sign of `det A` from a pose; if it cannot be told there, it stays positive.
     pub fn with_sign_at(mut self, pose: &Pose) -> Self {
         if let Ok(found) = self.model.pose(self.design, pose)
-            && found.determinant < 0.0
+            && found.values[PoseScalar::Determinant] < 0.0
         {
             self.sign = -1.0;
         }
@@ -196,9 +207,14 @@ impl<'a> Forms<'a> {
         found
     }
 
+    /// The limit of a scalar; 0 without one.
+    fn limit(&self, scalar: PoseScalar) -> f64 {
+        self.model.thresholds.get(scalar).unwrap_or(0.0)
+    }
+
     /// The constraint that keeps poses away from singularities: g3, or the sign of `det A` if g3 has no threshold.
     fn dexterity(&self) -> Constraint {
-        if self.model.thresholds.inverse_condition > 0.0 {
+        if self.limit(PoseScalar::Dexterity) > 0.0 {
             Constraint::Dexterity
         } else {
             Constraint::DeterminantSign
@@ -225,7 +241,7 @@ impl<'a> Forms<'a> {
         }
         let constraint = self.dexterity();
         let value = if constraint == Constraint::Dexterity {
-            let threshold = Interval::exactly(self.model.thresholds.inverse_condition);
+            let threshold = Interval::exactly(self.limit(PoseScalar::Dexterity));
             determinant.squared().times(9.0) - (forward * inverse).scaled(threshold.square())
         } else {
             determinant.times(self.sign)

@@ -1,6 +1,6 @@
 //! Compliance of a rail of the base over a box of poses (docs/model.md, section 4.8).
 
-use super::compliances::per_length;
+use super::bars::per_length;
 use crate::enclosure::{Interval, TaylorModel};
 use crate::evaluation::Model;
 use crate::mechanism::{Design, LegFrameEnclosure};

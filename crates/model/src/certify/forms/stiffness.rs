@@ -3,7 +3,7 @@
 use super::rails::{RailCompliances, RailForms};
 use super::{Enclosures, Forms, others, turn};
 use crate::enclosure::{Interval, PlanarModel, TaylorModel, dot};
-use crate::evaluation::Constraint;
+use crate::evaluation::{Constraint, PoseScalar};
 use crate::mechanism::LegEnclosure;
 use crate::spatial::LEGS;
 use crate::stiffness::StiffnessDefinition;
@@ -46,7 +46,8 @@ impl Forms<'_> {
 
     /// Whether a stiffness value has a threshold that is not proved yet.
     fn is_required(&self, constraint: Constraint, found: &Enclosures) -> bool {
-        constraint.least(&self.model.thresholds) > 0.0 && found.needs(constraint)
+        let limit = constraint.scalar().map_or(0.0, |scalar| self.limit(scalar));
+        limit > 0.0 && found.needs(constraint)
     }
 
     /// g4 and g6 for the entries of `K`. With `T` the threshold, `k_xy > T` where `(λ₁ − T)(λ₂ − T) > 0` and `λ₁ + λ₂ > 2T`.
@@ -114,7 +115,7 @@ impl Forms<'_> {
     /// g5 for the reciprocal of the entry of `K⁻¹`, which is `det K/det K_φφ` of the block out of the plane. `K` is the sum of the
     /// inverses of the compliances of the legs, and positive definite.
     fn enclose_vertical_reciprocal(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
-        if self.model.thresholds.k_z > 0.0 {
+        if self.limit(PoseScalar::StiffnessZ) > 0.0 {
             let mut stiffness = [TaylorModel::exactly(0.0); 6];
             for (index, leg) in legs.iter().enumerate() {
                 let compliance = self.bending(leg, index);

@@ -18,13 +18,13 @@ pub use rrr::RrrChain;
 
 use glam::DVec2;
 
-use super::chain::{Assembly, ChainEnclosure, JointKind};
+use super::{Assembly, ChainEnclosure, JointKind};
 use super::{
     LegBody, LegFrame, LegFrameEnclosure, LegJoint, LegPart, MemberAxis, MemberKind, Members, ReachReason, Shortfall,
 };
 use crate::enclosure::{AxisEnclosure, Interval, MembersEnclosure, PlanarModel, TaylorModel, difference};
 use crate::lanes::{Planar, Real};
-use crate::spatial::cross;
+use crate::spatial::{NUMBER_LIMIT, cross};
 
 /// Returns an angle in (−π, π] \[rad\].
 fn wrapped(angle: f64) -> f64 {
@@ -90,7 +90,7 @@ fn margin_within<V: Real>(value: V, [lower, upper]: [f64; 2]) -> V {
 /// Returns `margin`, or a large shortfall where it is no number.
 #[inline(always)]
 fn or_far_off<V: Real>(margin: V) -> V {
-    let far = margin.splat(-crate::clearance::NUMBER_LIMIT);
+    let far = margin.splat(-NUMBER_LIMIT);
     margin.select(margin.at_least(far), far)
 }
 

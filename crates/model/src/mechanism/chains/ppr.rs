@@ -10,13 +10,10 @@ use super::{
 };
 use crate::enclosure::{Interval, MembersEnclosure, PlanarModel, TaylorModel, difference};
 use crate::lanes::{Planar, Real};
-use crate::mechanism::chain::{
-    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
-    JointPoint, LockedKind, LockedLeg, Solved,
-};
 use crate::mechanism::{
-    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegPart, LegSettings, MemberKind, Members, Shortfall,
-    Travel,
+    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, Design, DesignVariable,
+    DistalLanes, JointKind, JointPoint, LegBody, LegFrame, LegFrameEnclosure, LegPart, LegSettings, LockedKind,
+    LockedLeg, MemberKind, Members, Shortfall, Solved, Travel,
 };
 use crate::spatial::{Rotation, cross};
 

@@ -9,13 +9,10 @@ use super::{
 };
 use crate::enclosure::{Interval, MembersEnclosure, PlanarModel, TaylorModel, cross as cross_models};
 use crate::lanes::{Planar, Real};
-use crate::mechanism::chain::{
-    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
-    JointPoint, LockedKind, LockedLeg, ProximalEnclosure, ProximalLanes, Solved,
-};
 use crate::mechanism::{
-    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegPart, LegSettings, MemberKind, Members, Shortfall,
-    Travel,
+    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, Design, DesignVariable,
+    DistalLanes, JointKind, JointPoint, LegBody, LegFrame, LegFrameEnclosure, LegPart, LegSettings, LockedKind,
+    LockedLeg, MemberKind, Members, ProximalEnclosure, ProximalLanes, Shortfall, Solved, Travel,
 };
 use crate::spatial::{Rotation, cross};
 

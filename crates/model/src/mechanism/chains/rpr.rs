@@ -5,13 +5,10 @@ use glam::DVec2;
 use super::{Within, angle_of, box_about, pin, prismatic, revolute, wrapped};
 use crate::enclosure::{AxisEnclosure, Interval, MembersEnclosure, PlanarModel, TaylorModel, difference, dot};
 use crate::lanes::{Planar, Real};
-use crate::mechanism::chain::{
-    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
-    JointPoint, LockedKind, LockedLeg, Solved,
-};
 use crate::mechanism::{
-    BarLength, Design, LegBody, LegFrame, LegFrameEnclosure, LegPart, LegSettings, MemberAxis, MemberKind, Members,
-    ReachReason, Shortfall, Travel, TravelKind,
+    Assembly, BarLength, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, Design,
+    DistalLanes, JointKind, JointPoint, LegBody, LegFrame, LegFrameEnclosure, LegPart, LegSettings, LockedKind,
+    LockedLeg, MemberAxis, MemberKind, Members, ReachReason, Shortfall, Solved, Travel, TravelKind,
 };
 use crate::spatial::unit;
 

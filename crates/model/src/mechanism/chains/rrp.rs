@@ -10,13 +10,10 @@ use super::{
 };
 use crate::enclosure::{MembersEnclosure, PlanarModel, TaylorModel, cross as cross_models, difference, dot};
 use crate::lanes::{Planar, Real};
-use crate::mechanism::chain::{
-    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
-    JointPoint, LockedKind, LockedLeg, ProximalLanes, Solved,
-};
 use crate::mechanism::{
-    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegSettings, MemberKind, Members, ReachReason,
-    Shortfall, Travel,
+    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, Design, DesignVariable,
+    DistalLanes, JointKind, JointPoint, LegBody, LegFrame, LegFrameEnclosure, LegSettings, LockedKind, LockedLeg,
+    MemberKind, Members, ProximalLanes, ReachReason, Shortfall, Solved, Travel,
 };
 use crate::spatial::{cross, unit};
 

@@ -5,13 +5,10 @@ use glam::DVec2;
 use super::{angle_of, box_about, crank_body, enclosed_members_on_crank, link_body, members_on_crank, wrapped};
 use crate::enclosure::{AxisEnclosure, Interval, MembersEnclosure, PlanarModel, TaylorModel, difference, dot};
 use crate::lanes::{Planar, Real};
-use crate::mechanism::chain::{
-    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes, JointKind,
-    JointPoint, LockedKind, LockedLeg, ProximalLanes, Solved,
-};
 use crate::mechanism::{
-    Design, DesignVariable, LegBody, LegFrame, LegFrameEnclosure, LegSettings, MemberAxis, MemberKind, Members,
-    ReachReason, Shortfall, Travel,
+    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, Design, DesignVariable,
+    DistalLanes, JointKind, JointPoint, LegBody, LegFrame, LegFrameEnclosure, LegSettings, LockedKind, LockedLeg,
+    MemberAxis, MemberKind, Members, ProximalLanes, ReachReason, Shortfall, Solved, Travel,
 };
 use crate::spatial::unit;
 

@@ -1,0 +1,270 @@
+//! The menu bar, the notices, and the path and shortcut windows above the panels.
+
+use std::path::PathBuf;
+
+use egui::{Key, Ui, ViewportCommand};
+
+use super::super::files::{Dialog, Purpose};
+use super::super::panels::named;
+use super::super::{Panel, Phase, theme};
+use super::shortcuts::SHORTCUTS;
+use super::{Explorer, layout};
+use kinefront_export::Format;
+use kinefront_study::BUILTIN;
+
+/// Entries of the menu "File" that select a file first.
+const FILE_ENTRIES: [(&str, Purpose); 9] = [
+    ("Open… (Ctrl+O)", Purpose::Open),
+    ("Open run folder…", Purpose::OpenFolder),
+    ("Save recording… (Ctrl+S)", Purpose::SaveRecording),
+    ("Save run folder…", Purpose::SaveRun),
+    ("Save study…", Purpose::SaveStudy),
+    ("Create report…", Purpose::Report),
+    ("Export front…", Purpose::ExportFront),
+    ("Record design…", Purpose::RecordDesign),
+    ("Save picture…", Purpose::SavePicture),
+];
+
+impl Explorer {
+    /// Draws the menu bar.
+    pub(super) fn menu(&mut self, ui: &mut Ui) {
+        egui::MenuBar::new().ui(ui, |ui| {
+            let requested = ui.menu_button("File", |ui| self.file_menu(ui)).inner.flatten();
+            ui.menu_button("Edit", |ui| self.edit_menu(ui));
+            ui.menu_button("View", |ui| self.view_menu(ui));
+            ui.menu_button("Help", |ui| {
+                if ui.button("Keyboard shortcuts (?)").clicked() {
+                    self.help = true;
+                }
+                if ui.button("What you see").clicked() {
+                    self.introduction = true;
+                }
+            });
+            if self.jobs > 0 {
+                ui.weak("writing a file…");
+            }
+            if let Some(purpose) = requested {
+                self.ask(&ui.ctx().clone(), purpose);
+            }
+        });
+    }
+
+    /// Draws the menu "File"; returns the purpose of the file that the user wants to select.
+    fn file_menu(&mut self, ui: &mut Ui) -> Option<Purpose> {
+        let mut requested = None;
+        for (text, purpose) in FILE_ENTRIES {
+            if ui.button(text).clicked() {
+                requested = Some(purpose);
+            }
+        }
+        ui.menu_button("New study from", |ui| {
+            for builtin in BUILTIN {
+                let hint = builtin.study().map(|study| study.description).unwrap_or_default();
+                if ui.button(builtin.name).on_hover_text(hint).clicked() {
+                    self.session.edit_builtin(&builtin);
+                    self.show(Panel::Study);
+                }
+            }
+        });
+        ui.menu_button("Export design", |ui| {
+            for &format in Format::ALL {
+                if ui.button(format!("{}…", format.title())).clicked() {
+                    requested = Some(Purpose::ExportDesign(format));
+                }
+            }
+        });
+        let recent = self.recent.clone();
+        ui.menu_button("Open recent", |ui| {
+            for path in recent {
+                if ui.button(path.display().to_string()).clicked() {
+                    self.act(&ui.ctx().clone(), Purpose::Open, path);
+                }
+            }
+        });
+        if ui.button("Quit (Ctrl+Q)").clicked() {
+            ui.ctx().send_viewport_cmd(ViewportCommand::Close);
+        }
+        requested
+    }
+
+    fn edit_menu(&mut self, ui: &mut Ui) {
+        let session = &mut self.session;
+        let undo = egui::Button::new("Undo (Ctrl+Z)");
+        if ui.add_enabled(session.can_undo(), undo).clicked() {
+            session.undo();
+        }
+        let redo = egui::Button::new("Redo (Ctrl+Shift+Z)");
+        if ui.add_enabled(session.can_redo(), redo).clicked() {
+            session.redo();
+        }
+    }
+
+    fn view_menu(&mut self, ui: &mut Ui) {
+        for &panel in Panel::ALL {
+            if ui.button(panel.title()).clicked() {
+                self.show(panel);
+            }
+        }
+        ui.separator();
+        if ui.button("Reset layout").clicked() {
+            self.tree = layout();
+        }
+        let (other, theme) = if self.dark {
+            ("Light theme", egui::Theme::Light)
+        } else {
+            ("Dark theme", egui::Theme::Dark)
+        };
+        if ui.button(other).clicked() {
+            self.dark = !self.dark;
+            ui.ctx().set_theme(theme);
+        }
+    }
+
+    pub(super) fn notices(&mut self, ui: &mut Ui) {
+        let mut away = None;
+        for (index, notice) in self.session.notices().iter().enumerate() {
+            ui.horizontal_wrapped(|ui| {
+                if named(ui.small_button("×"), "Close this message").clicked() {
+                    away = Some(index);
+                }
+                let color = if notice.is_error {
+                    theme::bad(ui)
+                } else {
+                    theme::good(ui)
+                };
+                ui.colored_label(color, &notice.text);
+            });
+        }
+        if let Some(index) = away {
+            self.session.dismiss(index);
+        }
+    }
+
+    /// Shows a field for the path of the requested file, for systems without a file dialog. A choice made in a
+    /// dialog is acted on as well.
+    pub(super) fn path_field(&mut self, ui: &mut Ui) {
+        let selected = self.dialog.as_ref().and_then(Dialog::choice);
+        if let Some((purpose, path)) = selected {
+            self.dialog = None;
+            if let Some(path) = path {
+                self.requested = None;
+                self.act(&ui.ctx().clone(), purpose, path);
+            }
+        }
+        let Some((purpose, mut path)) = self.requested.take() else {
+            return;
+        };
+        let (mut open, mut done) = (true, false);
+        egui::Window::new(purpose.title())
+            .id(egui::Id::new("path"))
+            .open(&mut open)
+            .collapsible(false)
+            .resizable(false)
+            .anchor(egui::Align2::CENTER_TOP, [0.0, 60.0])
+            .show(ui.ctx(), |ui| {
+                let field = ui.add(
+                    egui::TextEdit::singleline(&mut path)
+                        .hint_text("path of the file or folder")
+                        .desired_width(460.0),
+                );
+                ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("Path"));
+                let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+                ui.horizontal(|ui| {
+                    done = (ui.button("OK").clicked() || entered) && !path.trim().is_empty();
+                    if ui.button("Cancel").clicked() {
+                        ui.close();
+                    }
+                });
+            });
+        if done {
+            self.dialog = None;
+            self.act(&ui.ctx().clone(), purpose, PathBuf::from(path.trim()));
+        } else if open && !ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.requested = Some((purpose, path));
+        } else {
+            self.dialog = None;
+        }
+    }
+
+    /// Says at the first start what the window shows, until it is closed.
+    pub(super) fn introduction(&mut self, ui: &mut Ui) {
+        const LINES: [(&str, &str); 6] = [
+            (
+                "Run",
+                "chooses a study and starts its search; Mechanisms and Study change what is asked",
+            ),
+            (
+                "Scatter",
+                "shows every design as it is evaluated; a click selects one, and the line is the front",
+            ),
+            (
+                "3-D",
+                "shows the selected design; pointing tells what is there, and a click on the heatmap moves the platform",
+            ),
+            (
+                "Inspector",
+                "shows its dimensions, which the sliders change, its workspace and its constraints",
+            ),
+            ("Pose", "moves the platform; Layers chooses what is drawn"),
+            (
+                "Front",
+                "lists the designs to choose from; File saves, exports and reports",
+            ),
+        ];
+        let mut is_open = self.introduction;
+        let mut done = false;
+        egui::Window::new("What you see")
+            .open(&mut is_open)
+            .resizable(false)
+            .collapsible(false)
+            .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO)
+            .show(ui.ctx(), |ui| {
+                egui::Grid::new("introduction")
+                    .num_columns(2)
+                    .spacing([18.0, 6.0])
+                    .show(ui, |ui| {
+                        for (panel, words) in LINES {
+                            ui.strong(panel);
+                            ui.label(words);
+                            ui.end_row();
+                        }
+                    });
+                ui.separator();
+                done = ui.button("Close").clicked();
+            });
+        self.introduction = is_open && !done;
+    }
+
+    pub(super) fn help(&mut self, ui: &mut Ui) {
+        egui::Window::new("Keyboard shortcuts")
+            .open(&mut self.help)
+            .resizable(false)
+            .collapsible(false)
+            .show(ui.ctx(), |ui| {
+                egui::Grid::new("shortcuts")
+                    .num_columns(2)
+                    .spacing([24.0, 4.0])
+                    .show(ui, |ui| {
+                        for (keys, words) in SHORTCUTS {
+                            ui.strong(keys);
+                            ui.label(words);
+                            ui.end_row();
+                        }
+                    });
+                ui.separator();
+                ui.weak("scatter: drag to pan, scroll to zoom, right-drag to zoom into a box, double-click to fit");
+            });
+    }
+}
+
+pub(super) fn phase_name(phase: &Phase) -> &'static str {
+    match phase {
+        Phase::Ready => "ready",
+        Phase::Searching => "searching",
+        Phase::Paused => "paused",
+        Phase::Verifying { .. } => "verifying",
+        Phase::Finished(_) => "finished",
+        Phase::Failed => "failed",
+        Phase::Opened(_) => "opened",
+    }
+}

@@ -1,0 +1,125 @@
+//! Keyboard shortcuts.
+
+use egui::{Context, Event, Key, KeyboardShortcut, Modifiers, ViewportCommand};
+
+use super::super::Phase;
+use super::super::files::Purpose;
+use super::Explorer;
+
+const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
+const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+const REDO_TOO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Y);
+const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
+const SAVE: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::S);
+const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
+
+/// Keys and descriptions of the shortcuts, as listed in the window.
+pub(super) const SHORTCUTS: [(&str, &str); 14] = [
+    ("←  →", "select the previous or next design of the front"),
+    ("K", "select the knee of the front"),
+    ("P", "pin or unpin the selected design"),
+    ("S", "star or unstar the selected design"),
+    ("Space", "pause or resume the run"),
+    ("G", "run one generation, then pause"),
+    ("Ctrl+C, Ctrl+V", "copy the selected design as text, paste a design"),
+    ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo"),
+    ("Ctrl+O", "open a study, a run or a recording"),
+    ("Ctrl+S", "save the session's recording"),
+    ("Ctrl+Q", "quit"),
+    ("F", "turn the filter for feasible designs on or off"),
+    ("Esc", "close messages and dialogs"),
+    ("?", "show or hide this list"),
+];
+
+impl Explorer {
+    /// Handles the keys that no text field has taken.
+    pub(super) fn shortcuts(&mut self, ctx: &Context) {
+        if ctx.text_edit_focused() {
+            return;
+        }
+        self.menu_shortcuts(ctx);
+        self.session_keys(ctx);
+        let typed = |text: &str| {
+            let is_typed = |event: &Event| matches!(event, Event::Text(typed) if typed == text);
+            ctx.input(|input| input.events.iter().any(is_typed))
+        };
+        if typed("?") {
+            self.help = !self.help;
+        }
+        self.clipboard(ctx);
+    }
+
+    fn menu_shortcuts(&mut self, ctx: &Context) {
+        let pressed = |shortcut: &KeyboardShortcut| ctx.input_mut(|input| input.consume_shortcut(shortcut));
+        // Shortcuts with more modifiers come first: a shortcut also matches while additional modifiers are held.
+        if pressed(&REDO) || pressed(&REDO_TOO) {
+            self.session.redo();
+        } else if pressed(&UNDO) {
+            self.session.undo();
+        }
+        if pressed(&OPEN) {
+            self.ask(ctx, Purpose::Open);
+        }
+        if pressed(&SAVE) {
+            self.ask(ctx, Purpose::SaveRecording);
+        }
+        if pressed(&QUIT) {
+            ctx.send_viewport_cmd(ViewportCommand::Close);
+        }
+    }
+
+    fn session_keys(&mut self, ctx: &Context) {
+        let session = &mut self.session;
+        let key = |key: Key| ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+        if key(Key::ArrowRight) {
+            session.walk(1);
+        }
+        if key(Key::ArrowLeft) {
+            session.walk(-1);
+        }
+        if key(Key::K) {
+            session.select_knee();
+        }
+        if key(Key::P) {
+            session.toggle_pin();
+        }
+        if key(Key::S) {
+            session.toggle_star();
+        }
+        if key(Key::G) {
+            session.step();
+        }
+        if key(Key::F) {
+            session.edit(|document| document.filter.feasible_only ^= true);
+        }
+        if key(Key::Space) {
+            match session.phase() {
+                Phase::Searching => session.pause(),
+                Phase::Paused => session.resume(),
+                _ => {}
+            }
+        }
+        if key(Key::Escape) {
+            session.dismiss_all();
+            self.help = false;
+        }
+    }
+
+    /// Copies the selected design as text, or selects the design in the clipboard.
+    fn clipboard(&mut self, ctx: &Context) {
+        let (copied, pasted) = ctx.input(|input| {
+            let copied = input.events.iter().any(|event| matches!(event, Event::Copy));
+            let pasted = input.events.iter().find_map(|event| match event {
+                Event::Paste(text) => Some(text.clone()),
+                _ => None,
+            });
+            (copied, pasted)
+        });
+        if copied && let Some(selected) = &self.session.document().selected {
+            ctx.copy_text(selected.design.to_string());
+        }
+        if let Some(text) = pasted {
+            self.session.paste(&text);
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! What the window draws over its 3-D view: the legend of the heatmap, the viewpoints, and what the pointer is over.
+
+use egui::{Align2, Color32, ComboBox, FontId, Frame, Id, Pos2, Rect, Sense, Stroke, Ui, vec2};
+
+use super::pointing::Description;
+use super::{Session, theme};
+use kinefront_recording::{Viewpoint, VisibleLayers};
+use kinefront_scene::palette;
+use kinefront_scene::text::short;
+use kinefront_scene::{ColorMap, Field, FieldLegend};
+
+/// Width and height of the colour bar \[points\].
+const BAR: egui::Vec2 = vec2(14.0, 150.0);
+
+/// Width of the legend \[points\].
+const LEGEND_WIDTH: f32 = 118.0;
+
+/// Distance of the overlays from the edges of the view \[points\].
+const MARGIN: f32 = 10.0;
+
+/// Height of the viewer's own row of tabs, below which the overlays begin \[points\].
+const TABS: f32 = 26.0;
+
+/// Draws the overlays over the view in `pane`.
+pub fn ui(ui: &mut Ui, pane: Rect, session: &mut Session, pointed: Option<&Description>) {
+    if pane.width() < 260.0 || pane.height() < 240.0 {
+        return;
+    }
+    let below_tabs = pane.with_min_y(pane.top() + TABS).shrink(MARGIN);
+    // Pinned designs have neither a heatmap nor a viewpoint of their own.
+    if !session.view().comparing {
+        viewpoints(ui, below_tabs, session);
+        if let Some(legend) = session.legend().copied() {
+            legend_of_field(ui, below_tabs, &legend, &mut session.view_mut().layers);
+        }
+    }
+    if session.document().selected.is_none() {
+        boxed(ui, "empty", Align2::CENTER_TOP, below_tabs, |ui| {
+            ui.weak(
+                "The selected design is shown here: click one in the scatter, or press K for the knee of the front.",
+            );
+        });
+    }
+    if let Some(description) = pointed {
+        describe(ui, below_tabs, description);
+    }
+}
+
+/// Draws a box in a corner of the view.
+fn boxed<R>(ui: &mut Ui, id: &str, corner: Align2, area: Rect, content: impl FnOnce(&mut Ui) -> R) -> R {
+    egui::Area::new(Id::new(("scene overlay", id)))
+        .order(egui::Order::Middle)
+        .pivot(corner)
+        .fixed_pos(corner.pos_in_rect(&area))
+        .constrain(false)
+        .fade_in(false)
+        .show(ui.ctx(), |ui| {
+            Frame::popup(ui.style())
+                .fill(ui.visuals().panel_fill.gamma_multiply(0.94))
+                .inner_margin(6)
+                .shadow(egui::Shadow::NONE)
+                .show(ui, content)
+                .inner
+        })
+        .inner
+}
+
+/// Draws a button for each direction from which the manipulator can be seen.
+fn viewpoints(ui: &mut Ui, area: Rect, session: &mut Session) {
+    boxed(ui, "viewpoints", Align2::LEFT_TOP, area, |ui| {
+        ui.horizontal(|ui| {
+            for viewpoint in Viewpoint::ALL {
+                let hint = "looks from this side, with the whole manipulator in view";
+                if ui.button(viewpoint.name()).on_hover_text(hint).clicked() {
+                    session.look_from(viewpoint);
+                }
+            }
+            if let Some(spacing) = session.grid_spacing() {
+                ui.weak(format!("grid {} m", short(spacing)));
+            }
+        });
+    });
+}
+
+/// Draws the legend of the heatmap, with which the user chooses another field, or none, and whether its range is locked.
+fn legend_of_field(ui: &mut Ui, area: Rect, legend: &FieldLegend, layers: &mut VisibleLayers) {
+    boxed(ui, "legend", Align2::RIGHT_TOP, area, |ui| {
+        ui.set_max_width(LEGEND_WIDTH);
+        let field = legend.field;
+        ComboBox::from_id_salt("field of the heatmap")
+            .selected_text(field.title())
+            .width(LEGEND_WIDTH)
+            .truncate()
+            .show_ui(ui, |ui| {
+                for other in Field::all() {
+                    ui.selectable_value(&mut layers.heatmap, Some(other), other.title());
+                }
+                ui.selectable_value(&mut layers.heatmap, None, "no heatmap");
+            });
+        ui.add_space(4.0);
+        color_bar(ui, legend);
+        let mut locked = layers.locked.is_some_and(|(of, _)| of == field);
+        let hint = "keeps these colours for these values, so that other designs can be compared by colour";
+        if ui.checkbox(&mut locked, "lock range").on_hover_text(hint).changed() {
+            layers.locked = locked.then_some((field, legend.map.range()));
+        }
+    });
+}
+
+/// Draws the colours of a field with ticks and the threshold.
+pub fn color_bar(ui: &mut Ui, legend: &FieldLegend) {
+    let (rect, response) = ui.allocate_exact_size(vec2(LEGEND_WIDTH, BAR.y + 12.0), Sense::hover());
+    let bar = Rect::from_min_size(rect.left_top() + vec2(0.0, 6.0), BAR);
+    let at = |fraction: f64| bar.bottom() - fraction as f32 * bar.height();
+    let painter = ui.painter();
+    const STEPS: u32 = 75;
+    for step in 0..STEPS {
+        let [low, high] = [step, step + 1].map(|step| f64::from(step) / f64::from(STEPS));
+        let [r, g, b] = ColorMap::at(0.5 * (low + high));
+        let strip = Rect::from_min_max(Pos2::new(bar.left(), at(high)), Pos2::new(bar.right(), at(low) + 0.5));
+        painter.rect_filled(strip, 0.0, Color32::from_rgb(r, g, b));
+    }
+    let (ink, font) = (ui.visuals().text_color(), FontId::proportional(12.0));
+    let factor = legend.field.display_factor();
+    let threshold = legend.map.place(legend.threshold);
+    for (value, fraction) in legend.map.ticks() {
+        let y = at(fraction);
+        painter.hline(bar.right()..=bar.right() + 4.0, y, Stroke::new(1.0, ink));
+        // The threshold has its own label, which must stay legible.
+        if threshold.is_none_or(|place| (at(place) - y).abs() > 9.0) {
+            let place = Pos2::new(bar.right() + 7.0, y);
+            painter.text(place, Align2::LEFT_CENTER, short(value * factor), font.clone(), ink);
+        }
+    }
+    let label = match threshold {
+        Some(fraction) => {
+            let y = at(fraction);
+            let [r, g, b] = palette::THRESHOLD;
+            let mark = Stroke::new(2.0, Color32::from_rgb(r, g, b));
+            painter.hline(bar.left() - 3.0..=bar.right() + 5.0, y, mark);
+            let text = format!("threshold {}", short(legend.threshold * factor));
+            let place = Pos2::new(bar.right() + 7.0, y);
+            painter.text(place, Align2::LEFT_CENTER, &text, font, ink);
+            text
+        }
+        None => format!("threshold {}, outside the range", short(legend.threshold * factor)),
+    };
+    let title = format!("colours of {}, {label}", legend.field.title());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, &title));
+}
+
+/// Tells what the pointer is over.
+fn describe(ui: &mut Ui, area: Rect, description: &Description) {
+    boxed(ui, "pointed", Align2::LEFT_BOTTOM, area, |ui| {
+        ui.set_max_width(330.0);
+        ui.horizontal(|ui| {
+            if let Some(passes) = description.passes {
+                let (color, mark) = if passes {
+                    (theme::good(ui), "✔")
+                } else {
+                    (theme::bad(ui), "✖")
+                };
+                ui.colored_label(color, mark);
+            }
+            ui.strong(&description.title);
+        });
+        for line in &description.lines {
+            ui.label(line);
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
+    use super::*;
+    use kinefront_model::evaluation::PoseScalar;
+
+    #[test]
+    fn the_legend_names_its_field_and_threshold() {
+        let field = Field::Scalar(PoseScalar::Displacement);
+        let legend = |range: [f64; 2]| FieldLegend {
+            field,
+            map: ColorMap::new(field.scale(), range, 1e-4),
+            threshold: 1e-4,
+        };
+        let inside = Harness::new_ui(|ui| color_bar(ui, &legend([2e-5, 5e-4])));
+        inside.get_by_label_contains("displacement under the in-plane force [mm], threshold 0.1");
+        let outside = Harness::new_ui(|ui| color_bar(ui, &legend([2e-4, 5e-4])));
+        outside.get_by_label_contains("threshold 0.1, outside the range");
+    }
+}

@@ -1,0 +1,138 @@
+//! The panels, one per file.
+
+mod choose;
+mod compare;
+mod front;
+mod inspector;
+mod layers;
+mod mechanisms;
+mod modes;
+mod parallel;
+mod plan;
+mod pose;
+mod progress;
+mod question;
+mod run;
+pub mod scatter;
+mod sketch;
+mod space;
+mod study;
+
+use egui::Ui;
+use serde::{Deserialize, Serialize};
+
+use self::scatter::Scatter;
+use super::Session;
+
+/// Gives a button whose text is a symbol a name for assistive technology, and says it when the pointer is over the button.
+pub(super) fn named(button: egui::Response, name: &str) -> egui::Response {
+    let enabled = button.enabled();
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, enabled, name));
+    button.on_hover_text(name)
+}
+
+/// The group of tabs that a panel is in when the window opens for the first time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    /// Top left.
+    Plot,
+    /// Bottom left.
+    Run,
+    /// Top middle.
+    Scene,
+    /// Bottom middle.
+    Designs,
+    /// Top right.
+    Design,
+    /// Bottom right.
+    Pose,
+}
+
+/// Declares the panels: what each is called in the code and in the layout that is saved, its state, its title and its place. The
+/// state is drawn by its method `ui`; what has no state is drawn by the window.
+macro_rules! panels {
+    ($($(#[$attribute:meta])* $panel:ident $(= $state:ident: $type:ty)?, $title:literal, $place:ident;)*) => {
+        /// A panel of the window.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        pub enum Panel {
+            $($(#[$attribute])* $panel,)*
+        }
+
+        impl Panel {
+            /// All panels.
+            pub const ALL: &'static [Panel] = &[$(Panel::$panel),*];
+
+            /// Returns the title of the panel's tab.
+            pub fn title(self) -> &'static str {
+                match self {
+                    $(Panel::$panel => $title,)*
+                }
+            }
+
+            /// Returns the group of tabs that the panel is in when the window opens for the first time.
+            pub(super) fn place(self) -> Place {
+                match self {
+                    $(Panel::$panel => Place::$place,)*
+                }
+            }
+        }
+
+        /// State of the panels.
+        #[derive(Default)]
+        pub struct Panels {
+            $($($state: $type,)?)*
+        }
+
+        impl Panels {
+            /// Draws a panel.
+            pub fn ui(&mut self, panel: Panel, ui: &mut Ui, session: &mut Session) {
+                match panel {
+                    $(Panel::$panel => { $(self.$state.ui(ui, session);)? })*
+                }
+            }
+        }
+    };
+}
+
+panels! {
+    /// Settings, controls and progress of the run.
+    Run = run: run::RunPanel, "Run", Run;
+    /// The study's settings.
+    Study = study: study::StudyPanel, "Study", Run;
+    /// The architectures, and which of them the study searches.
+    Mechanisms = mechanisms: mechanisms::MechanismsPanel, "Mechanisms", Run;
+    /// The scatter plot.
+    Scatter = scatter: Scatter, "Scatter", Plot;
+    /// The designs in three quantities.
+    Space = space: space::SpacePanel, "Space", Plot;
+    /// The embedded 3-D viewer, which the window draws.
+    Scene, "3-D", Scene;
+    /// The inspector of the selected design.
+    #[serde(alias = "Design")]
+    Inspector = inspector: inspector::Inspector, "Inspector", Design;
+    /// Decision support, and the filter.
+    Choose = choose: choose::ChoosePanel, "Choose", Design;
+    /// The pose of the selected design.
+    Pose = pose: pose::PosePanel, "Pose", Pose;
+    /// Layers that are drawn in 3-D.
+    Layers = layers: layers::LayersPanel, "Layers", Pose;
+    /// The front as a table.
+    #[serde(alias = "Table")]
+    Front = front: front::FrontPanel, "Front", Designs;
+    /// The plot in parallel coordinates.
+    Parallel = parallel: parallel::ParallelPanel, "Parallel coordinates", Designs;
+    /// Pinned designs side by side.
+    Compare = compare: compare::ComparePanel, "Compare", Designs;
+}
+
+impl Panels {
+    /// The scatter.
+    pub(super) fn scatter(&self) -> &Scatter {
+        &self.scatter
+    }
+
+    /// The scatter for modification.
+    pub(super) fn scatter_mut(&mut self) -> &mut Scatter {
+        &mut self.scatter
+    }
+}

@@ -1,0 +1,239 @@
+//! The run panel: the study and the optimizer's settings, the run's controls, and its progress.
+
+use egui::{ComboBox, DragValue, Grid, ProgressBar, Ui};
+
+use super::progress::ProgressPlot;
+use crate::{Phase, Session, theme};
+use kinefront_study::{AlgorithmName, BUILTIN, EndReason};
+
+/// The run panel.
+#[derive(Default)]
+pub struct RunPanel {
+    plot: ProgressPlot,
+}
+
+impl RunPanel {
+    /// Draws the panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        study(ui, session);
+        settings(ui, session);
+        ui.add_space(4.0);
+        buttons(ui, session);
+        ui.add_space(4.0);
+        progress(ui, session);
+        self.plot.ui(ui, session);
+    }
+}
+
+fn study(ui: &mut Ui, session: &mut Session) {
+    ui.horizontal(|ui| {
+        ui.label("study");
+        let mut picked = None;
+        ComboBox::from_id_salt("study")
+            .selected_text(session.editor().study().name.clone())
+            .show_ui(ui, |ui| {
+                for builtin in BUILTIN {
+                    let here = session.editor().study().name == builtin.name;
+                    if ui.selectable_label(here, builtin.name).clicked() {
+                        picked = Some(builtin);
+                    }
+                }
+            });
+        if let Some(builtin) = picked {
+            session.edit_builtin(&builtin);
+        }
+        if session.editor().is_changed() {
+            ui.weak("changed");
+        }
+    });
+    let description = session.editor().study().description.clone();
+    ui.add(egui::Label::new(egui::RichText::new(description).weak()).truncate());
+}
+
+fn settings(ui: &mut Ui, session: &mut Session) {
+    let mut study = session.editor().study().clone();
+    Grid::new("run settings").num_columns(4).show(ui, |ui| {
+        let label = ui.label("algorithm");
+        ComboBox::from_id_salt("algorithm")
+            .selected_text(study.optimizer.algorithm.to_string())
+            .width(80.0)
+            .show_ui(ui, |ui| {
+                for name in AlgorithmName::ALL {
+                    ui.selectable_value(&mut study.optimizer.algorithm, name, name.to_string());
+                }
+            })
+            .response
+            .labelled_by(label.id);
+        let label = ui.label("evaluations");
+        ui.add(
+            DragValue::new(&mut study.optimizer.evaluations)
+                .range(1..=100_000_000)
+                .speed(50),
+        )
+        .labelled_by(label.id);
+        ui.end_row();
+        let label = ui.label("seed");
+        ui.horizontal(|ui| {
+            ui.add(
+                DragValue::new(&mut study.optimizer.seed)
+                    .range(0..=i64::MAX as u64)
+                    .speed(0.1),
+            )
+            .labelled_by(label.id);
+            if ui.button("random").on_hover_text("draws a random seed").clicked() {
+                study.optimizer.seed = random_seed();
+            }
+        });
+        let label = ui.label("threads");
+        ui.horizontal(|ui| {
+            let cores = std::thread::available_parallelism().map_or(1, usize::from);
+            let mut threads = study.optimizer.threads.unwrap_or(cores);
+            let field = ui
+                .add(DragValue::new(&mut threads).range(1..=1024).speed(0.05))
+                .labelled_by(label.id);
+            if field.changed() {
+                study.optimizer.threads = Some(threads);
+            }
+            let of = if study.optimizer.threads.is_none() {
+                "all cores"
+            } else {
+                "fixed"
+            };
+            ui.weak(of);
+        });
+        ui.end_row();
+    });
+    session.editor_mut().change(|edited| *edited = study);
+    for fault in session.editor().faults() {
+        ui.colored_label(theme::bad(ui), format!("`{}` {}", fault.key, fault.message));
+    }
+}
+
+/// Returns a random seed of up to four digits, which is short enough to pass on to others.
+fn random_seed() -> u64 {
+    let mut bytes = [0; 2];
+    // Without a source of randomness the seed is 0, which is as valid as any other.
+    let _ = getrandom::fill(&mut bytes);
+    u64::from(u16::from_le_bytes(bytes)) % 10_000
+}
+
+fn buttons(ui: &mut Ui, session: &mut Session) {
+    ui.horizontal_wrapped(|ui| {
+        let valid = session.editor().text_fault().is_none();
+        match session.phase() {
+            Phase::Searching => {
+                if ui
+                    .button("⏸ Pause")
+                    .on_hover_text("pauses after the current generation (Space)")
+                    .clicked()
+                {
+                    session.pause();
+                }
+            }
+            Phase::Paused => {
+                if ui
+                    .button("▶ Resume")
+                    .on_hover_text("goes on with the search (Space)")
+                    .clicked()
+                {
+                    session.resume();
+                }
+            }
+            Phase::Verifying { .. } => {
+                ui.add_enabled(false, egui::Button::new("⏸ Pause"));
+            }
+            _ => {
+                let start = egui::Button::new(egui::RichText::new("▶ Start").strong().color(egui::Color32::WHITE))
+                    .fill(theme::PRIMARY);
+                let why = "the study has faults, which the panel Study tells";
+                if ui.add_enabled(valid, start).on_disabled_hover_text(why).clicked() {
+                    session.start();
+                }
+                if session.continuable().is_some()
+                    && ui
+                        .button("▶ Continue")
+                        .on_hover_text("continues the search in the folder of this run; a larger budget extends it")
+                        .clicked()
+                {
+                    session.continue_run();
+                }
+            }
+        }
+        let can_step = matches!(session.phase(), Phase::Searching | Phase::Paused);
+        if ui
+            .add_enabled(can_step, egui::Button::new("⏭ Step"))
+            .on_hover_text("runs one generation, then pauses (G)")
+            .on_disabled_hover_text("only while a search runs or is paused")
+            .clicked()
+        {
+            session.step();
+        }
+        if ui
+            .add_enabled(can_step, egui::Button::new("⏹ Stop"))
+            .on_hover_text("ends the search; its front is verified and all designs are kept")
+            .on_disabled_hover_text("only while a search runs or is paused")
+            .clicked()
+        {
+            session.stop();
+        }
+        if ui
+            .add_enabled(valid && session.is_running(), egui::Button::new("⟲ Restart"))
+            .on_hover_text("discards the current run and starts again with the study as edited here")
+            .on_disabled_hover_text("only during a run, and with a study without faults")
+            .clicked()
+        {
+            session.start();
+        }
+    });
+}
+
+fn progress(ui: &mut Ui, session: &Session) {
+    let budget = session.study().optimizer.evaluations;
+    let done = session.store().len();
+    let seconds = session.elapsed().as_secs_f64();
+    let (fraction, text) = match session.phase() {
+        Phase::Verifying { done, total } => {
+            let fraction = *done as f32 / (*total).max(1) as f32;
+            (fraction, format!("verifying on the fine grid: {done} of {total}"))
+        }
+        _ => (
+            done as f32 / budget.max(1) as f32,
+            format!("{done} of {budget} evaluations"),
+        ),
+    };
+    // Beside the bar, because text in it would lie on two grounds.
+    let bar = ui.add(ProgressBar::new(fraction).desired_height(8.0));
+    bar.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::ProgressIndicator, true, "Progress"));
+    let words = match session.phase() {
+        Phase::Ready => "ready".to_owned(),
+        Phase::Searching => {
+            let rate = done as f64 / seconds.max(1e-3);
+            let left = (budget.saturating_sub(done)) as f64 / rate.max(1e-3);
+            format!("{rate:.0} designs/s, {left:.0} s left")
+        }
+        Phase::Paused => "paused".to_owned(),
+        Phase::Verifying { .. } => "search finished".to_owned(),
+        Phase::Finished(EndReason::Completed) => format!("finished in {seconds:.1} s"),
+        Phase::Finished(EndReason::TimeUp) => format!("time limit reached after {seconds:.1} s"),
+        Phase::Finished(EndReason::Stagnated) => format!("stagnated after {seconds:.1} s"),
+        Phase::Finished(EndReason::Stopped) => format!("stopped after {seconds:.1} s"),
+        Phase::Finished(EndReason::Interrupted) => format!("interrupted after {seconds:.1} s"),
+        Phase::Failed => "failed".to_owned(),
+        Phase::Opened(path) => format!(
+            "opened {}",
+            path.file_name().unwrap_or(path.as_os_str()).to_string_lossy()
+        ),
+    };
+    ui.label(format!("{text}, {words}"));
+    if let Some(last) = session.generations().last() {
+        ui.weak(format!(
+            "generation {}, {} feasible, {} on the front{}",
+            last.generation,
+            last.feasible,
+            session.front().len(),
+            session
+                .threads()
+                .map_or(String::new(), |threads| format!(", {threads} threads")),
+        ));
+    }
+}

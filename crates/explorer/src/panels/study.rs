@@ -1,0 +1,460 @@
+//! The study panel: the settings as fields or as the text of the study file; both are checked as they are typed.
+
+use std::sync::LazyLock;
+
+use egui::{Button, CollapsingHeader, DragValue, ScrollArea, TextEdit, Ui};
+use toml::{Table, Value};
+
+use super::named;
+use super::question;
+use super::sketch::Sketch;
+use crate::{Purpose, Session, theme};
+use kinefront_study::{Check, Fault, Initial, Setting, Study, settings};
+
+/// The study panel.
+#[derive(Default)]
+pub struct StudyPanel {
+    as_text: bool,
+    /// The text as typed, while it is invalid.
+    typed: Option<String>,
+    /// Shows what the lengths of the first architecture are.
+    sketch: Option<Sketch>,
+}
+
+impl StudyPanel {
+    /// Draws the panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        ui.horizontal(|ui| {
+            theme::choice(ui, &mut self.as_text, false, "Fields");
+            theme::choice(ui, &mut self.as_text, true, "Text");
+            ui.separator();
+            if ui.button("Save study…").clicked() {
+                session.request_file(Purpose::SaveStudy);
+            }
+            let history = session.editor().history();
+            let (can_undo, can_redo) = (history.can_undo(), history.can_redo());
+            let hints = (
+                "undoes the last change of the study (Ctrl+Z)",
+                "makes the undone change again (Ctrl+Shift+Z)",
+            );
+            let undo = ui.add_enabled(can_undo, Button::new("Undo"));
+            if undo
+                .on_hover_text(hints.0)
+                .on_disabled_hover_text("the study is as it was opened")
+                .clicked()
+            {
+                session.editor_mut().undo();
+            }
+            let redo = ui.add_enabled(can_redo, Button::new("Redo"));
+            if redo
+                .on_hover_text(hints.1)
+                .on_disabled_hover_text("no change is undone")
+                .clicked()
+            {
+                session.editor_mut().redo();
+            }
+            if let Some(path) = session.editor().path() {
+                ui.weak(path.display().to_string());
+            }
+        });
+        let faults: Vec<Fault> = session.editor().faults().cloned().collect();
+        for fault in &faults {
+            ui.colored_label(theme::bad(ui), format!("`{}` {}", fault.key, fault.message));
+        }
+        if faults.is_empty() {
+            ui.colored_label(theme::good(ui), "valid");
+            self.typed = None;
+        }
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            if self.as_text {
+                let mut text = self.typed.clone().unwrap_or_else(|| session.editor().text().to_owned());
+                let field = ui.add(
+                    TextEdit::multiline(&mut text)
+                        .code_editor()
+                        .desired_width(f32::INFINITY),
+                );
+                ui.ctx()
+                    .accesskit_node_builder(field.id, |node| node.set_label("Study text"));
+                if field.changed() {
+                    session.editor_mut().set_text(text.clone());
+                    self.typed = Some(text);
+                }
+            } else {
+                CollapsingHeader::new("Question").default_open(true).show(ui, |ui| {
+                    let mut study = session.editor().study().clone();
+                    question::ui(ui, &mut study);
+                    session.editor_mut().change(|edited| *edited = study);
+                });
+                self.follow_architecture(session);
+                fields(ui, session, &faults, self.sketch.as_ref());
+            }
+        });
+    }
+
+    /// Sketches the first architecture of the study.
+    fn follow_architecture(&mut self, session: &Session) {
+        let first = session.editor().study().architectures.first().copied();
+        if self.sketch.as_ref().map(|sketch| sketch.architecture) != first {
+            self.sketch = first.and_then(Sketch::new);
+        }
+    }
+}
+
+/// The sections of a study in the order in which a designer thinks of them: heading, and names of the sections.
+const GROUPS: [(&str, &[&str]); 6] = [
+    ("Mechanism", &["", "geometry", "rails", "bodies", "bodies.layers"]),
+    ("Task", &["workspace", "workspace.region"]),
+    ("Loads and accuracy", &["requirements", "model"]),
+    (
+        "Material, bars and drives",
+        &[
+            "material",
+            "sections.legs",
+            "sections.platform",
+            "sections.rails",
+            "actuators",
+        ],
+    ),
+    ("Bounds", &["bounds", "variables"]),
+    (
+        "Search",
+        &[
+            "optimizer",
+            "optimizer.stagnation",
+            "optimizer.front_de",
+            "optimizer.moga2",
+            "optimizer.nsga2",
+            "optimizer.cma_es",
+            "grid.reference",
+            "grid.fine",
+            "hypervolume",
+        ],
+    ),
+];
+
+/// What the fields of a study are shown with.
+struct Context<'a> {
+    /// The paper's study, which has the defaults.
+    defaults: &'a Table,
+    faults: &'a [Fault],
+}
+
+/// Shows a field for every setting of the study. The fields follow from the settings as they are declared, so that a new one
+/// appears in its section without a change here.
+fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault], sketch: Option<&Sketch>) {
+    // The defaults do not change from frame to frame.
+    static DEFAULTS: LazyLock<Table> = LazyLock::new(|| Table::try_from(Study::default()).unwrap_or_default());
+    let Ok(before) = Table::try_from(session.editor().study()) else {
+        return;
+    };
+    differences(ui, session, &before);
+    let mut table = before.clone();
+    let context = Context {
+        defaults: &DEFAULTS,
+        faults,
+    };
+    for (heading, sections) in GROUPS {
+        CollapsingHeader::new(heading)
+            .default_open(matches!(heading, "Mechanism" | "Loads and accuracy" | "Bounds"))
+            .show(ui, |ui| {
+                if let Some(sketch) = sketch.filter(|_| heading == "Bounds") {
+                    sketch.ui(ui);
+                }
+                for path in sections {
+                    section(ui, path, &mut table, &context);
+                }
+            });
+    }
+    follow_characteristic_length(&mut table);
+    follow_sections(&mut table);
+    follow_region(&mut table);
+    if table != before {
+        match table.try_into::<Study>() {
+            Ok(study) => session.editor_mut().change(|edited| *edited = study),
+            // Only a text that must be a known name but is none, such as a working mode, leads here: the field keeps
+            // its last valid value.
+            Err(error) => session.notify_error(format!("invalid study: {}", error.message())),
+        }
+    }
+}
+
+/// A fixed characteristic length needs its value, and any other must not have one.
+fn follow_characteristic_length(table: &mut Table) {
+    let Some(model) = table.get_mut("model").and_then(Value::as_table_mut) else {
+        return;
+    };
+    let key = "characteristic_length_m";
+    if model.get("characteristic_length").and_then(Value::as_str) != Some("fixed") {
+        model.remove(key);
+    } else if !model.contains_key(key)
+        && let Some(initial) = settings()
+            .find(|setting| setting.key == key)
+            .and_then(|setting| setting.initial)
+    {
+        model.extend(initial_value(initial).map(|value| (key.to_owned(), value)));
+    }
+}
+
+/// A hollow bar needs its wall, and a solid one must not have one.
+fn follow_sections(table: &mut Table) {
+    const WALLS: [&str; 3] = ["wall_ratio", "wall_m", "catalogue"];
+    let Some(sections) = table.get_mut("sections").and_then(Value::as_table_mut) else {
+        return;
+    };
+    for (_, section) in sections.iter_mut() {
+        let Some(section) = section.as_table_mut() else {
+            continue;
+        };
+        let is_hollow = section.get("kind").and_then(Value::as_str) != Some("round");
+        let has_wall = WALLS.iter().any(|key| section.contains_key(*key));
+        if is_hollow && !has_wall {
+            section.insert(WALLS[0].to_owned(), Value::Float(0.2));
+        } else if !is_hollow {
+            section.retain(|key, _| !WALLS.contains(&key));
+        }
+    }
+}
+
+/// A prescribed region needs its sizes, and must not have those of another one.
+fn follow_region(table: &mut Table) {
+    let region = table
+        .get_mut("workspace")
+        .and_then(|workspace| workspace.get_mut("region"));
+    let Some(region) = region.and_then(Value::as_table_mut) else {
+        return;
+    };
+    let corner = |x: f64, y: f64| Value::Array(vec![Value::Float(x), Value::Float(y)]);
+    let triangle = || Value::Array(vec![corner(-0.2, -0.1), corner(0.2, -0.1), corner(0.0, 0.2)]);
+    let sizes: Vec<(&str, Value)> = match region.get("kind").and_then(Value::as_str) {
+        Some("disc") => vec![("radius_m", Value::Float(0.3))],
+        Some("rectangle") => vec![("width_m", Value::Float(0.4)), ("height_m", Value::Float(0.3))],
+        Some("polygon") => vec![("corners_m", triangle())],
+        _ => Vec::new(),
+    };
+    region.retain(|key, _| key == "kind" || sizes.iter().any(|(size, _)| *size == key));
+    for (key, value) in sizes {
+        region.entry(key).or_insert(value);
+    }
+}
+
+/// Tells which settings differ from those of the study that was run.
+fn differences(ui: &mut Ui, session: &Session, edited: &Table) {
+    let Ok(run) = Table::try_from(session.study()) else {
+        return;
+    };
+    if session.store().is_empty() {
+        return;
+    }
+    let differs = |setting: &&Setting| setting.value(&run) != setting.value(edited);
+    let changed: Vec<String> = settings().filter(differs).map(Setting::path).collect();
+    if !changed.is_empty() {
+        ui.colored_label(
+            theme::active(ui),
+            format!("differs from the study that was run: {}", changed.join(", ")),
+        );
+    }
+}
+
+/// Shows the name of a section within its group; the first one needs none.
+fn subheading(ui: &mut Ui, path: &str) {
+    let is_first = GROUPS.iter().any(|(_, sections)| sections.first() == Some(&path));
+    if !is_first {
+        ui.add_space(4.0);
+        ui.weak(path.replace(['_', '.'], " "));
+    }
+}
+
+/// Returns the value that an optional setting starts from; `None` for one that is edited as text.
+fn initial_value(initial: Initial) -> Option<Value> {
+    match initial {
+        Initial::Number(number) => Some(Value::Float(number)),
+        Initial::Count(count) => Some(Value::Integer(count)),
+        Initial::AsText => None,
+    }
+}
+
+/// Shows a tick for each optional setting of a section.
+fn optional_settings(ui: &mut Ui, path: &str, table: &mut Table) {
+    // A fixed characteristic length has its value by the choice of its definition alone.
+    let follows = |setting: &&Setting| setting.key == "characteristic_length_m";
+    let settings = settings().filter(|setting| setting.section == path);
+    for setting in settings.filter(|setting| !follows(setting)) {
+        let Some(initial) = setting.initial.and_then(initial_value) else {
+            continue;
+        };
+        let mut stated = table.contains_key(setting.key);
+        let tick = ui.checkbox(&mut stated, format!("set {}", setting.title()));
+        if tick.on_hover_text(setting.description.trim()).changed() {
+            if stated {
+                table.insert(setting.key.to_owned(), initial);
+            } else {
+                table.remove(setting.key);
+            }
+        }
+    }
+}
+
+/// Shows a tick for each name that may be selected.
+fn selection(ui: &mut Ui, names: &mut Vec<Value>, all: &[&str]) {
+    for name in all {
+        let value = Value::String((*name).to_owned());
+        let mut selected = names.contains(&value);
+        if ui.checkbox(&mut selected, *name).changed() {
+            // The names stay in their usual order; the last one cannot be deselected.
+            let others = names.len() > 1;
+            if selected {
+                names.push(value);
+            } else if others {
+                names.retain(|found| *found != value);
+            }
+            names.sort_by_key(|found| all.iter().position(|name| found.as_str() == Some(name)));
+        }
+    }
+}
+
+/// Shows the settings of a section in the order in which they are declared.
+fn section(ui: &mut Ui, path: &str, table: &mut Table, context: &Context<'_>) {
+    let table = if path.is_empty() {
+        Some(table)
+    } else {
+        path.split('.')
+            .try_fold(table, |table, part| table.get_mut(part)?.as_table_mut())
+    };
+    let Some(table) = table else { return };
+    subheading(ui, path);
+    optional_settings(ui, path, table);
+    // The question has fields of its own.
+    let has_field = |setting: &&Setting| !["objectives", "constraints", "quantities"].contains(&setting.key);
+    for setting in settings().filter(|setting| setting.section == path).filter(has_field) {
+        if let Some(value) = table.get_mut(setting.key) {
+            field(ui, setting, value, context);
+        }
+    }
+}
+
+/// Shows a setting: its name with the unit, its value, whether it differs from the default, and its faults.
+fn field(ui: &mut Ui, setting: &Setting, value: &mut Value, context: &Context<'_>) {
+    // A name is no value to return to.
+    let default = setting
+        .value(context.defaults)
+        .filter(|_| !matches!(setting.key, "name" | "description"));
+    let is_changed = default.is_some_and(|default| default != value);
+    let hint = hint(setting, default);
+    ui.horizontal(|ui| {
+        let name = egui::RichText::new(setting.title());
+        let name = if is_changed { name.strong() } else { name };
+        let label = ui.label(name).on_hover_text(&hint);
+        edit(ui, setting, value, label.id);
+        if let Some(default) = default.filter(|_| is_changed)
+            && named(
+                ui.small_button("⟲"),
+                &format!("{} back to {}", setting.title(), short_value(default)),
+            )
+            .clicked()
+        {
+            *value = default.clone();
+        }
+    });
+    let path = setting.path();
+    for fault in context.faults.iter().filter(|fault| fault.key == path) {
+        ui.colored_label(theme::bad(ui), &fault.message);
+    }
+}
+
+/// Returns what a setting means, which values are valid, and its default.
+fn hint(setting: &Setting, default: Option<&Value>) -> String {
+    let mut hint = format!("{}\n{}", setting.description.trim(), setting.path());
+    if let Some(range) = setting.check.range() {
+        hint.push_str(&format!("\nvalid: {range}"));
+    }
+    if let Some(default) = default {
+        hint.push_str(&format!("\ndefault: {}", short_value(default)));
+    }
+    hint
+}
+
+/// Writes a value as in a study file, on one line.
+fn short_value(value: &Value) -> String {
+    value.to_string().replace('\n', " ")
+}
+
+/// Shows the fields of a value.
+fn edit(ui: &mut Ui, setting: &Setting, value: &mut Value, label: egui::Id) {
+    match (setting.check, value) {
+        (Check::Selection(all), Value::Array(names)) => {
+            ui.horizontal_wrapped(|ui| selection(ui, names, &all()));
+        }
+        (_, Value::Array(items)) if items.iter().all(|item| item.is_float() || item.is_integer()) => {
+            for item in items {
+                number(ui, item).labelled_by(label);
+            }
+        }
+        // Other arrays, such as the corners of a polygon, are edited as text.
+        (_, Value::Array(_) | Value::Table(_) | Value::Datetime(_)) => {
+            ui.weak("see Text");
+        }
+        (_, value @ (Value::Float(_) | Value::Integer(_))) => {
+            number(ui, value).labelled_by(label);
+        }
+        (Check::Choice(choices), Value::String(text)) => {
+            for choice in choices {
+                ui.selectable_value(text, (*choice).to_owned(), choice.replace('_', " "));
+            }
+        }
+        (_, Value::String(text)) => {
+            ui.add(TextEdit::singleline(text).desired_width(220.0))
+                .labelled_by(label);
+        }
+        (_, Value::Boolean(flag)) => {
+            ui.checkbox(flag, "").labelled_by(label);
+        }
+    }
+}
+
+fn number(ui: &mut Ui, value: &mut Value) -> egui::Response {
+    match value {
+        Value::Integer(number) => ui.add(DragValue::new(number).speed(0.2)),
+        Value::Float(number) => {
+            let speed = (number.abs() * 0.01).max(1e-4);
+            ui.add(DragValue::new(number).speed(speed).max_decimals(9))
+        }
+        _ => ui.label(""),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_setting_has_its_place() {
+        for setting in settings() {
+            let groups = GROUPS
+                .iter()
+                .filter(|(_, sections)| sections.contains(&setting.section));
+            assert_eq!(groups.count(), 1, "{}", setting.path());
+        }
+    }
+
+    #[test]
+    fn names_have_their_units_and_hints_their_ranges() {
+        let named = |path: &str| settings().find(|setting| setting.path() == path).expect("a setting");
+        for (path, title) in [
+            ("material.youngs_modulus_pa", "youngs modulus [Pa]"),
+            ("requirements.k_phi_z_min_nm_per_rad", "k phi z min [N·m/rad]"),
+            ("bounds.R_m", "R [m]"),
+            ("bounds.alpha_deg", "alpha [°]"),
+            ("workspace.rotation_range_deg", "rotation range [°]"),
+            ("optimizer.seed", "seed"),
+        ] {
+            assert_eq!(named(path).title(), title);
+        }
+        let defaults = Table::try_from(Study::default()).expect("a table");
+        let range = named("workspace.rotation_range_deg");
+        let hint = hint(range, range.value(&defaults));
+        assert!(
+            hint.contains("valid: 0 to 350") && hint.contains("default: 20"),
+            "{hint}"
+        );
+    }
+}

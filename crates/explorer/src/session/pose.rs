@@ -1,0 +1,88 @@
+//! The pose of the selected design.
+
+use super::Session;
+use kinefront_model::evaluation::Constraint;
+use kinefront_model::mechanism::Design;
+use kinefront_model::spatial::Pose;
+use kinefront_scene::AssemblyMode;
+
+impl Session {
+    /// Returns the pose of the manipulator.
+    pub fn pose(&self) -> Option<Pose> {
+        self.view.pose.or_else(|| self.home())
+    }
+
+    /// Returns the home pose of the selected design.
+    pub fn home(&self) -> Option<Pose> {
+        Some(self.model().home(&self.known()?.evaluation))
+    }
+
+    /// Moves the platform to `pose` or, if that is not reachable, as far towards it as possible in a straight line;
+    /// returns what stopped it.
+    pub fn move_platform(&mut self, pose: Pose) -> Option<String> {
+        let design = self.document().selected.as_ref()?.design;
+        let from = self.pose()?;
+        let reach = |pose: &Pose| self.model().pose(&design, pose).err();
+        let Some(stopped) = reach(&pose) else {
+            self.view.pose = Some(pose);
+            return None;
+        };
+        let between = |fraction: f64| Pose {
+            position: from.position.lerp(pose.position, fraction),
+            phi: from.phi + fraction * (pose.phi - from.phi),
+        };
+        // The platform moves as near as possible; if the current pose itself is not reachable, it stays there.
+        let (mut low, mut high) = (0.0, 1.0);
+        if reach(&from).is_none() {
+            for _ in 0..24 {
+                let middle = 0.5 * (low + high);
+                if reach(&between(middle)).is_none() {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            self.view.pose = Some(between(low));
+        }
+        Some(stopped.to_string())
+    }
+
+    /// Moves the platform to an assembly mode, in the working mode that it needs.
+    pub fn jump_to(&mut self, mode: &AssemblyMode) {
+        let Some(selected) = self.document().selected.clone() else {
+            return;
+        };
+        if let Some(needed) = mode
+            .working_mode
+            .filter(|&needed| needed != selected.design.working_mode)
+        {
+            self.modify_with("mode", |design| {
+                Ok(Design {
+                    working_mode: needed,
+                    ..*design
+                })
+            });
+        }
+        self.view.pose = Some(mode.pose);
+    }
+
+    /// Moves the manipulator to the worst pose of a constraint.
+    pub fn show_worst(&mut self, constraint: Constraint) {
+        let pose = self
+            .known()
+            .and_then(|known| known.evaluation.constraint(constraint).pose);
+        if let Some(pose) = pose {
+            self.view.pose = Some(pose);
+            self.view.heatmap_phi = Some(pose.phi);
+        }
+    }
+
+    /// Moves the platform to the infeasible pose that ends the proof of the workspace, and shows the proof.
+    pub fn show_violation(&mut self) {
+        if let Some(violation) = self.proof().and_then(|proof| proof.certificate.violation) {
+            self.view.pose = Some(violation.pose);
+            self.view.heatmap_phi = Some(violation.pose.phi);
+            self.view.layers.proof = true;
+        }
+    }
+}

@@ -1,0 +1,412 @@
+//! The thread that evaluates and draws the selected design, so that no frame waits for it.
+//!
+//! ```text
+//! window ──Request──► [latest] ─► scene thread ─► LiveScene ─► viewer
+//!    ▲                               │ design to verify
+//!    │                               ▼
+//!    └──────── Answer ◄──── [latest] verify thread (fine grid)
+//! ```
+//!
+//! Only the latest request is processed: while a slider is dragged, intermediate requests are skipped.
+
+use crate::AnyError;
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::Builder;
+use std::time::Duration;
+
+use super::Wake;
+use kinefront_model::evaluation::{Evaluation, GridChoice};
+use kinefront_model::mechanism::Design;
+use kinefront_model::spatial::Pose;
+use kinefront_recording::{FrontPoint, LiveScene, Pinned, RecordingError, Shown, Viewpoint, VisibleLayers};
+use kinefront_scene::{FieldLegend, WorkspaceProof, workspace_proof};
+use kinefront_study::PreparedStudy;
+
+/// Time without a newer design after which a design is verified.
+const RESTING: Duration = Duration::from_millis(150);
+
+/// Request to show a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Request {
+    /// The study whose model applies.
+    pub study: Arc<PreparedStudy>,
+    /// The selected design.
+    pub design: Option<Design>,
+    /// Pose of the manipulator; the home pose if `None`.
+    pub pose: Option<Pose>,
+    /// Orientation of the heatmap \[rad\]; the home orientation if `None`.
+    pub heatmap_phi: Option<f64>,
+    /// Layers that are drawn.
+    pub layers: VisibleLayers,
+    /// Pinned designs with their names.
+    pub pins: Vec<(String, Design)>,
+    /// Whether the view of the pinned designs is in front of that of the selected design.
+    pub comparing: bool,
+    /// Whether the viewer uses light colours.
+    pub light: bool,
+    /// Direction from which the manipulator is seen, and how often one was chosen: choosing it again fits the view.
+    pub viewpoint: (Viewpoint, u64),
+    /// Evaluation of the design on the fine grid, if it is known; the scene shows its values.
+    pub verified: Option<Arc<Evaluation>>,
+    /// Proof of its workspace, if it is known.
+    pub proof: Option<Arc<WorkspaceProof>>,
+    /// The current front.
+    pub front: Arc<Vec<FrontPoint>>,
+}
+
+/// Evaluation of the selected design.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Known {
+    /// Its evaluation.
+    pub evaluation: Arc<Evaluation>,
+    /// Whether the evaluation is from the fine grid.
+    pub verified: bool,
+}
+
+impl Known {
+    /// An evaluation on the fine grid.
+    fn verified(evaluation: Arc<Evaluation>) -> Self {
+        Self {
+            evaluation,
+            verified: true,
+        }
+    }
+}
+
+/// Results of the latest requests.
+#[derive(Debug, Clone, Default)]
+pub struct Answer {
+    /// The study of the request that was answered last.
+    pub study: Option<Arc<PreparedStudy>>,
+    /// Evaluation of the selected design, once it is known.
+    pub known: Option<Known>,
+    /// Proof of the workspace of the design that was proved last.
+    pub proof: Option<Arc<WorkspaceProof>>,
+    /// Legend of the heatmap, if one is drawn.
+    pub legend: Option<FieldLegend>,
+    /// Distance between the lines of the ground grid \[m\], if there is a viewer.
+    pub grid_spacing: Option<f64>,
+    /// Evaluations of the pinned designs.
+    pub pins: Vec<Evaluation>,
+    /// Number of the last request that was drawn.
+    pub drawn: u64,
+    /// Number of the last request that failed, and the message about it.
+    pub trouble: Option<(u64, String)>,
+}
+
+/// Holds at most one item; a later item replaces an earlier one.
+struct Mailbox<T> {
+    state: Mutex<(Option<T>, bool)>,
+    changed: Condvar,
+}
+
+impl<T> Mailbox<T> {
+    fn new() -> Self {
+        Self {
+            state: Mutex::new((None, false)),
+            changed: Condvar::new(),
+        }
+    }
+
+    fn put(&self, thing: T) {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner).0 = Some(thing);
+        self.changed.notify_all();
+    }
+
+    fn close(&self) {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner).1 = true;
+        self.changed.notify_all();
+    }
+
+    /// Whether it is open and holds no item.
+    fn is_idle(&self) -> bool {
+        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        state.0.is_none() && !state.1
+    }
+
+    /// Waits for an item for at most `time`.
+    fn wait(&self, time: Duration) -> Option<T> {
+        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let empty = |state: &mut (Option<T>, bool)| state.0.is_none() && !state.1;
+        let (mut state, _) = self
+            .changed
+            .wait_timeout_while(state, time, empty)
+            .unwrap_or_else(PoisonError::into_inner);
+        state.0.take()
+    }
+
+    /// Waits for an item; returns `None` once the mailbox is closed.
+    fn take(&self) -> Option<T> {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        loop {
+            if state.1 {
+                return None;
+            }
+            if let Some(thing) = state.0.take() {
+                return Some(thing);
+            }
+            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+struct Shared {
+    requests: Mailbox<(u64, Request)>,
+    to_verify: Mailbox<(Arc<PreparedStudy>, Known)>,
+    /// The design verified last, which the scene shows with its values from the fine grid.
+    verified: Mutex<Option<(Arc<PreparedStudy>, Arc<Evaluation>)>>,
+    answer: Mutex<Answer>,
+    wake: Wake,
+}
+
+impl Shared {
+    /// Returns the verified evaluation of `design`, if it is the design verified last.
+    fn verified(&self, study: &Arc<PreparedStudy>, design: &Design) -> Option<Known> {
+        let verified = self.verified.lock().unwrap_or_else(PoisonError::into_inner);
+        let (_, evaluation) = verified
+            .as_ref()
+            .filter(|(of, evaluation)| of == study && evaluation.design == *design)?;
+        Some(Known::verified(Arc::clone(evaluation)))
+    }
+
+    fn answer(&self, change: impl FnOnce(&mut Answer)) {
+        change(&mut self.answer.lock().unwrap_or_else(PoisonError::into_inner));
+        (self.wake)();
+    }
+}
+
+/// Evaluates and draws designs on its own threads.
+pub struct SceneThread {
+    shared: Arc<Shared>,
+    sent: u64,
+    last: Option<Request>,
+}
+
+impl SceneThread {
+    /// Starts the threads; `scene` is `None` if there is no viewer.
+    ///
+    /// # Errors
+    /// Returns an error if a thread cannot be started.
+    pub fn start(scene: Option<LiveScene>, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
+        let shared = Arc::new(Shared {
+            requests: Mailbox::new(),
+            to_verify: Mailbox::new(),
+            verified: Mutex::new(None),
+            answer: Mutex::default(),
+            wake: Arc::new(wake),
+        });
+        let hand = Arc::clone(&shared);
+        Builder::new()
+            .name("kinefront-scene".to_owned())
+            .spawn(move || draw_requests(&hand, scene))?;
+        let hand = Arc::clone(&shared);
+        Builder::new()
+            .name("kinefront-verify".to_owned())
+            .spawn(move || verify_requests(&hand))?;
+        Ok(Self {
+            shared,
+            sent: 0,
+            last: None,
+        })
+    }
+
+    /// Sends a request, unless it equals the last one. Returns the number of the request.
+    pub fn ask(&mut self, request: Request) -> u64 {
+        if self.last.as_ref() != Some(&request) {
+            self.last = Some(request.clone());
+            self.sent += 1;
+            self.shared.requests.put((self.sent, request));
+        }
+        self.sent
+    }
+
+    /// Returns the results so far.
+    pub fn answer(&self) -> Answer {
+        self.shared
+            .answer
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+}
+
+impl Drop for SceneThread {
+    fn drop(&mut self) {
+        self.shared.requests.close();
+        self.shared.to_verify.close();
+    }
+}
+
+fn verify_requests(shared: &Shared) {
+    while let Some(mut wanted) = shared.to_verify.take() {
+        // Dragging a slider passes through many designs; only the one at which it rests is verified.
+        while let Some(newer) = shared.to_verify.wait(RESTING) {
+            wanted = newer;
+        }
+        let (study, known) = wanted;
+        let design = known.evaluation.design;
+        let evaluation = if known.verified {
+            known.evaluation
+        } else {
+            Arc::new(study.model().evaluate(&design, GridChoice::Fine))
+        };
+        *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) =
+            Some((Arc::clone(&study), Arc::clone(&evaluation)));
+        shared.answer(|answer| {
+            if let Some(known) = &mut answer.known
+                && known.evaluation.design == design
+                && answer.study.as_ref() == Some(&study)
+            {
+                *known = Known::verified(Arc::clone(&evaluation));
+            }
+        });
+        if !study.study().certifies() {
+            continue;
+        }
+        // A newer design ends a proof that takes long.
+        let proof = workspace_proof(study.model(), &evaluation, &|| shared.to_verify.is_idle());
+        shared.answer(|answer| {
+            if answer.study.as_ref() == Some(&study) {
+                answer.proof = proof.map(Arc::new);
+            }
+        });
+    }
+}
+
+/// Current state of the scene.
+#[derive(Default)]
+struct SceneState {
+    scene: Option<LiveScene>,
+    request: Option<Request>,
+    known: Option<Known>,
+    legend: Option<FieldLegend>,
+    pins: Vec<Evaluation>,
+    /// The design sent last to the verify thread.
+    verifying: Option<Design>,
+}
+
+fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
+    let mut state = SceneState {
+        scene,
+        ..SceneState::default()
+    };
+    while let Some((number, request)) = shared.requests.take() {
+        let trouble = step(&mut state, shared, &request).err();
+        // Verification starts after drawing, because both compete for the processor.
+        if let Some(known) = &state.known {
+            let design = known.evaluation.design;
+            // A design is sent only once: a change of the pose, as in a tour, needs no new verification.
+            if state.verifying.replace(design) != Some(design) {
+                shared.to_verify.put((Arc::clone(&request.study), known.clone()));
+            }
+        }
+        let (known, pins, legend) = (state.known.clone(), state.pins.clone(), state.legend);
+        shared.answer(|answer| {
+            // The verify thread may have finished earlier, while the answer still held another design.
+            let finer = known
+                .as_ref()
+                .and_then(|known| shared.verified(&request.study, &known.evaluation.design));
+            answer.known = finer.or(known);
+            answer.pins = pins;
+            answer.legend = legend;
+            answer.grid_spacing = state.scene.as_ref().map(LiveScene::grid_spacing);
+            answer.study = Some(Arc::clone(&request.study));
+            answer.drawn = number;
+            if let Some(trouble) = trouble {
+                answer.trouble = Some((number, trouble.to_string()));
+            }
+        });
+        state.request = Some(request);
+    }
+}
+
+fn step(state: &mut SceneState, shared: &Shared, request: &Request) -> Result<(), AnyError> {
+    let before = state.request.take();
+    let new_study = before.as_ref().is_none_or(|before| before.study != request.study);
+    if new_study {
+        if let Some(scene) = &mut state.scene {
+            scene
+                .turn_to(request.study.study())
+                .map_err(|error| error.to_string())?;
+        }
+        state.known = None;
+        state.verifying = None;
+        state.pins.clear();
+        *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    }
+    let before = before.filter(|_| !new_study);
+    let model = request.study.model();
+    let evaluate = |design: &Design| model.evaluate(design, GridChoice::Reference);
+
+    let given = request.verified.clone().map(Known::verified);
+    let verified = request.design.and_then(|design| {
+        given
+            .filter(|known| known.evaluation.design == design)
+            .or_else(|| shared.verified(&request.study, &design))
+    });
+    state.known = match (&request.design, verified, state.known.take()) {
+        (None, ..) => None,
+        (Some(_), Some(known), _) => Some(known),
+        (Some(design), None, Some(known)) if known.evaluation.design == *design => Some(known),
+        (Some(design), None, _) => Some(Known {
+            evaluation: Arc::new(evaluate(design)),
+            verified: false,
+        }),
+    };
+    let new_pins = before.as_ref().is_none_or(|before| before.pins != request.pins);
+    if new_pins {
+        state.pins = request.pins.iter().map(|(_, design)| evaluate(design)).collect();
+    }
+
+    let Some(mut scene) = state.scene.take() else {
+        return Ok(());
+    };
+    let drawn = draw(&mut scene, state, before.as_ref(), request, new_pins);
+    state.scene = Some(scene);
+    let drawn = drawn.map(|legend| state.legend = legend);
+    drawn.map_err(|error| format!("the scene cannot be drawn: {error}").into())
+}
+
+/// Draws what differs from the request before, and returns the legend of the heatmap.
+fn draw(
+    scene: &mut LiveScene,
+    state: &SceneState,
+    before: Option<&Request>,
+    request: &Request,
+    new_pins: bool,
+) -> Result<Option<FieldLegend>, RecordingError> {
+    if before.is_some_and(|before| before.comparing != request.comparing) {
+        scene.compare(request.comparing)?;
+    }
+    if before.is_some_and(|before| before.viewpoint != request.viewpoint) {
+        scene.look_from(request.viewpoint.0)?;
+    }
+    let model = request.study.model();
+    let shown = state.known.as_ref().map(|known| Shown {
+        model,
+        evaluation: &known.evaluation,
+        proof: request
+            .proof
+            .as_deref()
+            .filter(|proof| proof.design == known.evaluation.design),
+        pose: request.pose,
+        heatmap_phi: request.heatmap_phi,
+        layers: &request.layers,
+        light: request.light,
+    });
+    let legend = scene.design(shown.as_ref())?;
+    if new_pins {
+        let named = request.pins.iter().zip(&state.pins);
+        let pins: Vec<Pinned<'_>> = named
+            .map(|((name, _), evaluation)| Pinned { evaluation, name })
+            .collect();
+        scene.pins(model, &pins)?;
+    }
+    let moved =
+        before.is_none_or(|before| before.design != request.design || !Arc::ptr_eq(&before.front, &request.front));
+    if moved {
+        let marked = state.known.as_ref().map(|known| &*known.evaluation);
+        scene.front(request.study.study(), &request.front, marked)?;
+    }
+    Ok(legend)
+}

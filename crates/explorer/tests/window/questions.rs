@@ -1,0 +1,134 @@
+//! The window with other questions than the paper's: objectives, limits, and designs in three quantities.
+
+use egui::accesskit::Role;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use kinefront_explorer::{InitialContent, Panel};
+use kinefront_model::evaluation::{PoseScalar, Quantity};
+use kinefront_study::{Column, ObjectiveChoice, Study};
+
+use super::support::{Window, click_at, idle_window, small_study, until, window};
+
+/// Opens a window and runs the small study with other objectives.
+fn run(objectives: &[(&str, &str)]) -> Window {
+    let choice = |(goal, key): &(&str, &str)| match *goal {
+        "minimize" => ObjectiveChoice::Minimize((*key).to_owned()),
+        _ => ObjectiveChoice::Maximize((*key).to_owned()),
+    };
+    let mut study = Study {
+        objectives: objectives.iter().map(choice).collect(),
+        references: Vec::new(),
+        ..small_study()
+    };
+    study.optimizer.evaluations = 120;
+    study.workspace.certify = false;
+    let mut window = window(InitialContent::Study {
+        study: Box::new(study),
+        path: None,
+        start: true,
+    });
+    until(&mut window, "the front is verified", |explorer| {
+        let session = explorer.session();
+        !session.is_running() && !session.front().is_empty() && session.front().iter().all(|entry| entry.verified)
+    });
+    window
+}
+
+#[test]
+fn three_objectives_have_axes_colour_buttons_and_a_space_that_is_clicked() {
+    let mut window = run(&[
+        ("minimize", "mass_kg"),
+        ("maximize", "k_xy_n_per_m"),
+        ("minimize", "footprint_m"),
+    ]);
+    let k_xy = Column::Quantity(Quantity::Worst(PoseScalar::StiffnessXy));
+    let axes = window.state().scatter_axes().map(<(String, bool)>::from);
+    assert_eq!(axes, [("mass_kg".to_owned(), true), ("value_g4".to_owned(), true)]);
+    let coloring = window.get_by_role_and_label(Role::ComboBox, "colour");
+    let told = coloring.accesskit_node().value().unwrap_or_default();
+    assert!(told.contains("footprint"), "{told}");
+
+    window.state_mut().show(Panel::Choose);
+    window.run_steps(3);
+    for (button, quantity, largest) in [
+        ("Lightest", Column::Quantity(Quantity::Mass), false),
+        ("Most k_xy", k_xy, true),
+        (
+            "Least footprint",
+            Column::Quantity(Quantity::Worst(PoseScalar::Footprint)),
+            false,
+        ),
+    ] {
+        window.get_by_label(button).click();
+        window.run_steps(3);
+        let session = window.state().session();
+        let selected = session.document().selected.clone().expect("a selection").design;
+        let value = |entry: &kinefront_explorer::FrontEntry| entry.row.number(quantity).expect("a value");
+        let best = session.front().iter().map(value).fold(
+            if largest { f64::NEG_INFINITY } else { f64::INFINITY },
+            |best, value| if largest { best.max(value) } else { best.min(value) },
+        );
+        let found = session.front().iter().find(|entry| entry.row.design == selected);
+        assert_eq!(found.map(value), Some(best), "{button}");
+    }
+    for name in ["mass", "k_xy", "footprint"] {
+        let label = format!("Weight of the {name}");
+        assert!(
+            window.query_by_role_and_label(Role::Slider, &label).is_some(),
+            "{label}"
+        );
+    }
+
+    window.state_mut().show(Panel::Space);
+    window.run_steps(3);
+    let space = window
+        .get_by_role_and_label(Role::Image, "Designs in three quantities")
+        .rect();
+    let before = window.state().session().document().selected.clone();
+    // Somewhere in the panel a click meets another design of the front.
+    let mut selected = before.clone();
+    'places: for row in 5..25 {
+        for column in 2..28 {
+            let at = space.min + space.size() * egui::vec2(column as f32 / 30.0, row as f32 / 30.0);
+            click_at(&mut window, at);
+            selected = window.state().session().document().selected.clone();
+            if selected != before {
+                break 'places;
+            }
+        }
+    }
+    assert_ne!(selected, before, "no click selected a design");
+}
+
+#[test]
+fn one_objective_has_a_single_best_design() {
+    let mut window = run(&[("minimize", "platform_mass_kg")]);
+    assert_eq!(window.state().session().front().len(), 1);
+    window.state_mut().show(Panel::Choose);
+    window.run_steps(3);
+    window.get_by_label("Least mass of the platform").click();
+    window.run_steps(3);
+    assert!(window.state().session().document().selected.is_some());
+}
+
+#[test]
+fn the_question_is_edited_where_the_study_is() {
+    let mut window = idle_window();
+    window.state_mut().show(Panel::Study);
+    window.run_steps(3);
+    window.get_by_label("Add an objective").click();
+    window.run_steps(3);
+    let keys = |window: &Window| -> Vec<String> {
+        let study = window.state().session().editor().study();
+        study.objectives.iter().map(|choice| choice.key().to_owned()).collect()
+    };
+    assert_eq!(keys(&window), ["mass_kg", "workspace_radius_m", "footprint_m"]);
+    let text = window.state().session().editor().text().to_owned();
+    assert!(text.contains("footprint_m"), "{text}");
+    window.get_by_label("maximize").click();
+    window.run_steps(3);
+    let study = window.state().session().editor().study();
+    assert_eq!(
+        study.objectives[1],
+        ObjectiveChoice::Minimize("workspace_radius_m".to_owned())
+    );
+}

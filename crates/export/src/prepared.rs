@@ -1,0 +1,136 @@
+//! What every format is written from, and what several of them need.
+
+use glam::{DVec2, DVec3};
+
+use super::ExportSubject;
+use kinefront_model::evaluation::{Evaluation, Model, Unreachable};
+use kinefront_model::mechanism::JointKind;
+use kinefront_model::spatial::Pose;
+use kinefront_scene::palette;
+use kinefront_scene::{
+    Body, Linkage, Part, RegularCylinder, Scene, Solid, SolidShape, Tour, linkage, manipulator, region_corners,
+    regular_workspace, tour,
+};
+use kinefront_study::Study;
+
+/// Number of poses around each rim of the exported tour.
+const TOUR_STEPS: usize = 72;
+
+/// A subject prepared for every format.
+pub(super) struct Prepared<'a> {
+    pub(super) study: &'a Study,
+    pub(super) model: &'a Model,
+    pub(super) evaluation: &'a Evaluation,
+    pub(super) pose: Pose,
+    pub(super) linkage: Linkage,
+    pub(super) scene: Scene,
+    /// The fixed parts (base triangle and rails) as solids.
+    pub(super) base: Vec<Solid>,
+    pub(super) cylinder: Option<RegularCylinder>,
+    /// Corners of the workspace if the study prescribes a polygon, in the base frame \[m\].
+    pub(super) corners: Option<Vec<DVec2>>,
+    pub(super) tour: Option<Tour>,
+}
+
+impl<'a> Prepared<'a> {
+    pub(super) fn new(subject: &ExportSubject<'a>) -> Result<Self, Unreachable> {
+        let ExportSubject {
+            study,
+            evaluation,
+            pose,
+        } = *subject;
+        let (study, model) = (study.study(), study.model());
+        let design = &evaluation.design;
+        let pose = pose.unwrap_or_else(|| model.home(evaluation));
+        let linkage = linkage(model, design, &pose)?;
+        let scene = manipulator(model, design, &pose)?;
+        let cylinder = regular_workspace(evaluation, study.workspace.rotation_range_deg);
+        let tour = cylinder.and_then(|cylinder| tour(model, design, &cylinder, TOUR_STEPS));
+        Ok(Self {
+            study,
+            model,
+            evaluation,
+            pose,
+            linkage,
+            base: scene.base_bars(design.base_radius),
+            scene,
+            corners: cylinder.and_then(|_| region_corners(model)),
+            cylinder,
+            tour,
+        })
+    }
+
+    /// Returns the design as text that the program can read: `3-PRR R=3.066 …`.
+    pub(super) fn title(&self) -> String {
+        self.evaluation.design.to_string()
+    }
+
+    /// Returns the name of the model for formats that require an identifier.
+    pub(super) fn identifier(&self) -> String {
+        let name = self.evaluation.design.architecture.name();
+        format!("kinefront_{}", name.to_lowercase().replace('-', "_"))
+    }
+}
+
+/// Mass written for a body that has no mass in the model, because simulators require one \[kg\].
+pub(super) const MASSLESS: f64 = 1e-3;
+
+/// Returns the mass, centre of mass and moments of inertia `[xx, yy, zz, xy]` of a body for a simulator.
+pub(super) fn inertial(body: &Body) -> (f64, DVec3, [f64; 4]) {
+    let mass = body.mass();
+    if mass > 0.0 {
+        return (mass, body.centre_of_mass().extend(body.height), body.inertia());
+    }
+    // The moment of inertia of a solid sphere with a radius of 1 cm.
+    let moment = 0.4 * MASSLESS * 1e-4;
+    (MASSLESS, DVec3::Z * body.height, [moment, moment, moment, 0.0])
+}
+
+/// Formats a length, angle or direction with the fewest digits that read back to the same value. Values below 1e-14,
+/// which the rotation of frames leaves in place of zeros, are written as 0.
+pub(super) fn text(value: f64) -> String {
+    const NOTHING: f64 = 1e-14;
+    if value.abs() < NOTHING {
+        "0".to_owned()
+    } else {
+        value.to_string()
+    }
+}
+
+/// Returns the colour of a part as RGBA, each value from 0 to 1.
+pub(super) fn rgba(part: Part) -> [f64; 4] {
+    let [r, g, b] = palette::part(part).map(|value| (f64::from(value) / 255.0 * 1e3).round() / 1e3);
+    [r, g, b, 1.0]
+}
+
+/// Returns the name of the joint between a body and its parent.
+pub(super) fn joint_name(body: &Body) -> String {
+    format!("{}_joint", body.name)
+}
+
+/// Returns the axis of a joint in the frame of its body.
+pub(super) fn joint_axis(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Prismatic => "1 0 0",
+        JointKind::Revolute => "0 0 1",
+    }
+}
+
+/// Returns the position and the roll, pitch and yaw of a shape for SDF and URDF, in which a shape is centred at its
+/// origin and a cylinder lies along z.
+pub(super) fn place(shape: &SolidShape) -> [f64; 6] {
+    match *shape {
+        SolidShape::Block { centre, angle, .. } => [centre.x, centre.y, centre.z, 0.0, 0.0, angle],
+        SolidShape::Bar { from, to, .. } => {
+            let middle = 0.5 * (from + to);
+            let way = (to - from).truncate();
+            // Bars lie in the plane; pins are along z.
+            let (pitch, yaw) = if way.length() > 0.0 {
+                (std::f64::consts::FRAC_PI_2, libm::atan2(way.y, way.x))
+            } else {
+                (0.0, 0.0)
+            };
+            [middle.x, middle.y, middle.z, 0.0, pitch, yaw]
+        }
+    }
+}

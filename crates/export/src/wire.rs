@@ -1,0 +1,215 @@
+//! A design and its evaluation as JSON that other programs rely on. Keys are a contract: new ones may be added, none may be renamed.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use kinefront_model::evaluation::{Bound, Evaluation, LimitResult, PoseEvaluation, PoseScalar, Quantity, Unreachable};
+use kinefront_model::mechanism::{Design, DesignVariable};
+use kinefront_model::spatial::Pose;
+
+/// The variables of a design \[m, and deg where the key says so\].
+#[derive(Debug, Serialize)]
+pub struct DesignJson {
+    #[serde(rename = "R")]
+    base_radius: f64,
+    #[serde(rename = "r")]
+    platform_radius: f64,
+    #[serde(rename = "Lb")]
+    link_length: f64,
+    #[serde(rename = "rj")]
+    leg_bar_radius: f64,
+    #[serde(rename = "rp")]
+    platform_bar_radius: f64,
+    #[serde(rename = "La", skip_serializing_if = "Option::is_none")]
+    proximal_length: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    alpha_deg: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    beta_deg: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gamma_deg: Option<f64>,
+}
+
+impl From<&Design> for DesignJson {
+    fn from(design: &Design) -> Self {
+        // As in the text of a design, what is not given has its default.
+        let given = |variable: DesignVariable| {
+            let mut given = design.given_variables();
+            given.find(|other| *other == variable).map(|found| design.value(found))
+        };
+        Self {
+            base_radius: design.base_radius,
+            platform_radius: design.platform_radius,
+            link_length: design.link_length,
+            leg_bar_radius: design.leg_bar_radius,
+            platform_bar_radius: design.platform_bar_radius,
+            proximal_length: given(DesignVariable::ProximalLength),
+            alpha_deg: given(DesignVariable::RailAngle),
+            beta_deg: given(DesignVariable::GuideAngle),
+            gamma_deg: given(DesignVariable::PlatformGuideAngle),
+        }
+    }
+}
+
+/// A pose of the platform.
+#[derive(Debug, Serialize)]
+pub struct PoseJson {
+    /// Abscissa of the platform's centre \[m\].
+    pub x_m: f64,
+    /// Ordinate of the platform's centre \[m\].
+    pub y_m: f64,
+    /// Orientation \[deg\].
+    pub phi_deg: f64,
+}
+
+impl PoseJson {
+    /// Creates the output for a pose whose orientation is known in degrees.
+    pub fn new(pose: &Pose, phi_deg: f64) -> Self {
+        Self {
+            x_m: pose.position.x,
+            y_m: pose.position.y,
+            phi_deg,
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct ConstraintJson {
+    id: &'static str,
+    name: &'static str,
+    value: Option<f64>,
+    threshold: f64,
+    margin: f64,
+    active: bool,
+    pose: Option<PoseJson>,
+}
+
+/// The output of `kinefront evaluate --json`.
+#[derive(Debug, Serialize)]
+pub struct EvaluationJson {
+    architecture: &'static str,
+    design: DesignJson,
+    working_mode: [i8; 3],
+    mass_kg: f64,
+    workspace_radius_m: f64,
+    home: Option<PoseJson>,
+    feasible: bool,
+    violation: f64,
+    /// Smallest clearance between members that are not joined, over the regular workspace; negative if they overlap.
+    clearance_m: Option<f64>,
+    /// The pair of members with this clearance.
+    clearance_pair: Option<[String; 2]>,
+    /// The constraints that the study requires.
+    constraints: Vec<ConstraintJson>,
+    /// The quantities that were determined, by their keys.
+    quantities: BTreeMap<&'static str, f64>,
+    /// The limits of quantities over the whole region.
+    limits: Vec<LimitJson>,
+}
+
+/// A limit of a quantity.
+#[derive(Debug, Serialize)]
+struct LimitJson {
+    quantity: &'static str,
+    /// `at_least` or `at_most`.
+    bound: &'static str,
+    threshold: f64,
+    value: Option<f64>,
+    margin: f64,
+}
+
+impl From<&LimitResult> for LimitJson {
+    fn from(result: &LimitResult) -> Self {
+        Self {
+            quantity: result.limit.quantity.entry().key,
+            bound: match result.limit.bound {
+                Bound::AtLeast(_) => "at_least",
+                Bound::AtMost(_) => "at_most",
+            },
+            threshold: result.limit.threshold(),
+            value: result.value,
+            margin: result.margin,
+        }
+    }
+}
+
+impl EvaluationJson {
+    /// Creates the output for an evaluation.
+    pub fn new(evaluation: &Evaluation) -> Self {
+        let design = &evaluation.design;
+        Self {
+            architecture: design.architecture.name(),
+            design: design.into(),
+            working_mode: design.working_mode.signs(),
+            mass_kg: evaluation.mass(),
+            workspace_radius_m: evaluation.workspace_radius(),
+            home: evaluation
+                .home
+                .zip(evaluation.home_phi_deg)
+                .map(|(pose, phi_deg)| PoseJson::new(&pose, phi_deg)),
+            feasible: evaluation.is_feasible(),
+            violation: evaluation.violation,
+            clearance_m: evaluation.clearance(),
+            clearance_pair: evaluation.nearest.map(|nearest| nearest.pair()),
+            constraints: evaluation
+                .constraints
+                .iter()
+                .filter(|report| report.required)
+                .map(|report| ConstraintJson {
+                    id: report.constraint.id(),
+                    name: report.constraint.name(),
+                    value: report.value,
+                    threshold: report.threshold,
+                    margin: report.margin,
+                    active: report.active,
+                    pose: report.pose.map(|pose| PoseJson::new(&pose, pose.phi.to_degrees())),
+                })
+                .collect(),
+            quantities: Quantity::all()
+                .filter_map(|quantity| Some((quantity.entry().key, evaluation.quantities.get(quantity)?)))
+                .collect(),
+            limits: evaluation.limits.iter().map(LimitJson::from).collect(),
+        }
+    }
+}
+
+/// The output of `kinefront pose --json`.
+#[derive(Debug, Serialize)]
+pub struct PoseReportJson {
+    reachable: bool,
+    reason: Option<String>,
+    actuators: Option<[f64; 3]>,
+    #[serde(rename = "B")]
+    b: Option<[[f64; 2]; 3]>,
+    #[serde(rename = "C")]
+    c: Option<[[f64; 2]; 3]>,
+    inverse_condition: Option<f64>,
+    k_xy: Option<f64>,
+    k_z: Option<f64>,
+    k_phi_z: Option<f64>,
+    clearance_m: Option<f64>,
+    clearance_pair: Option<[String; 2]>,
+    stiffness: Option<[[f64; 6]; 6]>,
+}
+
+impl From<&Result<PoseEvaluation, Unreachable>> for PoseReportJson {
+    fn from(outcome: &Result<PoseEvaluation, Unreachable>) -> Self {
+        let report = outcome.as_ref().ok();
+        let value = |scalar: PoseScalar| report.map(|report| report.values[scalar]);
+        Self {
+            reachable: report.is_some(),
+            reason: outcome.as_ref().err().map(ToString::to_string),
+            actuators: report.map(|report| report.actuators),
+            b: report.map(|report| report.b),
+            c: report.map(|report| report.c),
+            inverse_condition: value(PoseScalar::Dexterity),
+            k_xy: value(PoseScalar::StiffnessXy),
+            k_z: value(PoseScalar::StiffnessZ),
+            k_phi_z: value(PoseScalar::StiffnessPhiZ),
+            clearance_m: value(PoseScalar::Clearance),
+            clearance_pair: report.map(|report| report.nearest.pair()),
+            stiffness: report.map(|report| std::array::from_fn(|i| std::array::from_fn(|j| report.stiffness[(i, j)]))),
+        }
+    }
+}

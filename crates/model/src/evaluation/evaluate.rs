@@ -1,0 +1,93 @@
+//! The one call by which all other code evaluates a design.
+
+use super::worst::ConstraintSearch;
+use super::{Constraint, Evaluation, GridChoice, LimitResult, Model, quantities};
+use crate::lanes::InstructionSet;
+use crate::mechanism::{Design, Leg};
+use crate::pose::PoseChecker;
+use crate::spatial::Pose;
+use crate::workspace::{Region, WorkspaceSampling, search, search_prescribed};
+
+impl Model {
+    /// Evaluates a design on one of the grids.
+    pub fn evaluate(&self, design: &Design, grid: GridChoice) -> Evaluation {
+        self.evaluate_with(design, grid, InstructionSet::best())
+    }
+
+    /// Evaluates a design like [`Model::evaluate`], with a given instruction set, which changes no bit of the result.
+    pub fn evaluate_with(&self, design: &Design, grid: GridChoice, instructions: InstructionSet) -> Evaluation {
+        with_leg!(design.architecture, L => {
+            let mut checker = self.checker::<L>(design);
+            checker.instructions = instructions;
+            evaluate(self, &checker, design, self.sampling(grid))
+        })
+    }
+}
+
+/// Evaluates the design that is prepared in `checker`.
+fn evaluate<L: Leg>(
+    model: &Model,
+    checker: &PoseChecker<L>,
+    design: &Design,
+    sampling: &WorkspaceSampling,
+) -> Evaluation {
+    let symmetric = model.is_symmetric(design);
+    let (found, worst) = match sampling.spec().region {
+        Region::Largest => (search(checker, sampling, design.base_radius, symmetric), None),
+        _ => {
+            let (found, worst) = search_prescribed(checker, sampling, design.base_radius, symmetric);
+            (found, Some(worst))
+        }
+    };
+    let assembled = checker.assembly.value >= checker.assembly.threshold;
+    let reporter = ConstraintSearch {
+        model,
+        checker,
+        design,
+        found: &found,
+    };
+    let grid = sampling.grid();
+    let (constraints, mut violation, home) = match (found.home, worst) {
+        (Some(home), None) if assembled => (reporter.over_workspace(home, grid), 0.0, Some(home)),
+        (Some(home), Some(worst)) => {
+            let (constraints, violation) = reporter.over_region(home, worst);
+            (constraints, violation, Some(home).filter(|_| violation == 0.0))
+        }
+        _ => {
+            let (constraints, violation) = reporter.at_best_centre();
+            (constraints, violation, None)
+        }
+    };
+    let workspace_radius = if home.is_some() { found.radius } else { 0.0 };
+    let height = checker.bodies.height();
+    let mut quantities = quantities::known(model, height, design, workspace_radius, &constraints);
+    if let Some(home) = home {
+        let positions = reporter.positions(grid);
+        quantities::add_of_region(&mut quantities, model, checker, &found, home, &positions, grid);
+    }
+    let limits: Vec<LimitResult> = model
+        .limits
+        .iter()
+        .map(|limit| limit.result(quantities.get(limit.quantity)))
+        .collect();
+    violation += limits.iter().map(|limit| (-limit.margin).max(0.0)).sum::<f64>();
+    let home_phi_deg = home.map(|home| found.orientations[home].phi_deg);
+    let centre = model.workspace.centre;
+    Evaluation {
+        design: *design,
+        home: home_phi_deg.map(|phi_deg| Pose::new(centre.x, centre.y, phi_deg.to_radians())),
+        home_phi_deg,
+        nearest: constraints[Constraint::Clearance as usize]
+            .pose
+            .and_then(|pose| reporter.nearest(pose)),
+        constraints,
+        objectives: model
+            .objectives
+            .iter()
+            .map(|objective| objective.minimised(quantities.get(objective.quantity)))
+            .collect(),
+        quantities,
+        limits,
+        violation,
+    }
+}

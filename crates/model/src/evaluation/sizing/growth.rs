@@ -1,0 +1,144 @@
+//! Scale of a geometry that is to hold a prescribed region: the factors by which its lengths must be multiplied
+//! (docs/model.md, section 9).
+//!
+//! Reach and dexterity do not depend on the size of a manipulator. Whether a geometry that is larger by a factor holds a region is
+//! therefore found by examining the region divided by that factor, without bars.
+
+use crate::evaluation::Model;
+use crate::kinematics::CharacteristicLength;
+use crate::mechanism::{Design, Leg};
+use crate::pose::{MarginUnit, PoseScalar};
+use crate::workspace::{OrientationGrid, RegionMargins, WorkspaceSampling};
+
+/// Ratio of consecutive factors until one is found with which some window holds the region.
+const WIDE: f64 = 1.25;
+
+/// Ratio of consecutive factors from the one before that.
+const NARROW: f64 = 1.01;
+
+/// Number of factors that are tried after the first one with which some window holds the region: another home orientation may need
+/// thinner bars with a slightly larger factor.
+const MORE_FACTORS: usize = 2;
+
+/// Relative accuracy of a factor.
+const ACCURACY: f64 = 1e-12;
+
+/// Home orientation and the factor by which the lengths must be multiplied to hold the region in its window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct GrownHome {
+    pub home: usize,
+    pub factor: f64,
+}
+
+/// Geometry of a design, without bars, that is to hold a prescribed region.
+pub(super) struct Growth<'a, L> {
+    orientation_grid: OrientationGrid,
+    margins: RegionMargins<'a, L>,
+    /// Sign of `det A` in the orientations that are known to hold the region.
+    signs: Vec<Option<f64>>,
+}
+
+impl Model {
+    /// Returns whether a geometry without bars is as feasible as any similar one for which the region is larger in proportion, so
+    /// that sizing may change its scale.
+    pub fn is_free_of_scale(&self) -> bool {
+        let is_length = |scalar: PoseScalar| scalar.entry().margin == MarginUnit::BaseRadius;
+        !self.thresholds.iter().any(|(scalar, _)| is_length(scalar))
+            && !matches!(self.characteristic_length, CharacteristicLength::Fixed(_))
+    }
+}
+
+impl<'a, L: Leg> Growth<'a, L> {
+    pub fn new(model: &Model, design: &Design, sampling: &'a WorkspaceSampling) -> Self {
+        let mut checker = model.checker::<L>(design);
+        // What depends on the bars is left to sizing.
+        for &scalar in PoseScalar::ALL {
+            if scalar.entry().is_of_bars {
+                checker.set_threshold(scalar, None);
+            }
+        }
+        let orientation_grid = *sampling.orientation_grid();
+        Self {
+            orientation_grid,
+            margins: RegionMargins::new(checker, sampling, design.base_radius, model.is_symmetric(design)),
+            signs: vec![None; orientation_grid.count],
+        }
+    }
+
+    /// Returns the home orientations in whose window the geometry holds the region with nearly the smallest factor within `range`,
+    /// each with its own smallest factor, in the order of these.
+    pub fn homes(&mut self, range: [f64; 2]) -> Vec<GrownHome> {
+        let mut homes: Vec<GrownHome> = Vec::new();
+        let Some([below, _]) = self.first_held(range, WIDE) else {
+            return homes;
+        };
+        self.signs.fill(None);
+        let Some([mut below, mut factor]) = self.first_held([below, range[1]], NARROW) else {
+            return homes;
+        };
+        for _ in 0..=MORE_FACTORS {
+            for home in self.held() {
+                if homes.iter().all(|other| other.home != home) {
+                    homes.push(self.exactly(home, [below, factor]));
+                }
+            }
+            if factor >= range[1] {
+                break;
+            }
+            (below, factor) = (factor, (factor * NARROW).min(range[1]));
+            self.examine(factor);
+        }
+        homes.sort_by(|a, b| a.factor.total_cmp(&b.factor).then(a.home.cmp(&b.home)));
+        homes
+    }
+
+    /// Returns the first factor of a sequence within a range with which some window holds the region, and the factor before it.
+    fn first_held(&mut self, [least, largest]: [f64; 2], ratio: f64) -> Option<[f64; 2]> {
+        let (mut below, mut factor) = (least, least);
+        loop {
+            self.examine(factor);
+            if !self.held().is_empty() {
+                return Some([below, factor]);
+            }
+            if factor >= largest {
+                return None;
+            }
+            (below, factor) = (factor, (factor * ratio).min(largest));
+        }
+    }
+
+    /// Notes the orientations in which the geometry holds the region with a factor.
+    fn examine(&mut self, factor: f64) {
+        self.margins.lay(1.0 / factor);
+        self.margins.read_signs(1.0 / factor);
+        for (k, sign) in self.signs.iter_mut().enumerate() {
+            if sign.is_none() && self.margins.at_first(k) >= 0.0 && self.margins.at_others(k) >= 0.0 {
+                *sign = Some(self.margins.signs[k]);
+            }
+        }
+    }
+
+    /// Returns the home orientations whose window is known to hold the region.
+    fn held(&self) -> Vec<usize> {
+        self.orientation_grid.homes_of_one_sign(|k| self.signs[k]).collect()
+    }
+
+    /// Narrows a range of factors by halving: the upper end holds the region in the window of a home orientation, the lower one
+    /// does not, unless both are equal.
+    fn exactly(&mut self, home: usize, [mut below, mut above]: [f64; 2]) -> GrownHome {
+        let window: Vec<usize> = self.orientation_grid.window(home).collect();
+        for &k in &window {
+            self.margins.signs[k] = self.signs[k].unwrap_or(1.0);
+        }
+        while above - below > ACCURACY * above {
+            let middle = 0.5 * (below + above);
+            self.margins.lay_boundary(1.0 / middle);
+            if window.iter().all(|&k| self.margins.at_first(k) >= 0.0) {
+                above = middle;
+            } else {
+                below = middle;
+            }
+        }
+        GrownHome { home, factor: above }
+    }
+}

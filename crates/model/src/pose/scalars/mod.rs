@@ -1,0 +1,276 @@
+//! The scalars of a pose: the one table from which lanes, loops over poses, thresholds, limits, quantities, fields and columns follow
+//! (docs/model.md, section 6).
+//!
+//! A further scalar is an entry here and a file with its formula. If it is a constraint with an id of its own, the entry says so.
+
+mod displacement;
+mod footprint;
+mod transmission;
+
+use super::PoseChecker;
+use super::entry::{Better, QuantityEntry, Reference, Scope};
+use crate::lanes::{LaneJob, Planar, Real};
+use crate::mechanism::Leg;
+use crate::spatial::LEGS;
+
+/// What there is to know about a scalar of a pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseScalarEntry {
+    /// The quantity of a design: the worst value over the poses of the region.
+    pub quantity: QuantityEntry,
+    /// Key of the value at one pose.
+    pub at_pose: &'static str,
+    /// Name to display of the value at one pose, without the unit.
+    pub label: &'static str,
+    /// Unit to display, and the factor from the SI unit to it.
+    pub shown_in: (&'static str, f64),
+    /// How margins of the value are made dimensionless.
+    pub margin: MarginUnit,
+    /// Whether thicker bars improve the value and nothing else of the design has to change for that.
+    pub is_of_bars: bool,
+}
+
+/// What a margin is divided by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MarginUnit {
+    /// The threshold, unless that is 0.
+    Threshold,
+    /// `R`: a distance between parts of the manipulator, whose threshold may well be 0.
+    BaseRadius,
+}
+
+impl PoseScalarEntry {
+    const fn new(quantity: QuantityEntry, at_pose: &'static str) -> Self {
+        Self {
+            label: quantity.label,
+            shown_in: (quantity.unit, 1.0),
+            quantity,
+            at_pose,
+            margin: MarginUnit::Threshold,
+            is_of_bars: false,
+        }
+    }
+
+    const fn labelled(mut self, label: &'static str) -> Self {
+        self.label = label;
+        self
+    }
+
+    const fn in_millimetres(mut self) -> Self {
+        self.shown_in = ("mm", 1e3);
+        self
+    }
+
+    const fn per_base_radius(mut self) -> Self {
+        self.margin = MarginUnit::BaseRadius;
+        self
+    }
+
+    const fn of_bars(mut self) -> Self {
+        self.is_of_bars = true;
+        self
+    }
+}
+
+macro_rules! pose_scalars {
+    (
+        always { $($(#[$doc:meta])* $scalar:ident $([$constraint:ident $id:literal $name:literal])? = $entry:expr;)* }
+        on_demand { $($(#[$more_doc:meta])* $more:ident by $formula:path = $more_entry:expr;)* }
+    ) => {
+        /// A number that describes the manipulator at one pose.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum PoseScalar {
+            $($(#[$doc])* $scalar,)*
+            $($(#[$more_doc])* $more,)*
+        }
+
+        const TABLE: &[PoseScalarEntry] = &[$($entry,)* $($more_entry,)*];
+
+        impl PoseScalar {
+            /// All scalars, in the order of the table.
+            pub const ALL: &[PoseScalar; TABLE.len()] = &[$(PoseScalar::$scalar,)* $(PoseScalar::$more,)*];
+
+            /// Those that every evaluation determines; the others only where a study asks for them.
+            pub const ALWAYS: &[PoseScalar] = &[$(PoseScalar::$scalar),*];
+        }
+
+        /// One constraint of the study: g1, or a scalar of a pose that has an id of its own.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum Constraint {
+            /// g1: a leg and the platform bridge the distance from the base to `O`, for example `L_b + r ≥ R/2`.
+            Assembly,
+            $($(
+                #[doc = concat!($id, ", `", $name, "`: see [`PoseScalar::", stringify!($scalar), "`].")]
+                $constraint,
+            )?)*
+        }
+
+        /// Constraints with their ids, their names, and the scalars that they bound.
+        const CONSTRAINTS: &[(Constraint, &str, &str, Option<PoseScalar>)] = &[
+            (Constraint::Assembly, "g1", "assembly", None),
+            $($((Constraint::$constraint, $id, $name, Some(PoseScalar::$scalar)),)?)*
+        ];
+
+        /// A scalar at several poses at once, as a function of its own: few studies need it, and the loops stay short.
+        struct OnDemand<'a, L, V, const SCALAR: usize> {
+            checker: &'a PoseChecker<L>,
+            position: Planar<V>,
+            arms: &'a [Planar<V>; LEGS],
+        }
+
+        impl<L: Leg, V: Real, const SCALAR: usize> LaneJob for OnDemand<'_, L, V, SCALAR> {
+            type Output = V;
+
+            #[inline(always)]
+            fn run(self) -> V {
+                $(if SCALAR == PoseScalar::$more as usize {
+                    return $formula(self.checker, self.position, self.arms);
+                })*
+                self.position.x.splat(f64::NAN)
+            }
+        }
+
+        impl<L: Leg> PoseChecker<L> {
+            /// Computes a scalar that only some studies need, at several poses at once; meaningless where a leg does not reach the
+            /// pose, and NaN for a scalar that every evaluation determines.
+            #[inline(always)]
+            pub(super) fn on_demand_lanes<V: Real>(
+                &self,
+                scalar: PoseScalar,
+                position: Planar<V>,
+                arms: &[Planar<V>; LEGS],
+            ) -> V {
+                let checker = self;
+                match scalar {
+                    $(PoseScalar::$more => {
+                        position.x.call_apart(OnDemand::<L, V, { PoseScalar::$more as usize }> {
+                            checker,
+                            position,
+                            arms,
+                        })
+                    })*
+                    _ => position.x.splat(f64::NAN),
+                }
+            }
+        }
+    };
+}
+
+pose_scalars! {
+    always {
+        /// g2: limit margin, the smallest distance to a joint limit or to the end of reach \[m\].
+        Reach [Reach "g2" "reach_and_limits"] = PoseScalarEntry::new(
+            QuantityEntry::new("reach_m", "m", "reach", Scope::Poses, Better::Higher,
+                "Smallest distance to a joint limit or to the end of reach (g2).").above_zero(),
+            "limit_margin").labelled("distance to the limits").per_base_radius();
+        /// g3: inverse condition number `κ_F⁻¹`.
+        Dexterity [Dexterity "g3" "dexterity"] = PoseScalarEntry::new(
+            QuantityEntry::new("dexterity", "", "dexterity", Scope::Poses, Better::Higher,
+                "Least inverse condition number of the normalised Jacobian (g3).").below(1.0),
+            "inverse_condition").labelled("inverse condition number");
+        /// g4: translational stiffness in the plane, `k_xy` \[N/m\].
+        StiffnessXy [StiffnessXy "g4" "stiffness_xy"] = PoseScalarEntry::new(
+            QuantityEntry::new("k_xy_n_per_m", "N/m", "k_xy", Scope::Poses, Better::Higher,
+                "Least translational stiffness in the plane (g4).").logarithmic().reference(Reference::Limit(100.0)),
+            "k_xy").labelled("stiffness k_xy").of_bars();
+        /// g5: translational stiffness out of the plane, `k_z` \[N/m\].
+        StiffnessZ [StiffnessZ "g5" "stiffness_z"] = PoseScalarEntry::new(
+            QuantityEntry::new("k_z_n_per_m", "N/m", "k_z", Scope::Poses, Better::Higher,
+                "Least translational stiffness out of the plane (g5).").logarithmic().reference(Reference::Limit(100.0)),
+            "k_z").labelled("stiffness k_z").of_bars();
+        /// g6: rotational stiffness about z, `k_φz` \[N·m/rad\].
+        StiffnessPhiZ [StiffnessPhiZ "g6" "stiffness_phi_z"] = PoseScalarEntry::new(
+            QuantityEntry::new("k_phi_z_nm_per_rad", "N·m/rad", "k_φz", Scope::Poses, Better::Higher,
+                "Least rotational stiffness about z (g6).").logarithmic().reference(Reference::Limit(100.0)),
+            "k_phi_z").labelled("stiffness k_φz").of_bars();
+        /// Sign rule: `det A / ℓ`, which keeps one sign over the workspace.
+        Determinant [DeterminantSign "det_sign" "determinant_sign"] = PoseScalarEntry::new(
+            // No study bounds the determinant at each pose: the sign rule does.
+            QuantityEntry::new("determinant", "", "det A", Scope::Region, Better::Higher,
+                "Least determinant of the direct Jacobian, divided by the characteristic length."),
+            "determinant").labelled("det A / ℓ");
+        /// g7: smallest clearance between members that are not joined \[m\]; negative where they overlap.
+        Clearance [Clearance "g7" "clearance"] = PoseScalarEntry::new(
+            QuantityEntry::new("clearance_m", "m", "clearance", Scope::Poses, Better::Higher,
+                "Smallest clearance of members that are not joined (g7)."),
+            "clearance").labelled("clearance between members").in_millimetres().per_base_radius();
+    }
+    on_demand {
+        /// Displacement of `P` under the in-plane force, in its most compliant direction \[m\].
+        Displacement by displacement::lanes = PoseScalarEntry::new(
+            QuantityEntry::new("displacement_max_m", "m", "largest displacement", Scope::Poses, Better::Lower,
+                "Largest displacement of P under the in-plane force of the requirements, in its most compliant direction.")
+                .above_zero().logarithmic().reference(Reference::Displacement(2.0)),
+            "displacement").labelled("displacement under the in-plane force").in_millimetres().of_bars();
+        /// Transmission: `|B_ii|` of the leg that has the least, divided by the lever of a revolute actuator; in \[0, 1\].
+        Transmission by transmission::lanes = PoseScalarEntry::new(
+            QuantityEntry::new("transmission_min", "", "least transmission", Scope::Poses, Better::Higher,
+                "Least transmission of a leg: the speed along its last link for a unit speed of the joint that the actuator moves.")
+                .above_zero().below(1.0),
+            "transmission").labelled("transmission");
+        /// Radius of the smallest circle about `O` that holds the base and all members \[m\].
+        Footprint by footprint::lanes = PoseScalarEntry::new(
+            QuantityEntry::new("footprint_m", "m", "footprint", Scope::Region, Better::Lower,
+                "Radius of the smallest circle about O that holds the base and all members at every pose of the region.")
+                .reference(Reference::BaseRadius(2.0)),
+            "footprint");
+    }
+}
+
+impl PoseScalar {
+    /// Number of scalars.
+    pub const COUNT: usize = TABLE.len();
+
+    /// The entry of the scalar in the table.
+    pub const fn entry(self) -> &'static PoseScalarEntry {
+        &TABLE[self as usize]
+    }
+
+    /// Those that are computed where a study asks for them.
+    pub(crate) fn on_demand() -> &'static [PoseScalar] {
+        &Self::ALL[Self::ALWAYS.len()..]
+    }
+
+    /// Whether a limit of the quantity bounds each pose.
+    pub fn bounds_poses(self) -> bool {
+        self.entry().quantity.scope == Scope::Poses
+    }
+}
+
+impl Constraint {
+    /// Number of constraints.
+    pub const COUNT: usize = CONSTRAINTS.len();
+
+    /// All constraints, beginning with g1.
+    pub const ALL: [Constraint; Self::COUNT] = {
+        let mut all = [Constraint::Assembly; Self::COUNT];
+        let mut place = 0;
+        while place < Self::COUNT {
+            all[place] = CONSTRAINTS[place].0;
+            place += 1;
+        }
+        all
+    };
+
+    /// Returns the short id, as in JSON and CSV.
+    pub fn id(self) -> &'static str {
+        CONSTRAINTS[self as usize].1
+    }
+
+    /// Returns the name, as in JSON.
+    pub fn name(self) -> &'static str {
+        CONSTRAINTS[self as usize].2
+    }
+
+    /// Returns the scalar of a pose that it bounds; `None` for g1, which applies to the design as a whole.
+    pub fn scalar(self) -> Option<PoseScalar> {
+        CONSTRAINTS[self as usize].3
+    }
+
+    /// Returns the constraint that bounds a scalar of a pose, if it has an id of its own.
+    pub fn of_scalar(scalar: PoseScalar) -> Option<Self> {
+        Self::ALL
+            .into_iter()
+            .find(|constraint| constraint.scalar() == Some(scalar))
+    }
+}

@@ -1,0 +1,84 @@
+//! The numbers of a design as a card, in markdown.
+
+use kinefront_model::evaluation::{Evaluation, Model};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable};
+use kinefront_scene::text::{self, short};
+use kinefront_scene::{EllipsoidSet, Tour};
+use kinefront_study::CertifiedRadius;
+
+/// Returns the card of a design; `heading` names the design.
+pub(super) fn card(
+    heading: &str,
+    model: &Model,
+    evaluation: &Evaluation,
+    ellipsoids: &[EllipsoidSet],
+    tour: Option<&Tour>,
+    certified: Option<&CertifiedRadius>,
+) -> String {
+    let design = &evaluation.design;
+    let mut card = format!(
+        "# {heading}\n\n**{}**, working mode {}\n\n",
+        design.architecture, design.working_mode
+    );
+    card += &match evaluation.home_phi_deg {
+        Some(phi) => format!(
+            "**{:.2} kg** in motion (legs {:.2}, platform {:.2}), **R_w = {:.4} m** over {}° about φ_c = {phi}°\n\n",
+            evaluation.mass(),
+            model.legs_mass(design),
+            model.platform_mass(design),
+            evaluation.workspace_radius(),
+            model.workspace.rotation_range_deg
+        ),
+        None => format!(
+            "**{:.2} kg** in motion, **no regular workspace**: infeasible\n\n",
+            evaluation.mass()
+        ),
+    };
+    if let Some(certified) = certified {
+        card += &format!("{}\n\n", certified);
+    }
+    let variables: Vec<DesignVariable> = DESIGN_VARIABLES.into_iter().chain(design.given_variables()).collect();
+    card += "|";
+    card.extend(variables.iter().map(|variable| format!(" {} |", variable.symbol())));
+    card += "\n|";
+    card += &"---|".repeat(variables.len());
+    card += "\n|";
+    for variable in variables {
+        card += &format!(" {} |", text::variable_value(variable, design.value(variable)));
+    }
+    card += "\n\n| | constraint | smallest value | threshold | margin | |\n|---|---|---|---|---|---|\n";
+    for report in evaluation.constraints.iter().filter(|report| report.required) {
+        card += &format!(
+            "| {} | {} | {} {} | {} | {:+.1} % | {} |\n",
+            report.constraint.id(),
+            report.constraint.name().replace('_', " "),
+            report.value.map_or_else(|| "–".to_owned(), short),
+            report.constraint.unit(),
+            short(report.threshold),
+            100.0 * report.margin,
+            if report.active { "**active**" } else { "" },
+        );
+    }
+    card.push('\n');
+    if let Some(nearest) = evaluation.nearest {
+        card += &format!("- smallest clearance between members: {}\n", text::clearance(&nearest));
+    }
+    for set in ellipsoids {
+        card += &format!("- {}\n", set.scale_text());
+    }
+    if let Some(tour) = tour {
+        card += &format!(
+            "- tour of {} poses at radius {:.4} m; forward kinematics reproduces each pose within {:.0e} m\n",
+            tour.poses.len(),
+            tour.radius,
+            tour.forward_error
+        );
+    }
+    if certified.is_some() {
+        card += "\nboxes of the proof, filled by the number of divisions, outlined by the constraint that was proved last: g2 cyan · \
+                 g3 blue · g4 red · g5 yellow · g6 green · g7 orange · beyond an infeasible pose: bright red\n";
+    }
+    card + "\nwhite: regular workspace · magenta: threshold of the field · red: parallel singularity · orange edge: \
+            end of a leg's reach (serial singularity) · grey edge: joint limit · red dots: poses at which the active \
+            constraints have their smallest values\n"
+}

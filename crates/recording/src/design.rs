@@ -1,0 +1,166 @@
+//! Records one design: as a step of a run's front, or alone with all overlays and its tour.
+
+use std::path::Path;
+
+use super::card::card;
+use super::draw::Canvas;
+use super::subject::DrawnDesign;
+use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
+use super::{blueprint, paths, timelines};
+use kinefront_model::evaluation::{Evaluation, Model};
+use kinefront_model::spatial::Pose;
+use kinefront_scene::{
+    EllipsoidKind, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour, workspace_proof,
+};
+use kinefront_study::{CertifiedRadius, PreparedStudy, partial_path};
+
+/// Number of cells along the longer side of a heatmap: of a single design, of a layer over φ, of a step of a front, and
+/// of an outline over φ.
+const FINE: HeatmapSettings = HeatmapSettings { cells: 240 };
+const LAYER: HeatmapSettings = HeatmapSettings { cells: 72 };
+const STEP: HeatmapSettings = HeatmapSettings { cells: 64 };
+const OUTLINE: HeatmapSettings = HeatmapSettings { cells: 32 };
+
+/// Number of poses around each rim of a tour.
+const TOUR_STEPS: usize = 72;
+
+/// Records one design with its overlays and its tour to its own file; the tab with the heatmap of the field `first` is in front, or
+/// that of the proof of its workspace.
+///
+/// # Errors
+/// [`RecordingError::Write`] when the file exists or cannot be written; [`RecordingError::Encode`] otherwise.
+pub fn record_design(
+    path: &Path,
+    study: &PreparedStudy,
+    evaluation: &Evaluation,
+    heading: &str,
+    first: Option<Field>,
+) -> Result<(), RecordingError> {
+    let failed = |cause: std::io::Error| RecordingError::Write {
+        path: path.to_owned(),
+        cause,
+    };
+    if path.exists() {
+        return Err(failed(std::io::ErrorKind::AlreadyExists.into()));
+    }
+    // The file appears when it is complete; what a process that was killed left of it is replaced.
+    let partial = partial_path(path);
+    let _ = std::fs::remove_file(&partial);
+    let drawn = draw_design(&partial, study, evaluation, heading, first);
+    let written = drawn.and_then(|()| std::fs::rename(&partial, path).map_err(failed));
+    written.map_err(|error| {
+        let _ = std::fs::remove_file(&partial);
+        match error {
+            RecordingError::Write { cause, .. } => failed(cause),
+            error => error,
+        }
+    })
+}
+
+fn draw_design(
+    path: &Path,
+    study: &PreparedStudy,
+    evaluation: &Evaluation,
+    heading: &str,
+    first: Option<Field>,
+) -> Result<(), RecordingError> {
+    let (study, model) = (study.study(), study.model());
+    let writer = RecordingWriter::create(path, heading)?;
+    let proof = study
+        .certifies()
+        .then(|| workspace_proof(model, evaluation, &|| true))
+        .flatten();
+    let certified = proof
+        .as_ref()
+        .map(|proof| CertifiedRadius::new(&proof.certificate, proof.claim.tolerance));
+    // What is drawn is the workspace that is proved.
+    let mut evaluation = evaluation.clone();
+    if let Some(certified) = &certified {
+        evaluation.set_workspace_radius(certified.lower, &model.objectives);
+    }
+    let evaluation = &evaluation;
+    let subject = DrawnDesign { model, evaluation };
+    let cylinder = regular_workspace(evaluation, model.workspace.rotation_range_deg);
+    let tour = cylinder.and_then(|cylinder| tour(model, &evaluation.design, &cylinder, TOUR_STEPS));
+    let still = [subject.home()];
+    let poses: &[Pose] = tour.as_ref().map_or(&still, |tour| &tour.poses);
+    blueprint::send_design_layout(writer.stream(), subject.extent(poses), first)?;
+    let canvas = Canvas::at(&writer, ALWAYS);
+    let floor = subject.floor();
+    let home = subject.home();
+
+    let mut sets = Vec::new();
+    for kind in EllipsoidKind::ALL {
+        if let Some(set) = ellipsoids(model, evaluation, kind) {
+            let entity = format!("{}/{}", paths::ELLIPSOIDS, kind.key());
+            canvas.ellipsoids(&entity, &set, 0.0, subject.note())?;
+            sets.push(set);
+        }
+    }
+    for field in Field::all() {
+        let heatmap = Heatmap::new(model, &evaluation.design, field, home.phi, FINE);
+        subject.heatmap(&canvas, &heatmap, floor)?;
+    }
+    subject.workspace(&canvas)?;
+    subject.configuration(&canvas)?;
+    subject.layers(&canvas, LAYER, true)?;
+    if let Some(proof) = &proof {
+        subject.proof(&canvas, proof, home.phi)?;
+        subject.proof_in_space(&canvas, proof)?;
+    }
+
+    let space = subject.space();
+    for (index, pose) in poses.iter().enumerate() {
+        let moment = [(timelines::TOUR, index)];
+        let canvas = Canvas::at(&writer, &moment);
+        // At an unreachable pose the viewer keeps showing the previous one; only an infeasible design has such a pose.
+        if let Ok(scene) = manipulator(model, &evaluation.design, pose) {
+            canvas.manipulator(paths::MANIPULATOR, &scene)?;
+            let at = space.place(pose.position, pose.phi);
+            canvas.mark(
+                &format!("{}/pose", paths::CONFIGURATION),
+                at,
+                "P",
+                super::colors::ELLIPSOID,
+            )?;
+        }
+    }
+    writer.text(
+        paths::CARD,
+        ALWAYS,
+        &card(heading, model, evaluation, &sets, tour.as_ref(), certified.as_ref()),
+    )?;
+    writer.close()
+}
+
+/// Records one verified design of a front as a step: manipulator at the home pose, regular workspace, heatmap of the
+/// inverse condition number, stiffness ellipsoids, configuration space and card.
+pub(super) fn record_step(
+    writer: &RecordingWriter,
+    moment: Moment<'_>,
+    model: &Model,
+    evaluation: &Evaluation,
+    certified: Option<&CertifiedRadius>,
+    heading: &str,
+) -> Result<(), RecordingError> {
+    let subject = DrawnDesign { model, evaluation };
+    let canvas = Canvas::at(writer, moment);
+    let home = subject.home();
+    if let Ok(scene) = manipulator(model, &evaluation.design, &home) {
+        canvas.manipulator(paths::MANIPULATOR, &scene)?;
+    }
+    let heatmap = Heatmap::new(model, &evaluation.design, Field::DEXTERITY, home.phi, STEP);
+    subject.heatmap(&canvas, &heatmap, subject.floor())?;
+    let set = ellipsoids(model, evaluation, EllipsoidKind::Stiffness);
+    if let Some(set) = &set {
+        canvas.ellipsoids(&format!("{}/stiffness", paths::ELLIPSOIDS), set, 0.0, subject.note())?;
+    }
+    subject.workspace(&canvas)?;
+    subject.configuration(&canvas)?;
+    subject.layers(&canvas, OUTLINE, false)?;
+    writer.text(
+        paths::CARD,
+        moment,
+        &card(heading, model, evaluation, set.as_slice(), None, certified),
+    )
+}

@@ -1,0 +1,110 @@
+//! The architectures side by side, where a study has two objectives.
+
+use maud::{Markup, html};
+
+use super::percent;
+use crate::{Report, best_intervals};
+use kinefront_model::mechanism::Architecture;
+use kinefront_scene::text::{self, number, short};
+
+/// Largest number of architectures each of which has a fact of its own.
+const FEW: usize = 4;
+
+/// Compares the first objective of the architectures at values of the second one.
+pub(super) fn comparison(report: &Report) -> Markup {
+    let (fronts, question) = (&report.fronts, &report.question);
+    let Some(span) = question.span(&fronts.together) else {
+        return html! {};
+    };
+    let compared = &question.objectives[1];
+    let intervals = best_intervals(fronts, span.map(|value| compared.minimised(Some(value))));
+    let intervals: Vec<(Architecture, [f64; 2])> = intervals
+        .into_iter()
+        .map(|(architecture, ends)| (architecture, ends.map(|end| compared.value(end))))
+        .collect();
+    let fractions = fronts.alone.iter().map(|(architecture, _)| {
+        let of = intervals.iter().filter(|(winner, _)| winner == architecture);
+        let width: f64 = of.map(|(_, [from, to])| (to - from).abs()).sum();
+        (*architecture, width / (span[1] - span[0]).abs().max(f64::MIN_POSITIVE))
+    });
+    let fractions: Vec<(Architecture, f64)> = fractions.collect();
+    // Of many architectures, most are nowhere the best.
+    let is_shown = |(_, fraction): &&(Architecture, f64)| fractions.len() <= FEW || *fraction > 0.0;
+    let shown: Vec<(Architecture, f64)> = fractions.iter().filter(is_shown).copied().collect();
+    let (cost, name, bound) = (question.name(0), question.name(1), question.bound(1));
+    let unit = question.unit(1);
+    html! {
+        ul.facts {
+            @for (architecture, fraction) in &shown {
+                li { b { (percent(*fraction)) } span {
+                    "of the range of " (name) " from " (number(span[0])) " to " (number(span[1])) (unit) ": the "
+                    (text::architecture(*architecture)) " has the best " (cost)
+                } }
+            }
+        }
+        @if shown.len() < fractions.len() {
+            p { "The other " (fractions.len() - shown.len()) " architectures are nowhere the best." }
+        }
+        (rails(report, &fractions))
+        @if intervals.len() <= 12 {
+            p {
+                "The best architecture, from the worst " (name) " to the best: "
+                @for (index, (architecture, [from, to])) in intervals.iter().enumerate() {
+                    @if index > 0 { "; " }
+                    (text::architecture(*architecture)) " from " (number(*from)) " to " (number(*to)) (unit)
+                }
+                "."
+            }
+        }
+        div.scroll { table {
+            caption {
+                "Best " (question.label(0)) " of the designs found whose " (name) " is " (bound) " the given one, verified "
+                "on the fine grid. In brackets: its ratio to that of the best design of any architecture."
+            }
+            thead { tr {
+                th.number { (question.label(1)) }
+                @for (architecture, _) in &fronts.alone { th.number { (text::architecture(*architecture)) } }
+                th { "best architecture" }
+            } }
+            tbody { @for level in question.levels(&fronts.together) {
+                @let best = question.cost_at(&fronts.together, level);
+                tr {
+                    td.number { (short(level)) }
+                    @for (_, front) in &fronts.alone {
+                        td.number { @match question.cost_at(front, level) {
+                            Some(found) => {
+                                (number(found))
+                                @if let Some(best) = best { " (" (format!("{:.2}", found / best)) ")" }
+                            }
+                            None => "–",
+                        } }
+                    }
+                    td { @if let Some(best) = question.best_at(&fronts.together, level) { (text::architecture(best.design.architecture)) } }
+                }
+            } }
+        } }
+    }
+}
+
+/// States what rails weigh and how they bend, where only some of the architectures have them.
+fn rails(report: &Report, fractions: &[(Architecture, f64)]) -> Markup {
+    let rails_are_rigid = report.model.rails.is_none();
+    let is_on_rails = |architecture: &Architecture| architecture.chain().is_on_rails();
+    let architectures = fractions.iter().map(|(architecture, _)| *architecture);
+    let (on_rails, others): (Vec<Architecture>, Vec<Architecture>) = architectures.partition(is_on_rails);
+    html! {
+        @if !on_rails.is_empty() && !others.is_empty() {
+            p {
+                @if rails_are_rigid {
+                    "Rails weigh nothing and do not yield in this study. This flatters the architectures whose "
+                    "first joint is prismatic ("
+                } @else {
+                    "The mass contains the rails, which do not move, and the stiffness their bending (the architectures whose first "
+                    "joint is prismatic: "
+                }
+                @for (index, architecture) in on_rails.iter().enumerate() { @if index > 0 { ", " } (text::architecture(*architecture)) }
+                @if rails_are_rigid { ") in a comparison with the others." } @else { ")." }
+            }
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! Sensitivity of fronts and reference designs to assumptions.
+
+use maud::{Markup, html};
+
+use super::{change, figures, optional};
+use crate::{Front, Report, Topic, Variation};
+use kinefront_model::mechanism::Architecture;
+use kinefront_scene::text::{number, short};
+use kinefront_study::Column;
+use kinefront_study::sensitivity::{ALTERNATIVES, AS_STATED, Alternative};
+
+pub(super) fn sensitivity(report: &Report) -> Markup {
+    let Some((base, others)) = report.variations.split_first() else {
+        return html! {};
+    };
+    let evaluations = report.options.sensitivity.unwrap_or_default();
+    let tried = |alternative: &&Alternative| others.iter().any(|other| other.name() == alternative.name);
+    let left_out: Vec<&str> = ALTERNATIVES
+        .iter()
+        .filter(|alternative| !tried(alternative))
+        .map(|alternative| alternative.name)
+        .collect();
+    html! {
+        p {
+            "Under each alternative assumption, every architecture is searched again on its own with " (evaluations)
+            " evaluations, and its front is verified on the fine grid. Searches with other random seeds show how "
+            "large the differences due to chance are; changes within their range are grey."
+            @if !left_out.is_empty() {
+                " Not tried, because the study already makes the assumption or is invalid with it: "
+                (left_out.join(", ")) "."
+            }
+        }
+        (figures(report, Topic::Sensitivity))
+        @for (architecture, front) in &base.alone { (varied(report, others, *architecture, front)) }
+        @if !report.references.is_empty() { (of_references(report)) }
+    }
+}
+
+/// Tabulates how the reference designs change with the assumptions.
+fn of_references(report: &Report) -> Markup {
+    let quantity = report.question.objectives[1].quantity;
+    html! {
+        h3 { "Reference designs" }
+        div.scroll { table {
+            caption { (Column::Quantity(quantity).title()) " of the reference designs on the fine grid." }
+            thead { tr { th { "assumption" } @for reference in &report.references { th.number { (reference.stated.name) } } } }
+            tbody {
+                @if report.references.iter().any(|reference| reference.stated(quantity).is_some()) {
+                    tr { td { "stated by the source" } @for reference in &report.references { (optional(reference.stated(quantity))) } }
+                }
+                @for variation in report.variations.iter().filter(|variation| variation.affects_evaluation()) {
+                    tr { td { (variation.name()) } @for found in &variation.references { (optional(found.quantities.get(quantity))) } }
+                }
+            }
+        } }
+    }
+}
+
+/// Tabulates how the front of an architecture changes with the assumptions.
+fn varied(report: &Report, variations: &[Variation], architecture: Architecture, base: &Front) -> Markup {
+    let question = &report.question;
+    let levels: Vec<f64> = question.levels(base).into_iter().skip(1).step_by(2).collect();
+    let best = |front: &Front| front.best(1).map(|best| question.value(1, best));
+    // Ratios to the unchanged study: of the first objective at each level, then of the best second one.
+    let ratios = |variation: &Variation| -> Option<Vec<Option<f64>>> {
+        let front = variation.of(architecture)?;
+        let cost = |&level: &f64| Some(question.cost_at(front, level)? / question.cost_at(base, level)?);
+        let of_best = best(front).zip(best(base)).map(|(front, base)| front / base);
+        Some(levels.iter().map(cost).chain([of_best]).collect())
+    };
+    let seeds: Vec<Vec<Option<f64>>> = variations
+        .iter()
+        .filter(|other| other.is_chance())
+        .filter_map(ratios)
+        .collect();
+    // The range includes 1, the result of the unchanged study.
+    let chance: Vec<[f64; 2]> = (0..=levels.len())
+        .map(|column| {
+            let found = seeds.iter().filter_map(|ratios| ratios[column]);
+            found.fold([1.0, 1.0], |[low, high]: [f64; 2], ratio| {
+                [low.min(ratio), high.max(ratio)]
+            })
+        })
+        .collect();
+    html! {
+        h3 { (architecture) }
+        div.scroll { table {
+            caption {
+                "Best " (question.name(0)) " of the designs whose " (question.name(1)) " is " (question.bound(1)) " the given one, and the best "
+                (question.name(1)) " found, relative to the study as given."
+            }
+            thead { tr {
+                th { "assumption" }
+                @for level in &levels { th.number { (question.name(1)) " " (question.bound(1)) " " (short(*level)) (question.unit(1)) } }
+                th.number { "best " (question.name(1)) } th { "meaning" }
+            } }
+            tbody {
+                tr {
+                    td { (AS_STATED) }
+                    @for level in &levels { td.number { (question.cost_at(base, *level).map(number).unwrap_or_default()) (question.unit(0)) } }
+                    td.number { (best(base).map(number).unwrap_or_default()) (question.unit(1)) }
+                    td { }
+                }
+                @if !seeds.is_empty() {
+                    tr.chance {
+                        td { (seeds.len()) " other random seeds" }
+                        @for [low, high] in &chance { td.number { (change(*low)) " … " (change(*high)) } }
+                        td { "chance alone: the reference for all other changes" }
+                    }
+                }
+                @for variation in variations.iter().filter(|variation| !variation.is_chance()) {
+                    tr {
+                        td { (variation.name()) }
+                        @match ratios(variation) {
+                            Some(ratios) => @for (ratio, [low, high]) in ratios.iter().zip(&chance) {
+                                @match ratio {
+                                    Some(ratio) => {
+                                        @let class = if (*low..=*high).contains(ratio) { "number chance" } else { "number" };
+                                        td class=(class) { (change(*ratio)) }
+                                    }
+                                    None => td.number { "not reached" }
+                                }
+                            },
+                            None => td colspan=(levels.len() + 1) { "no feasible design" }
+                        }
+                        td { @if let Some(alternative) = &variation.alternative { (alternative.meaning) } }
+                    }
+                }
+            }
+        } }
+    }
+}

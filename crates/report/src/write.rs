@@ -1,0 +1,98 @@
+//! Writing a report to a folder.
+
+use std::path::Path;
+
+use super::{Front, Report, ReportError, chart, page};
+use kinefront_model::evaluation::Evaluation;
+use kinefront_study::{Cell, Column, Row, TableRow, WriteError, table_bytes, write_whole};
+
+impl Report {
+    /// Writes the report to a folder; with `replace`, the files of a report that is already there are replaced.
+    ///
+    /// # Errors
+    /// [`ReportError::Occupied`] if the folder already holds a report and `replace` is false, [`ReportError::Figure`]
+    /// if a file cannot be created, [`ReportError::Write`] if one cannot be written.
+    pub fn write(&self, folder: &Path, replace: bool) -> Result<(), ReportError> {
+        free(folder, replace)?;
+        let make = |path: &Path| {
+            std::fs::create_dir_all(path).map_err(|cause| WriteError::Write {
+                path: path.to_owned(),
+                cause,
+            })
+        };
+        let (figures, pictures) = (folder.join("figures"), folder.join("pictures"));
+        make(&figures)?;
+        make(&pictures)?;
+        for figure in &self.figures {
+            write_whole(&figures.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
+            let png = chart::png(&figure.svg, self.options.scale).map_err(|cause| ReportError::Figure {
+                name: figure.name.clone(),
+                cause,
+            })?;
+            write_whole(&figures.join(format!("{}.png", figure.name)), &png)?;
+        }
+        for picture in &self.pictures {
+            write_whole(&pictures.join(format!("{}.png", picture.name)), &picture.png)?;
+        }
+        let members = || self.fronts.alone.iter().flat_map(|(_, front)| front.shown());
+        let joint_front = Front::new(members().cloned().collect(), usize::MAX).members;
+        let joint = |member: &Evaluation| joint_front.contains(member);
+        let columns = || Column::of_designs(&self.study).chain([Column::OnJointFront]);
+        let rows = members().enumerate().map(|(id, member)| {
+            let entry = TableRow {
+                id,
+                row: Row::new(0, member),
+                reference_radius: None,
+                certified: None,
+            };
+            let cell = |column| match column {
+                Column::OnJointFront => Cell::Flag(joint(member)),
+                column => column.cell(&entry),
+            };
+            columns().map(cell).collect()
+        });
+        let table = table_bytes(columns(), rows).map_err(|error| ReportError::Figure {
+            name: "fronts.csv".to_owned(),
+            cause: error.into(),
+        })?;
+        write_whole(&folder.join("fronts.csv"), &table)?;
+        // The page contains its figures and pictures. At any instant it is that of one report or of the other.
+        write_whole(&folder.join("index.html"), page::html(self).as_bytes())?;
+        remove_stale(&figures, |name| self.figures.iter().any(|figure| figure.name == name))?;
+        remove_stale(&pictures, |name| {
+            self.pictures.iter().any(|picture| picture.name == name)
+        })?;
+        Ok(())
+    }
+}
+
+/// Checks that a report may be written to the folder.
+///
+/// # Errors
+/// [`ReportError::Occupied`] if the folder already holds a report and `replace` is false.
+pub fn free(folder: &Path, replace: bool) -> Result<(), ReportError> {
+    if folder.join("index.html").exists() && !replace {
+        return Err(ReportError::Occupied(folder.to_owned()));
+    }
+    Ok(())
+}
+
+/// Removes the files that an earlier report left in the folders of figures and pictures.
+fn remove_stale(kind: &Path, is_current: impl Fn(&str) -> bool) -> Result<(), WriteError> {
+    let failed = |path: &Path, cause: std::io::Error| WriteError::Write {
+        path: path.to_owned(),
+        cause,
+    };
+    let entries = std::fs::read_dir(kind).map_err(|error| failed(kind, error))?;
+    for path in entries.flatten().map(|entry| entry.path()) {
+        // Files of other kinds were not written by a report and are kept.
+        let is_ours = path
+            .extension()
+            .is_some_and(|extension| extension == "svg" || extension == "png");
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        if is_ours && !is_current(&name) {
+            std::fs::remove_file(&path).map_err(|error| failed(&path, error))?;
+        }
+    }
+    Ok(())
+}

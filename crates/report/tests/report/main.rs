@@ -1,0 +1,4 @@
+//! Fronts and fits of reports.
+
+mod fronts;
+mod reports;

@@ -1,0 +1,52 @@
+//! Which setting differs between two studies.
+
+use toml::Table;
+
+use super::Study;
+use crate::settings::settings;
+
+/// Settings by which two runs of one problem may differ: names, architectures, the grid of the search, and the search itself.
+fn is_of_search(path: &str) -> bool {
+    let names = ["name", "description", "architectures"];
+    let sections = ["grid.reference.", "optimizer.", "hypervolume."];
+    names.contains(&path) || sections.iter().any(|section| path.starts_with(section))
+}
+
+/// Settings by which two runs of one search may differ, whose designs are those of one problem, found by one algorithm.
+fn is_of_one_search(path: &str) -> bool {
+    const OWN: [&str; 6] = [
+        "name",
+        "description",
+        "optimizer.seed",
+        "optimizer.evaluations",
+        "optimizer.threads",
+        "optimizer.time_limit_s",
+    ];
+    OWN.contains(&path) || path.starts_with("optimizer.stagnation.")
+}
+
+impl Study {
+    /// Returns the first setting by which another study is another search; `None` if the two differ in seed, budget and name at
+    /// most.
+    pub fn key_of_other_search(&self, other: &Study) -> Option<String> {
+        self.first_difference(other, is_of_one_search)
+    }
+
+    /// Returns the first setting that makes another study another problem; `None` if designs of both can be compared:
+    /// they are evaluated by the same model, within the same bounds, beside the same reference designs.
+    pub fn differing_key(&self, other: &Study) -> Option<String> {
+        self.first_difference(other, is_of_search)
+    }
+
+    fn first_difference(&self, other: &Study, may_differ: fn(&str) -> bool) -> Option<String> {
+        let (Ok(ours), Ok(theirs)) = (Table::try_from(self), Table::try_from(other)) else {
+            // A number beyond the range of TOML is not valid in a study.
+            return (self != other).then(|| "optimizer".to_owned());
+        };
+        settings()
+            .filter(|setting| setting.value(&ours) != setting.value(&theirs))
+            .map(|setting| setting.path())
+            .find(|path| !may_differ(path))
+            .or_else(|| (self.references != other.references).then(|| "references".to_owned()))
+    }
+}

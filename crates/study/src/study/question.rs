@@ -1,0 +1,130 @@
+//! What a study asks: its objectives and limits, the quantities that it names, and the reference point of its hypervolume.
+
+use super::Study;
+use crate::settings::ObjectiveChoice;
+use kinefront_model::certify;
+use kinefront_model::evaluation::{
+    Better, Bound, Objective, PoseScalar, Quantity, QuantityLimit, QuantitySet, Reference, Thresholds,
+};
+use kinefront_model::mechanism::DesignVariable;
+use kinefront_optimize::Objectives;
+
+impl Study {
+    /// Returns the objectives of the study; a study without faults has one to three.
+    pub fn objectives(&self) -> Vec<Objective> {
+        self.objectives.iter().filter_map(ObjectiveChoice::objective).collect()
+    }
+
+    /// Whether the workspaces of the front are proved: proofs cover the largest disc and the constraints of the paper.
+    pub fn certifies(&self) -> bool {
+        let covered = certify::uncovered(&self.thresholds()).is_none();
+        // A radius that is exactly at its limit would fall below it by the tolerance of the proof.
+        let bounds_radius = self.limits().any(|limit| limit.quantity == Quantity::WorkspaceRadius);
+        self.workspace.certify && !self.workspace.region.is_prescribed() && covered && !bounds_radius
+    }
+
+    /// Iterates over the limits of the study.
+    pub fn limits(&self) -> impl Iterator<Item = QuantityLimit> {
+        self.constraints.iter().flat_map(|(key, limits)| {
+            let quantity = Quantity::find(key);
+            let limit = move |bound| quantity.map(|quantity| QuantityLimit { quantity, bound });
+            limits.bounds().filter_map(limit)
+        })
+    }
+
+    /// Returns the quantities that an evaluation has to determine besides those that it always does.
+    pub fn asked_quantities(&self) -> QuantitySet {
+        let named = self.named_quantities();
+        named.iter().filter(|quantity| !quantity.is_always_known()).collect()
+    }
+
+    /// Returns the quantities that the study names: in its objectives, its limits, and those to be reported.
+    pub fn named_quantities(&self) -> QuantitySet {
+        let of_objectives = self.objectives().into_iter().map(|objective| objective.quantity);
+        let of_limits = self.limits().map(|limit| limit.quantity);
+        let reported = self.quantities.iter().filter_map(|key| Quantity::find(key));
+        of_objectives.chain(of_limits).chain(reported).collect()
+    }
+
+    /// Returns the quantities that describe a design of the study in brief: mass and workspace radius, which every design has, then
+    /// the others that the study names.
+    pub fn shown_quantities(&self) -> Vec<Quantity> {
+        let of_every_study = [Quantity::Mass, Quantity::WorkspaceRadius];
+        let named = self.named_quantities();
+        let others = named.iter().filter(|quantity| !of_every_study.contains(quantity));
+        of_every_study.into_iter().chain(others).collect()
+    }
+
+    /// Returns the limits that hold for the region as a whole, not for each of its poses.
+    pub fn limits_of_designs(&self) -> Vec<QuantityLimit> {
+        self.limits().filter(|limit| limited_scalar(limit).is_none()).collect()
+    }
+
+    /// Applies the limits that hold for each pose to thresholds.
+    pub(crate) fn bound_poses(&self, thresholds: &mut Thresholds) {
+        for limit in self.limits() {
+            if let Some(scalar) = limited_scalar(&limit) {
+                thresholds.set(scalar, Some(limit.threshold()));
+            }
+        }
+    }
+}
+
+/// Returns the scalar that a limit bounds at each pose of the region: that of the least value over poses from below, or that of the
+/// largest value from above.
+fn limited_scalar(limit: &QuantityLimit) -> Option<PoseScalar> {
+    let Quantity::Worst(scalar) = limit.quantity else {
+        return None;
+    };
+    let from = match limit.bound {
+        Bound::AtLeast(_) => Better::Higher,
+        Bound::AtMost(_) => Better::Lower,
+    };
+    (scalar.bounds_poses() && scalar.entry().quantity.better == from).then_some(scalar)
+}
+
+impl Study {
+    /// Returns the reference point of the hypervolume, as it is minimised: the reference mass \[kg\] and 0 for the paper's
+    /// objectives.
+    pub fn hypervolume_reference(&self) -> Objectives {
+        let of_objective = |(place, objective): (usize, Objective)| {
+            let stated = self
+                .hypervolume
+                .reference
+                .as_ref()
+                .and_then(|values| values.get(place).copied());
+            let value = stated.unwrap_or(match objective.goal {
+                Better::Higher => 0.0,
+                Better::Lower => self.exceeded(objective.quantity),
+            });
+            objective.minimised(Some(value))
+        };
+        Objectives::new(self.objectives().into_iter().enumerate().map(of_objective))
+    }
+
+    /// Returns a value of a quantity that few designs exceed.
+    fn exceeded(&self, quantity: Quantity) -> f64 {
+        match quantity.entry().reference {
+            Reference::Number(number) => number,
+            Reference::Mass => self.hypervolume.reference_mass_kg,
+            Reference::BaseRadius(factor) => factor * self.range(DesignVariable::BaseRadius)[1],
+            Reference::LinkLength(factor) => factor * self.range(DesignVariable::LinkLength)[1],
+            Reference::BarRadius(factor) => factor * self.thickest_bars().into_iter().fold(0.0, f64::max),
+            Reference::Displacement(factor) => factor * self.requirements.in_plane_displacement_m,
+            Reference::Limit(factor) => match quantity {
+                Quantity::Worst(scalar) => factor * self.thresholds().get(scalar).unwrap_or(1.0),
+                _ => factor,
+            },
+        }
+    }
+
+    /// Returns the unit of the hypervolume: the product of the units of the objectives.
+    pub fn hypervolume_unit(&self) -> String {
+        let units = self
+            .objectives()
+            .into_iter()
+            .map(|objective| objective.quantity.entry().unit);
+        let units: Vec<&str> = units.filter(|unit| !unit.is_empty()).collect();
+        units.join("·")
+    }
+}

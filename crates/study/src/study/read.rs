@@ -1,0 +1,160 @@
+//! Reading of study files: the location of whatever is wrong in one is found in its text.
+
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+use std::sync::Arc;
+
+use miette::{LabeledSpan, NamedSource, SourceSpan};
+use toml::de::{DeTable, DeValue};
+
+use super::error::LONGEST_LINE;
+use super::{Fault, Study};
+use crate::settings::CatalogueChoice;
+use crate::{Builtin, StudyError};
+
+/// Largest size of a study file \[bytes\].
+const LARGEST_STUDY: u64 = 1 << 18;
+
+impl Builtin {
+    /// Parses the study.
+    ///
+    /// # Errors
+    /// [`StudyError`]; the tests make sure that no built-in study causes one.
+    pub fn study(&self) -> Result<Study, StudyError> {
+        Study::parse(self.text, self.name)
+    }
+}
+
+impl Study {
+    /// Reads the study that an argument specifies: a study file, or the name of a built-in study.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn load(argument: &OsStr) -> Result<Self, StudyError> {
+        let path = Path::new(argument);
+        // A study may come from a pipe, but not from a folder.
+        let is_file = path.exists() && !path.is_dir();
+        match argument.to_str().and_then(Builtin::find) {
+            // A folder of that name does not take precedence over the built-in study.
+            Some(builtin) if !is_file => builtin.study(),
+            None if !is_file => Err(StudyError::Unknown { path: path.to_owned() }),
+            _ => Self::read(path),
+        }
+    }
+
+    /// Reads a study file.
+    ///
+    /// # Errors
+    /// [`StudyError`], a diagnostic that shows the location in the file.
+    pub fn read(path: &Path) -> Result<Self, StudyError> {
+        let text = read_limited(path).map_err(|cause| StudyError::Read {
+            path: path.to_owned(),
+            cause,
+        })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse_in(folder, &text, &path.display().to_string())
+    }
+
+    /// Parses a study from `text`; error messages refer to it by `name`.
+    ///
+    /// # Errors
+    /// As [`Study::read`].
+    pub fn parse(text: &str, name: &str) -> Result<Self, StudyError> {
+        Self::parse_in(Path::new(""), text, name)
+    }
+
+    /// Parses a study whose paths are relative to `folder`.
+    ///
+    /// # Errors
+    /// As [`Study::read`].
+    pub fn parse_in(folder: &Path, text: &str, name: &str) -> Result<Self, StudyError> {
+        if let Some((line, text)) = (1..).zip(text.lines()).find(|(_, text)| text.len() > LONGEST_LINE) {
+            return Err(StudyError::Line {
+                name: name.to_owned(),
+                line,
+                length: text.len(),
+            });
+        }
+        let source_code = || Arc::new(NamedSource::new(name, text.to_owned()).with_language("TOML"));
+        let mut study: Study = toml::from_str(text).map_err(|error| StudyError::Shape {
+            message: error.message().to_owned(),
+            key: error.span().and_then(|span| key_at(text, span.start)),
+            source_code: source_code(),
+            span: error.span().map(SourceSpan::from),
+        })?;
+        let load = |(key, catalogue): (&'static str, &mut CatalogueChoice)| {
+            let message = catalogue.load(folder).err()?.to_string();
+            Some(Fault::new(key, message))
+        };
+        let mut faults: Vec<Fault> = study.sections.catalogues().filter_map(load).collect();
+        if faults.is_empty() {
+            faults = study.faults();
+        }
+        if faults.is_empty() {
+            return Ok(study);
+        }
+        let labels = faults
+            .iter()
+            .filter_map(|fault| {
+                let span = span_of(text, &fault.key)?;
+                Some(LabeledSpan::new_with_span(Some(fault.message.clone()), span))
+            })
+            .collect();
+        Err(StudyError::Values {
+            faults,
+            source_code: source_code(),
+            labels,
+        })
+    }
+}
+
+/// Reads a text of at most [`LARGEST_STUDY`].
+fn read_limited(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    File::open(path)?.take(LARGEST_STUDY + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > LARGEST_STUDY {
+        let message = format!("it has more than {LARGEST_STUDY} bytes; a study has about 5000");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
+    }
+    Ok(text)
+}
+
+/// Returns the dotted key of the innermost key or value that contains byte `position`.
+fn key_at(text: &str, position: usize) -> Option<String> {
+    fn find(table: &DeTable<'_>, position: usize) -> Option<String> {
+        for (key, value) in table {
+            let inside = |span: std::ops::Range<usize>| span.contains(&position);
+            if inside(key.span()) {
+                return Some(key.get_ref().to_string());
+            }
+            if let DeValue::Table(inner) = value.get_ref()
+                && let Some(rest) = find(inner, position)
+            {
+                return Some(format!("{}.{rest}", key.get_ref()));
+            }
+            if inside(value.span()) {
+                return Some(key.get_ref().to_string());
+            }
+        }
+        None
+    }
+    find(DeTable::parse(text).ok()?.get_ref(), position)
+}
+
+/// Returns the location of the value of a dotted key, or of the innermost enclosing table that the text contains.
+fn span_of(text: &str, key: &str) -> Option<SourceSpan> {
+    let document = DeTable::parse(text).ok()?;
+    let mut table = document.get_ref();
+    let mut span = None;
+    for part in key.split('.') {
+        let Some(value) = table.get(part) else { break };
+        span = Some(SourceSpan::from(value.span()));
+        match value.get_ref() {
+            DeValue::Table(inner) => table = inner,
+            _ => break,
+        }
+    }
+    span
+}

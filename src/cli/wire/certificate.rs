@@ -1,0 +1,106 @@
+//! A certificate of a workspace radius.
+
+use serde::Serialize;
+
+use kinefront_export::{DesignJson, PoseJson};
+use kinefront_model::certify::{Certificate, CertifyOptions, Verdict};
+use kinefront_model::evaluation::Model;
+use kinefront_model::mechanism::Design;
+
+/// The output of `kinefront certify --json`.
+#[derive(Debug, Serialize)]
+pub struct CertificateJson {
+    architecture: &'static str,
+    design: DesignJson,
+    working_mode: [i8; 3],
+    home: PoseJson,
+    /// The radius that was claimed.
+    pub claimed_radius_m: f64,
+    /// Radius of a disc that is proved, rounded down.
+    pub lower_m: f64,
+    /// Distance of a pose that is proved infeasible, rounded up; `None` if none was found.
+    pub upper_m: Option<f64>,
+    relative_gap: Option<f64>,
+    tolerance: f64,
+    closed: bool,
+    /// `proved`, `refuted` or `open`.
+    verdict: &'static str,
+    /// Why the verdict is open: `budget` or `precision`.
+    why: Option<&'static str>,
+    /// The verdict that these two keys state.
+    #[serde(skip)]
+    pub found: Verdict,
+    violation: Option<ViolationJson>,
+    /// Number of boxes that were examined.
+    pub boxes: usize,
+    seconds: f64,
+    /// Bound of the workspace radius over all home orientations, rounded up, if it was asked for and found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub upper_all_homes_m: Option<Option<f64>>,
+}
+
+/// A pose that is proved infeasible; `phi_rad` is the orientation of the proof.
+#[derive(Debug, Serialize)]
+struct ViolationJson {
+    #[serde(flatten)]
+    pose: PoseJson,
+    phi_rad: f64,
+    id: &'static str,
+    margin: f64,
+}
+
+impl CertificateJson {
+    /// Creates the output for a certificate that took `seconds`.
+    pub fn new(
+        model: &Model,
+        design: &Design,
+        options: &CertifyOptions,
+        certificate: &Certificate,
+        homes: Option<Option<f64>>,
+        seconds: f64,
+    ) -> Self {
+        let centre = model.workspace.centre;
+        let (verdict, why) = match certificate.verdict {
+            Verdict::Proved => ("proved", None),
+            Verdict::Refuted => ("refuted", None),
+            Verdict::OpenBudget => ("open", Some("budget")),
+            Verdict::OpenPrecision => ("open", Some("precision")),
+        };
+        // The decimal text of a double may lie on either side of it. The gap is that of the numbers as printed.
+        let printed = Certificate {
+            lower: certificate.lower.next_down().max(0.0),
+            upper: certificate
+                .upper
+                .map(|upper| if upper > 0.0 { upper.next_up() } else { upper }),
+            ..*certificate
+        };
+        Self {
+            architecture: design.architecture.name(),
+            design: design.into(),
+            working_mode: design.working_mode.signs(),
+            home: PoseJson {
+                x_m: centre.x,
+                y_m: centre.y,
+                phi_deg: options.phi_deg,
+            },
+            claimed_radius_m: options.claimed_radius,
+            lower_m: printed.lower,
+            upper_m: printed.upper,
+            relative_gap: printed.relative_gap(),
+            tolerance: options.tolerance,
+            closed: printed.is_closed(options.tolerance),
+            verdict,
+            why,
+            found: certificate.verdict,
+            violation: certificate.violation.map(|violation| ViolationJson {
+                pose: PoseJson::new(&violation.pose, violation.pose.phi.to_degrees()),
+                phi_rad: violation.pose.phi,
+                id: violation.constraint.id(),
+                margin: model.margin_at(design, &violation.pose, violation.constraint),
+            }),
+            boxes: certificate.boxes,
+            seconds,
+            upper_all_homes_m: homes.map(|bound| bound.map(f64::next_up)),
+        }
+    }
+}

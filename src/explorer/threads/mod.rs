@@ -1,9 +1,0 @@
-//! The threads beside the window: the run with its listeners, and the threads that evaluate and draw the selected design.
-
-mod intake;
-mod run;
-mod scene;
-
-pub use intake::{Intake, RunMessages};
-pub use run::{Running, Writing};
-pub use scene::{Answer, Known, Request, SceneThread};
