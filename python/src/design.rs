@@ -36,20 +36,20 @@ impl PyDesign {
     /// Name of the architecture.
     #[getter]
     fn architecture(&self) -> &'static str {
-        self.design.architecture.name()
+        self.design.architecture().name()
     }
 
     /// Working mode, a sign for each leg.
     #[getter]
     fn working_mode(&self) -> String {
-        self.design.working_mode.to_string()
+        self.design.working_mode().to_string()
     }
 
     /// The variables of the design by their keys, in metres and degrees.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let values = PyDict::new(py);
-        let further = self.design.architecture.further_variables().iter().copied();
+        let further = self.design.architecture().further_variables().iter().copied();
         for variable in DESIGN_VARIABLES.into_iter().chain(further) {
             values.set_item(variable.key(), self.design.value(variable))?;
         }

@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use rayon::prelude::*;
 
 use kinefront_model::evaluation::Quantity;
-use kinefront_study::{AlgorithmName, BUILTIN, Column, PreparedStudy, Row, Study, TableRow, sensitivity};
+use kinefront_study::{AlgorithmName, BUILTIN, Column, Overrides, PreparedStudy, Row, Study, TableRow, sensitivity};
 
 use crate::convert::{from_serializable, grid_choice};
 use crate::design::PyDesign;
@@ -268,29 +268,22 @@ impl PyStudy {
         threads: Option<usize>,
         out: Option<PathBuf>,
     ) -> PyResult<PyRun> {
-        let mut study = self.study().clone();
-        if let Some(seed) = seed {
-            study.optimizer.seed = seed;
-        }
-        if let Some(evaluations) = evaluations {
-            study.optimizer.evaluations = evaluations;
-        }
-        if let Some(threads) = threads {
-            study.optimizer.threads = Some(threads);
-        }
-        if let Some(name) = algorithm {
-            study.optimizer.algorithm = AlgorithmName::find(name).ok_or_else(|| {
+        let find = |name: &str| {
+            AlgorithmName::find(name).ok_or_else(|| {
                 let known = AlgorithmName::ALL.map(|name| name.to_string()).join(", ");
                 InputError::new_err(format!("there is no algorithm `{name}`; expected one of {known}"))
-            })?;
-        }
-        if let Some(names) = architectures {
-            let parsed: Result<Vec<_>, _> = names.iter().map(|name| name.parse()).collect();
-            study.architectures = parsed.map_err(of_design)?;
-        }
-        if let Some(fault) = study.faults().first() {
-            return Err(InputError::new_err(format!("`{}` {}", fault.key, fault.message)));
-        }
+            })
+        };
+        let parse = |names: Vec<String>| names.iter().map(|name| name.parse()).collect::<Result<Vec<_>, _>>();
+        let overrides = Overrides {
+            algorithm: algorithm.map(find).transpose()?,
+            evaluations,
+            seed,
+            threads,
+            architectures: architectures.map(parse).transpose().map_err(of_design)?,
+        };
+        let study = overrides.apply(self.study().clone());
+        let study = study.map_err(|fault| InputError::new_err(format!("`{}` {}", fault.key, fault.message)))?;
         search::run(py, study, callback, out)
     }
 

@@ -8,8 +8,8 @@ use kinefront_recording::{RecordedRunError, is_recorded, read_apart};
 use kinefront_study::{Inspection, Repair, Resumption, RunControl, RunFolderError, TableRow};
 use miette::miette;
 
-use super::optimize::perform;
 use super::progress::Progress;
+use super::runs::search_and_write;
 use super::{Ending, Failure, say};
 
 #[derive(Debug, clap::Args)]
@@ -151,7 +151,7 @@ fn repair(path: &Path) -> Result<(), Failure> {
     let (folder, mut search) = resumption.start(every).map_err(Failure::runtime)?;
     search.end_after_replay(outcome);
     let control = Arc::new(RunControl::default());
-    match perform(folder, search, &control, &mut Progress::Quiet) {
+    match search_and_write(folder, search, &control, &mut Progress::Quiet) {
         Ok((Ok(_), failures)) if failures.is_empty() => Ok(()),
         Ok(_) => Err(Failure::Runtime(miette!("{} could not be repaired", path.display()))),
         Err(Failure::Files(report)) => Err(Failure::Runtime(report)),

@@ -3,11 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use kinefront_study::{EndReason, Merge, MergeError, RunControl};
-use miette::miette;
+use kinefront_study::{Merge, MergeError, RunControl};
 
-use super::optimize::{RunOutput, perform, tell, write_failure};
-use super::progress::Progress;
+use super::runs::{RunArguments, perform, write_failure};
 use super::signals::interrupt_on_signals;
 use super::{Ending, Failure, say};
 
@@ -22,26 +20,13 @@ pub struct MergeArguments {
     /// Keep the designs that no other dominates, and every N-th of the others.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     keep_every: u64,
-    /// Number of worker threads; the result does not depend on it [default: all cores].
-    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u64).range(1..=1024))]
-    threads: Option<u64>,
-    /// Record every N-th generation; beyond 100 000 designs, every 10 N-th, and so on [default: 1].
-    #[arg(long, value_name = "N", conflicts_with = "no_recording", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
-    record_every: Option<u64>,
-    /// Write no recording.
-    #[arg(long)]
-    no_recording: bool,
-    /// Print run.json to standard output at the end.
-    #[arg(long)]
-    json: bool,
-    /// Print nothing but errors, and JSON if it is requested.
-    #[arg(long, short)]
-    quiet: bool,
+    #[command(flatten)]
+    run: RunArguments,
 }
 
 pub fn run(arguments: &MergeArguments) -> Result<Ending, Failure> {
     let merge = Merge::open(&arguments.runs, arguments.keep_every as usize).map_err(failure)?;
-    if !arguments.quiet {
+    if !arguments.run.quiet {
         for note in merge.notes() {
             say(note);
         }
@@ -52,32 +37,13 @@ pub fn run(arguments: &MergeArguments) -> Result<Ending, Failure> {
             ));
         }
     }
-    let every = match (arguments.no_recording, arguments.record_every) {
-        (true, _) => None,
-        (false, every) => Some(every.map_or(1, |every| every as usize)),
-    };
-    let threads = arguments.threads.map(|threads| threads as usize);
     let control = Arc::new(RunControl::default());
-    interrupt_on_signals(&control, arguments.quiet)?;
-    let (folder, search) = merge.start(&arguments.out, every, threads).map_err(failure)?;
-    let study = Arc::clone(search.study());
-    let mut progress = Progress::new(study.optimizer.evaluations, 0, arguments.quiet);
-    let (ended, failures) = perform(folder, search, &control, &mut progress)?;
-    let summary = match ended {
-        Ok(summary) => summary,
-        Err(_) if control.is_interrupted() => return Ok(Ending::Interrupted),
-        Err(message) => return Err(Failure::Runtime(miette!("the runs could not be merged: {message}"))),
-    };
-    let output = RunOutput {
-        json: arguments.json,
-        quiet: arguments.quiet,
-    };
-    tell(&study, &summary, &arguments.out, output, failures.is_empty())?;
-    Ok(match summary.outcome {
-        EndReason::Interrupted => Ending::Interrupted,
-        _ if !failures.is_empty() => Ending::FilesIncomplete,
-        _ => Ending::Done,
-    })
+    interrupt_on_signals(&control, arguments.run.quiet)?;
+    let every = arguments.run.record_every(Some(1));
+    let (folder, search) = merge
+        .start(&arguments.out, every, arguments.run.threads())
+        .map_err(failure)?;
+    perform(folder, search, &control, &arguments.run)
 }
 
 fn failure(error: MergeError) -> Failure {

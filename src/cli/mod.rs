@@ -12,6 +12,7 @@ mod pose;
 mod progress;
 mod question;
 mod report;
+mod runs;
 mod show;
 mod signals;
 mod stream;

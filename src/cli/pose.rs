@@ -38,7 +38,7 @@ pub fn run(arguments: &PoseArguments) -> Result<Ending, Failure> {
     let Some(pose) = &arguments.pose else {
         let values = arguments.actuators.as_deref().unwrap_or_default();
         let values: JointValues = values.parse().map_err(Failure::input)?;
-        let modes = assembly_modes(&design, &model.legs, values.0);
+        let modes = assembly_modes(&design, &model.settings().legs, values.0);
         if arguments.json {
             let json = to_json(&AssemblyModesJson::new(&modes)).map_err(Failure::Runtime)?;
             writeln!(out, "{json}")?;

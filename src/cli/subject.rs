@@ -32,7 +32,7 @@ impl SubjectArguments {
         if let Some(text) = &self.design {
             let study = load_study(self.study.as_deref())?;
             let design = Design::parse(text, study.working_mode).into_diagnostic()?;
-            return Ok((study, design, design.architecture.to_string()));
+            return Ok((study, design, design.architecture().to_string()));
         }
         let row = self.row.as_deref().unwrap_or_default();
         let (table, id) = split_row(row).ok_or_else(|| {

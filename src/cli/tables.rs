@@ -145,7 +145,7 @@ pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseEvaluation, Unrea
         }
         Ok(report) => report,
     };
-    let unit = design.architecture.actuator().unit();
+    let unit = design.architecture().actuator().unit();
     let mut joints = table(["leg", "actuator", "B [m]", "C [m]"], &[]);
     let point = |p: [f64; 2]| format!("({:.6}, {:.6})", p[0], p[1]);
     for leg in 0..3 {
@@ -179,7 +179,7 @@ pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseEvaluation, Unrea
 
 /// Formats all poses at which the driven joints of a design have the given values.
 pub fn assembly_modes(design: &Design, values: [f64; 3], modes: &[AssemblyMode]) -> String {
-    let unit = design.architecture.actuator().unit();
+    let unit = design.architecture().actuator().unit();
     let mut facts = table(["design", &design.to_string()], &[]);
     let values: Vec<String> = values.iter().map(|value| format!("{value} {unit}")).collect();
     facts.add_row(["driven joints".to_owned(), values.join(", ")]);
@@ -222,7 +222,7 @@ pub fn front(study: &Study, summary: &RunSummary) -> String {
     for (place, FrontMember { id, evaluation, .. }) in summary.spread(MOST_ROWS) {
         let mut row = vec![
             id.to_string(),
-            evaluation.design.architecture.to_string(),
+            evaluation.design.architecture().to_string(),
             format!("{:.2}", evaluation.mass()),
             format!("{:.4}", evaluation.workspace_radius()),
         ];

@@ -108,7 +108,7 @@ fn of_solid(session: &Session, parts: &[Part], index: usize) -> Option<Descripti
         Part::ActuatedJoint | Part::Carriage => {
             let report = model.pose(&design, &pose).ok()?;
             let value = report.actuators[solid.leg?];
-            let unit = design.architecture.actuator().unit();
+            let unit = design.architecture().actuator().unit();
             let name = if solid.part == Part::Carriage {
                 "carriage"
             } else {
@@ -196,7 +196,7 @@ fn of_ellipsoid(session: &Session, kind: EllipsoidKind, index: usize) -> Option<
 
 fn of_workspace(session: &Session) -> Option<Description> {
     let evaluation = &session.known()?.evaluation;
-    let range = session.model().workspace.rotation_range_deg;
+    let range = session.model().settings().workspace.rotation_range_deg;
     let home = evaluation.home_phi_deg?;
     Some(Description::new(
         "regular workspace",

@@ -49,12 +49,12 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         (None, Some(cylinder)) => sheet.circle("WORKSPACE", cylinder.centre, cylinder.radius),
         (None, None) => {}
     }
-    let height = 0.03 * design.base_radius;
+    let height = 0.03 * design.base_radius();
     for label in &scene.labels {
         sheet.text(label.at.truncate(), height, &label.text);
     }
     // Beside the drawing, from the top downwards.
-    let corner = DVec2::new(1.3 * design.base_radius, design.base_radius);
+    let corner = DVec2::new(1.3 * design.base_radius(), design.base_radius());
     for (line, words) in facts(subject).iter().enumerate() {
         sheet.text(corner - DVec2::new(0.0, 1.6 * height * line as f64), height, words);
     }

@@ -86,9 +86,9 @@ impl Format {
              Bars are solid cylinders of density {} kg/m^3; bodies without mass in the model are given {MASSLESS} kg.",
             subject.title(),
             env!("CARGO_PKG_VERSION"),
-            subject.model.material.density,
+            subject.model.settings().material.density,
         );
-        let counted = subject.model.platform_bars;
+        let counted = subject.model.settings().platform_bars;
         if counted as usize != LEGS {
             words +=
                 &format!(" The study counts {counted} of the three platform bars; their masses are scaled to match.");

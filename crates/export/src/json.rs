@@ -196,7 +196,7 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     } = subject;
     let design = &evaluation.design;
     let at = |pose: &Pose| model.pose(design, pose);
-    let actuator = design.architecture.actuator();
+    let actuator = design.architecture().actuator();
     let tour = subject.tour.iter().flat_map(|tour| &tour.poses);
     let document = ExportJson {
         kinefront_version: env!("CARGO_PKG_VERSION"),
@@ -205,11 +205,11 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         evaluation: EvaluationJson::new(evaluation),
         pose: PoseJson::new(pose, pose.phi.to_degrees()),
         at_pose: (&at(pose)).into(),
-        material: (&model.material).into(),
+        material: (&model.settings().material).into(),
         actuator: ActuatorJson {
             kind: kind(actuator),
             unit: actuator.unit(),
-            stiffness: model.actuators.of(actuator),
+            stiffness: model.settings().actuators.of(actuator),
         },
         bodies: linkage.bodies.iter().map(|body| BodyJson::new(linkage, body)).collect(),
         closures: linkage

@@ -94,7 +94,7 @@ pub struct ExportSubject<'a> {
 pub fn export(subject: &ExportSubject, format: Format) -> Result<Vec<u8>, ExportError> {
     let prepared = Prepared::new(subject)?;
     let design = &subject.evaluation.design;
-    if format.needs_bars && !(design.leg_bar_radius > 0.0 && design.platform_bar_radius > 0.0) {
+    if format.needs_bars && !(design.leg_bar_radius() > 0.0 && design.platform_bar_radius() > 0.0) {
         return Err(ExportError::NoBar(format.key));
     }
     (format.write)(&prepared).map_err(|cause| ExportError::Format {

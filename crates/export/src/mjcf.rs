@@ -88,7 +88,7 @@ fn workspace(subject: &Prepared) -> Vec<Element> {
                     "0.35 0.7 0.43 0.8",
                 )
                 .with_numbers("fromto", &[from.x, from.y, 0.0, to.x, to.y, 0.0])
-                .with_numbers("size", &[2e-3 * subject.evaluation.design.base_radius])
+                .with_numbers("size", &[2e-3 * subject.evaluation.design.base_radius()])
             };
             sides.map(side).collect()
         }
@@ -146,7 +146,7 @@ fn servos(subject: &Prepared<'_>) -> impl Iterator<Item = Element> {
         let servo = Element::new("position")
             .with("name", format!("{}_servo", body.name))
             .with("joint", joint_name(body))
-            .with_numbers("kp", &[subject.model.actuators.of(joint.kind)])
+            .with_numbers("kp", &[subject.model.settings().actuators.of(joint.kind)])
             .with("dampratio", "1");
         match joint.limits {
             Some(limits) => servo.with_numbers("ctrlrange", &limits),

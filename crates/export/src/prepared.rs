@@ -52,7 +52,7 @@ impl<'a> Prepared<'a> {
             evaluation,
             pose,
             linkage,
-            base: scene.base_bars(design.base_radius),
+            base: scene.base_bars(design.base_radius()),
             scene,
             corners: cylinder.and_then(|_| region_corners(model)),
             cylinder,
@@ -67,7 +67,7 @@ impl<'a> Prepared<'a> {
 
     /// Returns the name of the model for formats that require an identifier.
     pub(super) fn identifier(&self) -> String {
-        let name = self.evaluation.design.architecture.name();
+        let name = self.evaluation.design.architecture().name();
         format!("kinefront_{}", name.to_lowercase().replace('-', "_"))
     }
 }

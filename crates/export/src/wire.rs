@@ -39,11 +39,11 @@ impl From<&Design> for DesignJson {
             given.find(|other| *other == variable).map(|found| design.value(found))
         };
         Self {
-            base_radius: design.base_radius,
-            platform_radius: design.platform_radius,
-            link_length: design.link_length,
-            leg_bar_radius: design.leg_bar_radius,
-            platform_bar_radius: design.platform_bar_radius,
+            base_radius: design.base_radius(),
+            platform_radius: design.platform_radius(),
+            link_length: design.link_length(),
+            leg_bar_radius: design.leg_bar_radius(),
+            platform_bar_radius: design.platform_bar_radius(),
             proximal_length: given(DesignVariable::ProximalLength),
             alpha_deg: given(DesignVariable::RailAngle),
             beta_deg: given(DesignVariable::GuideAngle),
@@ -139,9 +139,9 @@ impl EvaluationJson {
     pub fn new(evaluation: &Evaluation) -> Self {
         let design = &evaluation.design;
         Self {
-            architecture: design.architecture.name(),
+            architecture: design.architecture().name(),
             design: design.into(),
-            working_mode: design.working_mode.signs(),
+            working_mode: design.working_mode().signs(),
             mass_kg: evaluation.mass(),
             workspace_radius_m: evaluation.workspace_radius(),
             home: evaluation

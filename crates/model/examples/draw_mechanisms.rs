@@ -118,7 +118,7 @@ fn draw_leg(
     let (a, b, c) = (anchors[leg], DVec2::from(found.b[leg]), DVec2::from(found.c[leg]));
     let u = (c - b).normalize();
     let number = subscript(leg);
-    let has_rail = design.architecture.actuator() == JointKind::Prismatic && b.distance(a) > 1e-9;
+    let has_rail = design.architecture().actuator() == JointKind::Prismatic && b.distance(a) > 1e-9;
     let outwards = ANCHOR_DIRECTIONS[leg] * 0.11;
     drawing.line(b, c, INK, 4.0, "");
     if has_rail {
@@ -126,7 +126,7 @@ fn draw_leg(
         drawing.line(a, anchors[(leg + 1) % LEGS], PALE, 5.0, "");
         drawing.slider(b, along);
         drawing.text(a.lerp(b, 0.5) + along.perp() * -0.08, &format!("ρ{number}"), ACTUATED);
-    } else if design.architecture.actuator() == JointKind::Prismatic {
+    } else if design.architecture().actuator() == JointKind::Prismatic {
         drawing.line(a, a.lerp(c, 0.55), ACTUATED, 9.0, "");
         drawing.line(a, a.lerp(c, 0.55), "white", 5.0, "");
         drawing.text(a.lerp(c, 0.45) + u.perp() * 0.1, &format!("ρ{number}"), ACTUATED);
@@ -134,7 +134,7 @@ fn draw_leg(
         drawing.line(a, b, INK, 4.0, "");
         drawing.text(a + (b - a) * 0.25 - outwards * 0.8, &format!("θ{number}"), ACTUATED);
     }
-    let is_crank = design.architecture.actuator() == JointKind::Revolute;
+    let is_crank = design.architecture().actuator() == JointKind::Revolute;
     drawing.joint(a, if is_crank { ACTUATED } else { INK });
     if b.distance(a) > 1e-9 {
         drawing.joint(b, INK);
@@ -156,13 +156,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     for text in DESIGNS {
         let design: Design = text.parse()?;
         let found = model.pose(&design, &pose)?;
-        let anchors = ANCHOR_DIRECTIONS.map(|direction| direction * design.base_radius);
+        let anchors = ANCHOR_DIRECTIONS.map(|direction| direction * design.base_radius());
         let mut drawing = Drawing(String::new());
         draw_frames(&mut drawing, anchors, found.c.map(DVec2::from), &pose);
         for leg in 0..LEGS {
             draw_leg(&mut drawing, &design, &found, anchors, pose.position, leg);
         }
-        let name = design.architecture.name();
+        let name = design.architecture().name();
         let svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 540 400\" width=\"540\" height=\"400\" \
              font-family=\"Georgia, serif\" font-style=\"italic\" font-size=\"16\" text-anchor=\"middle\">\n\

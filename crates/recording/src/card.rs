@@ -18,7 +18,8 @@ pub(super) fn card(
     let design = &evaluation.design;
     let mut card = format!(
         "# {heading}\n\n**{}**, working mode {}\n\n",
-        design.architecture, design.working_mode
+        design.architecture(),
+        design.working_mode()
     );
     card += &match evaluation.home_phi_deg {
         Some(phi) => format!(
@@ -27,7 +28,7 @@ pub(super) fn card(
             model.legs_mass(design),
             model.platform_mass(design),
             evaluation.workspace_radius(),
-            model.workspace.rotation_range_deg
+            model.settings().workspace.rotation_range_deg
         ),
         None => format!(
             "**{:.2} kg** in motion, **no regular workspace**: infeasible\n\n",

@@ -76,11 +76,11 @@ fn draw_design(
     // What is drawn is the workspace that is proved.
     let mut evaluation = evaluation.clone();
     if let Some(certified) = &certified {
-        evaluation.set_workspace_radius(certified.lower, &model.objectives);
+        evaluation.set_workspace_radius(certified.lower, &model.settings().objectives);
     }
     let evaluation = &evaluation;
     let subject = DrawnDesign { model, evaluation };
-    let cylinder = regular_workspace(evaluation, model.workspace.rotation_range_deg);
+    let cylinder = regular_workspace(evaluation, model.settings().workspace.rotation_range_deg);
     let tour = cylinder.and_then(|cylinder| tour(model, &evaluation.design, &cylinder, TOUR_STEPS));
     let still = [subject.home()];
     let poses: &[Pose] = tour.as_ref().map_or(&still, |tour| &tour.poses);

@@ -211,7 +211,7 @@ impl LiveScene {
     /// the user's viewpoint is kept.
     fn fit(&mut self, evaluation: &Evaluation) -> Result<(), RecordingError> {
         const ALIKE: std::ops::Range<f64> = 0.6..1.5;
-        let wanted = VIEW * evaluation.design.base_radius;
+        let wanted = VIEW * evaluation.design.base_radius();
         if ALIKE.contains(&(wanted / self.extent)) {
             return Ok(());
         }
@@ -247,7 +247,7 @@ impl LiveScene {
         let canvas = Canvas::collecting(&rows, self.light);
         let widest = pins
             .iter()
-            .map(|pin| pin.evaluation.design.base_radius)
+            .map(|pin| pin.evaluation.design.base_radius())
             .fold(0.0, f64::max);
         // Two per row, so that four designs are shown as large as possible.
         let columns = pins.len().clamp(1, 2);

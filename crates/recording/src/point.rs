@@ -60,7 +60,7 @@ impl From<&TableRow> for FrontPoint {
     fn from(entry: &TableRow) -> Self {
         Self {
             id: entry.id,
-            architecture: entry.row.design.architecture,
+            architecture: entry.row.design.architecture(),
             objectives: entry.row.objectives,
             passes_filter: true,
         }

@@ -31,11 +31,11 @@ type Value = fn(&Evaluation) -> f64;
 
 /// Quantities plotted along the front: the name with its unit, and the value.
 const ALONG_FRONT: [(&str, Value); 6] = [
-    ("R [m]", |e| e.design.base_radius),
-    ("r [m]", |e| e.design.platform_radius),
-    ("L_b [m]", |e| e.design.link_length),
-    ("r_j [cm]", |e| 100.0 * e.design.leg_bar_radius),
-    ("r_p [cm]", |e| 100.0 * e.design.platform_bar_radius),
+    ("R [m]", |e| e.design.base_radius()),
+    ("r [m]", |e| e.design.platform_radius()),
+    ("L_b [m]", |e| e.design.link_length()),
+    ("r_j [cm]", |e| 100.0 * e.design.leg_bar_radius()),
+    ("r_p [cm]", |e| 100.0 * e.design.platform_bar_radius()),
     ("R_w [m]", Evaluation::workspace_radius),
 ];
 
@@ -188,7 +188,7 @@ impl Recorder {
         let moment = moment(batch.first_id + batch.rows.len(), batch.generation);
         for architecture in self.study.study().architectures.clone() {
             let is_shown = |(row, point): &(&Row, PlotPoint)| {
-                (point.is_feasible && row.design.architecture == architecture).then_some(*point)
+                (point.is_feasible && row.design.architecture() == architecture).then_some(*point)
             };
             let designs: Vec<PlotPoint> = placed.iter().filter_map(is_shown).collect();
             let color = colors::architecture(architecture);
@@ -409,7 +409,7 @@ fn summary_text(study: &Study, summary: &RunSummary) -> String {
         text.push_str(&format!(
             "| {} | {} |{} {} | {base:.3} | {platform:.3} | {link:.3} | {leg_bar:.4} | {platform_bar:.4} | {} |\n",
             member.id,
-            e.design.architecture,
+            e.design.architecture(),
             quantities
                 .iter()
                 .map(|quantity| format!(" {} |", value(quantity)))

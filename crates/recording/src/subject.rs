@@ -60,7 +60,7 @@ impl DrawnDesign<'_> {
                 })
                 .fold(0.0, f64::min)
         });
-        1.15 * lowest - 0.01 * self.design().base_radius
+        1.15 * lowest - 0.01 * self.design().base_radius()
     }
 
     /// Returns the radius that the view must contain \[m\]: that of the base, and most of the radius that the members
@@ -76,17 +76,17 @@ impl DrawnDesign<'_> {
                 SolidShape::Block { centre, .. } => centre.truncate().length(),
             })
             .fold(0.0, f64::max);
-        self.design().base_radius.max(MOST * swept)
+        self.design().base_radius().max(MOST * swept)
     }
 
     /// Returns the position of notes, in front of the base and the workspace.
     pub(super) fn note(&self) -> DVec3 {
-        let front = (0.95 * self.design().base_radius).max(1.3 * self.evaluation.workspace_radius());
+        let front = (0.95 * self.design().base_radius()).max(1.3 * self.evaluation.workspace_radius());
         DVec3::new(0.0, -front, 0.0)
     }
 
     pub(super) fn space(&self) -> ConfigurationSpace {
-        ConfigurationSpace::new(self.home().phi, self.design().base_radius)
+        ConfigurationSpace::new(self.home().phi, self.design().base_radius())
     }
 
     /// Draws a heatmap at height `z` below the manipulator, with colours over `range` or over its own values, and returns its legend;
@@ -120,7 +120,8 @@ impl DrawnDesign<'_> {
 
     /// Draws the regular workspace below the manipulator, and the poses that limit it.
     pub(super) fn workspace(&self, canvas: &Canvas<'_>) -> Result<(), RecordingError> {
-        let Some(cylinder) = regular_workspace(self.evaluation, self.model.workspace.rotation_range_deg) else {
+        let Some(cylinder) = regular_workspace(self.evaluation, self.model.settings().workspace.rotation_range_deg)
+        else {
             return Ok(());
         };
         let floor = self.floor();
@@ -131,7 +132,7 @@ impl DrawnDesign<'_> {
             None => format!("R_w = {:.4} m", cylinder.radius),
         };
         self.outline(canvas, paths::WORKSPACE, &cylinder, heights, &label)?;
-        let away = self.design().base_radius.max(1.3 * cylinder.radius);
+        let away = self.design().base_radius().max(1.3 * cylinder.radius);
         canvas.limits(paths::LIMITS, self.evaluation, DISC * floor, away)
     }
 
@@ -148,7 +149,8 @@ impl DrawnDesign<'_> {
 
     /// Draws only the regular workspace, at the entities below `root`.
     pub(super) fn disc(&self, canvas: &Canvas<'_>, root: &str) -> Result<(), RecordingError> {
-        let Some(cylinder) = regular_workspace(self.evaluation, self.model.workspace.rotation_range_deg) else {
+        let Some(cylinder) = regular_workspace(self.evaluation, self.model.settings().workspace.rotation_range_deg)
+        else {
             return Ok(());
         };
         let floor = self.floor();
@@ -174,14 +176,15 @@ impl DrawnDesign<'_> {
     pub(super) fn configuration(&self, canvas: &Canvas<'_>) -> Result<(), RecordingError> {
         let space = self.space();
         let root = |name: &str| format!("{}/{name}", paths::CONFIGURATION);
-        let extent = self.design().base_radius;
+        let extent = self.design().base_radius();
         canvas.configuration_axes(&root("axes"), &space, 0.8 * extent, SPAN_DEG.to_radians())?;
-        let Some(cylinder) = regular_workspace(self.evaluation, self.model.workspace.rotation_range_deg) else {
+        let Some(cylinder) = regular_workspace(self.evaluation, self.model.settings().workspace.rotation_range_deg)
+        else {
             return Ok(());
         };
         let height = |turn: f64| space.place(DVec2::ZERO, cylinder.phi + turn).z;
         let half = 0.5 * cylinder.phi_range;
-        let label = format!("Δφ = {}°", self.model.workspace.rotation_range_deg);
+        let label = format!("Δφ = {}°", self.model.settings().workspace.rotation_range_deg);
         let heights = [height(-half), height(half)];
         if region_corners(self.model).is_none() {
             canvas.volume(&root("cylinder"), &cylinder, heights)?;

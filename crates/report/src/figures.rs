@@ -221,7 +221,7 @@ fn references(report: &Report, of: Option<Architecture>) -> (Vec<Series>, Vec<([
     let found: Vec<_> = report
         .references
         .iter()
-        .filter(|reference| of(reference.fine.design.architecture))
+        .filter(|reference| of(reference.fine.design.architecture()))
         .collect();
     let [x, y] = [0, 1].map(|k| report.question.objectives[k].quantity);
     let stated: Vec<[f64; 2]> = found
@@ -318,7 +318,7 @@ fn joint(report: &Report) -> Chart {
     let of = |architecture: Architecture| {
         let members = front
             .shown()
-            .filter(move |member| member.design.architecture == architecture);
+            .filter(move |member| member.design.architecture() == architecture);
         members.map(|member| place(report, member)).collect()
     };
     let series = report.fronts.alone.iter().map(|(architecture, _)| Series {
@@ -381,7 +381,7 @@ fn along(report: &Report, trends: &[&Trend]) -> Chart {
 fn active(report: &Report, architecture: Architecture, front: &Front) -> Chart {
     let question = &report.question;
     let axis = question.compared();
-    let thresholds: &Thresholds = &report.model.thresholds;
+    let thresholds: &Thresholds = &report.model.settings().thresholds;
     let required: Vec<Constraint> = Constraint::required(thresholds).collect();
     let row = |constraint: Constraint| required.iter().position(|other| *other == constraint);
     let points: Vec<[f64; 2]> = front

@@ -115,7 +115,7 @@ impl Fronts {
         let mut alone = Vec::new();
         for &architecture in Architecture::ALL {
             let candidates = candidates(sources, architecture);
-            let evaluations: Vec<Evaluation> = match problem.model().objectives[..] {
+            let evaluations: Vec<Evaluation> = match problem.model().settings().objectives[..] {
                 [_] => first_that_holds(&candidates, problem).into_iter().collect(),
                 _ => candidates.par_iter().map(|design| problem.verify(design)).collect(),
             };
@@ -159,7 +159,7 @@ fn candidates(sources: &[Source], architecture: Architecture) -> Vec<Design> {
     let rows: Vec<_> = sources
         .iter()
         .flat_map(|source| &source.rows)
-        .filter(|row| row.design.architecture == architecture && row.is_feasible())
+        .filter(|row| row.design.architecture() == architecture && row.is_feasible())
         .collect();
     if rows.first().is_some_and(|row| row.objectives.len() == 1) {
         let mut rows = rows;
@@ -237,7 +237,7 @@ impl Front {
         let of = self
             .members
             .iter()
-            .filter(|member| member.design.architecture == architecture);
+            .filter(|member| member.design.architecture() == architecture);
         of.count() as f64 / self.members.len().max(1) as f64
     }
 }
@@ -254,8 +254,8 @@ pub fn best_intervals(fronts: &Fronts, [worst, best]: [f64; 2]) -> Vec<(Architec
             continue;
         };
         match intervals.last_mut() {
-            Some((architecture, interval)) if *architecture == found.design.architecture => interval[1] = to,
-            _ => intervals.push((found.design.architecture, [from, to])),
+            Some((architecture, interval)) if *architecture == found.design.architecture() => interval[1] = to,
+            _ => intervals.push((found.design.architecture(), [from, to])),
         }
     }
     intervals

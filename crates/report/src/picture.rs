@@ -237,7 +237,7 @@ impl RenderScene {
         let design = &evaluation.design;
         let home = model.home(evaluation);
         let scene = manipulator(model, design, &home)?;
-        let base = scene.base_bars(design.base_radius);
+        let base = scene.base_bars(design.base_radius());
         let (mut bodies, mut corners) = (Vec::new(), Vec::new());
         let solids = scene.solids.iter().chain(&base);
         for solid in solids.filter(|solid| solid.shape.has_volume()) {
@@ -257,12 +257,12 @@ impl RenderScene {
         Ok(Self {
             bodies,
             corners,
-            workspace: cylinder.map(|cylinder| match &model.workspace.region {
-                Region::Polygon(polygon) => Marked::Polygon(polygon.clone(), model.workspace.centre),
+            workspace: cylinder.map(|cylinder| match &model.settings().workspace.region {
+                Region::Polygon(polygon) => Marked::Polygon(polygon.clone(), model.settings().workspace.centre),
                 Region::Largest | Region::Disc(_) => Marked::Disc(cylinder.centre, cylinder.radius),
             }),
             heights,
-            step: 1e-4 * design.base_radius,
+            step: 1e-4 * design.base_radius(),
             light: LIGHT.normalize(),
         })
     }

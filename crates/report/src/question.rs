@@ -22,7 +22,7 @@ pub(super) struct Question {
 impl Question {
     /// Returns the question of a study.
     pub fn of(study: &Study, problem: &DesignProblem, sources: &[Source]) -> Self {
-        let objectives = problem.model().objectives.clone();
+        let objectives = problem.model().settings().objectives.clone();
         let progress = match objectives[..] {
             [objective] => sources
                 .iter()

@@ -9,7 +9,7 @@ use kinefront_model::spatial::Pose;
 /// Returns the lengths of a design at a pose as lines in the plane, from their beginning to their end \[m\]; none if the legs do not
 /// reach the pose. A guide on the platform begins at the platform, and the longest length of a telescopic leg at its base joint.
 pub fn dimension_lines(model: &Model, design: &Design, pose: &Pose) -> Vec<(DesignVariable, [DVec2; 2])> {
-    let manipulator = Manipulator::<AnyLeg>::new(design, &model.legs);
+    let manipulator = Manipulator::<AnyLeg>::new(design, &model.settings().legs);
     let Ok(posture) = manipulator.posture(pose) else {
         return Vec::new();
     };
@@ -17,7 +17,7 @@ pub fn dimension_lines(model: &Model, design: &Design, pose: &Pose) -> Vec<(Desi
     // Each length is shown at another leg, so that the lines do not cover each other.
     let along = |from: DVec2, to: DVec2, length: f64| [from, from + (to - from).normalize_or_zero() * length];
     let b = posture.legs[0].chain.b;
-    let is_on_platform = design.architecture.chain().name.ends_with('P');
+    let is_on_platform = design.architecture().chain().name.ends_with('P');
     let [from, to] = if is_on_platform { [joint(0), b] } else { [b, joint(0)] };
     let mut lines = vec![
         (
@@ -25,9 +25,9 @@ pub fn dimension_lines(model: &Model, design: &Design, pose: &Pose) -> Vec<(Desi
             [DVec2::ZERO, manipulator.legs[2].frame().anchor],
         ),
         (DesignVariable::PlatformRadius, [pose.position, joint(1)]),
-        (DesignVariable::LinkLength, along(from, to, design.link_length)),
+        (DesignVariable::LinkLength, along(from, to, design.link_length())),
     ];
-    if design.architecture.has(DesignVariable::ProximalLength) {
+    if design.architecture().has(DesignVariable::ProximalLength) {
         let anchor = manipulator.legs[0].frame().anchor;
         let length = design.value(DesignVariable::ProximalLength);
         lines.push((DesignVariable::ProximalLength, along(anchor, b, length)));
@@ -63,7 +63,7 @@ mod tests {
             let lines = dimension_lines(&model, &design, &pose);
             let end = |place: usize| lines[place].1[1];
             let radius = (end(2) - pose.position).length();
-            assert!((radius - design.platform_radius).abs() < 1e-9, "{name}: {radius}");
+            assert!((radius - design.platform_radius()).abs() < 1e-9, "{name}: {radius}");
         }
     }
 }

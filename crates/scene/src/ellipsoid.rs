@@ -83,7 +83,7 @@ pub fn ellipsoids(model: &Model, evaluation: &Evaluation, kind: EllipsoidKind) -
         position: home.position + offset,
         phi: home.phi,
     });
-    let manipulator = Manipulator::<AnyLeg>::new(&evaluation.design, &model.legs);
+    let manipulator = Manipulator::<AnyLeg>::new(&evaluation.design, &model.settings().legs);
     let stiffness_model = model.stiffness(&evaluation.design)?;
     let at = |pose: Pose| {
         let posture = manipulator.posture(&pose).ok()?;

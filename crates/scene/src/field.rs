@@ -78,11 +78,12 @@ impl Field {
 
     /// Returns the threshold: the value at which a pose ceases to be feasible; 0 if the study states none.
     pub fn threshold(self, model: &Model) -> f64 {
-        let limit = |scalar| model.thresholds.get(scalar);
+        let limit = |scalar| model.settings().thresholds.get(scalar);
         match self {
             // The required stiffness follows from the displacement that is allowed.
-            Field::Scalar(scalar @ PoseScalar::Displacement) => limit(scalar)
-                .unwrap_or_else(|| model.in_plane_force / limit(PoseScalar::StiffnessXy).unwrap_or(f64::INFINITY)),
+            Field::Scalar(scalar @ PoseScalar::Displacement) => limit(scalar).unwrap_or_else(|| {
+                model.settings().in_plane_force / limit(PoseScalar::StiffnessXy).unwrap_or(f64::INFINITY)
+            }),
             Field::Scalar(scalar) => limit(scalar).unwrap_or(0.0),
             Field::WorstMargin => 0.0,
         }
@@ -102,7 +103,7 @@ impl Field {
             Field::Scalar(scalar @ PoseScalar::Displacement) => values[scalar].min(FARTHEST),
             Field::Scalar(scalar) => values[scalar],
             Field::WorstMargin => {
-                let of_limits = model.thresholds.iter().map(|(scalar, limit)| {
+                let of_limits = model.settings().thresholds.iter().map(|(scalar, limit)| {
                     let value = values.get(scalar).unwrap_or(f64::NAN);
                     scalar.margin(value, limit, design)
                 });

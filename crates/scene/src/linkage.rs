@@ -154,14 +154,14 @@ impl Linkage {
 /// # Errors
 /// [`Unreachable`], which names the leg that does not reach the pose.
 pub fn linkage(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage, Unreachable> {
-    let manipulator = Manipulator::<AnyLeg>::new(design, &model.legs);
+    let manipulator = Manipulator::<AnyLeg>::new(design, &model.settings().legs);
     let posture = manipulator
         .posture(pose)
         .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
     let sizes = Sizes::new(model, design);
-    let description = design.architecture.chain();
+    let description = design.architecture().chain();
     // A motor at the platform turns a mount, on which the platform is fixed.
-    let has_mounts = design.architecture.driven() == 2 && description.joints[2] == JointKind::Revolute;
+    let has_mounts = design.architecture().driven() == 2 && description.joints[2] == JointKind::Revolute;
     let mut bodies: Vec<Body> = Vec::new();
     let mut last = [0; LEGS];
     for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
@@ -173,7 +173,7 @@ pub fn linkage(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage, U
         if has_mounts {
             let value = leg.joint_values(state)[2];
             let mut mount = mount(&sizes, index, state.chain.c, pose.phi, value, bodies.len() - 1);
-            let bar = (&model.sections.platform, design.platform_bar_radius);
+            let bar = (&model.settings().sections.platform, design.platform_bar_radius());
             let ends = [state.chain.c, pose.position];
             let fraction = platform_fraction(model, has_mounts);
             mount.bars.push(mass_bar(model, &mount.frame, ends, bar, fraction));
@@ -228,15 +228,15 @@ fn leg_body(
         | LegPart::Rod { from, to }
         | LegPart::Crank { from, to }
         | LegPart::Link { from, to } => {
-            let bar = (&model.sections.legs, design.leg_bar_radius);
+            let bar = (&model.settings().sections.legs, design.leg_bar_radius());
             Some(mass_bar(model, &frame, [from, to], bar, 1.0))
         }
         LegPart::GuideBar { from, to, kind } => {
-            let bar = (&model.sections.legs, design.leg_bar_radius);
+            let bar = (&model.settings().sections.legs, design.leg_bar_radius());
             // The mass is that of the length in the design, wherever the travel begins.
             let length = match kind {
-                MemberKind::TurningGuide => design.proximal_length,
-                _ => design.link_length,
+                MemberKind::TurningGuide => design.proximal_length(),
+                _ => design.link_length(),
             };
             Some(mass_bar(model, &frame, [from, to], bar, length / from.distance(to)))
         }
@@ -274,7 +274,7 @@ fn mount(sizes: &Sizes, index: usize, at: DVec2, phi: f64, value: f64, parent: u
 /// Fraction of the mass of a platform bar that its body has. The study may count fewer platform bars than the three that exist
 /// (docs/model.md, section 11), and a mount on which the bar is fixed has half of it: a body that a motor turns needs inertia.
 fn platform_fraction(model: &Model, has_mounts: bool) -> f64 {
-    let fraction = f64::from(model.platform_bars) / LEGS as f64;
+    let fraction = f64::from(model.settings().platform_bars) / LEGS as f64;
     if has_mounts { 0.5 * fraction } else { fraction }
 }
 
@@ -311,7 +311,7 @@ fn platform_body(
     };
     let fraction = platform_fraction(model, has_mounts);
     let bars = ends.map(|end| {
-        let bar = (&model.sections.platform, design.platform_bar_radius);
+        let bar = (&model.settings().sections.platform, design.platform_bar_radius());
         mass_bar(model, &frame, [end, pose.position], bar, fraction)
     });
     let solid = |index: usize| {

@@ -22,7 +22,7 @@ const LEAST: f64 = 0.008;
 /// # Errors
 /// [`Unreachable`], which names the leg that does not reach the pose.
 pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene, Unreachable> {
-    let manipulator = Manipulator::<AnyLeg>::new(design, &model.legs);
+    let manipulator = Manipulator::<AnyLeg>::new(design, &model.settings().legs);
     let posture = manipulator
         .posture(pose)
         .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
@@ -35,15 +35,15 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
     let sizes = Sizes::new(model, design);
 
     // The base triangle lies at the height of the members that are attached to it.
-    let chain = design.architecture.chain();
+    let chain = design.architecture().chain();
     let base = sizes.height(chain.proximal.unwrap_or(chain.distal));
     let anchors = manipulator.legs.each_ref().map(|leg| leg.frame().anchor.extend(base));
     scene.lines.push(Line {
         part: Part::Base,
         points: vec![anchors[0], anchors[1], anchors[2], anchors[0]],
     });
-    frame(&mut scene, DVec2::ZERO, 0.0, 0.12 * design.base_radius, "O");
-    frame(&mut scene, pose.position, pose.phi, 0.12 * design.base_radius, "P");
+    frame(&mut scene, DVec2::ZERO, 0.0, 0.12 * design.base_radius(), "O");
+    frame(&mut scene, pose.position, pose.phi, 0.12 * design.base_radius(), "P");
 
     // The labels lie above all members.
     let kinds = [chain.proximal, Some(chain.distal), Some(MemberKind::PlatformBar)];
@@ -54,9 +54,9 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
     let lift = top
         + 3.4
             * design
-                .leg_bar_radius
-                .max(design.platform_bar_radius)
-                .max(LEAST * design.base_radius);
+                .leg_bar_radius()
+                .max(design.platform_bar_radius())
+                .max(LEAST * design.base_radius());
     for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
         let c = pose.position + posture.arms[index];
         let number = index + 1;
@@ -90,7 +90,7 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
         }
         label(c, format!("C{number}"));
     }
-    join_labels(&mut scene.labels, 0.015 * design.base_radius);
+    join_labels(&mut scene.labels, 0.015 * design.base_radius());
     Ok(scene)
 }
 
@@ -126,8 +126,8 @@ pub(super) struct Sizes<'a> {
 impl<'a> Sizes<'a> {
     pub(super) fn new(model: &'a Model, design: &'a Design) -> Self {
         Self {
-            bodies: &model.bodies,
-            sections: &model.sections,
+            bodies: &model.settings().bodies,
+            sections: &model.settings().sections,
             design,
         }
     }
@@ -170,7 +170,7 @@ impl<'a> Sizes<'a> {
     /// Returns the pin of a joint: it passes through the members it joins and is as thick as the thinner one, or
     /// thicker if it would otherwise be too thin to see.
     fn pin(&self, at: DVec2, joins: [MemberKind; 2]) -> SolidShape {
-        let least = LEAST * self.design.base_radius;
+        let least = LEAST * self.design.base_radius();
         let ends = joins.map(|kind| {
             let out = (PIN * self.bodies.radius(kind, self.design)).max(1.4 * least);
             [self.height(kind) - out, self.height(kind) + out]
@@ -245,13 +245,13 @@ impl<'a> Sizes<'a> {
 
 /// Returns the pair of members with the smallest clearance as a line from surface to surface.
 fn nearest(model: &Model, design: &Design, clearance: &Clearance) -> Nearest {
-    let thickest = design.leg_bar_radius.max(design.platform_bar_radius);
+    let thickest = design.leg_bar_radius().max(design.platform_bar_radius());
     let [from, to] = clearance.between;
     let way = to - from;
-    let member = model.bodies.radius(clearance.member.kind, design);
+    let member = model.settings().bodies.radius(clearance.member.kind, design);
     let line = match clearance.neighbour {
         _ if clearance.distance <= 0.0 || way == DVec3::ZERO => {
-            let out = DVec3::Z * (4.0 * thickest).max(5.0 * LEAST * design.base_radius);
+            let out = DVec3::Z * (4.0 * thickest).max(5.0 * LEAST * design.base_radius());
             let middle = 0.5 * (from + to);
             [middle - out, middle + out]
         }
@@ -259,7 +259,7 @@ fn nearest(model: &Model, design: &Design, clearance: &Clearance) -> Nearest {
             let along = way.normalize_or_zero();
             [
                 from + along * member,
-                to - along * model.bodies.radius(other.kind, design),
+                to - along * model.settings().bodies.radius(other.kind, design),
             ]
         }
         Neighbour::RailEnd { .. } => [from, to],
@@ -267,7 +267,7 @@ fn nearest(model: &Model, design: &Design, clearance: &Clearance) -> Nearest {
     Nearest {
         line,
         text: format!("{} mm", number(1e3 * clearance.distance)),
-        too_near: clearance.distance < model.thresholds.get(PoseScalar::Clearance).unwrap_or(0.0),
+        too_near: clearance.distance < model.settings().thresholds.get(PoseScalar::Clearance).unwrap_or(0.0),
     }
 }
 

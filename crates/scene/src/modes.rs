@@ -19,7 +19,7 @@ pub fn modes_at(model: &Model, design: &Design, pose: &Pose) -> Option<Modes> {
     let values = model.pose(design, pose).ok()?.actuators;
     Some(Modes {
         values,
-        modes: assembly_modes(design, &model.legs, values),
+        modes: assembly_modes(design, &model.settings().legs, values),
     })
 }
 
@@ -38,9 +38,9 @@ impl ModeMap {
     /// Counts the modes about given joint values: over a whole turn of revolute joints, and over `L_b` to either side of prismatic
     /// ones.
     pub fn new(model: &Model, design: &Design, values: [f64; LEGS], cells: usize) -> Self {
-        let half = match design.architecture.actuator() {
+        let half = match design.architecture().actuator() {
             JointKind::Revolute => std::f64::consts::PI,
-            JointKind::Prismatic => design.link_length,
+            JointKind::Prismatic => design.link_length(),
         };
         let ranges = [0, 1].map(|joint: usize| [values[joint] - half, values[joint] + half]);
         let at = |joint: usize, cell: usize| {
@@ -49,7 +49,7 @@ impl ModeMap {
         };
         let count = |place: usize| {
             let values = [at(0, place % cells), at(1, place / cells), values[2]];
-            assembly_modes(design, &model.legs, values).len() as u8
+            assembly_modes(design, &model.settings().legs, values).len() as u8
         };
         Self {
             ranges,

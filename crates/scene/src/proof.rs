@@ -81,7 +81,7 @@ pub fn workspace_proof(model: &Model, evaluation: &Evaluation, goes_on: &dyn Fn(
         claim,
         certificate,
         boxes: collector.boxes,
-        centre: model.workspace.centre,
+        centre: model.settings().workspace.centre,
     })
 }
 

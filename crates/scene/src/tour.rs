@@ -22,7 +22,7 @@ pub struct Tour {
 /// Computes the tour of a design with `steps` poses around each rim; `None` if no rim of at least 90 % of the radius
 /// can be followed.
 pub fn tour(model: &Model, design: &Design, cylinder: &RegularCylinder, steps: usize) -> Option<Tour> {
-    let manipulator = Manipulator::<AnyLeg>::new(design, &model.legs);
+    let manipulator = Manipulator::<AnyLeg>::new(design, &model.settings().legs);
     // R_w is searched along finitely many directions: between them the rim may lie outside a straight boundary.
     let mut radii = (0..100).map(|k| cylinder.radius * (1.0 - 1e-3 * f64::from(k)));
     radii.find_map(|radius| {
@@ -81,7 +81,7 @@ const SUBSTEPS: u32 = 16;
 
 /// Returns the largest difference between the poses and their forward kinematics, followed from each pose to the next.
 fn check(manipulator: &Manipulator<AnyLeg>, design: &Design, poses: &[Pose]) -> Option<f64> {
-    let architecture = design.architecture;
+    let architecture = design.architecture();
     let actuators = |pose: &Pose| {
         let posture = manipulator.posture(pose).ok()?;
         Some([0, 1, 2].map(|i| manipulator.legs[i].joint_values(&posture.legs[i])[architecture.driven()]))
@@ -106,7 +106,7 @@ fn check(manipulator: &Manipulator<AnyLeg>, design: &Design, poses: &[Pose]) -> 
                 .or_else(|_| forward(architecture, manipulator, target, *pose, 1e-13))
                 .ok()?;
         }
-        let turned = (found.phi - pose.phi).abs() * design.platform_radius;
+        let turned = (found.phi - pose.phi).abs() * design.platform_radius();
         largest = largest.max(found.position.distance(pose.position)).max(turned);
         before = target;
     }

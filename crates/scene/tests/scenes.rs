@@ -50,7 +50,8 @@ fn report(model: &Model, design: &Design, position: DVec2, phi: f64) -> PoseEval
 fn joints_close_along_every_tour() {
     each(|model, evaluation| {
         let design = &evaluation.design;
-        let cylinder = regular_workspace(evaluation, model.workspace.rotation_range_deg).expect("a workspace");
+        let cylinder =
+            regular_workspace(evaluation, model.settings().workspace.rotation_range_deg).expect("a workspace");
         let tour = tour(model, design, &cylinder, 72).expect("a tour");
         assert!(
             tour.radius <= cylinder.radius && tour.radius > 0.98 * cylinder.radius,
@@ -79,23 +80,27 @@ fn joints_close_along_every_tour() {
                 let length = |bar: Option<(DVec3, DVec3)>| bar.map(|(from, to)| from.distance(to));
                 let near = |value: f64, wanted: f64, what: &str| {
                     assert!(
-                        (value - wanted).abs() < 1e-12 * design.link_length.max(design.base_radius) * 4.0,
+                        (value - wanted).abs() < 1e-12 * design.link_length().max(design.base_radius()) * 4.0,
                         "{design}: {what} is {value}, not {wanted}"
                     );
                 };
                 // Pins join members in different layers, so only distances in the plane are compared.
                 let apart = |a: DVec3, b: DVec3| a.truncate().distance(b.truncate());
                 let platform = part(Part::PlatformBar).expect("a platform bar");
-                near(platform.0.distance(platform.1), design.platform_radius, "platform bar");
+                near(
+                    platform.0.distance(platform.1),
+                    design.platform_radius(),
+                    "platform bar",
+                );
                 near(apart(platform.1, pose.position.extend(0.0)), 0.0, "gap at P");
                 let last = match (part(Part::Link), part(Part::Tube), part(Part::Rod)) {
                     (Some(link), None, None) => {
-                        near(length(Some(link)).expect("a link"), design.link_length, "link");
+                        near(length(Some(link)).expect("a link"), design.link_length(), "link");
                         let crank = part(Part::Crank);
-                        let has_crank = design.architecture.actuator() == JointKind::Revolute;
+                        let has_crank = design.architecture().actuator() == JointKind::Revolute;
                         assert_eq!(crank.is_some(), has_crank, "{design}: a crank");
                         if let Some(crank) = crank {
-                            near(length(Some(crank)).expect("a crank"), design.link_length, "crank");
+                            near(length(Some(crank)).expect("a crank"), design.link_length(), "crank");
                             near(apart(crank.1, link.0), 0.0, "gap at B");
                         }
                         link
@@ -103,7 +108,7 @@ fn joints_close_along_every_tour() {
                     (None, Some(tube), Some(rod)) => {
                         near(tube.0.distance(rod.1), actuators[leg], "telescopic leg");
                         let (tube_length, rod_length) = (tube.0.distance(tube.1), rod.0.distance(rod.1));
-                        near(tube_length + rod_length, design.link_length, "tube and rod");
+                        near(tube_length + rod_length, design.link_length(), "tube and rod");
                         // The inner end of the rod is inside the tube.
                         near(
                             rod.0.distance(tube.0) + rod.0.distance(tube.1),
@@ -146,14 +151,14 @@ fn the_manipulator_is_complete_and_to_scale() {
         ];
         let (_, wanted) = wanted
             .iter()
-            .find(|(name, _)| *name == design.architecture.name())
+            .find(|(name, _)| *name == design.architecture().name())
             .expect("known");
         assert_eq!(found, *wanted, "{text}");
         for solid in &scene.solids {
             if let SolidShape::Bar { radius, .. } = solid.shape {
                 match solid.part {
-                    Part::Link | Part::Crank | Part::Tube => assert_eq!(radius, design.leg_bar_radius),
-                    Part::PlatformBar => assert_eq!(radius, design.platform_bar_radius),
+                    Part::Link | Part::Crank | Part::Tube => assert_eq!(radius, design.leg_bar_radius()),
+                    Part::PlatformBar => assert_eq!(radius, design.platform_bar_radius()),
                     _ => assert!(radius > 0.0),
                 }
             }
@@ -188,7 +193,7 @@ fn bodies_are_drawn_where_they_are_looked_for() {
         let members = model.members(design, &home).expect("reachable");
         assert_eq!(
             members.len(),
-            3 * (design.architecture.bars_per_leg() + 1) + scene.solids_of(Part::Slider).count()
+            3 * (design.architecture().bars_per_leg() + 1) + scene.solids_of(Part::Slider).count()
         );
         for report in &members {
             let near = |a: DVec3, b: DVec3| a.distance(b) < 1e-12;
@@ -245,13 +250,14 @@ fn field_value(model: &Model, design: &Design, field: Field, report: &PoseEvalua
         Field::Scalar(PoseScalar::Displacement) => {
             let inverse = report.stiffness.try_inverse().expect("a stiffness");
             let block = nalgebra::Matrix2::new(inverse[(0, 0)], inverse[(0, 1)], inverse[(1, 0)], inverse[(1, 1)]);
-            model.in_plane_force * block.symmetric_eigenvalues().max()
+            model.settings().in_plane_force * block.symmetric_eigenvalues().max()
         }
         Field::WorstMargin => {
-            let excess =
-                |scalar: PoseScalar| report.values[scalar] / model.thresholds.get(scalar).expect("a limit") - 1.0;
+            let excess = |scalar: PoseScalar| {
+                report.values[scalar] / model.settings().thresholds.get(scalar).expect("a limit") - 1.0
+            };
             [
-                report.values[PoseScalar::Reach] / design.base_radius,
+                report.values[PoseScalar::Reach] / design.base_radius(),
                 excess(PoseScalar::Dexterity),
                 excess(PoseScalar::StiffnessXy),
                 excess(PoseScalar::StiffnessZ),
@@ -337,7 +343,7 @@ fn heatmaps_cover_the_reachable_workspace() {
                 0.5 * (b - a).perp_dot(c - a)
             })
             .sum();
-        let reach = 2.0 * design.link_length + design.base_radius + design.platform_radius;
+        let reach = 2.0 * design.link_length() + design.base_radius() + design.platform_radius();
         let steps = 1200;
         let step = 2.0 * reach / f64::from(steps);
         let mut reached = 0.0;
@@ -411,7 +417,7 @@ fn a_displacement_matches_the_definition_by_compliance() {
     for (&position, &value) in heatmap.vertices.iter().zip(&heatmap.values).step_by(11) {
         let k_xy = report(&model, &design, position, 0.5).values[PoseScalar::StiffnessXy];
         if k_xy > 1.0 {
-            assert!((value * k_xy / model.in_plane_force - 1.0).abs() < 1e-6);
+            assert!((value * k_xy / model.settings().in_plane_force - 1.0).abs() < 1e-6);
             compared += 1;
         }
     }
@@ -534,8 +540,8 @@ fn moments_of_inertia_are_those_of_cylinders() {
     let platform = &found.bodies[found.platform()];
     let (mass, length, radius) = (
         platform.mass() / 3.0,
-        design.platform_radius,
-        design.platform_bar_radius,
+        design.platform_radius(),
+        design.platform_bar_radius(),
     );
     let across = mass * (3.0 * radius * radius + length * length) / 12.0 + mass * length * length / 4.0;
     let along = 0.5 * mass * radius * radius;

@@ -78,7 +78,7 @@ impl Front {
         let mut x = vec![
             Architecture::PAPER
                 .iter()
-                .position(|known| *known == design.architecture)
+                .position(|known| *known == design.architecture())
                 .unwrap_or(0) as f64,
         ];
         x.extend(design.values());

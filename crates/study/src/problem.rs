@@ -161,11 +161,11 @@ impl DesignProblem {
             let [asked, found] = [&asked, design].map(|design| design.values()[*variable as usize]);
             free(*variable) || asked.to_bits() == found.to_bits()
         };
-        asked.architecture == design.architecture
-            && asked.working_mode == design.working_mode
+        asked.architecture() == design.architecture()
+            && asked.working_mode() == design.working_mode()
             && DESIGN_VARIABLES.iter().all(same)
             && self
-                .places_of_further(asked.architecture)
+                .places_of_further(asked.architecture())
                 .all(|(_, variable)| asked.value(variable).to_bits() == design.value(variable).to_bits())
     }
 
@@ -194,7 +194,7 @@ impl DesignProblem {
             _ => false,
         };
         let is_mass = |objective: &Objective| objective.quantity == Quantity::Mass && objective.goal == Better::Lower;
-        let objectives = &self.model.objectives;
+        let objectives = &self.model.settings().objectives;
         objectives.iter().any(is_mass) && !objectives.iter().any(asks_for_stiffness)
     }
 
@@ -219,10 +219,10 @@ impl DesignProblem {
             has_range && self.listed[*length as usize].is_none()
         };
         self.is_prescribed
-            && self.model.objectives.len() == 1
+            && self.model.settings().objectives.len() == 1
             && self.seeks_light_bars()
             && self.model.is_free_of_scale()
-            && self.model.limits.iter().all(grows_with_scale)
+            && self.model.settings().limits.iter().all(grows_with_scale)
             && LENGTHS.iter().all(is_free)
             && self.further.iter().all(|(variable, _)| variable.is_angle())
     }
@@ -251,7 +251,7 @@ impl DesignProblem {
             leg,
             platform,
             listed: BARS.map(|bar| self.listed[bar as usize].clone()),
-            is_exact: self.model.objectives.len() == 1,
+            is_exact: self.model.settings().objectives.len() == 1,
             scale,
         }
     }
@@ -279,7 +279,7 @@ impl DesignProblem {
 
     /// Returns the workspace radius that the study asks for at least \[m\].
     fn least_radius(&self) -> Option<f64> {
-        self.model.limits.iter().find_map(|limit| match limit.bound {
+        self.model.settings().limits.iter().find_map(|limit| match limit.bound {
             Bound::AtLeast(radius) if limit.quantity == Quantity::WorkspaceRadius => Some(radius),
             _ => None,
         })
@@ -287,7 +287,7 @@ impl DesignProblem {
 
     fn maximises_radius(&self) -> bool {
         let is_radius = |objective: &Objective| objective.quantity == Quantity::WorkspaceRadius;
-        self.model.objectives.iter().any(is_radius)
+        self.model.settings().objectives.iter().any(is_radius)
     }
 
     /// Returns the variables of the problem.
@@ -313,7 +313,7 @@ impl Problem for DesignProblem {
     /// Returns the place of the workspace radius among the objectives; without it there are no levels to aim at.
     fn leveled_objective(&self) -> usize {
         let is_radius = |objective: &Objective| objective.quantity == Quantity::WorkspaceRadius;
-        let objectives = &self.model.objectives;
+        let objectives = &self.model.settings().objectives;
         objectives.iter().position(is_radius).unwrap_or(objectives.len())
     }
 
@@ -373,7 +373,7 @@ impl Problem for DesignProblem {
             Ok(evaluation) => Self::outcome(&evaluation),
             // Values that are not a valid design are worse than every valid design.
             Err(_) => Outcome {
-                objectives: Objectives::new(self.model.objectives.iter().map(|_| f64::MAX)),
+                objectives: Objectives::new(self.model.settings().objectives.iter().map(|_| f64::MAX)),
                 violation: f64::MAX,
             },
         }

@@ -113,7 +113,7 @@ impl<'a> FrontProver<'a> {
         }
         proved.member.report(
             CertifiedRadius::new(&certificate, claim.tolerance),
-            &self.model.objectives,
+            &self.model.settings().objectives,
         );
         proved
     }
@@ -128,9 +128,9 @@ impl<'a> FrontProver<'a> {
     /// Returns the deepest place of the pocket about an infeasible pose, within the radius that was claimed, by a pattern search.
     fn deepest(&self, evaluation: &Evaluation, violation: Violation) -> Pocket {
         let (design, constraint) = (&evaluation.design, violation.constraint);
-        let centre = self.model.workspace.centre;
+        let centre = self.model.settings().workspace.centre;
         let home = evaluation.home_phi_deg.unwrap_or_default().to_radians();
-        let half = 0.5 * self.model.workspace.rotation_range_deg.to_radians();
+        let half = 0.5 * self.model.settings().workspace.rotation_range_deg.to_radians();
         let mut pocket = Pocket {
             pose: violation.pose,
             constraint,
@@ -186,7 +186,7 @@ impl<'a> FrontProver<'a> {
             };
             instead.report(
                 CertifiedRadius::new(&certificate, claim.tolerance),
-                &self.model.objectives,
+                &self.model.settings().objectives,
             );
             Some((instead, increase))
         })
@@ -195,7 +195,7 @@ impl<'a> FrontProver<'a> {
     /// Returns a design with thicker bars, if the bounds allow it.
     fn thickened(&self, design: &Design, increase: f64) -> Option<Design> {
         // A bar of a catalogue cannot be a little thicker.
-        let sections = &self.model.sections;
+        let sections = &self.model.settings().sections;
         if sections.legs.catalogue().is_some() || sections.platform.catalogue().is_some() {
             return None;
         }

@@ -34,12 +34,12 @@ pub enum Fault {
 
 fn anchor(design: &Design, index: usize) -> [f64; 2] {
     let angle = [210f64, 330.0, 90.0][index % 3].to_radians();
-    [design.base_radius * angle.cos(), design.base_radius * angle.sin()]
+    [design.base_radius() * angle.cos(), design.base_radius() * angle.sin()]
 }
 
 fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluation) -> Vec<Body> {
-    let layers = &model.bodies.layers;
-    let diameter = 2.0 * design.leg_bar_radius.max(design.platform_bar_radius);
+    let layers = &model.settings().bodies.layers;
+    let diameter = 2.0 * design.leg_bar_radius().max(design.platform_bar_radius());
     let body = |name: String, joints: &[String], ends: [[f64; 2]; 2], layer: f64, radius: f64| Body {
         name,
         joints: joints.to_vec(),
@@ -50,7 +50,7 @@ fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluation) 
     for leg in 0..3 {
         let [a, b, c] = ["A", "B", "C"].map(|joint| format!("{joint}{leg}"));
         let (at_a, at_b, at_c) = (anchor(design, leg), report.b[leg], report.c[leg]);
-        let rj = design.leg_bar_radius;
+        let rj = design.leg_bar_radius();
         let number = leg + 1;
         let toward = |from: [f64; 2], to: [f64; 2], length: f64| {
             let way = [to[0] - from[0], to[1] - from[1]];
@@ -75,29 +75,29 @@ fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluation) 
             way.map(|part| part / length)
         };
         let ends = |at: [f64; 2], way: [f64; 2], length: f64| {
-            let [low, high] = model.legs.geometry.guide;
+            let [low, high] = model.settings().legs.geometry.arrangement().guide;
             let end = |share: f64| [at[0] + share * length * way[0], at[1] + share * length * way[1]];
             [end(low.min(0.0)), end(high.max(0.0))]
         };
-        let chain = design.architecture.chain_name();
+        let chain = design.architecture().chain_name();
         let guide = if chain == "PPR" {
-            let rail = turn(along(at_a, anchor(design, leg + 1)), design.rail_angle_deg);
-            Some(ends(at_b, turn(rail, design.guide_angle_deg), design.link_length))
+            let rail = turn(along(at_a, anchor(design, leg + 1)), design.rail_angle_deg());
+            Some(ends(at_b, turn(rail, design.guide_angle_deg()), design.link_length()))
         } else if chain.ends_with('P') {
             let arm = along(pose.position.to_array(), at_c);
             Some(ends(
                 at_c,
-                turn(arm, design.platform_guide_angle_deg),
-                design.link_length,
+                turn(arm, design.platform_guide_angle_deg()),
+                design.link_length(),
             ))
         } else {
             None
         };
         let slider = || {
-            let half = (0.5 * model.bodies.slider_length - model.bodies.slider_half_width) * rj;
-            let rail = turn(along(at_a, anchor(design, leg + 1)), design.rail_angle_deg);
+            let half = (0.5 * model.settings().bodies.slider_length - model.settings().bodies.slider_half_width) * rj;
+            let rail = turn(along(at_a, anchor(design, leg + 1)), design.rail_angle_deg());
             let end = |by: f64| [at_b[0] + by * rail[0], at_b[1] + by * rail[1]];
-            let thick = model.bodies.slider_half_width * rj;
+            let thick = model.settings().bodies.slider_half_width * rj;
             body(
                 format!("leg{number}_slider"),
                 std::slice::from_ref(&b),
@@ -131,19 +131,19 @@ fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluation) 
             "RRR" => all.extend([crank(), link]),
             "RPP" => {
                 let arm = along(pose.position.to_array(), at_c);
-                let way = turn(arm, design.platform_guide_angle_deg + design.guide_angle_deg);
+                let way = turn(arm, design.platform_guide_angle_deg() + design.guide_angle_deg());
                 let turning = body(
                     format!("leg{number}_turning_guide"),
                     &[a, b.clone()],
-                    ends(at_a, way, design.proximal_length),
+                    ends(at_a, way, design.proximal_length()),
                     layers.turning_guide,
                     rj,
                 );
                 all.extend([turning].into_iter().chain(guide));
             }
             _ => {
-                let shortest = model.legs.telescopic_shortest;
-                let rod = (1.0 - shortest.min(0.5)) * design.link_length;
+                let shortest = model.settings().legs.telescopic_shortest;
+                let rod = (1.0 - shortest.min(0.5)) * design.link_length();
                 let length = (at_c[0] - at_a[0]).hypot(at_c[1] - at_a[1]);
                 let tail = if rod > length { toward(at_c, at_a, rod) } else { at_a };
                 all.push(body(
@@ -160,7 +160,7 @@ fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluation) 
             &[c, "P".to_owned()],
             [at_c, pose.position.to_array()],
             layers.platform,
-            design.platform_bar_radius,
+            design.platform_bar_radius(),
         ));
     }
     all
@@ -221,9 +221,9 @@ pub fn oracle(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluati
             found.lower(distance(a, b), || [a.name.clone(), b.name.clone()]);
         }
     }
-    if design.architecture.chain_name().starts_with('P') && fault != Fault::NoRailEnds {
-        let half = 0.5 * model.bodies.slider_length * design.leg_bar_radius;
-        let travel = 3f64.sqrt() * design.base_radius;
+    if design.architecture().chain_name().starts_with('P') && fault != Fault::NoRailEnds {
+        let half = 0.5 * model.settings().bodies.slider_length * design.leg_bar_radius();
+        let travel = 3f64.sqrt() * design.base_radius();
         for leg in 0..3 {
             let (from, to) = (anchor(design, leg), report.b[leg]);
             let along = (to[0] - from[0]).hypot(to[1] - from[1]);

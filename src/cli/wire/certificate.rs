@@ -59,7 +59,7 @@ impl CertificateJson {
         homes: Option<Option<f64>>,
         seconds: f64,
     ) -> Self {
-        let centre = model.workspace.centre;
+        let centre = model.settings().workspace.centre;
         let (verdict, why) = match certificate.verdict {
             Verdict::Proved => ("proved", None),
             Verdict::Refuted => ("refuted", None),
@@ -75,9 +75,9 @@ impl CertificateJson {
             ..*certificate
         };
         Self {
-            architecture: design.architecture.name(),
+            architecture: design.architecture().name(),
             design: design.into(),
-            working_mode: design.working_mode.signs(),
+            working_mode: design.working_mode().signs(),
             home: PoseJson {
                 x_m: centre.x,
                 y_m: centre.y,

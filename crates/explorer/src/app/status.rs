@@ -29,7 +29,10 @@ impl Explorer {
                         DesignOrigin::Modified { .. } => "modified design".to_owned(),
                         DesignOrigin::Reference(_) => "reference design".to_owned(),
                     };
-                    format!("selected: {name}, {}", text::architecture(selected.design.architecture))
+                    format!(
+                        "selected: {name}, {}",
+                        text::architecture(selected.design.architecture())
+                    )
                 }
                 None => "no design selected".to_owned(),
             });

@@ -126,7 +126,7 @@ impl PreparedFilter<'_> {
         }
         let row = &entry.row;
         (!self.feasible_only || row.is_feasible())
-            && !self.hidden.contains(&row.design.architecture)
+            && !self.hidden.contains(&row.design.architecture())
             && self.ranges.iter().all(|(column, _, [low, high])| {
                 let number = row.number(*column);
                 number.is_some_and(|number| (*low..=*high).contains(&number))

@@ -42,10 +42,10 @@ impl Store {
     pub fn push(&mut self, row: &Row) {
         let index = Architecture::ALL
             .iter()
-            .position(|&architecture| architecture == row.design.architecture)
+            .position(|&architecture| architecture == row.design.architecture())
             .unwrap_or(0);
         self.architecture.push(index as u8);
-        self.mode.push(row.design.working_mode);
+        self.mode.push(row.design.working_mode());
         self.generation.push(row.generation);
         for (column, value) in self.values.iter_mut().zip(row.design.values()) {
             column.push(value);

@@ -119,10 +119,10 @@ fn designs(ui: &mut Ui, session: &mut Session, ids: &[usize]) {
         let Some(row) = session.row(id) else {
             continue;
         };
-        let color = theme::architecture(row.design.architecture, ui.visuals().dark_mode);
+        let color = theme::architecture(row.design.architecture(), ui.visuals().dark_mode);
         let text = format!(
             "#{id} {}  {}",
-            row.design.architecture,
+            row.design.architecture(),
             text::quantities(session.study().shown_quantities(), &row.quantities)
         );
         if ui.link(egui::RichText::new(text).color(color)).clicked() {

@@ -71,7 +71,7 @@ fn names(ui: &mut Ui, pins: &[Named]) -> Vec<Option<PinClick>> {
     let mut clicks = Vec::new();
     for pin in pins {
         let click = ui.horizontal(|ui| {
-            let color = theme::architecture(pin.design.architecture, ui.visuals().dark_mode);
+            let color = theme::architecture(pin.design.architecture(), ui.visuals().dark_mode);
             let name = ui.button(RichText::new(&pin.name).color(color).strong());
             let close = named(ui.small_button("×"), &format!("Unpin {}", pin.name));
             let unpin = close.clicked().then_some(PinClick::Unpin);
@@ -82,7 +82,7 @@ fn names(ui: &mut Ui, pins: &[Named]) -> Vec<Option<PinClick>> {
     ui.end_row();
     ui.label("architecture");
     for pin in pins {
-        ui.label(text::architecture(pin.design.architecture));
+        ui.label(text::architecture(pin.design.architecture()));
     }
     ui.end_row();
     clicks
@@ -95,7 +95,7 @@ fn dimensions(ui: &mut Ui, pins: &[Named]) {
             continue;
         }
         let of_pin = |pin: &Named| {
-            let has_it = pin.design.architecture.has(variable);
+            let has_it = pin.design.architecture().has(variable);
             has_it.then(|| pin.design.value(variable))
         };
         let values = pins.iter().map(of_pin).collect();
@@ -122,7 +122,7 @@ fn quantities(ui: &mut Ui, session: &Session, evaluations: &[Option<Evaluation>]
 
 /// Draws the margins of the required constraints, the clearance and the active constraints.
 fn constraints(ui: &mut Ui, session: &Session, evaluations: &[Option<Evaluation>]) {
-    for constraint in Constraint::required(&session.model().thresholds) {
+    for constraint in Constraint::required(&session.model().settings().thresholds) {
         let margins = values(evaluations, |e| Some(e.constraint(constraint).margin));
         row(ui, &Column::Margin(constraint).title(), margins, Some(Better::Higher));
     }

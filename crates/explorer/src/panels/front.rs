@@ -293,7 +293,7 @@ fn draw_row(
                 }
                 _ if !state.passes => text.weak(),
                 SortKey::Architecture => text.color(theme::architecture(
-                    entry.row.design.architecture,
+                    entry.row.design.architecture(),
                     ui.visuals().dark_mode,
                 )),
                 _ => text,
@@ -330,7 +330,7 @@ fn cell(entry: &FrontEntry, key: SortKey) -> String {
     match key {
         SortKey::Star => String::new(),
         SortKey::Id => format!("#{}", entry.id),
-        SortKey::Architecture => text::architecture(entry.row.design.architecture),
+        SortKey::Architecture => text::architecture(entry.row.design.architecture()),
         SortKey::Number(quantity) => theme::number(entry.row.number(quantity).unwrap_or(f64::NAN)),
     }
 }

@@ -46,7 +46,7 @@ fn heading(ui: &mut Ui, session: &mut Session) {
         return;
     };
     ui.horizontal_wrapped(|ui| {
-        ui.heading(format!("{} {name}", text::architecture(selected.design.architecture)));
+        ui.heading(format!("{} {name}", text::architecture(selected.design.architecture())));
         if session.is_modified() {
             ui.colored_label(theme::modified(ui.visuals().dark_mode), "modified design");
             if ui
@@ -112,7 +112,7 @@ fn usual_range(variable: DesignVariable) -> Option<[f64; 2]> {
 
 fn sliders(ui: &mut Ui, session: &mut Session, design: &Design) {
     let study = session.study().clone();
-    let further = design.architecture.further_variables().iter().copied();
+    let further = design.architecture().further_variables().iter().copied();
     for variable in DESIGN_VARIABLES.into_iter().chain(further) {
         let [low, high] = match usual_range(variable) {
             Some(usual) if !study.bounds.further_variables().any(|bounded| bounded == variable) => usual,
@@ -201,7 +201,10 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
         }
         if let Some(phi) = evaluation.home_phi_deg {
             ui.label("home orientation φ_c");
-            ui.label(format!("{phi}° ± {}°", 0.5 * model.workspace.rotation_range_deg));
+            ui.label(format!(
+                "{phi}° ± {}°",
+                0.5 * model.settings().workspace.rotation_range_deg
+            ));
             ui.end_row();
         }
     });

@@ -59,7 +59,7 @@ impl ModesView {
             ));
         }
         let Some((_, _, map)) = &self.map else { return };
-        let unit = design.architecture.actuator().unit();
+        let unit = design.architecture().actuator().unit();
         let side = 240.0;
         ui.set_width(side);
         let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::hover());
@@ -118,9 +118,10 @@ impl ModesView {
             let joint = |leg: usize| {
                 let joint = session
                     .model()
+                    .settings()
                     .legs
                     .geometry
-                    .platform_joint(leg, design.platform_radius);
+                    .platform_joint(leg, design.platform_radius());
                 plan.screen(mode.pose.position + turn.apply(joint))
             };
             let corners = [joint(0), joint(1), joint(2)];

@@ -42,7 +42,7 @@ fn axes(study: &Study, model: &Model) -> Vec<Column> {
     axes.extend(study.bounds.further_variables().map(Column::Dimension));
     axes.extend(study.shown_quantities().into_iter().map(Column::Quantity));
     axes.extend(
-        Constraint::required(&model.thresholds)
+        Constraint::required(&model.settings().thresholds)
             .filter(|&constraint| constraint != Constraint::DeterminantSign)
             .map(Column::Margin),
     );
@@ -245,7 +245,7 @@ impl ParallelPanel {
         for passes in [false, true] {
             let front = session.front().iter();
             for entry in front.filter(|entry| prepared.passes_entry(entry) == passes) {
-                let color = theme::architecture(entry.row.design.architecture, dark);
+                let color = theme::architecture(entry.row.design.architecture(), dark);
                 let fraction = if passes { 0.7 } else { 0.15 };
                 let value = |axis| entry.row.number(axis).unwrap_or(f64::NAN);
                 line(&value, theme::mix(color, ground, fraction), 1.3);

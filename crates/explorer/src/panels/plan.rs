@@ -24,8 +24,8 @@ impl Plan {
     pub fn new(rect: Rect, design: &Design) -> Self {
         let reach = 1.25
             * design
-                .base_radius
-                .max(0.5 * (design.platform_radius + design.link_length));
+                .base_radius()
+                .max(0.5 * (design.platform_radius() + design.link_length()));
         Self {
             centre: rect.center(),
             scale: 0.5 * f64::from(rect.width().min(rect.height())) / reach,

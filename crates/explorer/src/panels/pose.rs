@@ -54,7 +54,7 @@ impl PosePanel {
             self.tour(ui, session, &known);
             self.modes.ui(ui, session, &evaluation.design, pose);
         });
-        self.sliders(ui, session, pose, home, evaluation.design.base_radius);
+        self.sliders(ui, session, pose, home, evaluation.design.base_radius());
         match &self.stopped {
             Some(reason) => ui.colored_label(theme::bad(ui), format!("stopped: {reason}")),
             None => ui.weak("drag the platform to move it, its rim to turn it; point at a member to see its data"),
@@ -75,7 +75,10 @@ impl PosePanel {
                 self.stopped = None;
                 self.playing = None;
             }
-            let cylinder = regular_workspace(&known.evaluation, session.model().workspace.rotation_range_deg);
+            let cylinder = regular_workspace(
+                &known.evaluation,
+                session.model().settings().workspace.rotation_range_deg,
+            );
             let playing = self.playing.is_some();
             let button = theme::toggle(playing, if playing { "⏹ Tour" } else { "▶ Tour" });
             if ui
@@ -164,9 +167,12 @@ impl PosePanel {
         {
             session.jump_to(&mode);
         }
-        let workspace = session
-            .known()
-            .and_then(|known| regular_workspace(&known.evaluation, session.model().workspace.rotation_range_deg));
+        let workspace = session.known().and_then(|known| {
+            regular_workspace(
+                &known.evaluation,
+                session.model().settings().workspace.rotation_range_deg,
+            )
+        });
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 4.0, theme::ground(ui.visuals().dark_mode));
         let corners = workspace.and_then(|_| region_corners(session.model()));
@@ -186,7 +192,7 @@ impl PosePanel {
         }
         self.modes.ghosts(&painter, &plan, session, design, theme::ink(ui));
         paint(ui, &painter, &plan, &scene);
-        let rim = (design.platform_radius * plan.scale) as f32;
+        let rim = (design.platform_radius() * plan.scale) as f32;
         painter.circle_stroke(
             plan.screen(pose.position),
             rim,
@@ -210,7 +216,7 @@ impl PosePanel {
         let at = plan.world(pointer);
         let arm = at - pose.position;
         if response.drag_started() {
-            let near_rim = arm.length() > 0.7 * design.platform_radius;
+            let near_rim = arm.length() > 0.7 * design.platform_radius();
             self.grip = Some(if near_rim {
                 Grip::Turn(arm.to_angle() - pose.phi)
             } else {
@@ -244,7 +250,7 @@ fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
     let Ok(report) = session.model().pose(design, pose) else {
         return;
     };
-    let thresholds = &session.model().thresholds;
+    let thresholds = &session.model().settings().thresholds;
     let color = |ui: &Ui, scalar: PoseScalar, value: f64| {
         let margin = scalar.margin(value, thresholds.get(scalar).unwrap_or(0.0), design);
         if margin < 0.0 { theme::bad(ui) } else { theme::good(ui) }
@@ -269,7 +275,7 @@ fn numbers(ui: &mut Ui, session: &Session, design: &Design, pose: &Pose) {
     let nearest = &report.nearest;
     let color = color(ui, PoseScalar::Clearance, nearest.distance);
     ui.colored_label(color, format!("clearance: {}", text::clearance(nearest)));
-    let unit = design.architecture.actuator().unit();
+    let unit = design.architecture().actuator().unit();
     let actuators = report.actuators.map(theme::number).join(", ");
     ui.weak(format!(
         "actuators {actuators} {unit}; limit margin {} m",

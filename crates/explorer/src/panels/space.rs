@@ -199,7 +199,7 @@ fn front(
         let Some(at) = place(axes, &entry.row).map(|at| projection.screen(at)) else {
             continue;
         };
-        let color = theme::architecture(entry.row.design.architecture, dark);
+        let color = theme::architecture(entry.row.design.architecture(), dark);
         let color = if filter.passes_entry(entry) {
             color
         } else {
@@ -223,7 +223,12 @@ fn front(
         Some(format!("{}: {}", axis.column.title(), theme::number(value)))
     });
     let lines: Vec<String> = values.collect();
-    let text = format!("#{} {}\n{}", entry.id, entry.row.design.architecture, lines.join("\n"));
+    let text = format!(
+        "#{} {}\n{}",
+        entry.id,
+        entry.row.design.architecture(),
+        lines.join("\n")
+    );
     response.clone().on_hover_text_at_pointer(text);
     Some(entry.id)
 }

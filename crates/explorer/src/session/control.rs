@@ -301,7 +301,7 @@ impl Session {
         let prepared = drawn.1.prepare(&self.store);
         let points = self.front.iter().map(|entry| FrontPoint {
             id: entry.id,
-            architecture: entry.row.design.architecture,
+            architecture: entry.row.design.architecture(),
             objectives: entry.row.objectives,
             passes_filter: prepared.passes_entry(entry),
         });

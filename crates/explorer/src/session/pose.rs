@@ -2,7 +2,6 @@
 
 use super::Session;
 use kinefront_model::evaluation::Constraint;
-use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 use kinefront_scene::AssemblyMode;
 
@@ -54,14 +53,9 @@ impl Session {
         };
         if let Some(needed) = mode
             .working_mode
-            .filter(|&needed| needed != selected.design.working_mode)
+            .filter(|&needed| needed != selected.design.working_mode())
         {
-            self.modify_with("mode", |design| {
-                Ok(Design {
-                    working_mode: needed,
-                    ..*design
-                })
-            });
+            self.modify_with("mode", |design| Ok(design.with_working_mode(needed)));
         }
         self.view.pose = Some(mode.pose);
     }

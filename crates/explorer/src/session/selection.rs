@@ -241,7 +241,7 @@ impl Session {
             let (architecture, feasible) = match place {
                 Some(place) => {
                     let row = &self.front[place].row;
-                    (row.design.architecture, row.is_feasible())
+                    (row.design.architecture(), row.is_feasible())
                 }
                 None if id < self.store.len() => (self.store.architecture(id), self.store.is_feasible(id)),
                 None => continue,

@@ -34,7 +34,7 @@ fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_re
     until(&mut window, "the design is verified", |explorer| {
         explorer.session().known().is_some_and(|known| known.verified) && explorer.session().is_drawn()
     });
-    let heading = format!("{} #{id}", selected.design.architecture);
+    let heading = format!("{} #{id}", selected.design.architecture());
     assert!(
         window.query_by_label(&heading).is_some(),
         "the inspector shows {heading}"
@@ -50,7 +50,7 @@ fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_re
     let session = window.state().session();
     let changed = session.document().selected.clone().expect("a design");
     assert_eq!(changed.origin, DesignOrigin::Modified { from: Some(id) });
-    assert_eq!(changed.design.base_radius, 2.0);
+    assert_eq!(changed.design.base_radius(), 2.0);
     assert!(window.query_by_label("modified design").is_some());
     until(&mut window, "the modified design is evaluated", |explorer| {
         explorer.session().known().is_some()
@@ -156,7 +156,7 @@ fn arrow_keys_walk_along_the_lit_front_and_p_pins() {
 fn one_filter_holds_everywhere() {
     let mut window = opened_window();
     let all = window.state().session().front().len();
-    let architecture = window.state().session().front()[0].row.design.architecture;
+    let architecture = window.state().session().front()[0].row.design.architecture();
     window.get_by_label(&format!("include {architecture}")).click();
     window.run_steps(3);
     let document = window.state().session().document().clone();
@@ -238,7 +238,7 @@ fn pointing_at_a_bar_tells_what_it_is() {
         members.iter().all(|other| {
             let (from, way) = (other.from.truncate(), (other.to - other.from).truncate());
             let fraction = ((at - from).dot(way) / way.length_squared()).clamp(0.0, 1.0);
-            other.member == report.member || at.distance(from + way * fraction) > 0.05 * design.base_radius
+            other.member == report.member || at.distance(from + way * fraction) > 0.05 * design.base_radius()
         })
     };
     let report = members
@@ -248,8 +248,8 @@ fn pointing_at_a_bar_tells_what_it_is() {
     let view = window.get_by_label("Top view").rect();
     let reach = 1.25
         * design
-            .base_radius
-            .max(0.5 * (design.platform_radius + design.link_length));
+            .base_radius()
+            .max(0.5 * (design.platform_radius() + design.link_length()));
     let scale = 0.5 * view.width().min(view.height()) / reach as f32;
     let at = 0.5 * (report.from + report.to).truncate();
     let pointer = view.center() + egui::vec2(at.x as f32, -at.y as f32) * scale;

@@ -253,7 +253,7 @@ fn a_design_is_copied_and_pasted_as_text() {
     window.run_steps(2);
     let selected = window.state().session().document().selected.clone().expect("a design");
     assert_eq!(selected.origin, DesignOrigin::Modified { from: None });
-    assert_eq!(selected.design.architecture.name(), "3-RPR");
+    assert_eq!(selected.design.architecture().name(), "3-RPR");
     window.event(egui::Event::Paste("3-RPR R=two".to_owned()));
     window.run_steps(2);
     let notices = window.state().session().notices();

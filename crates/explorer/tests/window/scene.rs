@@ -204,7 +204,11 @@ fn what_the_pointer_is_over_is_told_in_words_and_numbers() {
     assert!((value - found).abs() < 1e-12);
     assert_eq!(
         field.passes,
-        model.thresholds.get(PoseScalar::Dexterity).map(|limit| value >= limit)
+        model
+            .settings()
+            .thresholds
+            .get(PoseScalar::Dexterity)
+            .map(|limit| value >= limit)
     );
     assert!(
         field.title.ends_with(&kinefront_scene::text::number(value)),

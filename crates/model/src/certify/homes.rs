@@ -40,13 +40,13 @@ struct Homes<'a> {
 }
 
 pub(super) fn upper_bound(model: &Model, design: &Design, proved: f64) -> Result<Option<f64>, CertifyError> {
-    let spec = &model.workspace;
+    let spec = &model.settings().workspace;
     // With a prescribed home orientation, that is the only one; in a window without width, no double is known to lie.
     if spec.home_phi_deg.is_some() || spec.rotation_range_deg <= 0.0 {
         return Ok(None);
     }
     let reach = model.extent(design) + spec.centre.length();
-    let near = proved.max(1e-3 * design.base_radius) * (1.0 + 1e-6);
+    let near = proved.max(1e-3 * design.base_radius()) * (1.0 + 1e-6);
     let mut homes = Homes {
         forms: Forms::new(model, design)?,
         model,
@@ -75,7 +75,7 @@ pub(super) fn upper_bound(model: &Model, design: &Design, proved: f64) -> Result
 impl Homes<'_> {
     /// Looks for infeasible poses at orientations over the whole turn.
     fn sample(&mut self) {
-        let count = (PER_WINDOW * 360.0 / self.model.workspace.rotation_range_deg).ceil() as usize;
+        let count = (PER_WINDOW * 360.0 / self.model.settings().workspace.rotation_range_deg).ceil() as usize;
         for k in 0..count {
             self.look_at(std::f64::consts::TAU * k as f64 / count as f64);
         }
@@ -134,7 +134,7 @@ impl Homes<'_> {
 
     fn is_bad(&self, distance: f64, theta: f64, phi: f64) -> bool {
         let (theta_sine, theta_cosine) = Interval::exactly(theta).sine_and_cosine();
-        let centre = self.model.workspace.centre;
+        let centre = self.model.settings().workspace.centre;
         let radius = Interval::exactly(distance);
         let position = [
             radius * theta_cosine + Interval::exactly(centre.x),
@@ -150,7 +150,7 @@ impl Homes<'_> {
     /// Returns the least distance up to which infeasible poses leave no gap wider than a window, and the gap (by the places of its
     /// ends) that the last of them closes; `None` if those that are known leave one.
     fn bound(&self) -> Option<(f64, [usize; 2])> {
-        let window = Interval::radians(self.model.workspace.rotation_range_deg).lower;
+        let window = Interval::radians(self.model.settings().workspace.rotation_range_deg).lower();
         let mut order: Vec<usize> = (0..self.found.len()).collect();
         order.sort_by(|&a, &b| {
             self.found[a]
@@ -180,12 +180,12 @@ impl Homes<'_> {
     fn widest_gap(&self, places: &[usize]) -> Option<(f64, [usize; 2])> {
         let mut places = places.to_vec();
         places.sort_unstable();
-        let turn = Interval::radians(360.0).upper;
+        let turn = Interval::radians(360.0).upper();
         let gap = |k: usize| {
             let (from, to) = (places[k], places[(k + 1) % places.len()]);
             let way = Interval::exactly(self.found[to].phi) - Interval::exactly(self.found[from].phi);
             let around = if k + 1 < places.len() { 0.0 } else { turn };
-            ((way.upper + around).next_up(), [from, to])
+            ((way.upper() + around).next_up(), [from, to])
         };
         (0..places.len())
             .map(gap)

@@ -226,7 +226,7 @@ impl Model {
         options: &CertifyOptions,
         observer: &mut dyn ProofObserver,
     ) -> Result<Certificate, CertifyError> {
-        if let Some(scalar) = uncovered(&self.thresholds) {
+        if let Some(scalar) = uncovered(&self.settings().thresholds) {
             return Err(CertifyError::Uncovered(scalar));
         }
         let check = |name, value: f64, valid: bool, expected| {

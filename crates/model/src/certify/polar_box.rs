@@ -76,10 +76,10 @@ impl PolarBox {
             let place =
                 |epsilon: f64| Interval::exactly(middle) + Interval::exactly(epsilon) * Interval::exactly(radius);
             if first > -1.0 {
-                self.lower[k] = place(first).lower.clamp(lower, upper);
+                self.lower[k] = place(first).lower().clamp(lower, upper);
             }
             if last < 1.0 {
-                self.upper[k] = place(last).upper.clamp(lower, upper);
+                self.upper[k] = place(last).upper().clamp(lower, upper);
             }
         }
         true

@@ -74,22 +74,22 @@ impl<'a> Proof<'a> {
         observer: &'a mut dyn ProofObserver,
     ) -> Result<Self, CertifyError> {
         let middle = Interval::exactly(options.phi_deg);
-        let half = Interval::exactly(model.workspace.rotation_range_deg) / Interval::exactly(2.0);
+        let half = Interval::exactly(model.settings().workspace.rotation_range_deg) / Interval::exactly(2.0);
         let to_radians = Interval::PI / Interval::exactly(180.0);
         let [first, last] = [(middle - half) * to_radians, (middle + half) * to_radians];
         let turn = if model.is_symmetric(design) { 120.0 } else { 360.0 };
         Ok(Self {
             forms: Forms::new(model, design)?.with_sign_at(&Pose {
-                position: model.workspace.centre,
+                position: model.settings().workspace.centre,
                 phi: options.phi_deg.to_radians(),
             }),
             model,
             design,
             options,
             observer,
-            window: [first.lower, last.upper],
-            inner_window: [first.upper, last.lower],
-            sector: Interval::radians(turn).upper,
+            window: [first.lower(), last.upper()],
+            inner_window: [first.upper(), last.lower()],
+            sector: Interval::radians(turn).upper(),
             upper: None,
             violation: None,
             heap: BinaryHeap::new(),
@@ -112,7 +112,7 @@ impl<'a> Proof<'a> {
             Some(upper) => upper * (1.0 - self.gap) * (1.0 + 16.0 * f64::EPSILON),
             None => {
                 let design = self.design;
-                let centre = self.model.workspace.centre.length();
+                let centre = self.model.settings().workspace.centre.length();
                 BEYOND * (self.model.extent(design) + centre)
             }
         }
@@ -123,7 +123,7 @@ impl<'a> Proof<'a> {
         let radius = TaylorModel::variable(0, r, dr);
         let (sine, cosine) = TaylorModel::sine_and_cosine(1, theta, dtheta);
         let (phi_sine, phi_cosine) = TaylorModel::sine_and_cosine(2, phi, dphi);
-        let centre = self.model.workspace.centre;
+        let centre = self.model.settings().workspace.centre;
         let pose = PoseEnclosure {
             position: [
                 (radius * cosine).plus(Interval::exactly(centre.x)),
@@ -137,7 +137,7 @@ impl<'a> Proof<'a> {
 
     /// The pose at a point in polar coordinates, within the window.
     fn pose_at(&self, [r, theta, phi]: [f64; VARIABLES]) -> Pose {
-        let centre = self.model.workspace.centre;
+        let centre = self.model.settings().workspace.centre;
         Pose::new(
             centre.x + r * libm::cos(theta),
             centre.y + r * libm::sin(theta),
@@ -172,13 +172,13 @@ impl<'a> Proof<'a> {
 
     /// Returns the distance of a pose from the centre, rounded up.
     fn distance(&self, pose: &Pose) -> f64 {
-        let centre = self.model.workspace.centre;
+        let centre = self.model.settings().workspace.centre;
         if pose.position == centre {
             return 0.0;
         }
         let part = |at: f64, of: f64| (Interval::exactly(at) - Interval::exactly(of)).square();
         let square = part(pose.position.x, centre.x) + part(pose.position.y, centre.y);
-        square.sqrt().upper
+        square.sqrt().upper()
     }
 
     /// Looks for bad poses: those of a ring just beyond the claimed radius, each moved inwards as long as it stays bad.
@@ -193,7 +193,7 @@ impl<'a> Proof<'a> {
         let mut radius = if self.options.claimed_radius > 0.0 {
             1.005 * self.options.claimed_radius
         } else {
-            0.05 * self.design.base_radius
+            0.05 * self.design.base_radius()
         };
         for place in 0..=4 * ORIENTATIONS {
             let phi = first + (last - first) * place as f64 / (4 * ORIENTATIONS) as f64;
@@ -406,10 +406,14 @@ impl<'a> Proof<'a> {
     /// Halves a box along its longest side; a box that is too narrow is put aside.
     fn halve(&mut self, polar: PolarBox) {
         let side = |k: usize| polar.upper[k] - polar.lower[k];
-        let sides = [side(0), polar.upper[0] * side(1), self.design.platform_radius * side(2)];
+        let sides = [
+            side(0),
+            polar.upper[0] * side(1),
+            self.design.platform_radius() * side(2),
+        ];
         let widest = (0..VARIABLES).fold(0, |best, k| if sides[k] > sides[best] { k } else { best });
         let middle = 0.5 * (polar.lower[widest] + polar.upper[widest]);
-        let is_narrow = sides[widest] < NARROWEST * self.design.base_radius;
+        let is_narrow = sides[widest] < NARROWEST * self.design.base_radius();
         if is_narrow || middle <= polar.lower[widest] || middle >= polar.upper[widest] {
             self.aside = self.aside.min(polar.lower[0]);
             self.report(&polar, BoxOutcome::Undecided, || None);

@@ -78,7 +78,7 @@ type Axes<V> = [MemberAxis<V>; ROWS * LEGS];
 impl Bodies {
     /// Prepares the members of `design`.
     pub fn new(design: &Design, geometry: &Geometry, settings: &BodySettings, sections: &CrossSections) -> Self {
-        let kinds = kinds(design.architecture);
+        let kinds = kinds(design.architecture());
         let (legs, platform) = (sections.legs.is_square(), sections.platform.is_square());
         // The limit keeps squares and sums finite, whatever radii a design has.
         let radii = kinds.map(|kind| kind.map_or(0.0, |kind| settings.radius(kind, design).min(NUMBER_LIMIT)));
@@ -97,8 +97,9 @@ impl Bodies {
             radii,
             heights,
             platform_radii: geometry
+                .arrangement()
                 .platform_radii
-                .map(|multiple| multiple * design.platform_radius),
+                .map(|multiple| multiple * design.platform_radius()),
             slider: [half_length, (half_length - radii[PROXIMAL]).max(0.0)],
             pairs: [none; MAX_PAIRS],
             count: 0,

@@ -93,20 +93,20 @@ impl Default for BodySettings {
 impl BodySettings {
     /// Returns the height of members of `kind` above `z = 0` \[m\].
     pub fn height(&self, kind: MemberKind, design: &Design) -> f64 {
-        self.layers.of(kind) * 2.0 * design.leg_bar_radius.max(design.platform_bar_radius)
+        self.layers.of(kind) * 2.0 * design.leg_bar_radius().max(design.platform_bar_radius())
     }
 
     /// Returns the radius of members of `kind` \[m\].
     pub fn radius(&self, kind: MemberKind, design: &Design) -> f64 {
         match kind {
-            MemberKind::Slider => self.slider_half_width * design.leg_bar_radius,
-            MemberKind::PlatformBar => design.platform_bar_radius,
-            _ => design.leg_bar_radius,
+            MemberKind::Slider => self.slider_half_width * design.leg_bar_radius(),
+            MemberKind::PlatformBar => design.platform_bar_radius(),
+            _ => design.leg_bar_radius(),
         }
     }
 
     /// Returns half the length of a slider \[m\].
     pub fn slider_half_length(&self, design: &Design) -> f64 {
-        0.5 * self.slider_length * design.leg_bar_radius
+        0.5 * self.slider_length * design.leg_bar_radius()
     }
 }

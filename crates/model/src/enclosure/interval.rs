@@ -8,10 +8,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// nearest, so that the exact result lies between the neighbours of the computed one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// Lower end.
-    pub lower: f64,
-    /// Upper end.
-    pub upper: f64,
+    lower: f64,
+    upper: f64,
 }
 
 impl Interval {
@@ -20,6 +18,27 @@ impl Interval {
         lower: std::f64::consts::PI,
         upper: f64::from_bits(std::f64::consts::PI.to_bits() + 1),
     };
+
+    /// The numbers between two doubles; where either is not a number, nothing is known.
+    pub fn new(lower: f64, upper: f64) -> Self {
+        debug_assert!(
+            lower <= upper || lower.is_nan() || upper.is_nan(),
+            "the lower end {lower} lies above the upper end {upper}"
+        );
+        Self { lower, upper }
+    }
+
+    /// Lower end.
+    #[inline]
+    pub const fn lower(self) -> f64 {
+        self.lower
+    }
+
+    /// Upper end.
+    #[inline]
+    pub const fn upper(self) -> f64 {
+        self.upper
+    }
 
     /// The number that a double is.
     pub const fn exactly(number: f64) -> Self {

@@ -16,7 +16,7 @@ impl Model {
 
     /// Evaluates a design like [`Model::evaluate`], with a given instruction set, which changes no bit of the result.
     pub fn evaluate_with(&self, design: &Design, grid: GridChoice, instructions: InstructionSet) -> Evaluation {
-        with_leg!(design.architecture, L => {
+        with_leg!(design.architecture(), L => {
             let mut checker = self.checker::<L>(design);
             checker.instructions = instructions;
             evaluate(self, &checker, design, self.sampling(grid))
@@ -33,9 +33,9 @@ fn evaluate<L: Leg>(
 ) -> Evaluation {
     let symmetric = model.is_symmetric(design);
     let (found, worst) = match sampling.spec().region {
-        Region::Largest => (search(checker, sampling, design.base_radius, symmetric), None),
+        Region::Largest => (search(checker, sampling, design.base_radius(), symmetric), None),
         _ => {
-            let (found, worst) = search_prescribed(checker, sampling, design.base_radius, symmetric);
+            let (found, worst) = search_prescribed(checker, sampling, design.base_radius(), symmetric);
             (found, Some(worst))
         }
     };
@@ -66,13 +66,14 @@ fn evaluate<L: Leg>(
         quantities::add_of_region(&mut quantities, model, checker, &found, home, &positions, grid);
     }
     let limits: Vec<LimitResult> = model
+        .settings()
         .limits
         .iter()
         .map(|limit| limit.result(quantities.get(limit.quantity)))
         .collect();
     violation += limits.iter().map(|limit| (-limit.margin).max(0.0)).sum::<f64>();
     let home_phi_deg = home.map(|home| found.orientations[home].phi_deg);
-    let centre = model.workspace.centre;
+    let centre = model.settings().workspace.centre;
     Evaluation {
         design: *design,
         home: home_phi_deg.map(|phi_deg| Pose::new(centre.x, centre.y, phi_deg.to_radians())),
@@ -82,6 +83,7 @@ fn evaluate<L: Leg>(
             .and_then(|pose| reporter.nearest(pose)),
         constraints,
         objectives: model
+            .settings()
             .objectives
             .iter()
             .map(|objective| objective.minimised(quantities.get(objective.quantity)))

@@ -39,15 +39,15 @@ impl Model {
     /// # Errors
     /// Returns the leg that does not reach the pose, and why.
     pub fn members(&self, design: &Design, pose: &Pose) -> Result<Vec<MemberReport>, Unreachable> {
-        let manipulator = Manipulator::<AnyLeg>::new(design, &self.legs);
+        let manipulator = Manipulator::<AnyLeg>::new(design, &self.settings().legs);
         let posture = manipulator
             .posture(pose)
             .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
         let contributions = self
             .stiffness(design)
             .and_then(|stiffness| stiffness.contributions(&posture, &Jacobian::new(&posture)));
-        let chain = design.architecture.chain();
-        let of_leg = |length: f64| self.bar_mass(&self.sections.legs, design.leg_bar_radius, length);
+        let chain = design.architecture().chain();
+        let of_leg = |length: f64| self.bar_mass(&self.settings().sections.legs, design.leg_bar_radius(), length);
         let of_platform = self.platform_mass(design) / LEGS as f64;
         let capsules = self.bodies_of(design).capsules(&manipulator, pose.position, &posture);
         let members = capsules.into_iter().map(|capsule| {
@@ -59,12 +59,12 @@ impl Model {
                 MemberKind::Slider => {
                     let axis = manipulator.legs[leg].frame().rail;
                     let middle = 0.5 * (capsule.from + capsule.to);
-                    let half = axis.extend(0.0) * self.bodies.slider_half_length(design);
+                    let half = axis.extend(0.0) * self.settings().bodies.slider_half_length(design);
                     [middle - half, middle + half]
                 }
                 _ => [capsule.from, capsule.to],
             };
-            let driven = if design.architecture.driven() == 0 {
+            let driven = if design.architecture().driven() == 0 {
                 chain.proximal.unwrap_or(chain.distal)
             } else {
                 chain.distal
@@ -75,15 +75,15 @@ impl Model {
                 to: ends[1],
                 radius: capsule.radius,
                 length: match kind {
-                    MemberKind::Slider => 2.0 * self.bodies.slider_half_length(design),
+                    MemberKind::Slider => 2.0 * self.settings().bodies.slider_half_length(design),
                     MemberKind::TelescopicLeg => posture.legs[leg].chain.distal.offset,
                     _ => capsule.from.distance(capsule.to),
                 },
                 mass: match kind {
                     MemberKind::Slider => self.rail_mass(design, leg),
                     MemberKind::PlatformBar => of_platform,
-                    kind if kind == chain.distal => of_leg(design.link_length),
-                    _ => of_leg(design.proximal_length),
+                    kind if kind == chain.distal => of_leg(design.link_length()),
+                    _ => of_leg(design.proximal_length()),
                 },
                 contribution: of_leg_shares.map(|contributions| match kind {
                     MemberKind::PlatformBar => contributions.platform,
@@ -120,13 +120,13 @@ mod tests {
             assert!((total - model.mass(&design)).abs() < 1e-9 * total, "{text}: {total} kg");
             for report in members.iter().filter(|report| report.member.kind != MemberKind::Slider) {
                 let (radius, length) = match report.member.kind {
-                    MemberKind::PlatformBar => (design.platform_bar_radius, Some(design.platform_radius)),
+                    MemberKind::PlatformBar => (design.platform_bar_radius(), Some(design.platform_radius())),
                     // The length of a telescopic leg depends on the pose; its mass is that of a bar of the design.
-                    MemberKind::TelescopicLeg => (design.leg_bar_radius, None),
-                    _ => (design.leg_bar_radius, Some(design.link_length)),
+                    MemberKind::TelescopicLeg => (design.leg_bar_radius(), None),
+                    _ => (design.leg_bar_radius(), Some(design.link_length())),
                 };
                 assert_eq!(report.radius, radius, "{text}: {report:?}");
-                let of_bar = length.unwrap_or(design.link_length);
+                let of_bar = length.unwrap_or(design.link_length());
                 assert!(
                     (report.mass - model.bar_mass(&CrossSection::Round, radius, of_bar)).abs() < 1e-9 * total,
                     "{text}: {report:?}"

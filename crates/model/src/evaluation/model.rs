@@ -87,14 +87,6 @@ pub struct Model {
     fine: WorkspaceSampling,
 }
 
-impl std::ops::Deref for Model {
-    type Target = ModelSettings;
-
-    fn deref(&self) -> &ModelSettings {
-        &self.settings
-    }
-}
-
 impl Default for Model {
     /// The paper's model.
     fn default() -> Self {
@@ -148,6 +140,11 @@ impl Default for ModelSettings {
 }
 
 impl Model {
+    /// The settings that the model was built from.
+    pub fn settings(&self) -> &ModelSettings {
+        &self.settings
+    }
+
     /// The model of the given settings.
     ///
     /// # Errors
@@ -189,14 +186,14 @@ impl Model {
 
     /// Returns the mass of the bars of all legs \[kg\].
     pub fn leg_bars_mass(&self, design: &Design) -> f64 {
-        let section = &self.sections.legs;
-        LEGS as f64 * self.bar_mass(section, design.leg_bar_radius, design.leg_bars_length())
+        let section = &self.settings.sections.legs;
+        LEGS as f64 * self.bar_mass(section, design.leg_bar_radius(), design.leg_bars_length())
     }
 
     /// Returns the rails of a design, if its chain has rails and they have a cross-section.
     pub fn rails_of(&self, design: &Design) -> Option<&RailSettings> {
-        let has_rails = design.architecture.chain().is_on_rails();
-        self.rails.as_ref().filter(|_| has_rails)
+        let has_rails = design.architecture().chain().is_on_rails();
+        self.settings.rails.as_ref().filter(|_| has_rails)
     }
 
     /// Returns the mass of the rail of a leg (0, 1, 2) over the travel of its slider \[kg\]; 0 if the chain has none, or if rails have
@@ -205,56 +202,56 @@ impl Model {
         let Some(rails) = self.rails_of(design) else {
             return 0.0;
         };
-        let [lower, upper] = self.legs.geometry.rail_travel(leg, design.base_radius);
+        let [lower, upper] = self.settings.legs.geometry.rail_travel(leg, design.base_radius());
         self.bar_mass(&rails.section, rails.radius, upper - lower)
     }
 
     /// Returns the mass of the platform bars \[kg\].
     pub fn platform_mass(&self, design: &Design) -> f64 {
         let bar = self.bar_mass(
-            &self.sections.platform,
-            design.platform_bar_radius,
-            design.platform_radius,
+            &self.settings.sections.platform,
+            design.platform_bar_radius(),
+            design.platform_radius(),
         );
-        f64::from(self.platform_bars) * self.legs.geometry.mean_platform_radius() * bar
+        f64::from(self.settings.platform_bars) * self.settings.legs.geometry.mean_platform_radius() * bar
     }
 
     /// Returns the mass of one bar \[kg\].
     pub fn bar_mass(&self, section: &CrossSection, radius: f64, length: f64) -> f64 {
-        section.mass_per_length(self.material.density, radius) * length
+        section.mass_per_length(self.settings.material.density, radius) * length
     }
 
     /// Prepares the design for evaluation at many poses.
     pub(crate) fn checker<L: Leg>(&self, design: &Design) -> PoseChecker<L> {
-        let manipulator = Manipulator::new(design, &self.legs);
+        let manipulator = Manipulator::new(design, &self.settings.legs);
         PoseChecker {
             manipulator,
             stiffness: self.stiffness(design),
-            definition: self.stiffness_definition,
+            definition: self.settings.stiffness_definition,
             length: self.length(design, &manipulator),
             bodies: self.bodies_of(design),
-            base_radius: design.base_radius,
-            longest_lever: design.architecture.longest_lever(design),
-            actuator: design.architecture.actuator(),
-            assembly: worst_assembly(&manipulator.legs, &self.legs.geometry),
-            in_plane_force: self.in_plane_force,
-            thresholds: self.thresholds,
+            base_radius: design.base_radius(),
+            longest_lever: design.architecture().longest_lever(design),
+            actuator: design.architecture().actuator(),
+            assembly: worst_assembly(&manipulator.legs, &self.settings.legs.geometry),
+            in_plane_force: self.settings.in_plane_force,
+            thresholds: self.settings.thresholds,
             asked: ScalarSet::default(),
-            computed: computed(&self.thresholds, ScalarSet::default()),
+            computed: computed(&self.settings.thresholds, ScalarSet::default()),
             instructions: InstructionSet::best(),
         }
     }
 
     /// Prepares the design for evaluation at many poses, whatever its legs are.
     pub fn pose_evaluator(&self, design: &Design) -> Box<dyn PoseEvaluator> {
-        with_leg!(design.architecture, L => Box::new(self.checker::<L>(design)))
+        with_leg!(design.architecture(), L => Box::new(self.checker::<L>(design)))
     }
 
     /// Returns `k_xy` at a position in the orientation of `arms`, by the formulas of every scalar but the clearance, on any type of
     /// number: on one that counts operations, they are the operations of a pose.
     #[doc(hidden)]
     pub fn run_formulas<V: Real>(&self, design: &Design, position: Planar<V>, arms: [Planar<V>; LEGS]) -> V {
-        with_leg!(design.architecture, L => {
+        with_leg!(design.architecture(), L => {
             let (found, _) = self.checker::<L>(design).core_lanes(position, &arms);
             found.scalars[PoseScalar::StiffnessXy]
         })
@@ -264,30 +261,35 @@ impl Model {
     pub fn stiffness(&self, design: &Design) -> Option<StiffnessModel> {
         StiffnessModel::new(
             design,
-            &self.legs.geometry,
-            &self.material,
-            &self.sections,
-            &self.actuators,
+            &self.settings.legs.geometry,
+            &self.settings.material,
+            &self.settings.sections,
+            &self.settings.actuators,
             self.rails_of(design),
         )
     }
 
     /// Returns the members of a design, prepared for clearance computations.
     pub fn bodies_of(&self, design: &Design) -> Bodies {
-        Bodies::new(design, &self.legs.geometry, &self.bodies, &self.sections)
+        Bodies::new(
+            design,
+            &self.settings.legs.geometry,
+            &self.settings.bodies,
+            &self.settings.sections,
+        )
     }
 
     /// Returns what g1 compares, for the leg that is worst off.
     pub fn assembly(&self, design: &Design) -> Assembly {
-        let legs = [0, 1, 2].map(|index| AnyLeg::new(design, &self.legs, index));
-        worst_assembly(&legs, &self.legs.geometry)
+        let legs = [0, 1, 2].map(|index| AnyLeg::new(design, &self.settings.legs, index));
+        worst_assembly(&legs, &self.settings.legs.geometry)
     }
 
     /// Returns a distance from `O` that no point of the platform's joints, and so no `P`, exceeds \[m\].
     pub(crate) fn extent(&self, design: &Design) -> f64 {
-        let sizes = design.base_radius + design.platform_radius + 2.0 * design.link_length;
+        let sizes = design.base_radius() + design.platform_radius() + 2.0 * design.link_length();
         (0..LEGS).fold(sizes, |farthest, index| {
-            let leg = AnyLeg::new(design, &self.legs, index);
+            let leg = AnyLeg::new(design, &self.settings.legs, index);
             let corner = leg
                 .reach_box()
                 .map(DVec2::abs)
@@ -302,11 +304,11 @@ impl Model {
     /// The isotropic length uses the orientations of the reference grid, whatever grid is evaluated, so that a design
     /// has only one length. If the design reaches none of them with `P` at `O`, the length falls back to `r`.
     fn length<L: Leg>(&self, design: &Design, manipulator: &Manipulator<L>) -> f64 {
-        match self.characteristic_length {
-            CharacteristicLength::PlatformRadius => design.platform_radius,
+        match self.settings.characteristic_length {
+            CharacteristicLength::PlatformRadius => design.platform_radius(),
             CharacteristicLength::Fixed(length) => length,
             CharacteristicLength::Isotropic => {
-                let grid = &self.reference_grid;
+                let grid = &self.settings.reference_grid;
                 let mut largest = 0.0f64;
                 for k in 0..grid.orientations() {
                     let phi = (k as f64 * grid.phi_step_deg()).to_radians();
@@ -322,7 +324,7 @@ impl Model {
                 if largest > 0.0 {
                     std::f64::consts::SQRT_2 * largest
                 } else {
-                    design.platform_radius
+                    design.platform_radius()
                 }
             }
         }
@@ -333,14 +335,16 @@ impl Model {
     pub fn home(&self, evaluation: &Evaluation) -> Pose {
         let reported = || evaluation.constraints.iter().find_map(|report| report.pose);
         evaluation.home.or_else(reported).unwrap_or(Pose {
-            position: self.workspace.centre,
+            position: self.settings.workspace.centre,
             phi: 0.0,
         })
     }
 
     /// Returns whether a rotation by 120° about the centre of the workspace maps the design onto itself.
     pub fn is_symmetric(&self, design: &Design) -> bool {
-        self.workspace.centre == DVec2::ZERO && design.working_mode.is_uniform() && self.legs.geometry.is_three_fold()
+        self.settings.workspace.centre == DVec2::ZERO
+            && design.working_mode().is_uniform()
+            && self.settings.legs.geometry.is_three_fold()
     }
 }
 

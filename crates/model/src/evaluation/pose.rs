@@ -88,7 +88,7 @@ impl PosedDesign {
     /// The leg that does not reach the pose, and why.
     pub fn at(&self, pose: &Pose) -> Result<PoseEvaluation, Unreachable> {
         let checker = &self.checker;
-        let driven = self.design.architecture.driven();
+        let driven = self.design.architecture().driven();
         let posture = checker
             .manipulator
             .posture(pose)

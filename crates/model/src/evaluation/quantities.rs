@@ -15,7 +15,7 @@ pub(super) fn known(
     workspace_radius: f64,
     constraints: &[ConstraintResult; Constraint::COUNT],
 ) -> QuantityValues {
-    let asked = |quantity: Quantity| quantity.is_always_known() || model.quantities.contains(quantity);
+    let asked = |quantity: Quantity| quantity.is_always_known() || model.settings().quantities.contains(quantity);
     let mut values = QuantityValues::default();
     for quantity in Quantity::all().filter(|quantity| asked(*quantity)) {
         let value = match quantity {
@@ -46,7 +46,7 @@ pub(super) fn add_of_region<L: Leg>(
     positions: &Positions,
     grid: &Grid,
 ) {
-    let asked = |quantity: Quantity| model.quantities.contains(quantity);
+    let asked = |quantity: Quantity| model.settings().quantities.contains(quantity);
     if asked(Quantity::DexterityMean) {
         let mean = dexterity_mean(model, checker, found, home, grid);
         values.set(Quantity::DexterityMean, Some(mean));
@@ -84,7 +84,7 @@ fn dexterity_mean<L: Leg>(
     home: usize,
     grid: &Grid,
 ) -> f64 {
-    let spec = &model.workspace;
+    let spec = &model.settings().workspace;
     let spacing = checker.base_radius / grid.ray_steps() as f64;
     let rings = (found.radius / spacing).ceil().clamp(1.0, MEAN_RINGS) as usize;
     let rings = if found.samples.is_empty() {

@@ -34,7 +34,8 @@ impl<L: Leg> ConstraintSearch<'_, L> {
     pub fn nearest(&self, pose: Pose) -> Option<Clearance> {
         // At the very end of a leg's reach, rounding decides whether the leg reaches the pose; slightly nearer to the
         // centre it does.
-        let inwards = (self.model.workspace.centre - pose.position).clamp_length_max(1e-9 * self.design.base_radius);
+        let inwards =
+            (self.model.settings().workspace.centre - pose.position).clamp_length_max(1e-9 * self.design.base_radius());
         let position = pose.position + inwards;
         let manipulator = &self.checker.manipulator;
         [pose, Pose { position, ..pose }].iter().find_map(|pose| {
@@ -120,8 +121,8 @@ impl<L: Leg> ConstraintSearch<'_, L> {
             disc.pad();
             return disc;
         }
-        let centre = self.model.workspace.centre;
-        let spacing = self.design.base_radius / grid.ray_steps() as f64;
+        let centre = self.model.settings().workspace.centre;
+        let spacing = self.design.base_radius() / grid.ray_steps() as f64;
         let rings = (found.radius / spacing).ceil().clamp(1.0, MAX_RINGS) as usize;
         disc.push(centre);
         for direction in &found.directions {
@@ -213,7 +214,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
         for &(index, beyond) in &self.found.limits {
             let mut rim = Positions::default();
             for direction in &self.found.directions {
-                rim.push(self.model.workspace.centre + *direction * beyond);
+                rim.push(self.model.settings().workspace.centre + *direction * beyond);
             }
             rim.pad();
             let arms = &self.found.orientations[index].arms;
@@ -232,7 +233,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
     /// none, those that fail just beyond the limits that the search recorded.
     pub fn at_best_centre(&self) -> (ConstraintResults, f64) {
         let found = self.found;
-        let centre = self.model.workspace.centre;
+        let centre = self.model.settings().workspace.centre;
         let shortfalls: Vec<(f64, f64)> = (0..found.orientations.len())
             .map(|index| self.shortfall(&found.centres.get(index)))
             .collect();
@@ -282,7 +283,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
     /// Lowers the reports to the poses that leave the design without a workspace although its best centre pose is
     /// feasible: the centres of the best window, and what lies just beyond them.
     fn visit_window(&self, reports: &mut ConstraintResults, home: usize, sign: f64) {
-        let centre = self.model.workspace.centre;
+        let centre = self.model.settings().workspace.centre;
         let pose = |position: DVec2, index: usize| {
             Pose::new(
                 position.x,

@@ -42,7 +42,7 @@ pub struct AssemblyMode {
 pub fn assembly_modes(design: &Design, settings: &LegSettings, values: [f64; LEGS]) -> Vec<AssemblyMode> {
     let legs = [0, 1, 2].map(|index| AnyLeg::new(design, settings, index));
     let locked = [0, 1, 2].map(|index| legs[index].locked(values[index]));
-    let scale = design.base_radius + design.platform_radius + design.link_length;
+    let scale = design.base_radius() + design.platform_radius() + design.link_length();
     let mut poses = poses_of(&locked, scale);
     poses.sort_by(|a, b| a.phi.total_cmp(&b.phi).then(a.position.x.total_cmp(&b.position.x)));
     poses
@@ -292,28 +292,21 @@ fn polished(locked: &[LockedLeg; LEGS], mut pose: Pose, scale: f64) -> Option<Po
 
 /// Tells what the legs need at a pose.
 fn mode_at(design: &Design, settings: &LegSettings, values: [f64; LEGS], pose: Pose) -> AssemblyMode {
-    let driven = design.architecture.driven();
-    let is_angle = design.architecture.chain().joints[driven] == JointKind::Revolute;
+    let driven = design.architecture().driven();
+    let is_angle = design.architecture().chain().joints[driven] == JointKind::Revolute;
     let turn = Rotation::new(pose.phi);
-    let scale = design.base_radius + design.link_length;
-    let signs: &[bool] = if design.architecture.has_working_modes() {
+    let scale = design.base_radius() + design.link_length();
+    let signs: &[bool] = if design.architecture().has_working_modes() {
         &[true, false]
     } else {
         &[true]
     };
     // Sign of the branch in which a leg has its value, and whether it is within its limits there.
     let branch = |index: usize| {
-        let arm = turn.apply(settings.geometry.platform_joint(index, design.platform_radius));
+        let arm = turn.apply(settings.geometry.platform_joint(index, design.platform_radius()));
         let of_sign = |&plus: &bool| {
             let mode = WorkingMode::new([plus; LEGS]);
-            let leg = AnyLeg::new(
-                &Design {
-                    working_mode: mode,
-                    ..*design
-                },
-                settings,
-                index,
-            );
+            let leg = AnyLeg::new(&design.with_working_mode(mode), settings, index);
             let (found, beyond) = leg.solve(pose.position + arm, arm).ok()?;
             let difference = leg.joint_values(&found)[driven] - values[index];
             let difference = if is_angle {
@@ -338,7 +331,7 @@ fn mode_at(design: &Design, settings: &LegSettings, values: [f64; LEGS], pose: P
         let needed = WorkingMode::new([first.0, second.0, third.0]);
         mode.working_mode = Some(needed);
         mode.is_within_limits = first.1 && second.1 && third.1;
-        mode.is_of_design = mode.is_within_limits && needed == design.working_mode;
+        mode.is_of_design = mode.is_within_limits && needed == design.working_mode();
     }
     mode
 }

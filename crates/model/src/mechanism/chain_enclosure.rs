@@ -45,41 +45,41 @@ impl LegFrameEnclosure {
     pub fn new(design: &Design, geometry: &Geometry, index: usize) -> Self {
         let exactly = Interval::exactly;
         let joint = |index: usize| {
-            let radius = exactly(geometry.base_radii[index]);
-            let direction = TurnedFrame::by_degrees(geometry.base_angles_deg[index]).axis();
+            let radius = exactly(geometry.arrangement().base_radii[index]);
+            let direction = TurnedFrame::by_degrees(geometry.arrangement().base_angles_deg[index]).axis();
             direction.map(|part| part * radius)
         };
         let (base, platform, link) = (
-            exactly(design.base_radius),
-            exactly(design.platform_radius),
-            exactly(design.link_length),
+            exactly(design.base_radius()),
+            exactly(design.platform_radius()),
+            exactly(design.link_length()),
         );
         let (own, next) = (joint(index), joint((index + 1) % LEGS));
         let side = [next[0] - own[0], next[1] - own[1]];
         let length = (side[0].square() + side[1].square()).sqrt();
-        let turn = design.value(DesignVariable::RailAngle) + geometry.rail_turn_deg[index];
+        let turn = design.value(DesignVariable::RailAngle) + geometry.arrangement().rail_turn_deg[index];
         let [cosine, sine] = TurnedFrame::by_degrees(turn).axis();
         let one = exactly(1.0);
-        let arm_multiple = exactly(geometry.platform_radii[index]);
+        let arm_multiple = exactly(geometry.arrangement().platform_radii[index]);
         Self {
             anchor: own.map(|part| part * base),
             rail: TurnedFrame::along([
                 (cosine * side[0] - sine * side[1]) / length,
                 (sine * side[0] + cosine * side[1]) / length,
             ]),
-            rail_travel: geometry.rail.map(|share| exactly(share) * length * base),
-            arm_frame: TurnedFrame::by_degrees(geometry.platform_angles_deg[index]),
+            rail_travel: geometry.arrangement().rail.map(|share| exactly(share) * length * base),
+            arm_frame: TurnedFrame::by_degrees(geometry.arrangement().platform_angles_deg[index]),
             arm_multiple,
             arm_length: arm_multiple * platform,
             platform_radius: platform / link,
             per_platform_radius: link / platform,
             platform_guide: TurnedFrame::by_degrees(design.value(DesignVariable::PlatformGuideAngle)),
             between_guides: TurnedFrame::by_degrees(design.value(DesignVariable::GuideAngle)),
-            guide_travel: geometry.guide.map(exactly),
+            guide_travel: geometry.arrangement().guide.map(exactly),
             link,
             to_unit: one / link,
-            proximal: exactly(design.proximal_length) / link,
-            sign: design.working_mode.sign(index),
+            proximal: exactly(design.proximal_length()) / link,
+            sign: design.working_mode().sign(index),
         }
     }
 

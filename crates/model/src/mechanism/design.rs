@@ -5,28 +5,17 @@ use super::Architecture;
 /// Design of one manipulator: architecture, working mode, the five dimensions in metres, and what its chain has beyond them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Design {
-    /// `d`: the architecture.
-    pub architecture: Architecture,
-    /// Branch of the inverse kinematics of each leg.
-    pub working_mode: WorkingMode,
-    /// `R`: circumradius of the base joints `A_i` \[m\].
-    pub base_radius: f64,
-    /// `r`: circumradius of the platform joints `C_i` \[m\].
-    pub platform_radius: f64,
-    /// `L_b`: length of the links or guides, or the largest length of a telescopic leg \[m\].
-    pub link_length: f64,
-    /// `r_j`: radius of the leg bars \[m\].
-    pub leg_bar_radius: f64,
-    /// `r_p`: radius of the three platform bars \[m\].
-    pub platform_bar_radius: f64,
-    /// `L_a`: length of the bar `A_iB_i`, or its largest length \[m\]. It equals `L_b` unless it is given.
-    pub proximal_length: f64,
-    /// `α`: angle from the side `A_iA_{i+1}` of the base to the rail \[deg\].
-    pub rail_angle_deg: f64,
-    /// `β`: angle between the two guides of a leg \[deg\].
-    pub guide_angle_deg: f64,
-    /// `γ`: angle from `PC_i` to the guide on the platform \[deg\].
-    pub platform_guide_angle_deg: f64,
+    architecture: Architecture,
+    working_mode: WorkingMode,
+    base_radius: f64,
+    platform_radius: f64,
+    link_length: f64,
+    leg_bar_radius: f64,
+    platform_bar_radius: f64,
+    proximal_length: f64,
+    rail_angle_deg: f64,
+    guide_angle_deg: f64,
+    platform_guide_angle_deg: f64,
 }
 
 /// One of the real design variables.
@@ -198,6 +187,88 @@ impl Design {
     /// Largest ratio of `r` or `L_b` to `R` that is accepted.
     pub const MAX_RATIO: f64 = 1000.0;
 
+    /// `d`: the architecture.
+    pub fn architecture(&self) -> Architecture {
+        self.architecture
+    }
+
+    /// Branch of the inverse kinematics of each leg.
+    pub fn working_mode(&self) -> WorkingMode {
+        self.working_mode
+    }
+
+    /// `R`: circumradius of the base joints `A_i` \[m\].
+    pub fn base_radius(&self) -> f64 {
+        self.base_radius
+    }
+
+    /// `r`: circumradius of the platform joints `C_i` \[m\].
+    pub fn platform_radius(&self) -> f64 {
+        self.platform_radius
+    }
+
+    /// `L_b`: length of the links or guides, or the largest length of a telescopic leg \[m\].
+    pub fn link_length(&self) -> f64 {
+        self.link_length
+    }
+
+    /// `r_j`: radius of the leg bars \[m\].
+    pub fn leg_bar_radius(&self) -> f64 {
+        self.leg_bar_radius
+    }
+
+    /// `r_p`: radius of the three platform bars \[m\].
+    pub fn platform_bar_radius(&self) -> f64 {
+        self.platform_bar_radius
+    }
+
+    /// `L_a`: length of the bar `A_iB_i`, or its largest length \[m\]. It equals `L_b` unless it is given.
+    pub fn proximal_length(&self) -> f64 {
+        self.proximal_length
+    }
+
+    /// `α`: angle from the side `A_iA_{i+1}` of the base to the rail \[deg\].
+    pub fn rail_angle_deg(&self) -> f64 {
+        self.rail_angle_deg
+    }
+
+    /// `β`: angle between the two guides of a leg \[deg\].
+    pub fn guide_angle_deg(&self) -> f64 {
+        self.guide_angle_deg
+    }
+
+    /// `γ`: angle from `PC_i` to the guide on the platform \[deg\].
+    pub fn platform_guide_angle_deg(&self) -> f64 {
+        self.platform_guide_angle_deg
+    }
+
+    /// Returns the design with other branches of the inverse kinematics, if its legs have several.
+    #[must_use]
+    pub fn with_working_mode(self, working_mode: WorkingMode) -> Self {
+        Self {
+            working_mode: Self::mode_of(self.architecture, working_mode),
+            ..self
+        }
+    }
+
+    /// An architecture without working modes always has the default, so that equal designs compare as equal.
+    fn mode_of(architecture: Architecture, working_mode: WorkingMode) -> WorkingMode {
+        if architecture.has_working_modes() {
+            working_mode
+        } else {
+            WorkingMode::ALL_PLUS
+        }
+    }
+
+    /// Returns the design with bars of other radii \[m\], which must be within their domain.
+    pub(crate) fn with_bars(&self, [leg_bar_radius, platform_bar_radius]: [f64; 2]) -> Self {
+        Self {
+            leg_bar_radius,
+            platform_bar_radius,
+            ..*self
+        }
+    }
+
     /// Returns the design with `R`, `r`, `L_b` and `L_a` multiplied by `factor`, and with its own bars.
     pub(crate) fn with_lengths_times(&self, factor: f64) -> Self {
         Self {
@@ -265,12 +336,7 @@ impl Design {
         ] = values;
         Ok(Self {
             architecture,
-            // An architecture without working modes always gets the default, so that equal designs compare as equal.
-            working_mode: if architecture.has_working_modes() {
-                working_mode
-            } else {
-                WorkingMode::ALL_PLUS
-            },
+            working_mode: Self::mode_of(architecture, working_mode),
             base_radius,
             platform_radius,
             link_length,

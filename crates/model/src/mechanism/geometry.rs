@@ -61,14 +61,6 @@ pub struct Geometry {
     is_three_fold: bool,
 }
 
-impl std::ops::Deref for Geometry {
-    type Target = Arrangement;
-
-    fn deref(&self) -> &Arrangement {
-        &self.arrangement
-    }
-}
-
 impl Default for Geometry {
     fn default() -> Self {
         Arrangement::PAPER.into()
@@ -113,6 +105,11 @@ impl Arrangement {
 }
 
 impl Geometry {
+    /// The arrangement as a study states it.
+    pub fn arrangement(&self) -> &Arrangement {
+        &self.arrangement
+    }
+
     /// Returns the base joint `A_i` of leg `index` for the base radius `R` \[m\].
     pub fn base_joint(&self, index: usize, base_radius: f64) -> DVec2 {
         self.base[index] * base_radius
@@ -131,7 +128,10 @@ impl Geometry {
     /// Returns the mean length of the platform bars as a multiple of `r`, by which the mass of a platform is larger than that of a
     /// regular one.
     pub fn mean_platform_radius(&self) -> f64 {
-        (self.platform_radii[0] + self.platform_radii[1] + self.platform_radii[2]) / LEGS as f64
+        (self.arrangement.platform_radii[0]
+            + self.arrangement().platform_radii[1]
+            + self.arrangement().platform_radii[2])
+            / LEGS as f64
     }
 
     /// Returns the smallest and the largest distance of the slider of leg `index` from `A_i` for the base radius `R` \[m\].
@@ -141,7 +141,7 @@ impl Geometry {
 
     /// Returns the smallest and the largest distance along a guide of length `length` \[m\].
     pub(super) fn travel(&self, length: f64) -> [f64; 2] {
-        self.guide.map(|share| share * length)
+        self.arrangement.guide.map(|share| share * length)
     }
 }
 
@@ -181,20 +181,20 @@ impl LegFrame {
             }
         };
         Self {
-            anchor: geometry.base_joint(index, design.base_radius),
-            anchor_distance: geometry.base_radii[index] * design.base_radius,
-            rail: turned(design.rail_angle_deg, geometry.rails[index]),
-            rail_travel: geometry.rail_travel(index, design.base_radius),
-            arm_length: geometry.platform_radii[index] * design.platform_radius,
-            arm_angle: geometry.platform_angles_deg[index].to_radians(),
-            platform_joint: geometry.platform_joint(index, design.platform_radius),
-            platform_guide: turned(design.platform_guide_angle_deg, DVec2::X),
-            between_guides: if design.guide_angle_deg == 90.0 {
+            anchor: geometry.base_joint(index, design.base_radius()),
+            anchor_distance: geometry.arrangement.base_radii[index] * design.base_radius(),
+            rail: turned(design.rail_angle_deg(), geometry.rails[index]),
+            rail_travel: geometry.rail_travel(index, design.base_radius()),
+            arm_length: geometry.arrangement.platform_radii[index] * design.platform_radius(),
+            arm_angle: geometry.arrangement.platform_angles_deg[index].to_radians(),
+            platform_joint: geometry.platform_joint(index, design.platform_radius()),
+            platform_guide: turned(design.platform_guide_angle_deg(), DVec2::X),
+            between_guides: if design.guide_angle_deg() == 90.0 {
                 DVec2::Y
             } else {
-                direction_deg(design.guide_angle_deg)
+                direction_deg(design.guide_angle_deg())
             },
-            sign: design.working_mode.sign(index),
+            sign: design.working_mode().sign(index),
         }
     }
 
@@ -241,12 +241,12 @@ mod tests {
         for index in 0..LEGS {
             let frame = LegFrame::new(&design, &geometry, index);
             let side = ANCHOR_DIRECTIONS[(index + 1) % LEGS] - ANCHOR_DIRECTIONS[index];
-            assert_eq!(frame.anchor, ANCHOR_DIRECTIONS[index] * design.base_radius);
+            assert_eq!(frame.anchor, ANCHOR_DIRECTIONS[index] * design.base_radius());
             assert_eq!(frame.rail, side / (2.0 * HALF_SQRT_3));
-            assert_eq!(frame.rail_travel, [0.0, 2.0 * HALF_SQRT_3 * design.base_radius]);
+            assert_eq!(frame.rail_travel, [0.0, 2.0 * HALF_SQRT_3 * design.base_radius()]);
             assert_eq!(
-                geometry.platform_joint(index, design.platform_radius),
-                ANCHOR_DIRECTIONS[index] * design.platform_radius
+                geometry.platform_joint(index, design.platform_radius()),
+                ANCHOR_DIRECTIONS[index] * design.platform_radius()
             );
         }
     }

@@ -129,7 +129,7 @@ impl<L: Leg> Manipulator<L> {
     pub fn new(design: &Design, settings: &LegSettings) -> Self {
         Self {
             legs: [0, 1, 2].map(|i| L::new(design, settings, i)),
-            platform_joints: [0, 1, 2].map(|i| settings.geometry.platform_joint(i, design.platform_radius)),
+            platform_joints: [0, 1, 2].map(|i| settings.geometry.platform_joint(i, design.platform_radius())),
         }
     }
 

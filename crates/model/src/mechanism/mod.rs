@@ -110,7 +110,7 @@ macro_rules! architectures {
         impl AnyLeg {
             /// Creates leg `index` of `design`.
             fn of(design: &Design, settings: &LegSettings, index: usize) -> Self {
-                match design.architecture {
+                match design.architecture() {
                     $(Architecture::$fast => AnyLeg::$fast(Leg::new(design, settings, index)),)+
                     $(Architecture::$variant => AnyLeg::$variant(Leg::new(design, settings, index)),)+
                 }
@@ -123,7 +123,7 @@ macro_rules! architectures {
                 settings: &LegSettings,
                 pose: &PoseEnclosure,
             ) -> LegEnclosure {
-                match design.architecture {
+                match design.architecture() {
                     $(Architecture::$fast =>
                         DrivenLeg::<$fast_chain, $fast_driven>::enclose(frame, design, settings, pose),)+
                     $(Architecture::$variant =>
@@ -142,7 +142,7 @@ macro_rules! architectures {
                 tip: PlanarModel,
             ) -> MembersEnclosure {
                 let chain = &leg.chain;
-                match design.architecture {
+                match design.architecture() {
                     $(Architecture::$fast =>
                         $fast_chain::enclose_members(frame, design, settings, chain, anchor, tip),)+
                     $(Architecture::$variant =>
@@ -272,9 +272,9 @@ impl Architecture {
         let reaches = |point: JointPoint| chain.points[self.driven()] == point;
         let is_proximal = reaches(JointPoint::A) || (chain.distal == MemberKind::Guide && reaches(JointPoint::B));
         if chain.has_proximal_bar && is_proximal {
-            design.proximal_length
+            design.proximal_length()
         } else {
-            design.link_length
+            design.link_length()
         }
     }
 

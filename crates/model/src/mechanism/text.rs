@@ -215,15 +215,15 @@ impl FromStr for Design {
 
 impl std::fmt::Display for Design {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}", self.architecture)?;
+        write!(f, "{}", self.architecture())?;
         for (variable, value) in DESIGN_VARIABLES.into_iter().zip(self.values()) {
             write!(f, " {}={value}", variable.key())?;
         }
         for variable in self.given_variables() {
             write!(f, " {}={}", variable.key(), self.value(variable))?;
         }
-        if self.working_mode != WorkingMode::ALL_PLUS {
-            write!(f, " mode={}", self.working_mode)?;
+        if self.working_mode() != WorkingMode::ALL_PLUS {
+            write!(f, " mode={}", self.working_mode())?;
         }
         Ok(())
     }
@@ -238,7 +238,7 @@ mod tests {
         let text = "3-RRR R=3.3658 r=0.2537 Lb=1.9157 rj=0 rp=0.0891 mode=+-+";
         let design: Design = text.parse().expect("a design");
         assert_eq!(design.to_string(), text);
-        assert_eq!(design.working_mode.signs(), [1, -1, 1]);
+        assert_eq!(design.working_mode().signs(), [1, -1, 1]);
         for text in [
             "3-R_RR R=1 r=0.25 Lb=1 rj=0.02 rp=0.03 La=0.75 mode=---",
             "3-_PPR R=1 r=0.25 Lb=1 rj=0.02 rp=0.03 alpha_deg=30 beta_deg=75.5",

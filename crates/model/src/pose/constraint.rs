@@ -15,7 +15,7 @@ impl PoseScalar {
             Better::Lower => threshold - value,
         };
         match entry.margin {
-            MarginUnit::BaseRadius => excess / design.base_radius,
+            MarginUnit::BaseRadius => excess / design.base_radius(),
             MarginUnit::Threshold if threshold > 0.0 => excess / threshold,
             MarginUnit::Threshold => excess,
         }
@@ -34,10 +34,14 @@ impl Constraint {
         self.scalar().map_or("m", |scalar| scalar.entry().quantity.unit)
     }
 
-    /// Returns whether the constraint is required: g7 is required if the study states a clearance, all others always
-    /// are.
+    /// Returns whether the constraint is required: g7, and a scalar that only some studies need, are required if the study states a
+    /// threshold, all others always are.
     pub fn is_required(self, thresholds: &Thresholds) -> bool {
-        self != Constraint::Clearance || thresholds.get(PoseScalar::Clearance).is_some()
+        let is_optional =
+            |scalar: &PoseScalar| *scalar == PoseScalar::Clearance || !PoseScalar::ALWAYS.contains(scalar);
+        self.scalar()
+            .filter(is_optional)
+            .is_none_or(|scalar| thresholds.get(scalar).is_some())
     }
 
     /// Returns the constraints that are required.

@@ -100,9 +100,9 @@ impl StiffnessModel {
         actuators: &ActuatorStiffness,
         rails: Option<&RailSettings>,
     ) -> Option<Self> {
-        let leg_bar = BarCompliance::new(material, &sections.legs, design.leg_bar_radius)?;
-        let platform_bar = BarCompliance::new(material, &sections.platform, design.platform_bar_radius)?;
-        let actuator = 1.0 / actuators.of(design.architecture.actuator());
+        let leg_bar = BarCompliance::new(material, &sections.legs, design.leg_bar_radius())?;
+        let platform_bar = BarCompliance::new(material, &sections.platform, design.platform_bar_radius())?;
+        let actuator = 1.0 / actuators.of(design.architecture().actuator());
         let rail = match rails {
             Some(rails) => Some(RailBeam {
                 section: BarCompliance::new(material, &rails.section, rails.radius)?,

@@ -68,7 +68,7 @@ impl Reduced {
         platform: &BarCompliance,
         actuator: f64,
     ) -> Self {
-        let (r, link, proximal) = (design.platform_radius, design.link_length, design.proximal_length);
+        let (r, link, proximal) = (design.platform_radius(), design.link_length(), design.proximal_length());
         let along_unit = actuator + link * leg.axial + r * platform.axial;
         let bend_unit = leg.bending.max(platform.bending);
         Self {
@@ -80,7 +80,7 @@ impl Reduced {
             proximal_bending: leg.bending * proximal / 3.0 / along_unit,
             bend_unit,
             leg: [leg.bending / bend_unit, leg.torsion / bend_unit],
-            platform: geometry.platform_radii.map(|multiple| {
+            platform: geometry.arrangement().platform_radii.map(|multiple| {
                 let r = multiple * r;
                 ReducedPlatformBar {
                     length: r,

@@ -38,7 +38,7 @@ fn modes_agree_with_an_independent_search() {
         let own = |mode: &&AssemblyMode| is_same(&mode.pose, &case_pose(&case), 1e-8);
         let own = found.iter().find(own).expect("the pose of the case");
         assert!(
-            own.is_of_design && own.working_mode == Some(design.working_mode),
+            own.is_of_design && own.working_mode == Some(design.working_mode()),
             "{design}: {own:?}"
         );
     }
@@ -103,7 +103,7 @@ fn a_manipulator_with_six_modes() {
 fn values(design: &Design, settings: &LegSettings, pose: &Pose) -> Option<[f64; 3]> {
     let manipulator = Manipulator::<AnyLeg>::new(design, settings);
     let posture = manipulator.posture(pose).ok()?;
-    let driven = design.architecture.driven();
+    let driven = design.architecture().driven();
     Some([0, 1, 2].map(|i| manipulator.legs[i].joint_values(&posture.legs[i])[driven]))
 }
 
@@ -117,14 +117,14 @@ proptest! {
         let manipulator = Manipulator::<AnyLeg>::new(&design, &settings);
         let posture = manipulator.posture(&pose).expect("reachable");
         let jacobian = kinefront_model::kinematics::Jacobian::new(&posture);
-        if jacobian.inverse_condition(design.platform_radius) < 1e-3 || posture.limit_margin < 1e-6 {
+        if jacobian.inverse_condition(design.platform_radius()) < 1e-3 || posture.limit_margin < 1e-6 {
             return Err(TestCaseError::reject("near a singularity"));
         }
         let modes = assembly_modes(&design, &settings, wanted);
         let own = modes.iter().find(|mode| is_same(&mode.pose, &pose, 1e-7));
         prop_assert!(own.is_some_and(|mode| mode.is_of_design), "{design} at {pose:?}: {modes:?}");
         for mode in modes.iter().filter(|mode| mode.is_within_limits) {
-            let of_mode = Design { working_mode: mode.working_mode.expect("a mode"), ..design };
+            let of_mode = design.with_working_mode(mode.working_mode.expect("a mode"));
             // Rounding may tell at a limit.
             if let Some(found) = values(&of_mode, &settings, &mode.pose) {
                 for (found, wanted) in found.into_iter().zip(wanted) {
@@ -149,7 +149,7 @@ proptest! {
     fn no_mode_is_missed(design in design(0.0), settings in leg_settings(), pose in pose(), seed in any::<u64>()) {
         let wanted = values(&design, &settings, &pose).ok_or_else(|| TestCaseError::reject("out of reach"))?;
         let legs = [0, 1, 2].map(|i| AnyLeg::new(&design, &settings, i).locked(wanted[i]));
-        let scale = design.base_radius + design.platform_radius + design.link_length;
+        let scale = design.base_radius() + design.platform_radius() + design.link_length();
         let modes = assembly_modes(&design, &settings, wanted);
         let mut state = seed | 1;
         let mut random = || {

@@ -67,7 +67,7 @@ fn point(pose: &Pose) -> PoseEnclosure {
 
 /// Random poses of a disc about O, over the window about a home orientation.
 fn random_poses(model: &Model, radius: f64, phi_deg: f64, count: usize) -> impl Iterator<Item = Pose> {
-    let half = 0.5 * model.workspace.rotation_range_deg.to_radians();
+    let half = 0.5 * model.settings().workspace.rotation_range_deg.to_radians();
     let mut random = ChaCha8Rng::seed_from_u64(7);
     let mut between =
         move |low: f64, high: f64| low + (high - low) * f64::from(random.next_u32()) / f64::from(u32::MAX);
@@ -169,7 +169,7 @@ fn holds(model: &Model, design: &Design, pose: &Pose, margin: f64) -> bool {
     model.pose(design, pose).is_ok()
         && AT_POSES
             .iter()
-            .filter(|constraint| constraint.is_required(&model.thresholds))
+            .filter(|constraint| constraint.is_required(&model.settings().thresholds))
             .all(|&constraint| model.margin_at(design, pose, constraint) >= margin)
 }
 
@@ -213,7 +213,7 @@ fn other_models() -> Vec<(&'static str, Model)> {
             "stiffness as the reciprocal of a compliance, on rails that are pinned at their ends",
             model(|settings| {
                 settings.stiffness_definition = StiffnessDefinition::Compliance;
-                settings.rails = on_rails(RailSupports::Pinned).rails.clone();
+                settings.rails = on_rails(RailSupports::Pinned).settings().rails.clone();
             }),
         ),
     ]
@@ -232,7 +232,7 @@ fn on_rails(supports: RailSupports) -> Model {
 
 /// A box of poses about a point `(r/R, θ, φ)`, and its half widths.
 fn polar_box(design: &Design, (part, theta, phi): (f64, f64, f64), width: f64) -> (PoseEnclosure, [f64; 3]) {
-    let radius = part * design.base_radius;
+    let radius = part * design.base_radius();
     let widths = [width * radius, width, 0.5 * width];
     let (sine, cosine) = TaylorModel::sine_and_cosine(1, theta, widths[1]);
     let (phi_sine, phi_cosine) = TaylorModel::sine_and_cosine(2, phi, widths[2]);
@@ -258,7 +258,7 @@ proptest! {
         place in 0..7usize,
     ) {
         let (name, model) = other_models().swap_remove(place);
-        let scale = 0.4 * design.base_radius;
+        let scale = 0.4 * design.base_radius();
         let pose = Pose::new(scale * x, scale * y, phi);
         let values = model.enclose(&design, &point(&pose)).expect("values");
         let is_reached = model.pose(&design, &pose).is_ok();
@@ -275,7 +275,7 @@ proptest! {
         }
         for constraint in AT_POSES {
             let margin = model.margin_at(&design, &pose, constraint);
-            if margin.abs() > 1e-6 && constraint.is_required(&model.thresholds) {
+            if margin.abs() > 1e-6 && constraint.is_required(&model.settings().thresholds) {
                 prop_assert_eq!(
                     least(constraint) > 0.0, margin > 0.0,
                     "{}: {} {:?} {}: {}", name, design, pose, constraint.id(), margin
@@ -306,7 +306,7 @@ proptest! {
             return Err(TestCaseError::reject("the clearance is not proved"));
         }
         for (a, b, c) in places {
-            let at = middle.0 * design.base_radius + a * widths[0];
+            let at = middle.0 * design.base_radius() + a * widths[0];
             let (theta, phi) = (middle.1 + b * widths[1], middle.2 + c * widths[2]);
             let pose = Pose::new(at * theta.cos(), at * theta.sin(), phi);
             let margin = model.margin_at(&design, &pose, Constraint::Clearance);
@@ -324,7 +324,7 @@ proptest! {
         place in prop::sample::select(vec![0, 1, 2, 5, 6]),
     ) {
         let (_, model) = other_models().swap_remove(place);
-        let radius = middle.0 * design.base_radius;
+        let radius = middle.0 * design.base_radius();
         let (pose, widths) = polar_box(&design, middle, width);
         let enclosed = model.enclose(&design, &pose).expect("values");
         if enclosed.len() < 12 || enclosed.iter().any(|(_, value)| value.range()[0].is_nan()) {
@@ -357,10 +357,9 @@ fn other_studies_are_certified() {
     let shifted = model(|settings| {
         settings.workspace.centre = glam::DVec2::new(0.1, -0.05);
     });
-    let design = Design {
-        working_mode: WorkingMode::new([true, true, false]),
-        ..cases()[1].design
-    };
+    let design = cases()[1]
+        .design
+        .with_working_mode(WorkingMode::new([true, true, false]));
     for model in [&shifted, &Model::default()] {
         let evaluation = model.evaluate(&design, GridChoice::Fine);
         let options = CertifyOptions {

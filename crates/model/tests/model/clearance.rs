@@ -2,7 +2,7 @@
 
 use kinefront_model::clearance::{BodySettings, Layers};
 use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar};
-use kinefront_model::mechanism::{Architecture, Arrangement, Design, WorkingMode};
+use kinefront_model::mechanism::{Architecture, Arrangement, Design, DesignVariable, WorkingMode};
 use kinefront_model::spatial::{Pose, Rotation};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -215,7 +215,7 @@ fn touching_is_zero() {
             (settings.bodies.slider_half_width, settings.bodies.slider_length) = (0.2, 0.4);
             let model = Model::new(settings).expect("the grids fit the rotation range");
             let pose = random.pose();
-            design.leg_bar_radius = 0.01;
+            design = design.with(DesignVariable::LegBarRadius, 0.01).expect("a design");
             let clearance = |design: &Design| {
                 let report = model.pose(design, &pose).ok()?;
                 Some(report.nearest)
@@ -229,7 +229,8 @@ fn touching_is_zero() {
                 continue;
             };
             for thicker in [0.0, 1e-3] {
-                design.leg_bar_radius = 0.01 + 0.5 * before.distance + thicker;
+                let radius = 0.01 + 0.5 * before.distance + thicker;
+                design = design.with(DesignVariable::LegBarRadius, radius).expect("a design");
                 let Some(found) = clearance(&design) else {
                     unreachable!("bar radii do not affect reach")
                 };

@@ -44,13 +44,7 @@ fn operations_enclose_what_their_operands_enclose() {
             (a * b, x * y),
             (a.squared(), x * x),
             (a.times(0.7), 0.7 * x),
-            (
-                a.scaled(Interval {
-                    lower: 0.69,
-                    upper: 0.71,
-                }),
-                0.7 * x,
-            ),
+            (a.scaled(Interval::new(0.69, 0.71)), 0.7 * x),
             (a.reciprocal(), 1.0 / x),
             (a.sqrt(), x.sqrt()),
         ] {
@@ -144,13 +138,13 @@ fn values_to_50_digits_are_enclosed() {
             assert!(upper - lower < 1e-11 * size, "{key}: [{lower}, {upper}]");
         }
         let (sine, cosine) = Interval::exactly(x.constant).sine_and_cosine();
-        assert!(is_enclosed(sine.lower, sine.upper, &case["sine"]), "{case}");
-        assert!(is_enclosed(cosine.lower, cosine.upper, &case["cosine"]), "{case}");
+        assert!(is_enclosed(sine.lower(), sine.upper(), &case["sine"]), "{case}");
+        assert!(is_enclosed(cosine.lower(), cosine.upper(), &case["cosine"]), "{case}");
         let root = Interval::exactly(y.constant).sqrt();
-        assert!(is_enclosed(root.lower, root.upper, &case["root"]), "{case}");
+        assert!(is_enclosed(root.lower(), root.upper(), &case["root"]), "{case}");
         let reciprocal = Interval::exactly(1.0) / Interval::exactly(y.constant);
         assert!(
-            is_enclosed(reciprocal.lower, reciprocal.upper, &case["reciprocal"]),
+            is_enclosed(reciprocal.lower(), reciprocal.upper(), &case["reciprocal"]),
             "{case}"
         );
     }

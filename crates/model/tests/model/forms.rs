@@ -44,7 +44,7 @@ fn forms(
         rails,
     )?;
     let closed = model.stiffness(&posture, &Jacobian::new(&posture));
-    Some((closed, joint_model::stiffness(&model, design.architecture, &posture)?))
+    Some((closed, joint_model::stiffness(&model, design.architecture(), &posture)?))
 }
 
 proptest! {

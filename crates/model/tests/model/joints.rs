@@ -15,7 +15,7 @@ type Check = Result<(), TestCaseError>;
 
 fn actuators(design: &Design, manipulator: &Manipulator<AnyLeg>, pose: &Pose) -> Option<[f64; 3]> {
     let posture = manipulator.posture(pose).ok()?;
-    let driven = design.architecture.driven();
+    let driven = design.architecture().driven();
     Some([0, 1, 2].map(|i| manipulator.legs[i].joint_values(&posture.legs[i])[driven]))
 }
 
@@ -24,13 +24,13 @@ fn joints_close(design: &Design, settings: &LegSettings, pose: &Pose) -> Check {
     let Ok(posture) = manipulator.posture(pose) else {
         return Err(TestCaseError::reject("the property does not apply"));
     };
-    let tolerance = 1e-12 * (design.base_radius + design.link_length + design.platform_radius);
+    let tolerance = 1e-12 * (design.base_radius() + design.link_length() + design.platform_radius());
     for (i, leg) in posture.legs.iter().enumerate() {
         let c = pose.position + posture.arms[i];
         let frame = manipulator.legs[i].frame();
         let chain = &leg.chain;
         // Where guides are nearly parallel, B is far away.
-        let tolerance = tolerance * (1.0 + chain.b.length() / design.base_radius);
+        let tolerance = tolerance * (1.0 + chain.b.length() / design.base_radius());
         prop_assert!((chain.c - c).length() < tolerance);
         prop_assert!((chain.b + chain.distal.direction * chain.distal.offset - c).length() < tolerance);
         prop_assert!((chain.distal.direction.length() - 1.0).abs() < 1e-12);
@@ -85,7 +85,7 @@ fn jacobian_is_the_derivative(design: &Design, settings: &LegSettings, pose: &Po
         };
         for leg in 0..3 {
             let mut change = after[leg] - before[leg];
-            if design.architecture.actuator() == JointKind::Revolute {
+            if design.architecture().actuator() == JointKind::Revolute {
                 change = libm::remainder(change, 2.0 * std::f64::consts::PI);
             }
             let rate = change / (2.0 * step);
@@ -104,12 +104,12 @@ fn forward_undoes_inverse(design: &Design, settings: &LegSettings, pose: &Pose) 
     let Ok(posture) = manipulator.posture(pose) else {
         return Err(TestCaseError::reject("the property does not apply"));
     };
-    if Jacobian::new(&posture).inverse_condition(design.platform_radius) < 0.1 || posture.limit_margin < 0.05 {
+    if Jacobian::new(&posture).inverse_condition(design.platform_radius()) < 0.1 || posture.limit_margin < 0.05 {
         return Err(TestCaseError::reject("the property does not apply"));
     }
     let target = actuators(design, &manipulator, pose).expect("reachable");
     let start = Pose::new(pose.position.x + 1e-3, pose.position.y - 1e-3, pose.phi + 1e-3);
-    let found = forward(design.architecture, &manipulator, target, start, 1e-12);
+    let found = forward(design.architecture(), &manipulator, target, start, 1e-12);
     prop_assert!(found.is_ok(), "{found:?}");
     if let Ok(found) = found {
         prop_assert!((found.position - pose.position).length() < 1e-9);
@@ -174,7 +174,7 @@ proptest! {
                 *value = 0.0;
             }
         }
-        let design = Design::new(design.architecture, design.working_mode, values).expect("a valid design");
+        let design = Design::new(design.architecture(), design.working_mode(), values).expect("a valid design");
         let report = Model::default()
             .pose(&design, &pose)
             .map_err(|unreachable| TestCaseError::reject(unreachable.to_string()))?;

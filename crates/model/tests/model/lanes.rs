@@ -31,7 +31,7 @@ fn compare(model: &Model, design: &Design, pose: &Pose) -> Result<(), TestCaseEr
     let distance = values[PoseScalar::Reach].min(1.0) * values[PoseScalar::Determinant].abs().min(1.0);
     let tolerance = 1e-12 / (distance * distance);
     if tolerance < 1e-6 {
-        let posture = Manipulator::<AnyLeg>::new(design, &model.legs).posture_at(pose.position, &arms);
+        let posture = Manipulator::<AnyLeg>::new(design, &model.settings().legs).posture_at(pose.position, &arms);
         let posture = posture.expect("reachable");
         let stiffness = model
             .stiffness(design)
@@ -41,7 +41,7 @@ fn compare(model: &Model, design: &Design, pose: &Pose) -> Result<(), TestCaseEr
         let in_plane = stiffness.in_plane[0] + stiffness.in_plane[3];
         // If motion in the plane is free, its block is inverted, which loses digits in proportion to the
         // condition number of the block.
-        let free = match model.stiffness_definition {
+        let free = match model.settings().stiffness_definition {
             StiffnessDefinition::Stiffness => 1.0,
             StiffnessDefinition::Compliance => in_plane / held.k_xy,
         };

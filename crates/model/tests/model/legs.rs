@@ -80,7 +80,7 @@ fn kinematics_agree() {
             for (joint, value) in values.into_iter().enumerate() {
                 close(value, number(&case["joints"][index][joint]), 1e-9, &what("joint"));
             }
-            let driven = values[design.architecture.driven()];
+            let driven = values[design.architecture().driven()];
             close(driven, number(&case["actuators"][index]), 1e-9, &what("actuator"));
             for (point, key) in [(leg.chain.b, "B"), (leg.chain.c, "C")] {
                 close(point.x, number(&case[key][index][0]), 1e-9, &what(key));
@@ -98,7 +98,7 @@ fn kinematics_agree() {
             1e-9,
             &what("limit margin"),
         );
-        let condition = Jacobian::new(&posture).inverse_condition(design.platform_radius);
+        let condition = Jacobian::new(&posture).inverse_condition(design.platform_radius());
         close(
             condition,
             number(&case["inverse_condition"]),
@@ -141,7 +141,7 @@ fn masses_and_workspaces_agree() {
     for case in cases("designs") {
         let design = design(&case);
         let model = model(&case, |_| {});
-        let tolerance = 1e-5 * design.base_radius;
+        let tolerance = 1e-5 * design.base_radius();
         for (grid, key) in [
             (GridChoice::Reference, "workspace_radius_reference_grid"),
             (GridChoice::Fine, "workspace_radius_fine_grid"),

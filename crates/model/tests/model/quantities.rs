@@ -24,7 +24,9 @@ fn model() -> Model {
 /// The poses over which quantities are taken: 24 rings at most, in the directions and orientations of the reference grid.
 fn poses(evaluation: &Evaluation) -> Vec<Pose> {
     let (radius, home) = (evaluation.workspace_radius(), evaluation.home_phi_deg.expect("a home"));
-    let rings = (50.0 * radius / evaluation.design.base_radius).ceil().clamp(1.0, 24.0) as u32;
+    let rings = (50.0 * radius / evaluation.design.base_radius())
+        .ceil()
+        .clamp(1.0, 24.0) as u32;
     let mut poses = Vec::new();
     for k in -4..=4 {
         let phi = (home + 2.5 * f64::from(k)).to_radians();
@@ -73,14 +75,14 @@ fn masses_and_height_follow_from_the_bars() {
     };
     let legs = |design: &Design| {
         let count = 3.0
-            * if design.architecture == Architecture::ALL[2] {
+            * if design.architecture() == Architecture::ALL[2] {
                 2.0
             } else {
                 1.0
             };
-        mass(design, design.leg_bar_radius, design.link_length, count)
+        mass(design, design.leg_bar_radius(), design.link_length(), count)
     };
-    let platform = |design: &Design| mass(design, design.platform_bar_radius, design.platform_radius, 3.0);
+    let platform = |design: &Design| mass(design, design.platform_bar_radius(), design.platform_radius(), 3.0);
     check(Quantity::LegsMass, 1e-12, |_, found| legs(&found.design));
     check(Quantity::PlatformMass, 1e-12, |_, found| platform(&found.design));
     check(Quantity::Mass, 1e-12, |_, found| {
@@ -170,7 +172,7 @@ fn the_transmission_is_that_of_the_joints() {
             let found = model.pose(design, pose).expect("reachable");
             let anchor = |leg: usize| {
                 let angle = [210f64, 330.0, 90.0][leg % 3].to_radians();
-                [design.base_radius * angle.cos(), design.base_radius * angle.sin()]
+                [design.base_radius() * angle.cos(), design.base_radius() * angle.sin()]
             };
             (0..3)
                 .map(|leg| {
@@ -180,8 +182,8 @@ fn the_transmission_is_that_of_the_joints() {
                     let u = unit(link);
                     let next = anchor(leg + 1);
                     let way = match (
-                        design.architecture.actuator(),
-                        design.architecture == Architecture::ALL[0],
+                        design.architecture().actuator(),
+                        design.architecture() == Architecture::ALL[0],
                     ) {
                         (JointKind::Revolute, _) => {
                             let [x, y] = unit(crank);
@@ -212,7 +214,7 @@ fn the_footprint_holds_the_base_and_all_members() {
                 ends.map(|end| end.truncate().length()).into_iter().fold(0.0, f64::max) + member.radius
             })
         });
-        farthest.fold(evaluation.design.base_radius, f64::max)
+        farthest.fold(evaluation.design.base_radius(), f64::max)
     });
 }
 

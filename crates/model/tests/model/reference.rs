@@ -117,7 +117,7 @@ fn designs_agree_on_both_grids_and_both_definitions() {
     });
     for case in cases {
         let design = design(case);
-        let tolerance = 1e-5 * design.base_radius;
+        let tolerance = 1e-5 * design.base_radius();
         let evaluate = |model: &Model, grid| model.evaluate(&design, grid);
         let reference = evaluate(&model, GridChoice::Reference);
         let plain = |model: &Model| plain_search(model, &design).radius;

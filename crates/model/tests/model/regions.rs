@@ -186,7 +186,7 @@ fn bars_for_a_region_hold_on_its_grid_and_not_with_less() {
         let thinner = |leg: f64, platform: f64| {
             let [base, radius, link, rj, rp] = sized.values();
             let values = [base, radius, link, rj * leg, rp * platform];
-            Design::new(sized.architecture, sized.working_mode, values).expect("a design")
+            Design::new(sized.architecture(), sized.working_mode(), values).expect("a design")
         };
         let less = thinner(1.0 - 1e-7, 1.0 - 1e-7);
         assert!(!model.evaluate(&less, GridChoice::Reference).is_feasible(), "{sized}");
@@ -227,8 +227,8 @@ fn the_lightest_pair_of_two_lists_is_the_one_found_by_trying_all() {
         for &leg in &radii {
             for &bar in &radii {
                 let pair = Design::new(
-                    design.architecture,
-                    design.working_mode,
+                    design.architecture(),
+                    design.working_mode(),
                     [base, platform, link, leg, bar],
                 );
                 let found = model.evaluate(&pair.expect("a design"), GridChoice::Reference);
@@ -296,7 +296,7 @@ fn the_scale_of_a_sized_geometry_is_the_lightest() {
         let found = model.evaluate(&sized, GridChoice::Reference);
         assert!(found.is_feasible(), "{sized}: {}", found.violation);
         let [base, platform, link, ..] = design.values();
-        let factor = sized.base_radius / base;
+        let factor = sized.base_radius() / base;
         for (k, value) in [platform, link].into_iter().enumerate() {
             assert!(
                 (sized.values()[k + 1] / value / factor - 1.0).abs() < 1e-12,
@@ -306,7 +306,7 @@ fn the_scale_of_a_sized_geometry_is_the_lightest() {
         for step in -40..=60 {
             let factor = factor * (1.0 + 2e-3 * f64::from(step));
             let values = [base * factor, platform * factor, link * factor, 0.02, 0.02];
-            let similar = Design::new(design.architecture, design.working_mode, values).expect("a design");
+            let similar = Design::new(design.architecture(), design.working_mode(), values).expect("a design");
             let Some(other) = model.sized(&similar, &RANGES, target) else {
                 continue;
             };

@@ -36,7 +36,7 @@ fn plain_in(model: &Model, design: &Design, form: Form) -> PlainWorkspace {
     plain(
         |rotation| evaluator.arms(rotation),
         model.sampling(GridChoice::Reference),
-        design.base_radius,
+        design.base_radius(),
         good,
     )
 }
@@ -48,7 +48,7 @@ pub fn plain_search(model: &Model, design: &Design) -> PlainWorkspace {
 /// Compares with the definition evaluated with the same form: the radius and the home orientation, which is the first
 /// of several with equal radius, must agree to the bit.
 fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
-    let grid = &model.reference_grid;
+    let grid = &model.settings().reference_grid;
     let wanted = plain_in(model, design, Form::Reduced);
     let first = wanted
         .windows
@@ -94,7 +94,7 @@ fn same(model: &Model, design: &Design) -> Result<(), String> {
         ));
     }
     if let Some(phi_deg) = found.home_phi_deg {
-        let home = (phi_deg / model.reference_grid.phi_step_deg()).round() as usize;
+        let home = (phi_deg / model.settings().reference_grid.phi_step_deg()).round() as usize;
         if !close(wanted.windows[home]) {
             return Err(format!(
                 "{design}: at {phi_deg}° the radius is {}",
@@ -198,7 +198,7 @@ proptest! {
         let wanted = plain_in(&paper, &design, Form::Reduced).windows[home];
         let model = model(|settings| settings.workspace.home_phi_deg = Some(home as f64 * 2.5));
         let found = model.evaluate(&design, GridChoice::Reference);
-        prop_assume!(design.link_length + design.platform_radius >= 0.5 * design.base_radius);
+        prop_assume!(design.link_length() + design.platform_radius() >= 0.5 * design.base_radius());
         prop_assert_eq!(found.workspace_radius(), wanted);
     }
 
@@ -337,7 +337,7 @@ fn a_disc_of_many_base_radii_is_searched() {
     let design: Design = "3-RRR R=0.001 r=1 Lb=1 rj=0.1 rp=0.1".parse().expect("a design");
     let found = Model::default().evaluate(&design, GridChoice::Reference);
     assert!(
-        found.workspace_radius() > 100.0 * design.base_radius,
+        found.workspace_radius() > 100.0 * design.base_radius(),
         "{}",
         found.workspace_radius()
     );

@@ -29,11 +29,11 @@ fn model_with(sections: CrossSections) -> Model {
 }
 
 fn joint_form(model: &Model, design: &Design, pose: &Pose) -> nalgebra::Matrix6<f64> {
-    let posture = Manipulator::<AnyLeg>::new(design, &model.legs)
+    let posture = Manipulator::<AnyLeg>::new(design, &model.settings().legs)
         .posture(pose)
         .expect("reachable");
     let stiffness = model.stiffness(design).expect("stiff");
-    joint_model::stiffness(&stiffness, design.architecture, &posture).expect("regular")
+    joint_model::stiffness(&stiffness, design.architecture(), &posture).expect("regular")
 }
 
 #[test]
@@ -181,7 +181,7 @@ proptest! {
         prop_assume!(found.iter().all(Result::is_ok));
         let [inside, found] = found.map(|report| report.map_or(f64::NAN, |report| report.nearest.distance));
         // The radii of two sliders are the largest.
-        let radii = 3.0 * design.leg_bar_radius.max(design.platform_bar_radius);
+        let radii = 3.0 * design.leg_bar_radius().max(design.platform_bar_radius());
         prop_assert!(found <= inside + 1e-12, "{found} > {inside}");
         prop_assert!(found >= inside - (2f64.sqrt() - 1.0) * radii - 1e-12, "{found} << {inside}");
     }

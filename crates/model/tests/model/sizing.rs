@@ -1,7 +1,7 @@
 //! Compares the lightest bars for a geometry with evaluations and an exhaustive search.
 
 use kinefront_model::evaluation::{GridChoice, Model, SizingRanges, WorkspaceTarget};
-use kinefront_model::mechanism::{Design, WorkingMode};
+use kinefront_model::mechanism::{Design, DesignVariable, WorkingMode};
 use proptest::prelude::*;
 
 use crate::strategies::{applicable_cases, design};
@@ -16,6 +16,12 @@ const RANGES: SizingRanges = SizingRanges {
 
 fn sized(model: &Model, design: &Design, target: WorkspaceTarget) -> Option<Design> {
     model.sized(design, &RANGES, target)
+}
+
+fn with_bars(design: &Design, [leg, platform]: [f64; 2]) -> Design {
+    let with_leg = design.with(DesignVariable::LegBarRadius, leg);
+    let with_both = with_leg.and_then(|design| design.with(DesignVariable::PlatformBarRadius, platform));
+    with_both.expect("a design")
 }
 
 fn radius(model: &Model, design: &Design) -> f64 {
@@ -42,12 +48,8 @@ fn no_lighter_pair_of_radii_is_found_by_trying_all() {
         // r_j ranges from three times thinner to three times thicker; for each r_j, bisection finds the lightest r_p.
         let lightest = (-20..=20)
             .filter_map(|k| {
-                let leg = found.leg_bar_radius * 3f64.powf(f64::from(k) / 20.0);
-                let with = |platform: f64| Design {
-                    leg_bar_radius: leg,
-                    platform_bar_radius: platform,
-                    ..found
-                };
+                let leg = found.leg_bar_radius() * 3f64.powf(f64::from(k) / 20.0);
+                let with = |platform: f64| with_bars(&found, [leg, platform]);
                 let (mut short, mut enough) = (1e-4, 0.1);
                 if radius(&model, &with(enough)) < reached {
                     return None;
@@ -90,10 +92,7 @@ fn what_cannot_be_had_is_none() {
     };
     let found = model.sized(&design, &thin, WorkspaceTarget::Radius(1.0));
     assert_eq!(found, None, "the ranges of the bars do not allow the radius");
-    let apart = Design {
-        base_radius: 8.0,
-        ..design
-    };
+    let apart = design.with(DesignVariable::BaseRadius, 8.0).expect("a design");
     assert_eq!(
         sized(&model, &apart, WorkspaceTarget::Largest),
         None,
@@ -109,10 +108,7 @@ fn what_cannot_be_had_is_none() {
         settings.workspace.centre = glam::DVec2::new(0.1, -0.05);
         settings.workspace.home_phi_deg = Some(30.0);
     });
-    let design = Design {
-        working_mode: WorkingMode::new([true, true, false]),
-        ..design
-    };
+    let design = design.with_working_mode(WorkingMode::new([true, true, false]));
     let found = sized(&model, &design, WorkspaceTarget::Largest).expect("bars");
     assert!(radius(&model, &found) > 0.0);
 }
@@ -124,15 +120,15 @@ proptest! {
     #[test]
     fn sized_designs_hold_what_they_were_sized_for(design in design(0.0)) {
         let model = Model::default();
-        let strongest = Design { leg_bar_radius: 0.1, platform_bar_radius: 0.1, ..design };
+        let strongest = with_bars(&design, [0.1; 2]);
         let found = sized(&model, &design, WorkspaceTarget::Largest)
             .ok_or_else(|| TestCaseError::reject("the geometry cannot be sized"))?;
-        for bar in [found.leg_bar_radius, found.platform_bar_radius] {
+        for bar in [found.leg_bar_radius(), found.platform_bar_radius()] {
             prop_assert!(bar.is_finite() && bar > 0.0 && bar <= 0.1);
         }
         let (reached, most) = (radius(&model, &found), radius(&model, &strongest));
         prop_assert!(model.mass(&found) <= model.mass(&strongest) * (1.0 + 1e-12));
         // Narrow regions between the sampled poses reduce the radius of a few designs.
-        prop_assert!(reached > 0.0 || most < 0.05 * design.base_radius, "{} of {}", reached, most);
+        prop_assert!(reached > 0.0 || most < 0.05 * design.base_radius(), "{} of {}", reached, most);
     }
 }

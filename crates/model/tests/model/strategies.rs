@@ -46,7 +46,7 @@ pub fn with_variables(design: Design, values: [f64; 4]) -> Design {
     let given = FURTHER_VARIABLES
         .into_iter()
         .zip(values)
-        .filter(|(variable, _)| design.architecture.has(*variable));
+        .filter(|(variable, _)| design.architecture().has(*variable));
     given.fold(design, |design, (variable, value)| {
         design.with(variable, value).expect("a valid value")
     })

@@ -16,7 +16,7 @@ pub(super) fn clearance(report: &Report) -> Markup {
     };
     html! {
         p {
-            @match model.thresholds.get(PoseScalar::Clearance) {
+            @match model.settings().thresholds.get(PoseScalar::Clearance) {
                 Some(least) => {
                     "The study requires a clearance of at least " (short(1e3 * least)) " mm between members that are "
                     "not joined, over the whole regular workspace (g7)."

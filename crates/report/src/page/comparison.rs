@@ -79,7 +79,7 @@ pub(super) fn comparison(report: &Report) -> Markup {
                             None => "–",
                         } }
                     }
-                    td { @if let Some(best) = question.best_at(&fronts.together, level) { (text::architecture(best.design.architecture)) } }
+                    td { @if let Some(best) = question.best_at(&fronts.together, level) { (text::architecture(best.design.architecture())) } }
                 }
             } }
         } }
@@ -88,7 +88,7 @@ pub(super) fn comparison(report: &Report) -> Markup {
 
 /// States what rails weigh and how they bend, where only some of the architectures have them.
 fn rails(report: &Report, fractions: &[(Architecture, f64)]) -> Markup {
-    let rails_are_rigid = report.model.rails.is_none();
+    let rails_are_rigid = report.model.settings().rails.is_none();
     let is_on_rails = |architecture: &Architecture| architecture.chain().is_on_rails();
     let architectures = fractions.iter().map(|(architecture, _)| *architecture);
     let (on_rails, others): (Vec<Architecture>, Vec<Architecture>) = architectures.partition(is_on_rails);

@@ -9,8 +9,8 @@ use kinefront_model::workspace::Region;
 
 /// Shows at which designs each constraint is active.
 pub(super) fn constraints(report: &Report) -> Markup {
-    let required: Vec<Constraint> = Constraint::required(&report.model.thresholds).collect();
-    let is_prescribed = report.model.workspace.region != Region::Largest;
+    let required: Vec<Constraint> = Constraint::required(&report.model.settings().thresholds).collect();
+    let is_prescribed = report.model.settings().workspace.region != Region::Largest;
     html! {
         p {
             @if is_prescribed {

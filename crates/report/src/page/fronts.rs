@@ -99,7 +99,7 @@ fn designs(report: &Report) -> Markup {
                 th { "active constraints and limits" }
             } }
             tbody { @for member in listed { tr {
-                td { (member.design.architecture) }
+                td { (member.design.architecture()) }
                 @for value in member.design.values() { (cell(value)) }
                 @for k in 0..question.objectives.len() { (cell(question.value(k, member))) }
                 @for quantity in &others { (optional(member.quantities.get(*quantity))) }

@@ -45,7 +45,7 @@ pub(super) fn made(report: &Report) -> Markup {
             thead { tr { th { "architecture" } th { "actuator" } th { "leg" } th { "platform" } } }
             tbody { @for (architecture, _) in &report.fronts.alone { tr {
                 td { (text::architecture(*architecture)) } td { (actuator(*architecture)) }
-                td { (bars(*architecture, report.model.rails.is_some())) } td { "bar of length r and radius r_p: 6 springs" }
+                td { (bars(*architecture, report.model.settings().rails.is_some())) } td { "bar of length r and radius r_p: 6 springs" }
             } } }
         } }
         details {

@@ -42,7 +42,7 @@ pub(super) fn asked(report: &Report) -> Markup {
 
 /// States the region over which every pose must be feasible.
 fn region(report: &Report) -> String {
-    let spec = &report.model.workspace;
+    let spec = &report.model.settings().workspace;
     let range = short(spec.rotation_range_deg);
     let of_region = match &spec.region {
         Region::Largest => "the largest disc that each design allows".to_owned(),

@@ -25,7 +25,7 @@ pub(super) fn references(report: &Report) -> Markup {
     let row = |reference: &EvaluatedReference| {
         let design = &reference.fine.design;
         html! { tr {
-            td { (reference.stated.name) } td { (design.architecture) }
+            td { (reference.stated.name) } td { (design.architecture()) }
             @for value in design.values() { (cell(value)) }
             @for quantity in &quantities {
                 @if is_stated(quantity) { (optional(reference.stated(*quantity))) }
@@ -78,7 +78,7 @@ fn better(report: &Report) -> Markup {
                 td { (reference.stated.name) } (cell(of_reference)) td { "→" }
                 @match &reference.better {
                     Some(found) => {
-                        td { (found.design.architecture) }
+                        td { (found.design.architecture()) }
                         @for value in found.design.values() { (cell(value)) }
                         @for k in 0..count { (cell(question.value(k, found))) }
                         td.number { (percent(question.value(0, found) / of_reference)) }

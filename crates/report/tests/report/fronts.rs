@@ -102,7 +102,7 @@ fn a_front_with_clearance_has_no_overlap_on_a_million_poses() {
             assert!(clearance(member) >= least);
             let mut random = ChaCha8Rng::seed_from_u64(index as u64);
             let home = member.home.expect("feasible");
-            let half_turn = 0.5 * model.workspace.rotation_range_deg.to_radians();
+            let half_turn = 0.5 * model.settings().workspace.rotation_range_deg.to_radians();
             let drawn = (0..each).map(|_| {
                 let radius = member.workspace_radius() * between(&mut random, 0.0, 1.0).sqrt();
                 let angle = between(&mut random, 0.0, std::f64::consts::TAU);

@@ -67,18 +67,18 @@ fn fronts_are_what_they_are_called() {
             assert!(pair[0].mass() < pair[1].mass() && pair[0].workspace_radius() < pair[1].workspace_radius());
         }
         for member in &front.members {
-            assert_eq!(member.design.architecture, *architecture);
+            assert_eq!(member.design.architecture(), *architecture);
             let best = fronts.together.best_with(&member.objectives[1..]).expect("one is");
             assert!(best.mass() <= member.mass());
             // No design of the run dominates it.
             assert!(!source.rows.iter().any(|row| {
-                row.design.architecture == *architecture
+                row.design.architecture() == *architecture
                     && row.mass() < member.mass()
                     && row.workspace_radius() > member.workspace_radius()
             }));
         }
         let marks: Vec<String> = front
-            .marked(&problem.model().objectives)
+            .marked(&problem.model().settings().objectives)
             .into_iter()
             .map(|(mark, _)| mark)
             .collect();
@@ -94,7 +94,7 @@ fn fronts_are_what_they_are_called() {
         let middle = 0.5 * (from + to);
         // The ranges are determined on equally spaced radii, and their ends are among these.
         assert_eq!(
-            fronts.together.best_with(&[to]).map(|best| best.design.architecture),
+            fronts.together.best_with(&[to]).map(|best| best.design.architecture()),
             Some(architecture)
         );
         assert!(fronts.together.best_with(&[middle]).is_some());

@@ -77,7 +77,7 @@ fn count_operations(batch: &Batch) -> Operations {
                 .value(),
         );
     });
-    println!("{}: {counts:?}", batch.design.architecture);
+    println!("{}: {counts:?}", batch.design.architecture());
     counts
 }
 
@@ -127,12 +127,12 @@ fn poses_of(criterion: &mut Criterion, architecture: Architecture) {
     group.bench_function(BenchmarkId::new("general 6x6", architecture), |bencher| {
         bencher.iter(|| {
             for batch in &batches {
-                let manipulator = Manipulator::<AnyLeg>::new(&batch.design, &model.legs);
+                let manipulator = Manipulator::<AnyLeg>::new(&batch.design, &model.settings().legs);
                 let stiffness = model.stiffness(&batch.design).expect("stiff");
                 for k in 0..BATCH {
                     let position = DVec2::new(batch.xs[k], batch.ys[k]);
                     let posture = manipulator.posture_at(position, &batch.arms).expect("reachable");
-                    let condition = Jacobian::new(&posture).inverse_condition(batch.design.platform_radius);
+                    let condition = Jacobian::new(&posture).inverse_condition(batch.design.platform_radius());
                     black_box((condition, joint_model::stiffness(&stiffness, architecture, &posture)));
                 }
             }
@@ -177,17 +177,17 @@ fn poses(criterion: &mut Criterion) {
 /// Returns the workspace radius by its definition, ray by ray and one pose at a time, in the given form of the
 /// stiffness.
 fn plainly(model: &Model, design: &Design, general: bool) -> f64 {
-    let manipulator = Manipulator::<AnyLeg>::new(design, &model.legs);
+    let manipulator = Manipulator::<AnyLeg>::new(design, &model.settings().legs);
     let evaluator = model.pose_evaluator(design);
     let stiffness = model.stiffness(design);
-    let limit = |scalar| model.thresholds.get(scalar).expect("a limit of the paper");
+    let limit = |scalar| model.settings().thresholds.get(scalar).expect("a limit of the paper");
     let general_form = |position: DVec2, arms: &[DVec2; LEGS]| {
         let posture = manipulator.posture_at(position, arms).ok()?;
         let jacobian = Jacobian::new(&posture);
-        if jacobian.inverse_condition(design.platform_radius) < limit(PoseScalar::Dexterity) {
+        if jacobian.inverse_condition(design.platform_radius()) < limit(PoseScalar::Dexterity) {
             return None;
         }
-        let k = joint_model::stiffness(stiffness.as_ref()?, design.architecture, &posture)?;
+        let k = joint_model::stiffness(stiffness.as_ref()?, design.architecture(), &posture)?;
         let k_xy = smaller_eigenvalue(k[(0, 0)], k[(0, 1)], k[(1, 1)]);
         let stiff = k_xy >= limit(PoseScalar::StiffnessXy)
             && k[(2, 2)] >= limit(PoseScalar::StiffnessZ)
@@ -200,9 +200,9 @@ fn plainly(model: &Model, design: &Design, general: bool) -> f64 {
         model.sampling(GridChoice::Reference),
     );
     let found = if general {
-        plain(arms_at, sampling, design.base_radius, general_form)
+        plain(arms_at, sampling, design.base_radius(), general_form)
     } else {
-        plain(arms_at, sampling, design.base_radius, closed_form)
+        plain(arms_at, sampling, design.base_radius(), closed_form)
     };
     found.radius
 }

@@ -146,7 +146,10 @@ fn check_further_bounds(study: &Study, faults: &mut Vec<Fault>) {
 
 fn check_geometry(study: &Study, faults: &mut Vec<Fault>) {
     let geometry = Geometry::from(Arrangement::from(&study.geometry));
-    for (key, [lower, upper]) in [("geometry.rail", geometry.rail), ("geometry.guide", geometry.guide)] {
+    for (key, [lower, upper]) in [
+        ("geometry.rail", geometry.arrangement().rail),
+        ("geometry.guide", geometry.arrangement().guide),
+    ] {
         if lower >= upper {
             let message = format!("is [{lower}, {upper}]; the second share must be above the first");
             faults.push(Fault::new(key, message));

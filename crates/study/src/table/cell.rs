@@ -47,8 +47,8 @@ impl Column {
         match self {
             Self::Id => Cell::Integer(entry.id as u64),
             Self::Generation => Cell::Integer(u64::from(row.generation)),
-            Self::Architecture => Cell::Text(row.design.architecture.name().into()),
-            Self::WorkingMode => Cell::Text(row.design.working_mode.to_string().into()),
+            Self::Architecture => Cell::Text(row.design.architecture().name().into()),
+            Self::WorkingMode => Cell::Text(row.design.working_mode().to_string().into()),
             Self::Feasible => Cell::Flag(row.is_feasible()),
             Self::Active => {
                 let active: Vec<&str> = row.active.iter().map(Constraint::id).collect();

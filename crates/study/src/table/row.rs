@@ -139,7 +139,7 @@ impl Row {
     pub fn number(&self, column: Column) -> Option<f64> {
         match column {
             Column::Dimension(variable) => {
-                let has_it = self.design.architecture.has(variable);
+                let has_it = self.design.architecture().has(variable);
                 has_it.then(|| self.design.value(variable))
             }
             Column::HomePhi => self.phi,

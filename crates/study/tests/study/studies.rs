@@ -214,22 +214,22 @@ fn every_choice_reaches_the_model() {
     "#;
     let study = Study::parse(text, "choices").expect("a valid study");
     let model = study.model().expect("a model");
-    assert_eq!(model.actuators.prismatic, 2e7);
-    assert_eq!(model.thresholds.get(PoseScalar::StiffnessPhiZ), Some(5729.6));
-    assert_eq!(model.workspace.centre.to_array(), [0.1, 0.0]);
-    assert_eq!(model.workspace.home_phi_deg, Some(45.0));
-    assert_eq!(model.stiffness_definition, StiffnessDefinition::Compliance);
-    assert_eq!(model.characteristic_length, CharacteristicLength::Fixed(0.7));
-    assert_eq!(model.platform_bars, 1);
-    assert_eq!(model.legs.telescopic_bar, BarLength::Longest);
-    assert_eq!(model.legs.telescopic_shortest, 0.0);
-    assert_eq!(model.reference_grid.directions(), 24);
+    assert_eq!(model.settings().actuators.prismatic, 2e7);
+    assert_eq!(model.settings().thresholds.get(PoseScalar::StiffnessPhiZ), Some(5729.6));
+    assert_eq!(model.settings().workspace.centre.to_array(), [0.1, 0.0]);
+    assert_eq!(model.settings().workspace.home_phi_deg, Some(45.0));
+    assert_eq!(model.settings().stiffness_definition, StiffnessDefinition::Compliance);
+    assert_eq!(model.settings().characteristic_length, CharacteristicLength::Fixed(0.7));
+    assert_eq!(model.settings().platform_bars, 1);
+    assert_eq!(model.settings().legs.telescopic_bar, BarLength::Longest);
+    assert_eq!(model.settings().legs.telescopic_shortest, 0.0);
+    assert_eq!(model.settings().reference_grid.directions(), 24);
 
     let problem = DesignProblem::new(&study).expect("a problem");
     assert_eq!(problem.variables()[0], Variable::Categorical { choices: 2 });
     let design = problem.design(&[1.0, 2.0, 1.0, 2.0, 0.03, 0.04]).expect("a design");
-    assert_eq!(design.architecture.name(), "3-PRR");
-    assert_eq!(design.working_mode.signs(), [1, -1, 1]);
+    assert_eq!(design.architecture().name(), "3-PRR");
+    assert_eq!(design.working_mode().signs(), [1, -1, 1]);
 }
 
 /// Each setting changes what it is declared for: the model, the ranges of the variables, or the settings of the search.
@@ -279,10 +279,17 @@ fn every_setting_has_an_effect() {
                 assert_ne!(found, model, "{path} does not reach the model");
             }
             "requirements" => {
-                let mut plain = paper.model().expect("a model").thresholds;
-                plain.set(PoseScalar::Clearance, model.thresholds.get(PoseScalar::Clearance));
-                assert_ne!(found.thresholds, model.thresholds, "{path} does not reach the model");
-                assert_ne!(found.thresholds, plain, "{path} does not reach the model");
+                let mut plain = paper.model().expect("a model").settings().thresholds;
+                plain.set(
+                    PoseScalar::Clearance,
+                    model.settings().thresholds.get(PoseScalar::Clearance),
+                );
+                assert_ne!(
+                    found.settings().thresholds,
+                    model.settings().thresholds,
+                    "{path} does not reach the model"
+                );
+                assert_ne!(found.settings().thresholds, plain, "{path} does not reach the model");
             }
             "bounds" => {
                 let variables = DesignProblem::new(&changed).expect("a problem").variables();

@@ -129,7 +129,7 @@ impl SortKey {
             Self::Id => id as f64,
             Self::Architecture => session
                 .row(id)
-                .map_or(f64::NAN, |row| theme::index(row.design.architecture) as f64),
+                .map_or(f64::NAN, |row| theme::index(row.design.architecture()) as f64),
             Self::Number(quantity) => session.number(id, quantity).unwrap_or(f64::NAN),
         }
     }

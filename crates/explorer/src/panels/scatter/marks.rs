@@ -93,7 +93,7 @@ impl Scatter {
                 color.gamma_multiply(0.3)
             };
             let points = Points::new("", vec![self.place(&entry.row)]).radius(4.0).color(color);
-            let shape = theme::mark(entry.row.design.architecture);
+            let shape = theme::mark(entry.row.design.architecture());
             Some((points.shape(shape).allow_hover(false), None))
         };
         session.front().iter().filter_map(mark).collect()
@@ -109,7 +109,7 @@ impl Scatter {
             let points: Vec<[f64; 2]> = session
                 .front()
                 .iter()
-                .filter(|entry| entry.row.design.architecture == architecture)
+                .filter(|entry| entry.row.design.architecture() == architecture)
                 .filter(|entry| prepared.passes_entry(entry) == passes)
                 .map(|entry| self.place(&entry.row))
                 .collect();

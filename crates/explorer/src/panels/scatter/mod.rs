@@ -522,7 +522,7 @@ pub fn hover(ui: &mut Ui, id: usize, row: &Row, session: &Session) {
         .place_on_front(id)
         .is_some_and(|place| session.front()[place].verified);
     let grid = if verified { "fine grid" } else { "reference grid" };
-    ui.strong(format!("#{id}  {}", row.design.architecture));
+    ui.strong(format!("#{id}  {}", row.design.architecture()));
     let values = text::quantities(session.study().shown_quantities(), &row.quantities);
     ui.label(format!("{values} ({grid})"));
     let [base, platform, link, leg, bar] = row.design.values();

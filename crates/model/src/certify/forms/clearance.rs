@@ -47,20 +47,17 @@ pub(super) struct MemberBoxes {
 impl Separations {
     /// Returns `None` if the study requires no clearance.
     pub fn new(model: &Model, design: &Design) -> Option<Self> {
-        let clearance = Interval::exactly(model.thresholds.get(PoseScalar::Clearance)?);
+        let clearance = Interval::exactly(model.settings().thresholds.get(PoseScalar::Clearance)?);
         let exactly = Interval::exactly;
-        let bodies = &model.bodies;
-        let to_unit = exactly(1.0) / exactly(design.link_length);
-        let leg_bar = exactly(design.leg_bar_radius);
+        let bodies = &model.settings().bodies;
+        let to_unit = exactly(1.0) / exactly(design.link_length());
+        let leg_bar = exactly(design.leg_bar_radius());
         let half_length = exactly(0.5) * exactly(bodies.slider_length) * leg_bar;
         let half_axis = half_length - exactly(bodies.slider_half_width) * leg_bar;
         Some(Self {
-            settings: model.legs,
+            settings: model.settings().legs,
             to_unit,
-            slider: Interval {
-                lower: half_axis.lower.max(0.0),
-                upper: half_axis.upper.max(0.0),
-            } * to_unit,
+            slider: Interval::new(half_axis.lower().max(0.0), half_axis.upper().max(0.0)) * to_unit,
             from_rail_end: half_length + clearance,
             pairs: pairs(model, design, clearance),
         })
@@ -88,7 +85,7 @@ impl Separations {
             let anchor = difference(at_base, position);
             let MembersEnclosure { proximal, distal, rail } =
                 AnyLeg::enclose_members(frame, design, &self.settings, leg, anchor, tip);
-            boxes.axes[LEGS * PROXIMAL + index] = proximal.map(|axis| match design.architecture.chain().proximal {
+            boxes.axes[LEGS * PROXIMAL + index] = proximal.map(|axis| match design.architecture().chain().proximal {
                 Some(MemberKind::Slider) => {
                     let half = axis.direction.map(|part| part.scaled(self.slider));
                     let [centre, ..] = axis.points;
@@ -146,15 +143,18 @@ impl Separations {
 
 /// The pairs that their layers alone do not keep apart.
 fn pairs(model: &Model, design: &Design, clearance: Interval) -> Vec<SeparatedPair> {
-    let bodies = &model.bodies;
-    let (legs, platform) = (model.sections.legs.is_square(), model.sections.platform.is_square());
+    let bodies = &model.settings().bodies;
+    let (legs, platform) = (
+        model.settings().sections.legs.is_square(),
+        model.settings().sections.platform.is_square(),
+    );
     let are_square = [legs, legs, platform];
     let exactly = Interval::exactly;
-    let to_unit = exactly(1.0) / exactly(design.link_length);
-    let thicker = exactly(2.0) * exactly(design.leg_bar_radius.max(design.platform_bar_radius));
-    let kinds = kinds(design.architecture);
+    let to_unit = exactly(1.0) / exactly(design.link_length());
+    let thicker = exactly(2.0) * exactly(design.leg_bar_radius().max(design.platform_bar_radius()));
+    let kinds = kinds(design.architecture());
     let radius = |kind| match kind {
-        MemberKind::Slider => exactly(bodies.slider_half_width) * exactly(design.leg_bar_radius),
+        MemberKind::Slider => exactly(bodies.slider_half_width) * exactly(design.leg_bar_radius()),
         kind => exactly(bodies.radius(kind, design)),
     };
     let keep = |places: [usize; 2]| {
@@ -170,10 +170,10 @@ fn pairs(model: &Model, design: &Design, clearance: Interval) -> Vec<SeparatedPa
             distance.square() - layers.square()
         };
         let square = square * to_unit.square();
-        (distance.upper > 0.0 && square.upper > 0.0).then(|| SeparatedPair {
+        (distance.upper() > 0.0 && square.upper() > 0.0).then(|| SeparatedPair {
             places,
             square,
-            distance: exactly(square.upper).sqrt().upper,
+            distance: exactly(square.upper()).sqrt().upper(),
         })
     };
     pairs_not_joined(kinds).filter_map(keep).collect()
@@ -182,19 +182,13 @@ fn pairs(model: &Model, design: &Design, clearance: Interval) -> Vec<SeparatedPa
 /// The square of the distance that the axes of two prisms must keep in the plane; `None` if their layers alone keep the clearance.
 fn between_prisms(radii: Interval, layers: Interval, clearance: Interval) -> Option<Interval> {
     let apart = layers.square().sqrt() - radii;
-    if apart.lower >= clearance.upper {
+    if apart.lower() >= clearance.upper() {
         return None;
     }
     // Where the layers overlap, nothing of the clearance is kept by them.
-    let kept = Interval {
-        lower: apart.lower.max(0.0),
-        upper: apart.upper.max(0.0),
-    };
+    let kept = Interval::new(apart.lower().max(0.0), apart.upper().max(0.0));
     let left = clearance.square() - kept.square();
-    let left = Interval {
-        lower: left.lower.max(0.0),
-        upper: left.upper.max(0.0),
-    };
+    let left = Interval::new(left.lower().max(0.0), left.upper().max(0.0));
     Some((radii + left.sqrt()).square())
 }
 

@@ -141,13 +141,13 @@ pub(super) struct Forms<'a> {
 impl<'a> Forms<'a> {
     /// Prepares the forms of a design; the sign of `det A` counts as positive.
     pub fn new(model: &'a Model, design: &'a Design) -> Result<Self, CertifyError> {
-        let frames = [0, 1, 2].map(|index| LegFrameEnclosure::new(design, &model.legs.geometry, index));
+        let frames = [0, 1, 2].map(|index| LegFrameEnclosure::new(design, &model.settings().legs.geometry, index));
         Ok(Self {
             sign: 1.0,
             design,
             model,
             compliance: Compliances::new(model, design)?,
-            to_length: Interval::exactly(design.platform_radius) / characteristic_length(model, design, &frames),
+            to_length: Interval::exactly(design.platform_radius()) / characteristic_length(model, design, &frames),
             separations: Separations::new(model, design),
             frames,
         })
@@ -209,7 +209,7 @@ impl<'a> Forms<'a> {
 
     /// The limit of a scalar; 0 without one.
     fn limit(&self, scalar: PoseScalar) -> f64 {
-        self.model.thresholds.get(scalar).unwrap_or(0.0)
+        self.model.settings().thresholds.get(scalar).unwrap_or(0.0)
     }
 
     /// The constraint that keeps poses away from singularities: g3, or the sign of `det A` if g3 has no threshold.
@@ -257,7 +257,7 @@ fn enclose_legs(
     frames: &[LegFrameEnclosure; LEGS],
     pose: &PoseEnclosure,
 ) -> [LegEnclosure; LEGS] {
-    let leg = |index: usize| AnyLeg::enclose(&frames[index], design, &model.legs, pose);
+    let leg = |index: usize| AnyLeg::enclose(&frames[index], design, &model.settings().legs, pose);
     [leg(0), leg(1), leg(2)]
 }
 
@@ -277,14 +277,14 @@ fn turn(legs: &[LegEnclosure; LEGS], i: usize) -> TaylorModel {
 /// The isotropic length is the largest of a finite set: the moments at the orientations of the reference grid with `P` at `O`. An
 /// orientation of which it is not known whether it is reached may or may not count.
 fn characteristic_length(model: &Model, design: &Design, frames: &[LegFrameEnclosure; LEGS]) -> Interval {
-    let platform = Interval::exactly(design.platform_radius);
-    match model.characteristic_length {
+    let platform = Interval::exactly(design.platform_radius());
+    match model.settings().characteristic_length {
         CharacteristicLength::PlatformRadius => platform,
         CharacteristicLength::Fixed(length) => Interval::exactly(length),
         CharacteristicLength::Isotropic => {
-            let grid = &model.reference_grid;
+            let grid = &model.settings().reference_grid;
             // The largest moment of the orientations that are reached for certain, and of all that may be.
-            let (mut certain, mut possible) = (Interval::exactly(0.0), Interval::exactly(0.0));
+            let ([mut certain_least, mut certain_largest], mut possible) = ([0.0_f64; 2], 0.0_f64);
             let mut is_certain = false;
             for k in 0..grid.orientations() {
                 let phi = Interval::radians(k as f64 * grid.phi_step_deg());
@@ -301,28 +301,25 @@ fn characteristic_length(model: &Model, design: &Design, frames: &[LegFrameEnclo
                         return Interval::exactly(f64::NAN);
                     }
                     let (least, largest) = (lower.max(-upper).max(0.0), upper.max(-lower));
-                    possible.upper = possible.upper.max(largest);
+                    possible = possible.max(largest);
                     if is_reached {
-                        certain.lower = certain.lower.max(least);
-                        certain.upper = certain.upper.max(largest);
+                        certain_least = certain_least.max(least);
+                        certain_largest = certain_largest.max(largest);
                     }
                 }
             }
             let to_length = Interval::exactly(2.0).sqrt() * platform;
-            let largest = Interval {
-                lower: certain.lower,
-                upper: certain.upper.max(possible.upper),
-            } * to_length;
-            if is_certain && largest.lower > 0.0 {
+            let largest = Interval::new(certain_least, certain_largest.max(possible)) * to_length;
+            if is_certain && largest.lower() > 0.0 {
                 largest
-            } else if possible.upper == 0.0 {
+            } else if possible == 0.0 {
                 platform
             } else {
                 // It may also be that no orientation is reached, for which the length is r.
-                Interval {
-                    lower: platform.lower.min(largest.lower),
-                    upper: platform.upper.max(largest.upper),
-                }
+                Interval::new(
+                    platform.lower().min(largest.lower()),
+                    platform.upper().max(largest.upper()),
+                )
             }
         }
     }

@@ -31,8 +31,8 @@ impl RailCompliances {
     /// Returns the compliances of a design on rails that bend; the units are those along a line and of bending.
     pub fn new(model: &Model, design: &Design, [along, bend]: [Interval; 2]) -> Option<Self> {
         let rails = model.rails_of(design)?;
-        let [_, bending, torsion] = per_length(&model.material, &rails.section, rails.radius);
-        let link = Interval::exactly(design.link_length);
+        let [_, bending, torsion] = per_length(&model.settings().material, &rails.section, rails.radius);
+        let link = Interval::exactly(design.link_length());
         Some(Self {
             supports: rails.supports,
             in_plane: bending * link * link.square() / along,
@@ -51,7 +51,7 @@ impl RailCompliances {
                 let span = length / Interval::exactly(f64::from(spans));
                 let support = |index: u32| span * Interval::exactly(f64::from(index));
                 let [least, most] = from_start.range();
-                let touches = |index: &u32| support(*index).lower <= most && support(index + 1).upper >= least;
+                let touches = |index: &u32| support(*index).lower() <= most && support(index + 1).upper() >= least;
                 let touched: Vec<u32> = (0..spans).filter(touches).collect();
                 if let [index] = touched[..] {
                     let before = TaylorModel::constant(support(index));
@@ -96,10 +96,10 @@ fn at_supports(touched: &[u32], [least, most]: [f64; 2], span: Interval) -> Rail
     let mut hull: Option<[[f64; 2]; 4]> = None;
     for &index in touched {
         let before = span * Interval::exactly(f64::from(index));
-        let a = Interval {
-            lower: (Interval::exactly(least) - before).lower.max(0.0),
-            upper: (Interval::exactly(most) - before).upper.min(span.upper),
-        };
+        let a = Interval::new(
+            (Interval::exactly(least) - before).lower().max(0.0),
+            (Interval::exactly(most) - before).upper().min(span.upper()),
+        );
         let (middle, radius) = a.middle_and_radius();
         let a = TaylorModel::variable(0, middle, radius);
         let forms = clamped([a, TaylorModel::constant(span) - a], span);
@@ -109,10 +109,7 @@ fn at_supports(touched: &[u32], [least, most]: [f64; 2], span: Interval) -> Rail
         }));
     }
     let enclose = |k: usize| match hull {
-        Some(hull) => TaylorModel::constant(Interval {
-            lower: hull[k][0],
-            upper: hull[k][1],
-        }),
+        Some(hull) => TaylorModel::constant(Interval::new(hull[k][0], hull[k][1])),
         None => TaylorModel::exactly(f64::NAN),
     };
     RailForms {

@@ -22,7 +22,7 @@ struct AlongLines {
 impl Forms<'_> {
     /// g4, g5 and g6, as the study defines the stiffness values.
     pub(super) fn enclose_stiffness(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
-        let definition = self.model.stiffness_definition;
+        let definition = self.model.settings().stiffness_definition;
         if self.is_required(Constraint::StiffnessXy, found) || self.is_required(Constraint::StiffnessPhiZ, found) {
             let one = [0, 1, 2].map(|i| self.along_line(&legs[i], i));
             let pairs = [one[1] * one[2], one[2] * one[0], one[0] * one[1]];

@@ -102,7 +102,7 @@ impl<L: Leg> Sizer<'_, L> {
     fn largest(&mut self, candidates: &[usize]) -> Option<f64> {
         let mut candidates = candidates.to_vec();
         let (mut good, mut bad) = (0.0, None);
-        let mut radius = self.design.base_radius / 8.0;
+        let mut radius = self.design.base_radius() / 8.0;
         let mut halvings = 0;
         while halvings < HALVINGS && !candidates.is_empty() {
             let signs = self.ring(radius, &candidates);

@@ -43,8 +43,8 @@ impl Model {
     /// that sizing may change its scale.
     pub fn is_free_of_scale(&self) -> bool {
         let is_length = |scalar: PoseScalar| scalar.entry().margin == MarginUnit::BaseRadius;
-        !self.thresholds.iter().any(|(scalar, _)| is_length(scalar))
-            && !matches!(self.characteristic_length, CharacteristicLength::Fixed(_))
+        !self.settings().thresholds.iter().any(|(scalar, _)| is_length(scalar))
+            && !matches!(self.settings().characteristic_length, CharacteristicLength::Fixed(_))
     }
 }
 
@@ -60,7 +60,7 @@ impl<'a, L: Leg> Growth<'a, L> {
         let orientation_grid = *sampling.orientation_grid();
         Self {
             orientation_grid,
-            margins: RegionMargins::new(checker, sampling, design.base_radius, model.is_symmetric(design)),
+            margins: RegionMargins::new(checker, sampling, design.base_radius(), model.is_symmetric(design)),
             signs: vec![None; orientation_grid.count],
         }
     }

@@ -66,7 +66,7 @@ impl Model {
             WorkspaceTarget::Prescribed(grid) => grid,
             WorkspaceTarget::Radius(_) | WorkspaceTarget::Largest => GridChoice::Reference,
         };
-        with_leg!(design.architecture, L => {
+        with_leg!(design.architecture(), L => {
             let mut sizer = Sizer::<L>::new(self, design, ranges, grid);
             sizer.set_bars([ranges.leg[1], ranges.platform[1]]);
             match target {

@@ -50,9 +50,9 @@ const HOMES: usize = 4;
 impl<L: Leg> Sizer<'_, L> {
     /// Lays out the region as the evaluation examines it.
     pub(super) fn samples(&mut self, grid_choice: GridChoice) -> RegionPositions {
-        let spec = &self.model.workspace;
+        let spec = &self.model.settings().workspace;
         let grid = self.model.sampling(grid_choice).grid();
-        let step = self.design.base_radius / grid.ray_steps() as f64;
+        let step = self.design.base_radius() / grid.ray_steps() as f64;
         let symmetric = self.sectors == 1 && matches!(spec.region, crate::workspace::Region::Disc(_));
         self.shape = Shape::Sampled;
         spec.region
@@ -113,7 +113,7 @@ impl<L: Leg> Sizer<'_, L> {
     fn best_home(&self, design: &Design, grid: GridChoice) -> (usize, f64) {
         let sampling = self.model.sampling(grid);
         let checker = self.model.checker::<L>(design);
-        let (found, margin) = search_prescribed(&checker, sampling, design.base_radius, self.sectors == 1);
+        let (found, margin) = search_prescribed(&checker, sampling, design.base_radius(), self.sectors == 1);
         (found.home.unwrap_or(0), margin)
     }
 
@@ -129,7 +129,7 @@ impl<L: Leg> Sizer<'_, L> {
             }
         }
         self.lay_positions(positions, &window);
-        let own = [self.design.leg_bar_radius, self.design.platform_bar_radius];
+        let own = [self.design.leg_bar_radius(), self.design.platform_bar_radius()];
         let mut near = near_weakest(&self.ratios_at_all(own), how.near);
         let everything = std::mem::take(&mut self.laid);
         for _ in 0..how.repeats {

@@ -69,7 +69,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
     /// Returns the radii of the lightest bars for the poses that are laid out.
     pub fn lightest_bars(&mut self, accuracy: SizingAccuracy) -> Option<[f64; 2]> {
         let problem = SizingProblem {
-            start: [self.design.leg_bar_radius, self.design.platform_bar_radius],
+            start: [self.design.leg_bar_radius(), self.design.platform_bar_radius()],
             ranges: [self.ranges.leg, self.ranges.platform],
             mass: self.bar_masses(),
             accuracy,
@@ -80,28 +80,24 @@ impl<'a, L: Leg> Sizer<'a, L> {
 
     fn bar_masses(&self) -> [BarMass; 2] {
         let unit = self.with_bars([1.0, 1.0]);
-        let sections = &self.model.sections;
+        let sections = &self.model.settings().sections;
         let squared = [self.model.leg_bars_mass(&unit), self.model.platform_mass(&unit)];
         let legs = LEGS as f64 * self.design.leg_bars_length();
-        let mean = self.model.legs.geometry.mean_platform_radius();
-        let platform = f64::from(self.model.platform_bars) * mean * self.design.platform_radius;
+        let mean = self.model.settings().legs.geometry.mean_platform_radius();
+        let platform = f64::from(self.model.settings().platform_bars) * mean * self.design.platform_radius();
         let lengths = [legs, platform];
         [0, 1].map(|k| {
             let section = [&sections.legs, &sections.platform][k];
             if section.is_scaled_by_its_radius() {
                 BarMass::Squared(squared[k])
             } else {
-                BarMass::Of(section.clone(), self.model.material.density, lengths[k])
+                BarMass::Of(section.clone(), self.model.settings().material.density, lengths[k])
             }
         })
     }
 
-    pub fn with_bars(&self, [leg, platform]: [f64; 2]) -> Design {
-        Design {
-            leg_bar_radius: leg,
-            platform_bar_radius: platform,
-            ..self.design
-        }
+    pub fn with_bars(&self, bars: [f64; 2]) -> Design {
+        self.design.with_bars(bars)
     }
 
     /// Runs `look` without the requirement of a clearance: the stiffness ratios do not depend on it.
@@ -119,14 +115,14 @@ impl<'a, L: Leg> Sizer<'a, L> {
     }
 
     pub fn position(&self, radius: f64, angle: f64) -> DVec2 {
-        self.model.workspace.centre + unit(angle) * radius
+        self.model.settings().workspace.centre + unit(angle) * radius
     }
 
     /// Returns the position of a place in the region.
     pub fn position_of(&self, [first, second]: [f64; 2]) -> DVec2 {
         match self.shape {
             Shape::Disc(_) => self.position(first, second),
-            Shape::Sampled => self.model.workspace.centre + DVec2::new(first, second),
+            Shape::Sampled => self.model.settings().workspace.centre + DVec2::new(first, second),
         }
     }
 
@@ -158,7 +154,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
 
     /// Lays out positions relative to the centre in the given orientations.
     pub fn lay_positions(&mut self, positions: &[DVec2], orientations: &[usize]) {
-        let centre = self.model.workspace.centre;
+        let centre = self.model.settings().workspace.centre;
         let positions: Vec<DVec2> = positions.iter().map(|position| *position + centre).collect();
         self.laid.clear();
         for &orientation in orientations {
@@ -200,7 +196,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
     /// Sorts home orientations by the ratios of their windows at the poses that are laid out, `count` for each of `orientations`: the
     /// one that is stiffest with the design's own bars comes first.
     pub fn stiffest_first(&mut self, homes: Vec<usize>, count: usize, orientations: &[usize]) -> Vec<usize> {
-        let ratios = self.ratios_at_all([self.design.leg_bar_radius, self.design.platform_bar_radius]);
+        let ratios = self.ratios_at_all([self.design.leg_bar_radius(), self.design.platform_bar_radius()]);
         let mut weakest = vec![f64::INFINITY; self.arms.len()];
         for (&orientation, first) in orientations.iter().zip((0..).step_by(count)) {
             let poses = ratios.iter().flat_map(|column| &column[first..first + count]);

@@ -121,8 +121,8 @@ fn guide_ends(joint: DVec2, direction: DVec2, [lower, upper]: [f64; 2]) -> [DVec
 /// Encloses the axis of a guide from a joint, with its travel in the unit of lengths.
 fn enclosed_guide(joint: PlanarModel, direction: PlanarModel, travel: [Interval; 2]) -> AxisEnclosure {
     let zero = Interval::exactly(0.0);
-    let from = if travel[0].lower < 0.0 { travel[0] } else { zero };
-    let to = if travel[1].upper > 0.0 { travel[1] } else { zero };
+    let from = if travel[0].lower() < 0.0 { travel[0] } else { zero };
+    let to = if travel[1].upper() > 0.0 { travel[1] } else { zero };
     let at = |way: Interval| [0, 1].map(|k| joint[k] + direction[k].scaled(way));
     AxisEnclosure::between(at(from), at(to), direction)
 }
@@ -207,10 +207,7 @@ fn absolute(value: TaylorModel) -> TaylorModel {
     } else {
         upper.max(-lower)
     };
-    TaylorModel::constant(Interval {
-        lower: 0.0,
-        upper: largest,
-    })
+    TaylorModel::constant(Interval::new(0.0, largest))
 }
 
 /// Returns a revolute joint.

@@ -43,8 +43,8 @@ impl Chain for PprChain {
         Self {
             guide: Rotation::by(frame.between_guides).apply(frame.rail),
             frame,
-            length: design.link_length,
-            travel: settings.geometry.travel(design.link_length),
+            length: design.link_length(),
+            travel: settings.geometry.travel(design.link_length()),
         }
     }
 

@@ -40,8 +40,8 @@ impl Chain for PrpChain {
     fn new(frame: LegFrame, design: &Design, settings: &LegSettings) -> Self {
         Self {
             frame,
-            guide: design.link_length,
-            travel: settings.geometry.travel(design.link_length),
+            guide: design.link_length(),
+            travel: settings.geometry.travel(design.link_length()),
         }
     }
 

@@ -37,7 +37,7 @@ impl Chain for PrrChain {
     fn new(frame: LegFrame, design: &Design, _: &LegSettings) -> Self {
         Self {
             frame,
-            link: design.link_length,
+            link: design.link_length(),
         }
     }
 

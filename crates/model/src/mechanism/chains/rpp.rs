@@ -53,7 +53,7 @@ impl Chain for RppChain {
     };
 
     fn new(frame: LegFrame, design: &Design, settings: &LegSettings) -> Self {
-        let lengths = [design.proximal_length, design.link_length];
+        let lengths = [design.proximal_length(), design.link_length()];
         Self {
             frame,
             lengths,

@@ -44,8 +44,8 @@ impl Chain for RprChain {
     fn new(frame: LegFrame, design: &Design, settings: &LegSettings) -> Self {
         Self {
             frame,
-            shortest: settings.telescopic_shortest * design.link_length,
-            longest: design.link_length,
+            shortest: settings.telescopic_shortest * design.link_length(),
+            longest: design.link_length(),
             bar: settings.telescopic_bar,
         }
     }

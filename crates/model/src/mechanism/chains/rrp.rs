@@ -41,9 +41,9 @@ impl Chain for RrpChain {
     fn new(frame: LegFrame, design: &Design, settings: &LegSettings) -> Self {
         Self {
             frame,
-            crank: design.proximal_length,
-            guide: design.link_length,
-            travel: settings.geometry.travel(design.link_length),
+            crank: design.proximal_length(),
+            guide: design.link_length(),
+            travel: settings.geometry.travel(design.link_length()),
         }
     }
 

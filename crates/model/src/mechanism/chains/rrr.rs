@@ -42,8 +42,8 @@ impl Chain for RrrChain {
     fn new(frame: LegFrame, design: &Design, _: &LegSettings) -> Self {
         Self {
             frame,
-            crank: design.proximal_length,
-            link: design.link_length,
+            crank: design.proximal_length(),
+            link: design.link_length(),
         }
     }
 
@@ -187,7 +187,7 @@ impl Chain for RrrChain {
             guides: [None; 3],
             lever_square: Some(lever_square),
         };
-        if design.proximal_length == design.link_length {
+        if design.proximal_length() == design.link_length() {
             let elbow = one - square.times(0.25);
             let turn = (square.reciprocal() - one.times(0.25)).sqrt().times(frame.sign);
             let tangent = [x.times(0.5) + turn * y, y.times(0.5) - turn * x];

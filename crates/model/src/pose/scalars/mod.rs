@@ -75,7 +75,9 @@ impl PoseScalarEntry {
 macro_rules! pose_scalars {
     (
         always { $($(#[$doc:meta])* $scalar:ident $([$constraint:ident $id:literal $name:literal])? = $entry:expr;)* }
-        on_demand { $($(#[$more_doc:meta])* $more:ident by $formula:path = $more_entry:expr;)* }
+        on_demand {
+            $($(#[$more_doc:meta])* $more:ident $([$bound:ident $bound_id:literal $bound_name:literal])? by $formula:path = $more_entry:expr;)*
+        }
     ) => {
         /// A number that describes the manipulator at one pose.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -103,12 +105,17 @@ macro_rules! pose_scalars {
                 #[doc = concat!($id, ", `", $name, "`: see [`PoseScalar::", stringify!($scalar), "`].")]
                 $constraint,
             )?)*
+            $($(
+                #[doc = concat!($bound_id, ", `", $bound_name, "`: see [`PoseScalar::", stringify!($more), "`].")]
+                $bound,
+            )?)*
         }
 
         /// Constraints with their ids, their names, and the scalars that they bound.
         const CONSTRAINTS: &[(Constraint, &str, &str, Option<PoseScalar>)] = &[
             (Constraint::Assembly, "g1", "assembly", None),
             $($((Constraint::$constraint, $id, $name, Some(PoseScalar::$scalar)),)?)*
+            $($((Constraint::$bound, $bound_id, $bound_name, Some(PoseScalar::$more)),)?)*
         ];
 
         /// A scalar at several poses at once, as a function of its own: few studies need it, and the loops stay short.

@@ -119,7 +119,7 @@ fn comparisons(report: &Report) -> Markup {
     let Some(best) = report
         .references
         .first()
-        .map(|reference| reference.fine.design.architecture)
+        .map(|reference| reference.fine.design.architecture())
     else {
         return html! {};
     };
