@@ -73,7 +73,7 @@ pub enum GridChoice {
 /// use kinefront_model::workspace::GridError;
 ///
 /// let settings = ModelSettings { platform_bars: 1, ..ModelSettings::default() };
-/// assert_eq!(Model::new(settings.clone())?.platform_bars, 1);
+/// assert_eq!(Model::new(settings.clone())?.settings().platform_bars, 1);
 ///
 /// let mut settings = settings;
 /// settings.workspace.rotation_range_deg = 7.0;
