@@ -5,16 +5,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use kinefront_recording::{RecordedRunError, is_recorded, read_apart};
-use kinefront_study::{Inspection, Repair, Resumption, RunControl, RunFolderError, TableRow};
+use kinefront_study::{Inspection, Repair, ResumeOptions, Resumption, RunControl, RunFolderError, TableRow};
 use miette::miette;
 
 use super::progress::Progress;
 use super::runs::search_and_write;
-use super::{Ending, Failure, say};
+use super::{Ending, Failure, say, shown};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-The exit code is 0 if the folder is sound, and 2 if something is wrong. A repair removes an incomplete last row, and writes
+The exit code is 0 if the folder is sound, 2 if something is wrong, and 1 if no file states what the designs have to be. A repair removes an incomplete last row, and writes
 anew what follows from the study and the designs: the front, run.json, and the recording.")]
 pub struct CheckArguments {
     /// Run folder.
@@ -31,6 +31,19 @@ pub fn run(arguments: &CheckArguments) -> Result<Ending, Failure> {
     let path = &arguments.folder;
     let inspection = inspect(path)?;
     let mut out = std::io::stdout().lock();
+    if inspection.findings.is_empty() && !inspection.folder.is_verifiable() {
+        let count = inspection.designs.as_ref().map_or(0, Vec::len);
+        return Err(Failure::Runtime(miette!(
+            help = "kinefront optimize --resume --accept-unverified completes the run with these designs",
+            "{} cannot be verified: its {count} designs follow from the study, but no file states their number and their \
+             checksum ({}), so that lost rows would not be noticed",
+            path.display(),
+            match inspection.folder.report() {
+                Some(_) => "run.json has no `files`",
+                None => "run.json and progress.json are missing",
+            }
+        )));
+    }
     if inspection.findings.is_empty() {
         if !arguments.quiet {
             writeln!(out, "{}", soundness(path, &inspection))?;
@@ -43,7 +56,8 @@ pub fn run(arguments: &CheckArguments) -> Result<Ending, Failure> {
             Some(Repair::WriteAnew) => " (can be repaired: it is written anew)",
             None => "",
         };
-        writeln!(out, "{}: {}{remedy}", finding.path.display(), finding.message)?;
+        let line = format!("{}: {}{remedy}", finding.path.display(), finding.message);
+        writeln!(out, "{}", shown(&line))?;
     }
     if !arguments.repair {
         let message = match inspection.is_repairable() {
@@ -80,7 +94,7 @@ fn soundness(path: &Path, inspection: &Inspection) -> String {
     let state = match (inspection.folder.report(), inspection.folder.checkpoint()) {
         (Some(_), _) => "the run has ended",
         (None, Some(_)) => "the run has not ended and can be resumed",
-        (None, None) => "it states no checksums",
+        (None, None) => "nothing is known of its end",
     };
     format!("{} is sound: {count} designs; {state}", path.display())
 }
@@ -142,7 +156,7 @@ fn check_recording(inspection: &mut Inspection) -> Result<(), Failure> {
 
 /// Cuts an incomplete row off, and writes anew what follows from the study and the designs.
 fn repair(path: &Path) -> Result<(), Failure> {
-    let resumption = Resumption::open(path, None, None).map_err(Failure::input)?;
+    let resumption = Resumption::open(path, &ResumeOptions::default()).map_err(Failure::input)?;
     let Some(outcome) = resumption.folder().report().map(|report| report.outcome) else {
         // The run has not ended: its other files are written when it is resumed.
         return resumption.cut().map_err(Failure::runtime);

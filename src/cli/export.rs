@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use kinefront_export::{ExportError, ExportSubject, Format, export, front_to_parquet};
 use kinefront_model::evaluation::GridChoice;
 use kinefront_model::spatial::Pose;
-use kinefront_study::{PreparedStudy, write_whole};
+use kinefront_study::{PreparedStudy, RunFolder, read_regular, read_table, write_whole};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use super::subject::SubjectArguments;
-use super::{Ending, Failure, exists_already, say};
+use super::{Ending, Failure, exists_already, load_study, say};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -146,7 +146,7 @@ fn design(arguments: &ExportArguments, format: Format) -> Result<Vec<u8>, Failur
         pose: arguments.pose,
     };
     export(&subject, format).map_err(|error| match error {
-        ExportError::Unreachable { .. } | ExportError::NoBar(_) => Failure::input(error),
+        ExportError::Unreachable { .. } | ExportError::NoBar(_) | ExportError::NotFinite(_) => Failure::input(error),
         ExportError::Format { .. } => Failure::runtime(error),
     })
 }
@@ -170,11 +170,37 @@ fn front(arguments: &ExportArguments, target: ExportTarget) -> Result<Vec<u8>> {
     } else {
         path.to_owned()
     };
-    let text = std::fs::read(&table)
+    check_table(&table)?;
+    let text = read_regular(&table, u64::MAX)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot read {}", table.display()))?;
     match target {
         ExportTarget::Parquet => front_to_parquet(&text).map_err(|message| miette!("{}: {message}", table.display())),
         _ => Ok(text),
+    }
+}
+
+/// Checks that a table is the one that its run wrote, and that all its rows are complete and valid.
+fn check_table(table: &Path) -> Result<()> {
+    let folder = table.parent().filter(|folder| RunFolder::is_at(folder));
+    let study = match folder {
+        Some(folder) => {
+            let run = RunFolder::open(folder).into_diagnostic()?;
+            if !run.is_verifiable() {
+                return Err(miette!(
+                    help = "kinefront check says what is missing",
+                    "{} cannot be verified: no file states what its tables have to be",
+                    folder.display()
+                ));
+            }
+            run.check_file(table).into_diagnostic()?;
+            run.study().clone()
+        }
+        None => load_study(None)?,
+    };
+    let contents = read_table(table, &study).into_diagnostic()?;
+    match contents.cut_line {
+        None => Ok(()),
+        Some(line) => Err(miette!("{}: line {line} is incomplete", table.display())),
     }
 }

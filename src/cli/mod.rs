@@ -21,15 +21,18 @@ mod subject;
 mod tables;
 mod wire;
 
+pub use signals::keep_going_at_limits;
+
 use std::ffi::OsStr;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::{Parser, Subcommand};
 use kinefront_model::evaluation::GridChoice;
 use kinefront_recording::{UNPACK_COMMAND, unpack_with};
-use kinefront_study::{BUILTIN, Study};
+use kinefront_study::{BUILTIN, FileScope, Study, is_shown};
 use miette::{IntoDiagnostic, Report, Result, miette};
 
 /// Design explorer for planar parallel manipulators.
@@ -39,7 +42,13 @@ struct ProgramArguments {
     /// Command; without one, the window opens and runs the paper's study.
     #[command(subcommand)]
     command: Option<Command>,
+    /// Let a study name files outside its folder, such as a catalogue of bars.
+    #[arg(long, global = true)]
+    outside_files: bool,
 }
+
+/// Whether studies may name files outside their folder.
+static OUTSIDE_FILES: AtomicBool = AtomicBool::new(false);
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -129,6 +138,7 @@ pub fn run() -> ExitCode {
     if let Ok(program) = std::env::current_exe() {
         unpack_with(program);
     }
+    OUTSIDE_FILES.store(arguments.outside_files, Ordering::Relaxed);
     let outcome = match arguments.command {
         #[cfg(feature = "explorer")]
         None => explore::run(&explore::ExploreArguments::default()),
@@ -188,7 +198,37 @@ fn print_message(message: &clap::Error) -> ExitCode {
 
 /// Prints a line to the standard error. What is said never stops the work, even if nobody can read it.
 fn say(line: impl std::fmt::Display) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(std::io::stderr(), "{}", shown(&line.to_string()));
+}
+
+/// Returns a text as it can be shown on a terminal: names and contents of files may hold characters that would move the cursor,
+/// change the title of the window, or hide what follows. Colours and the ends of lines stay.
+fn shown(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(next) = rest.chars().next() {
+        let after = &rest[next.len_utf8()..];
+        rest = after;
+        if next == '\u{1b}'
+            && let Some(end) = color(after)
+        {
+            shown.push(next);
+            shown.push_str(&after[..end]);
+            rest = &after[end..];
+        } else if is_shown(next) {
+            shown.push(next);
+        } else {
+            shown.extend(next.escape_unicode());
+        }
+    }
+    shown
+}
+
+/// Returns the length of what follows an escape character if it sets a colour.
+fn color(text: &str) -> Option<usize> {
+    let parameters = text.strip_prefix('[')?;
+    let end = parameters.find(|c: char| !c.is_ascii_digit() && c != ';')?;
+    parameters[end..].starts_with('m').then_some(end + 2)
 }
 
 /// The refusal to overwrite a file.
@@ -205,7 +245,11 @@ fn load_study(argument: Option<&OsStr>) -> Result<Study> {
     let Some(argument) = argument else {
         return Ok(BUILTIN[0].study()?);
     };
-    Ok(Study::load(argument)?)
+    let scope = match OUTSIDE_FILES.load(Ordering::Relaxed) {
+        true => FileScope::Anywhere,
+        false => FileScope::BesideStudy,
+    };
+    Ok(Study::load_within(argument, scope)?)
 }
 
 /// The grid that an argument specifies.

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use kinefront_model::mechanism::Architecture;
 use kinefront_study::{
-    AlgorithmName, Overrides, ResumeError, Resumption, RunControl, RunFolderError, RunWriter, Study, StudySearch,
-    WriteError,
+    AlgorithmName, Overrides, ResumeError, ResumeOptions, Resumption, RunControl, RunFolderError, RunWriter, Study,
+    StudySearch, WriteError,
 };
 use miette::miette;
 
@@ -24,6 +24,9 @@ pub struct OptimizeArguments {
     /// Run folder to continue. With a larger --evaluations, a run that has ended is extended.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["study", "algorithm", "seed", "architectures", "out"])]
     resume: Option<PathBuf>,
+    /// Resume a folder that does not state the size and the checksum of its designs, with the rows that are there.
+    #[arg(long, requires = "resume")]
+    accept_unverified: bool,
     /// Algorithm; overrides that of the study.
     #[arg(long, value_parser = algorithms())]
     algorithm: Option<AlgorithmName>,
@@ -84,12 +87,12 @@ fn resume(
     arguments: &OptimizeArguments,
     control: &Arc<RunControl>,
 ) -> Result<Option<(RunWriter, StudySearch)>, Failure> {
-    let resumption = Resumption::open(
-        path,
-        arguments.evaluations.map(|number| number as usize),
-        arguments.run.threads(),
-    )
-    .map_err(|error| match error {
+    let options = ResumeOptions {
+        evaluations: arguments.evaluations.map(|number| number as usize),
+        threads: arguments.run.threads(),
+        accept_unverified: arguments.accept_unverified,
+    };
+    let resumption = Resumption::open(path, &options).map_err(|error| match error {
         ResumeError::Lock(error) => write_failure(error),
         ResumeError::Folder(error @ RunFolderError::Read { .. }) => Failure::runtime(error),
         error => Failure::input(error),

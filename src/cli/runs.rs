@@ -190,7 +190,7 @@ fn tell(
 
 pub fn write_failure(error: WriteError) -> Failure {
     match error {
-        WriteError::Occupied { .. } | WriteError::InUse(_) => Failure::input(error),
+        WriteError::Occupied { .. } | WriteError::InUse(_) | WriteError::NotAFile(_) => Failure::input(error),
         WriteError::Write { .. } | WriteError::Changed { .. } => Failure::files(error),
     }
 }

@@ -28,6 +28,17 @@ pub fn interrupt_on_signals(control: &Arc<RunControl>, quiet: bool) -> Result<()
     .map_err(Failure::runtime)
 }
 
+/// Makes a write beyond the limit of the size of a file fail like any other, instead of ending the program without a message.
+#[cfg(unix)]
+pub fn keep_going_at_limits() {
+    // Without the handler, which does nothing, the program is as it was.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+}
+
+/// Elsewhere, there is no such signal.
+#[cfg(not(unix))]
+pub fn keep_going_at_limits() {}
+
 /// Calls `end` at each of these signals, on a thread of its own. A signal that the caller ignores, as `nohup` does with SIGHUP,
 /// stays ignored.
 ///

@@ -102,7 +102,7 @@ fn damage_is_never_read_as_less_data() {
 /// The table of a small run, cut at every byte: the run resumes or is refused, and is never another one.
 #[test]
 fn a_table_cut_at_every_byte_resumes() {
-    use kinefront_study::Resumption;
+    use kinefront_study::{ResumeOptions, Resumption};
     let folder = folder();
     let study = folder.path().join("tiny.toml");
     let text = "name = \"tiny\"\narchitectures = [\"3-PRR\"]\n\
@@ -115,10 +115,14 @@ fn a_table_cut_at_every_byte_resumes() {
     let table = fs::read(whole.join("designs.csv")).expect("a table");
     fs::create_dir(&run).expect("a folder");
     fs::copy(whole.join("study.toml"), run.join("study.toml")).expect("a study");
+    let options = ResumeOptions {
+        accept_unverified: true,
+        ..ResumeOptions::default()
+    };
     for length in 0..table.len() {
-        // What a run leaves that was killed at once: no checkpoint and no report state what should be there.
+        // Neither a checkpoint nor a report states what should be there, and the user takes what is.
         fs::write(run.join("designs.csv"), &table[..length]).expect("a table");
-        let resumption = Resumption::open(&run, None, None).unwrap_or_else(|error| panic!("{length} bytes: {error}"));
+        let resumption = Resumption::open(&run, &options).unwrap_or_else(|error| panic!("{length} bytes: {error}"));
         let complete = table[..length]
             .iter()
             .filter(|&&byte| byte == b'\n')
@@ -127,7 +131,7 @@ fn a_table_cut_at_every_byte_resumes() {
         assert_eq!(resumption.search().replayed(), complete / 4 * 4, "{length} bytes");
         drop(resumption);
         if length.is_multiple_of(97) {
-            resume(&run, &["--no-recording"]).success();
+            resume(&run, &["--no-recording", "--accept-unverified"]).success();
             assert!(tables(&run) == tables(&whole), "{length} bytes");
             fs::remove_file(run.join("run.json")).expect("a report");
         }
@@ -150,7 +154,7 @@ fn a_resumed_run_names_what_was_changed() {
         assert!(text.contains(from), "{from}");
         fs::write(&path, text.replacen(from, to, 1)).expect("a file");
     };
-    let more = ["--evaluations", "400"];
+    let more = ["--evaluations", "400", "--accept-unverified"];
     change("study.toml", "seed = 5", "seed = 6");
     resume(&run, &more)
         .code(2)
@@ -182,7 +186,7 @@ fn a_resumed_run_names_what_was_changed() {
     // More rows than the study allows.
     unknown();
     change("study.toml", "evaluations = 300", "evaluations = 200");
-    resume(&run, &[])
+    resume(&run, &["--accept-unverified"])
         .code(2)
         .stderr(contains("300 designs").and(contains("200 evaluations")));
     check(&run).code(2);
@@ -441,13 +445,4 @@ fn remains_block_nothing() {
         fs::read_to_string(other.join("designs.csv")).expect("a table"),
         "id,generation\n0,1\n"
     );
-    // A recording of a design that was killed.
-    let record = folder.path().join("one.rrd");
-    fs::write(folder.path().join(".one.rrd.partial"), "half of it").expect("a file");
-    kinefront()
-        .args(["show", "--design", DESIGN, "--record"])
-        .arg(&record)
-        .assert()
-        .success();
-    assert!(!folder.path().join(".one.rrd.partial").exists());
 }

@@ -329,7 +329,7 @@ fn exports_say_what_is_wrong() {
         &["run", "--format", "csv", "--pose", "x=0 y=0 phi_deg=0"],
         "have no meaning",
     );
-    fails(&["nowhere", "--format", "csv"], "cannot read nowhere");
+    fails(&["nowhere", "--format", "csv"], "nowhere: cannot read the table");
     kinefront()
         .args(["export", "--design", DESIGN, "--format", "gltf", "--out"])
         .arg(folder.path().join("design.gltf"))

@@ -227,7 +227,13 @@ fn files_are_synchronised_before_they_appear() {
     let study = small_study(folder.path());
     let (run, log) = (folder.path().join("run"), folder.path().join("calls"));
     let traced = Command::new("strace")
-        .args(["-f", "-qq", "-e", "trace=openat,fsync,fdatasync,rename,write", "-o"])
+        .args([
+            "-f",
+            "-qq",
+            "-e",
+            "trace=openat,fsync,fdatasync,rename,renameat,renameat2,write",
+            "-o",
+        ])
         .arg(&log)
         .arg(env!("CARGO_BIN_EXE_kinefront"))
         .arg("optimize")
@@ -243,16 +249,14 @@ fn files_are_synchronised_before_they_appear() {
     // `<... fsync resumed>` belongs to a call that has begun earlier; its begin counts.
     let calls: Vec<&str> = calls.lines().filter(|call| !call.contains("resumed>")).collect();
     let mut names = Vec::new();
-    for (place, call) in calls.iter().enumerate().filter(|(_, call)| call.contains(" rename(")) {
+    for (place, call) in calls.iter().enumerate().filter(|(_, call)| call.contains(" rename")) {
         let before = calls[..place].iter().rev();
-        let steps: Vec<&&str> = before
-            .take_while(|call| !call.contains(".partial\", O_WRONLY"))
-            .collect();
+        let steps: Vec<&&str> = before.take_while(|call| !call.contains("O_EXCL")).collect();
         assert!(
             steps.iter().any(|call| call.contains(" fsync(")),
             "{call}: not synchronised"
         );
-        let after = calls[place + 1..].iter().take_while(|call| !call.contains("O_WRONLY"));
+        let after = calls[place + 1..].iter().take_while(|call| !call.contains("O_EXCL"));
         assert!(
             after.into_iter().any(|call| call.contains(" fsync(")),
             "{call}: the folder is not synchronised"

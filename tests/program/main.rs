@@ -4,6 +4,8 @@ mod commands;
 mod damage;
 mod exports;
 mod faults;
+mod handed_over;
+mod injected;
 mod merging;
 mod outside;
 mod recordings;

@@ -309,24 +309,3 @@ fn an_interrupted_run_keeps_what_it_has() {
     assert!(designs.len() < 1_000_000 && !out.join("front.csv").exists());
     super::recordings::agrees_with_its_tables(&out);
 }
-
-/// A full disk is reported, and the exit code is that of an incomplete folder.
-#[cfg(target_os = "linux")]
-#[test]
-fn a_full_disk_is_told() {
-    let folder = folder();
-    let study = small_study(folder.path());
-    let out = folder.path().join("run");
-    fs::create_dir(&out).expect("a folder");
-    std::os::unix::fs::symlink("/dev/full", out.join(".run.json.partial")).expect("a link");
-    kinefront()
-        .arg("optimize")
-        .arg(&study)
-        .args(["--quiet", "--no-recording", "--out"])
-        .arg(&out)
-        .assert()
-        .code(3)
-        .stderr(predicates::str::contains("run.json"));
-    assert!(!out.join("run.json").exists());
-    assert_eq!(rows(&out.join("designs.csv")).len(), 600);
-}

@@ -54,11 +54,16 @@ pub fn optimize(study: &Path, out: &Path, more: &[&str]) -> Value {
     )
 }
 
-/// The cases of a repeated test: all where `KINEFRONT_THOROUGH` is set, as every night; otherwise `count` of them, evenly spread.
+/// Whether tests repeat all of what they otherwise repeat a few times, as every night.
+pub fn is_thorough() -> bool {
+    std::env::var_os("KINEFRONT_THOROUGH").is_some_and(|set| !set.is_empty())
+}
+
+/// The cases of a repeated test: all where `KINEFRONT_THOROUGH` is set; otherwise `count` of them, evenly spread.
 pub fn sample<Cases: ExactSizeIterator>(cases: Cases, count: usize) -> impl Iterator<Item = Cases::Item> {
-    let step = match std::env::var_os("KINEFRONT_THOROUGH") {
-        Some(_) => 1,
-        None => cases.len().div_ceil(count),
+    let step = match is_thorough() {
+        true => 1,
+        false => cases.len().div_ceil(count),
     };
     cases.step_by(step)
 }

@@ -59,6 +59,11 @@ pub enum ExportError {
     /// A bar has radius 0, but the format requires masses and shapes; contains the format's short name.
     #[error("a bar of radius 0 has no mass and no shape; {0} needs r_j and r_p above 0")]
     NoBar(&'static str),
+    /// A number of the file would not be finite; contains the format's short name.
+    #[error(
+        "the dimensions of the design are too large or too small for {0}: a number in the file would not be finite"
+    )]
+    NotFinite(&'static str),
     /// Writing the format failed.
     #[error("cannot write {format}: {cause}")]
     Format {
@@ -90,15 +95,23 @@ pub struct ExportSubject<'a> {
 ///
 /// # Errors
 /// [`ExportError`] when the design does not reach the pose, when a simulator format is requested for a design with a
-/// bar of radius 0, or when the format cannot be written.
+/// bar of radius 0, when a number would not be finite, or when the format cannot be written.
 pub fn export(subject: &ExportSubject, format: Format) -> Result<Vec<u8>, ExportError> {
     let prepared = Prepared::new(subject)?;
     let design = &subject.evaluation.design;
     if format.needs_bars && !(design.leg_bar_radius() > 0.0 && design.platform_bar_radius() > 0.0) {
         return Err(ExportError::NoBar(format.key));
     }
-    (format.write)(&prepared).map_err(|cause| ExportError::Format {
+    if !prepared.is_finite() {
+        return Err(ExportError::NotFinite(format.key));
+    }
+    let written = (format.write)(&prepared).map_err(|cause| ExportError::Format {
         format: format.key,
         cause,
-    })
+    })?;
+    // A number that the writer itself derives may be beyond all doubles, too.
+    if format.is_text && prepared::has_number_that_is_none(&written) {
+        return Err(ExportError::NotFinite(format.key));
+    }
+    Ok(written)
 }

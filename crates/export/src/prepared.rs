@@ -60,6 +60,26 @@ impl<'a> Prepared<'a> {
         })
     }
 
+    /// Whether every length, mass and moment of inertia is finite, as a double and with the single precision of triangles.
+    pub(super) fn is_finite(&self) -> bool {
+        let of_body = |body: &Body| {
+            let (mass, centre, inertia) = inertial(body);
+            let frame = [body.frame.origin.x, body.frame.origin.y, body.frame.angle, body.height];
+            let numbers = [mass, centre.x, centre.y, centre.z];
+            numbers
+                .iter()
+                .chain(&inertia)
+                .chain(&frame)
+                .all(|number| number.is_finite())
+        };
+        let solids = self.linkage.bodies.iter().flat_map(|body| &body.solids);
+        let mut corners = solids
+            .chain(&self.base)
+            .chain(&self.scene.solids)
+            .flat_map(|solid| solid.shape.mesh().positions);
+        self.linkage.bodies.iter().all(of_body) && corners.all(|corner| corner.as_vec3().is_finite())
+    }
+
     /// Returns the design as text that the program can read: `3-PRR R=3.066 …`.
     pub(super) fn title(&self) -> String {
         self.evaluation.design.to_string()
@@ -133,4 +153,10 @@ pub(super) fn place(shape: &SolidShape) -> [f64; 6] {
             [middle.x, middle.y, middle.z, 0.0, pitch, yaw]
         }
     }
+}
+
+/// Whether a text has a number that is infinite or not a number.
+pub(super) fn has_number_that_is_none(text: &[u8]) -> bool {
+    let mut words = text.split(|byte| !byte.is_ascii_alphanumeric());
+    words.any(|word| [&b"NaN"[..], b"inf"].contains(&word))
 }

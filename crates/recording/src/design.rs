@@ -12,7 +12,7 @@ use kinefront_model::spatial::Pose;
 use kinefront_scene::{
     EllipsoidKind, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour, workspace_proof,
 };
-use kinefront_study::{CertifiedRadius, PreparedStudy, partial_path};
+use kinefront_study::{CertifiedRadius, PreparedStudy, replace};
 
 /// Number of cells along the longer side of a heatmap: of a single design, of a layer over φ, of a step of a front, and
 /// of an outline over φ.
@@ -43,17 +43,10 @@ pub fn record_design(
     if path.exists() {
         return Err(failed(std::io::ErrorKind::AlreadyExists.into()));
     }
-    // The file appears when it is complete; what a process that was killed left of it is replaced.
-    let partial = partial_path(path);
-    let _ = std::fs::remove_file(&partial);
-    let drawn = draw_design(&partial, study, evaluation, heading, first);
-    let written = drawn.and_then(|()| std::fs::rename(&partial, path).map_err(failed));
-    written.map_err(|error| {
-        let _ = std::fs::remove_file(&partial);
-        match error {
-            RecordingError::Write { cause, .. } => failed(cause),
-            error => error,
-        }
+    // The file appears when it is complete.
+    replace(path, |part| draw_design(part, study, evaluation, heading, first)).map_err(|error| match error {
+        RecordingError::Write { cause, .. } => failed(cause),
+        error => error,
     })
 }
 

@@ -7,6 +7,7 @@ use rerun::log::{ChunkBatcherConfig, ChunkError};
 use rerun::sink::LogSink;
 
 use kinefront_model::workspace::GridError;
+use kinefront_study::WriteError;
 use rerun::{
     AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamError, SerializedComponentBatch,
     SerializedComponentColumn, TextDocument, TimeColumn,
@@ -40,6 +41,18 @@ pub enum RecordingError {
 impl RecordingError {
     pub(super) fn encode(error: impl std::fmt::Display) -> Self {
         Self::Encode(error.to_string())
+    }
+}
+
+impl From<WriteError> for RecordingError {
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::Write { path, cause } => Self::Write { path, cause },
+            error => Self::Write {
+                path: PathBuf::new(),
+                cause: io::Error::other(error),
+            },
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use kinefront_recording::{Recorder, RunFiles};
 use kinefront_study::{
-    EndReason, Event, Inspection, Resumption, RunControl, RunWriter, Study, StudySearch, spawn_search,
+    EndReason, Event, Inspection, ResumeOptions, Resumption, RunControl, RunWriter, Study, StudySearch, spawn_search,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -97,7 +97,8 @@ fn a_run_survives_its_controls() {
         ended[place] += 1;
         let inspection = Inspection::new(&run).expect("a run");
         assert!(inspection.findings.is_empty(), "seed {seed}: {:?}", inspection.findings);
-        let resumption = Resumption::open(&run, None, None).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        let resumption =
+            Resumption::open(&run, &ResumeOptions::default()).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
         if !resumption.is_complete() {
             let (writer, search) = resumption.start(None).expect("a folder");
             assert_eq!(

@@ -1,8 +1,7 @@
 //! Files that survive a crash: a file is written beside its place, synchronised, and moved there.
 
-use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// Error of writing a run folder.
@@ -22,6 +21,9 @@ pub enum WriteError {
     /// Another process writes the run.
     #[error("{} is in use: another process writes its run", .0.display())]
     InUse(PathBuf),
+    /// Something else than a file has the name of a file of a run.
+    #[error("{} is not a regular file; a run writes nothing else, and follows no link", .0.display())]
+    NotAFile(PathBuf),
     /// The table is no longer the one that is being written.
     #[error("{} was changed by another program while the run wrote it: {message}", path.display())]
     Changed {
@@ -49,42 +51,115 @@ impl WriteError {
 }
 
 /// Writes a file so that, after a crash or a power loss at any instant, it is either complete or as before: writes and
-/// synchronises a temporary file in the same folder, renames it, and synchronises the folder.
+/// synchronises a temporary file in the same folder, renames it, and synchronises the folder. A link at `path` is replaced; what it
+/// leads to is not touched.
 ///
 /// # Errors
 /// [`WriteError::Write`].
 pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), WriteError> {
-    let partial = partial_path(path);
     let write = || -> io::Result<()> {
-        let mut file = File::create(&partial)?;
+        // The name is random and the file new, so that nothing that lies in the folder is written to.
+        let mut file = temporary(folder_of(path))?;
         file.write_all(contents)?;
-        file.sync_all()?;
-        fs::rename(&partial, path)?;
-        sync_folder(path.parent().unwrap_or(Path::new("")))
+        file.as_file().sync_all()?;
+        file.persist(path).map_err(|error| error.error)?;
+        sync_folder(folder_of(path))
     };
-    write().map_err(|cause| {
-        // The partial file is useless; failing to remove it does not justify a second error.
-        let _ = fs::remove_file(&partial);
-        WriteError::at(path)(cause)
-    })
+    write().map_err(WriteError::at(path))
 }
 
-/// Returns the path at which a file is written before it is complete.
-pub fn partial_path(path: &Path) -> PathBuf {
-    let mut name = OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(".partial");
-    path.with_file_name(name)
+/// Replaces a file by one that `write` creates at the path that it is given; until that one is complete, the file is as before.
+///
+/// # Errors
+/// The error of `write`, or [`WriteError::Write`].
+pub fn replace<E: From<WriteError>>(path: &Path, write: impl FnOnce(&Path) -> Result<(), E>) -> Result<(), E> {
+    let place = tempfile::Builder::new()
+        .prefix(PREFIX)
+        .suffix(PARTIAL)
+        .tempdir_in(folder_of(path));
+    let place = place.map_err(WriteError::at(path))?;
+    let part = place.path().join(path.file_name().unwrap_or_default());
+    write(&part)?;
+    fs::rename(&part, path).map_err(WriteError::at(path))?;
+    sync_folder(folder_of(path)).map_err(WriteError::at(path))?;
+    Ok(())
+}
+
+/// Both ends of the names of temporary files.
+const PREFIX: &str = ".kinefront-";
+const PARTIAL: &str = ".partial";
+
+/// Creates a temporary file that others may read, as far as the mask of the process allows.
+fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(PREFIX).suffix(PARTIAL);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Removes the temporary files that a process left in a folder when it was killed.
+pub(super) fn sweep(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let is_temporary = name.starts_with(PREFIX) && name.ends_with(PARTIAL);
+        if is_temporary && entry.file_type()?.is_file() {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
+}
+
+/// Opens a regular file of at most `most` bytes; a pipe or a device, which may have no end, is an error.
+///
+/// # Errors
+/// The I/O error, which says what the file is instead.
+pub fn open_regular(path: &Path, most: u64) -> io::Result<File> {
+    // A pipe that nobody writes to is not even opened.
+    let is_regular = |found: fs::Metadata| match found.is_file() {
+        true => Ok(found.len()),
+        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file")),
+    };
+    is_regular(fs::metadata(path)?)?;
+    let file = File::open(path)?;
+    let length = is_regular(file.metadata()?)?;
+    if length > most {
+        let message = format!("it has {length} bytes, but such a file has at most {most}");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
+    }
+    Ok(file)
+}
+
+/// Reads a regular file of at most `most` bytes.
+///
+/// # Errors
+/// As [`open_regular`].
+pub fn read_regular(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let mut contents = Vec::new();
+    // A file that grows meanwhile is read as far as it was known.
+    open_regular(path, most)?.take(most).read_to_end(&mut contents)?;
+    Ok(contents)
 }
 
 /// Synchronises the names of the files in a folder to the disk.
 pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
     // Elsewhere a folder cannot be opened as a file; the file system synchronises it by itself.
     if cfg!(unix) {
-        let folder = if folder.as_os_str().is_empty() {
-            Path::new(".")
-        } else {
-            folder
+        let folder = match folder.as_os_str().is_empty() {
+            true => Path::new("."),
+            false => folder,
         };
         match File::open(folder)?.sync_all() {
             // Some network file systems synchronise files only.

@@ -46,7 +46,7 @@ mod table;
 pub use builtin::{BUILTIN, Builtin};
 pub use certified::CertifiedRadius;
 pub use control::RunControl;
-pub use durable::{WriteError, partial_path, write_whole};
+pub use durable::{WriteError, open_regular, read_regular, replace, write_whole};
 pub use events::{Batch, EndReason, Event, GenerationSummary, RunSummary, RunTimes, Started, Subscriber, front_marks};
 pub use front::{FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
 pub use overrides::Overrides;
@@ -57,15 +57,15 @@ pub use replay::ReplayError;
 pub use run::{spawn, spawn_search};
 pub use run_folder::{
     Checkpoint, FileSums, Finding, HypervolumeReference, Inspection, Merge, MergeError, MergedRun, Repair, ResumeError,
-    Resumption, RunFolder, RunFolderError, RunReport, RunWriter,
+    ResumeOptions, Resumption, RunFolder, RunFolderError, RunReport, RunWriter,
 };
 pub use search::{SearchError, StudySearch, keep_runners_up};
 pub use settings::{
     ActuatorSection, AlgorithmName, Bounds, BuiltinCatalogue, CATALOGUES, CatalogueChoice, CatalogueFault,
-    CatalogueRow, Check, GridSection, Grids, HypervolumeSection, Initial, LengthChoice, LimitChoice, Limits,
+    CatalogueRow, Check, FileScope, GridSection, Grids, HypervolumeSection, Initial, LengthChoice, LimitChoice, Limits,
     MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, ReferenceDesign, RegionKind, RegionSection,
     RequirementSection, SectionChoice, SectionKind, SectionsSection, Setting, Stagnation, StiffnessChoice,
-    TelescopicBar, Tie, VariableChoice, Variables, WorkspaceSection, settings,
+    TelescopicBar, Tie, VariableChoice, Variables, WorkspaceSection, is_shown, settings,
 };
 pub use study::{Fault, Study, StudyError};
 pub use sum::{Difference, FileSum};

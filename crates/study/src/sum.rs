@@ -6,6 +6,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::open_regular;
+
 /// Size and checksum of a file, or of the rows of a table up to a checkpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FileSum {
@@ -69,7 +71,7 @@ impl FileSum {
     /// # Errors
     /// The I/O error if the file cannot be read.
     pub fn compare(&self, path: &Path, may_grow: bool) -> io::Result<Option<Difference>> {
-        let file = File::open(path)?;
+        let file = open_regular(path, u64::MAX)?;
         let found = file.metadata()?.len();
         if found < self.bytes {
             return Ok(Some(Difference::Shorter { found, sum: *self }));

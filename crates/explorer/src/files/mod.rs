@@ -15,7 +15,7 @@ use kinefront_export::{ExportSubject, Format, export, front_to_parquet};
 use kinefront_model::evaluation::GridChoice;
 use kinefront_recording::{record_design, save_copy};
 use kinefront_report::{Options, Report, Source};
-use kinefront_study::{Cell, Column, table_bytes, write_whole};
+use kinefront_study::{Cell, Column, replace, table_bytes, write_whole};
 
 /// Work on files that does not block the window; it returns a message for the user.
 pub type Job = Box<dyn FnOnce() -> Result<String, AnyError> + Send>;
@@ -84,7 +84,9 @@ fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
         let shown = shown
             .as_ref()
             .map(|(evaluation, name)| (study.model(), &**evaluation, name.as_str()));
-        replacing(&path, |part| Ok(save_copy(&folder.join("recording.rrd"), part, shown)?))?;
+        replace(&path, |part| {
+            Ok::<_, AnyError>(save_copy(&folder.join("recording.rrd"), part, shown)?)
+        })?;
         Ok(format!("saved {}", path.display()))
     }))
 }
@@ -128,8 +130,8 @@ fn record(session: &mut Session, path: PathBuf) -> Option<Job> {
         .heatmap
         .unwrap_or(kinefront_scene::Field::DEXTERITY);
     Some(Box::new(move || {
-        replacing(&path, |part| {
-            Ok(record_design(part, &study, &known.evaluation, &name, Some(field))?)
+        replace(&path, |part| {
+            Ok::<_, AnyError>(record_design(part, &study, &known.evaluation, &name, Some(field))?)
         })?;
         Ok(format!("exported {}", path.display()))
     }))
@@ -191,22 +193,6 @@ fn report(session: &mut Session, path: PathBuf) -> Option<Job> {
         make().map_err(|error| error.to_string())?;
         Ok(format!("wrote {}", path.join("index.html").display()))
     }))
-}
-
-/// Writes a recording to a temporary folder beside `path` and then moves it to `path`.
-fn replacing(path: &Path, write: impl FnOnce(&Path) -> Result<(), AnyError>) -> Result<(), AnyError> {
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    let place = tempfile::Builder::new()
-        .prefix(".kinefront-")
-        .tempdir_in(folder)
-        .map_err(|error| format!("cannot write {}: {error}", path.display()))?;
-    let part = place.path().join("part.rrd");
-    write(&part)?;
-    std::fs::rename(&part, path).map_err(|error| format!("cannot write {}: {error}", path.display()))?;
-    Ok(())
 }
 
 fn read_filter(path: &Path) -> Result<super::Filter, AnyError> {

@@ -16,7 +16,7 @@ use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::Design;
 use kinefront_optimize::{Objectives, knee};
 use kinefront_recording::FrontPoint;
-use kinefront_study::{Builtin, PreparedStudy, Resumption, RunControl, Study, Subscriber, spawn};
+use kinefront_study::{Builtin, PreparedStudy, ResumeOptions, Resumption, RunControl, Study, Subscriber, spawn};
 
 impl Session {
     /// Puts a built-in study into the editor.
@@ -70,7 +70,11 @@ impl Session {
         let Some(folder) = self.continuable() else { return };
         let asked = self.editor.study().optimizer.evaluations;
         let more = (asked > self.study().optimizer.evaluations).then_some(asked);
-        let resumption = match Resumption::open(folder, more, None) {
+        let options = ResumeOptions {
+            evaluations: more,
+            ..ResumeOptions::default()
+        };
+        let resumption = match Resumption::open(folder, &options) {
             Ok(resumption) => resumption,
             Err(error) => return self.notify_error(error),
         };

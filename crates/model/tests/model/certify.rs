@@ -182,6 +182,9 @@ const AT_POSES: [Constraint; 6] = [
     Constraint::Clearance,
 ];
 
+/// The model whose characteristic length depends on which orientations are reached.
+const ISOTROPIC: &str = "the isotropic characteristic length";
+
 /// Models with other definitions than the paper's, and with a required clearance.
 fn other_models() -> Vec<(&'static str, Model)> {
     vec![
@@ -191,7 +194,7 @@ fn other_models() -> Vec<(&'static str, Model)> {
             model(|settings| settings.stiffness_definition = StiffnessDefinition::Compliance),
         ),
         (
-            "the isotropic characteristic length",
+            ISOTROPIC,
             model(|settings| settings.characteristic_length = CharacteristicLength::Isotropic),
         ),
         (
@@ -276,8 +279,15 @@ proptest! {
         for constraint in AT_POSES {
             let margin = model.margin_at(&design, &pose, constraint);
             if margin.abs() > 1e-6 && constraint.is_required(&model.settings().thresholds) {
-                prop_assert_eq!(
-                    least(constraint) > 0.0, margin > 0.0,
+                let of = values.iter().filter(|(found, _)| *found == constraint);
+                let ranges: Vec<[f64; 2]> = of.map(|(_, value)| value.range()).collect();
+                let is_proved = ranges.iter().all(|[lower, _]| *lower > 0.0);
+                let is_refuted = ranges.iter().any(|[_, upper]| *upper < 0.0);
+                // The isotropic length is not known where an orientation is at a joint limit or nearly singular: nothing is
+                // claimed then.
+                let is_open = !is_proved && !is_refuted && name == ISOTROPIC;
+                prop_assert!(
+                    is_open || is_proved == (margin > 0.0),
                     "{}: {} {:?} {}: {}", name, design, pose, constraint.id(), margin
                 );
             }

@@ -1,11 +1,13 @@
 //! Checking a run folder against what follows from its study and its designs.
 
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
+use super::merge::ORIGINS;
 use super::write::front_table;
 use super::{RunFolder, RunFolderError, RunReport};
 use crate::run::verify_replayed;
-use crate::{RunSummary, StudySearch, TableError, TableRow};
+use crate::{EndReason, RunSummary, StudySearch, TableError, TableRow, open_regular};
 
 /// Something that is wrong in a run folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -46,8 +48,15 @@ impl Inspection {
     /// # Errors
     /// [`RunFolderError`] if the path is not a run folder, or if its study or its report cannot be read.
     pub fn new(path: &Path) -> Result<Self, RunFolderError> {
+        let folder = RunFolder::open(path)?;
+        if let Some(found) = folder.version().filter(|version| *version != env!("CARGO_PKG_VERSION")) {
+            return Err(RunFolderError::Version {
+                path: path.to_owned(),
+                found: found.to_owned(),
+            });
+        }
         let mut inspection = Self {
-            folder: RunFolder::open(path)?,
+            folder,
             findings: Vec::new(),
             designs: None,
         };
@@ -89,8 +98,59 @@ impl Inspection {
             Ok(search) => search,
             Err(error) => return self.add(path, error.to_string(), None),
         };
+        self.check_outcome(contents.rows.len());
+        self.check_merged(contents.rows.len());
         self.designs = Some(contents.rows);
         self.check_results(search);
+    }
+
+    /// Checks that a run can have ended as its report says.
+    fn check_outcome(&mut self, designs: usize) {
+        let Some(outcome) = self.folder.report().map(|report| report.outcome) else {
+            return;
+        };
+        let optimizer = &self.folder.study().optimizer;
+        let message = match outcome {
+            EndReason::Completed if designs < optimizer.evaluations => format!(
+                "the run was completed, but the table has {designs} of the {} designs of the study",
+                optimizer.evaluations
+            ),
+            EndReason::TimeUp if optimizer.time_limit_s.is_none() => {
+                "the time of the run was up, but the study has no time limit".to_owned()
+            }
+            EndReason::Stagnated if optimizer.stagnation.is_none() => {
+                "the run stagnated, but the study does not ask for an end then".to_owned()
+            }
+            _ => return,
+        };
+        self.add(
+            self.folder.report_path(),
+            format!("`outcome` is wrong: {message}"),
+            None,
+        );
+    }
+
+    /// Checks that a folder of several runs has the origins of as many designs.
+    fn check_merged(&mut self, designs: usize) {
+        if self.folder.merged().is_empty() {
+            return;
+        }
+        let kept: usize = self.folder.merged().iter().map(|run| run.kept).sum();
+        if kept != designs {
+            let message = format!("`merged` states {kept} designs, but the table has {designs}");
+            self.add(self.folder.report_path(), message, None);
+        }
+        let path = self.folder.path().join(ORIGINS);
+        let found = open_regular(&path, u64::MAX).map(|file| BufReader::new(file).split(b'\n').count());
+        let message = match found {
+            Ok(lines) if lines == designs + 1 => return,
+            Ok(lines) => format!("it has {lines} lines, but the folder holds {designs} designs of several runs"),
+            Err(error) => format!("it cannot be read: {error}"),
+        };
+        // While the runs are joined, the file is not there yet.
+        if self.folder.checkpoint().is_none() {
+            self.add(path, message, None);
+        }
     }
 
     /// Checks the front and the report of a run that has ended.

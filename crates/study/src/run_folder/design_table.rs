@@ -7,10 +7,10 @@ use std::time::Duration;
 
 use super::DESIGNS;
 use crate::FileSum;
-use crate::WriteError;
 use crate::sum::checksum;
 use crate::table::{Column, append_row, table_bytes};
 use crate::{Batch, Study};
+use crate::{WriteError, read_regular};
 
 /// `ENOLCK` of Linux: a network file system without a lock service.
 const NO_LOCKS: i32 = 37;
@@ -21,6 +21,10 @@ const LOCK_PATIENCE: u32 = 30;
 /// Opens and locks the table of a run folder, which is the lock of the folder.
 pub(super) fn open_locked(folder: &Path, create: bool) -> Result<File, WriteError> {
     let path = folder.join(DESIGNS);
+    // Rows are not written to what a link leads to, nor to a pipe.
+    if fs::symlink_metadata(&path).is_ok_and(|found| !found.is_file()) {
+        return Err(WriteError::NotAFile(path));
+    }
     // Rows are appended whatever another program does to the file; a file truncated by others has no gap then.
     let file = OpenOptions::new()
         .read(true)
@@ -83,7 +87,7 @@ impl DesignTable {
         if length > header.len() as u64 {
             return Ok(false);
         }
-        let found = fs::read(&self.path).map_err(WriteError::at(&self.path))?;
+        let found = read_regular(&self.path, header.len() as u64).map_err(WriteError::at(&self.path))?;
         Ok(header.starts_with(&found))
     }
 

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use super::{MergedRun, RunFolder, RunFolderError, RunWriter};
-use crate::{ReplayError, Row, Study, StudySearch, TableError, TableRow};
+use crate::table::as_text;
+use crate::{FileSum, ReplayError, Row, Study, StudySearch, TableError, TableRow};
 use crate::{WriteError, write_whole};
 use kinefront_optimize::{Archive, Outcome};
 
 /// Name of the file that states from which run each design of a merged folder comes.
-const ORIGINS: &str = "origins.csv";
+pub(super) const ORIGINS: &str = "origins.csv";
 
 /// Why runs cannot be joined.
 #[derive(Debug, thiserror::Error)]
@@ -33,6 +34,13 @@ pub enum MergeError {
         /// Version that wrote the run.
         found: String,
     },
+    /// A folder does not state what its table has to be.
+    #[error(
+        "{} does not state the size and the checksum of its designs, so that lost rows would not be noticed; kinefront optimize \
+         --resume --accept-unverified completes it",
+        .0.display()
+    )]
+    Unverified(PathBuf),
     /// Two runs ask different questions.
     #[error(
         "{} and {} are runs of different studies: `{key}` differs; only the seed, the budget and the name of the study may",
@@ -99,14 +107,16 @@ impl Merge {
                     key,
                 });
             }
-            // A run that was continued elsewhere begins with the designs of the other.
-            let is_same = |(_, others): &&(RunFolder, Vec<TableRow>)| {
+            // A run that was continued elsewhere begins with the designs of the other, and a merged run holds those of its runs.
+            let sums: Vec<FileSum> = sums_of(&folder).collect();
+            let is_same = |(other, others): &&(RunFolder, Vec<TableRow>)| {
                 let both = rows.len().min(others.len());
-                both > 0
+                let begins_alike = both > 0
                     && rows[..both]
                         .iter()
                         .zip(&others[..both])
-                        .all(|(a, b)| a.row.design == b.row.design)
+                        .all(|(a, b)| a.row.design == b.row.design);
+                begins_alike || sums_of(other).any(|sum| sums.contains(&sum))
             };
             if let Some((first, _)) = opened.iter().find(is_same) {
                 return Err(MergeError::Twice {
@@ -192,14 +202,20 @@ impl Merge {
         let mut text = String::from("id,run,run_id\n");
         for (id, (run, run_id)) in self.origins.iter().enumerate() {
             let name = &self.runs[*run].run;
-            // The name of a folder may hold a comma or a quotation mark.
-            let quoted = format!("\"{}\"", name.replace('"', "\"\""));
+            // The name of a folder may hold a comma or a quotation mark, or begin as a formula of a spreadsheet does.
+            let quoted = format!("\"{}\"", as_text(name).replace('"', "\"\""));
             text += &format!("{id},{quoted},{run_id}\n");
         }
         write_whole(&path.join(ORIGINS), text.as_bytes())?;
         writer.set_merged(self.runs)?;
         Ok((writer, search))
     }
+}
+
+/// The sums of the tables whose designs a folder holds: its own, and those of the runs that were joined in it.
+fn sums_of(folder: &RunFolder) -> impl Iterator<Item = FileSum> {
+    let merged = folder.merged().iter().filter_map(|run| run.designs);
+    folder.designs_sum().into_iter().chain(merged)
 }
 
 /// Reads a folder and its designs; a run that has not ended gives those that it has.
@@ -210,6 +226,9 @@ fn read(path: &Path, notes: &mut Vec<String>) -> Result<(RunFolder, Vec<TableRow
             path: path.to_owned(),
             found: found.to_owned(),
         });
+    }
+    if !folder.is_verifiable() {
+        return Err(MergeError::Unverified(path.to_owned()));
     }
     let contents = folder.designs()?;
     if folder.checkpoint().is_some()

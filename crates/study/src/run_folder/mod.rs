@@ -21,7 +21,7 @@ pub use checkpoint::Checkpoint;
 pub use merge::{Merge, MergeError};
 pub use read::{RunFolder, RunFolderError};
 pub use report::{FileSums, HypervolumeReference, MergedRun, RunReport};
-pub use resume::{ResumeError, Resumption};
+pub use resume::{ResumeError, ResumeOptions, Resumption};
 pub use write::RunWriter;
 
 /// File of the study as run.

@@ -1,6 +1,5 @@
 //! Reading a run folder.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -10,7 +9,10 @@ use super::{Checkpoint, DESIGNS, FRONT, FileSums, MergedRun, PROGRESS, RECORDING
 use crate::{
     Column, Study, StudyError, TableContents, TableError, TableFault, read_run_table, read_table, table_bytes,
 };
-use crate::{Difference, FileSum};
+use crate::{Difference, FileSum, open_regular, read_regular};
+
+/// Largest `run.json` \[bytes\]: the history of ten million generations.
+const LARGEST_JSON: u64 = 1 << 32;
 
 /// A run on disk.
 ///
@@ -36,7 +38,7 @@ enum RunState {
     Unfinished(Checkpoint),
     /// The run has ended.
     Ended(Box<RunReport>),
-    /// Neither `progress.json` nor `run.json` is there and readable.
+    /// Neither `progress.json` nor `run.json` is there.
     Unknown,
 }
 
@@ -65,6 +67,18 @@ pub enum RunFolderError {
         /// What is wrong in it.
         cause: serde_json::Error,
     },
+    /// The run was written by another version of the program.
+    #[error(
+        "{} was written by Kinefront {found}, but this is {}; use that version",
+        path.display(),
+        env!("CARGO_PKG_VERSION")
+    )]
+    Version {
+        /// Path of the file that states the version.
+        path: PathBuf,
+        /// Version that wrote it.
+        found: String,
+    },
     /// A file is not the one that the run wrote.
     #[error("{} is not the file of the run: {difference}", path.display())]
     Differs {
@@ -91,6 +105,11 @@ impl RunFolder {
         }
         let state = RunState::read(path)?;
         let study = path.join(STUDY);
+        // A pipe in the place of a file may never end.
+        open_regular(&study, u64::MAX).map_err(|cause| RunFolderError::Read {
+            path: study.clone(),
+            cause,
+        })?;
         if let Some(sum) = state.sums().and_then(|sums| sums.study) {
             check(&study, &sum, false)?;
         }
@@ -139,7 +158,7 @@ impl RunFolder {
     pub fn designs(&self) -> Result<TableContents, TableError> {
         let path = self.designs_path();
         let contents = read_run_table(&path, &self.study)?;
-        if let Some(sum) = self.state.sums().and_then(|sums| sums.designs) {
+        if let Some(sum) = self.designs_sum() {
             compare_table(&path, &sum, self.checkpoint().is_some())?;
         }
         Ok(contents)
@@ -166,7 +185,7 @@ impl RunFolder {
             }
         }
         let header = header(&self.study);
-        let found = File::open(&path).and_then(|file| {
+        let found = open_regular(&path, u64::MAX).and_then(|file| {
             let mut found = Vec::new();
             file.take(header.len() as u64).read_to_end(&mut found)?;
             Ok(found)
@@ -223,7 +242,7 @@ impl RunFolder {
         }
     }
 
-    /// Contents of `run.json`; `None` for a run that has not ended, and for one whose report is not of this version.
+    /// Contents of `run.json`; `None` for a run that has not ended.
     pub fn report(&self) -> Option<&RunReport> {
         match &self.state {
             RunState::Ended(report) => Some(report),
@@ -255,6 +274,11 @@ impl RunFolder {
             RunState::Unfinished(checkpoint) => Some(&checkpoint.kinefront_version),
             RunState::Unknown => None,
         }
+    }
+
+    /// Whether the folder states what its table of designs has to be, so that damage can be told from a shorter run.
+    pub fn is_verifiable(&self) -> bool {
+        self.designs_sum().is_some()
     }
 
     /// The sum that the run states of its table of designs.
@@ -293,9 +317,9 @@ impl RunState {
     }
 }
 
-/// Reads a JSON file of a run; `None` if it is missing, or if it is JSON of another version.
+/// Reads a JSON file of a run; `None` if it is missing.
 fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, RunFolderError> {
-    let text = match std::fs::read(path) {
+    let text = match read_regular(path, LARGEST_JSON) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(cause) => {
@@ -311,13 +335,18 @@ fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, RunFolderErr
     };
     let value: serde_json::Value = serde_json::from_slice(&text).map_err(damaged)?;
     // Another version may have other keys; the keys of this one are known.
-    let is_of_another_version = value["kinefront_version"]
-        .as_str()
-        .is_some_and(|version| version != env!("CARGO_PKG_VERSION"));
+    let version = value["kinefront_version"].as_str();
+    let other_version = version.filter(|version| *version != env!("CARGO_PKG_VERSION"));
+    let other_version = other_version.map(str::to_owned);
     match T::deserialize(value) {
         Ok(contents) => Ok(Some(contents)),
-        Err(_) if is_of_another_version => Ok(None),
-        Err(cause) => Err(damaged(cause)),
+        Err(cause) => Err(match other_version {
+            Some(found) => RunFolderError::Version {
+                path: path.to_owned(),
+                found,
+            },
+            None => damaged(cause),
+        }),
     }
 }
 

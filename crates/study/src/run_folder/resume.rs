@@ -5,7 +5,7 @@ use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 use super::design_table::{DesignTable, open_locked};
-use super::{DESIGNS, FRONT, RECORDING, RunFolder, RunFolderError, RunWriter};
+use super::{DESIGNS, RECORDING, RunFolder, RunFolderError, RunWriter};
 use crate::WriteError;
 use crate::durable::remove;
 use crate::{EndReason, ReplayError, StudySearch, TableError};
@@ -27,6 +27,17 @@ pub struct Resumption {
     record_every: Option<usize>,
     notes: Vec<String>,
     is_complete: bool,
+}
+
+/// How a run is resumed.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ResumeOptions {
+    /// Number of evaluations; that of the study if `None`.
+    pub evaluations: Option<usize>,
+    /// Number of worker threads; that of the study if `None`.
+    pub threads: Option<usize>,
+    /// Whether a folder that states nothing of its table is resumed with the rows that are there.
+    pub accept_unverified: bool,
 }
 
 /// Why a run cannot be resumed.
@@ -54,6 +65,13 @@ pub enum ResumeError {
         /// Version that wrote the run.
         found: String,
     },
+    /// The folder does not state what its table has to be.
+    #[error(
+        "{} does not state the size and the checksum of its designs, so that lost rows would not be noticed; --accept-unverified \
+         resumes it with the rows that are there",
+        .0.display()
+    )]
+    Unverified(PathBuf),
     /// The budget is smaller than what was evaluated.
     #[error("{} holds {evaluated} evaluations already; --evaluations must be at least that, not {asked}", path.display())]
     Budget {
@@ -81,12 +99,16 @@ pub enum ResumeError {
 }
 
 impl Resumption {
-    /// Locks the run folder at `path` and replays its designs, with a budget of `evaluations` if that is given and on
-    /// `threads` worker threads if that is.
+    /// Locks the run folder at `path` and replays its designs.
     ///
     /// # Errors
     /// [`ResumeError`]; the folder is unchanged.
-    pub fn open(path: &Path, evaluations: Option<usize>, threads: Option<usize>) -> Result<Self, ResumeError> {
+    pub fn open(path: &Path, options: &ResumeOptions) -> Result<Self, ResumeError> {
+        let ResumeOptions {
+            evaluations,
+            threads,
+            accept_unverified,
+        } = *options;
         if !RunFolder::is_at(path) {
             return Err(RunFolderError::NoRun(path.to_owned()).into());
         }
@@ -97,6 +119,9 @@ impl Resumption {
                 path: path.to_owned(),
                 found: found.to_owned(),
             });
+        }
+        if !folder.is_verifiable() && !accept_unverified {
+            return Err(ResumeError::Unverified(path.to_owned()));
         }
         let mut notes = Vec::new();
         let table = DesignTable::over(file, path, folder.study());
@@ -139,7 +164,8 @@ impl Resumption {
         }
         let is_complete = folder.report().is_some_and(|report| {
             report.outcome == EndReason::Completed && report.evaluations == search.study().optimizer.evaluations
-        }) && kept == evaluated;
+        }) && kept == evaluated
+            && evaluated == search.study().optimizer.evaluations;
         let record_every = match (folder.checkpoint(), folder.report()) {
             (Some(checkpoint), _) => checkpoint.record_every,
             (_, Some(report)) if report.files.is_some() => report.record_every,
@@ -194,8 +220,8 @@ impl Resumption {
         }
     }
 
-    /// Begins to write the folder again: cuts the table after its last complete generation, and removes the front and the
-    /// recording, which follow from the designs and are written anew.
+    /// Begins to write the folder again: cuts the table after its last complete generation, and removes the recording, which
+    /// follows from the designs and is written anew.
     ///
     /// # Errors
     /// [`WriteError`] if a file cannot be written; the run can still be resumed.
@@ -217,9 +243,8 @@ impl Resumption {
         if !folder.merged().is_empty() {
             writer.set_merged(folder.merged().to_vec())?;
         }
-        for file in [FRONT, RECORDING] {
-            remove(&path.join(file))?;
-        }
+        // The recording is written anew from its beginning. The front stays until there is a new one.
+        remove(&path.join(RECORDING))?;
         Ok((writer, search))
     }
 }

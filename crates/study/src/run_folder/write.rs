@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use super::design_table::{DesignTable, open_locked};
 use super::{Checkpoint, DESIGNS, FRONT, FileSums, MergedRun, PROGRESS, RECORDING, REPORT, RunReport, STUDY};
 use crate::FileSum;
-use crate::durable::{remove, sync_folder};
-use crate::table::{Cell, Column, table_bytes};
+use crate::durable::{remove, sweep, sync_folder};
+use crate::table::{Cell, Column, as_text, table_bytes};
 use crate::{Event, RunSummary, Study};
 use crate::{WriteError, write_whole};
 
@@ -96,6 +96,7 @@ impl RunWriter {
             checkpoint_at: Instant::now(),
             merged: Vec::new(),
         };
+        sweep(path).map_err(WriteError::at(path))?;
         // While the study is replaced, its sum is unknown: a crash between the two files must not look like damage.
         writer.table.synchronize()?;
         writer.write_checkpoint(None)?;
@@ -158,6 +159,8 @@ impl RunWriter {
                 ..FileSum::of(&front)
             })
         } else {
+            // What is there is the front of an earlier, shorter run of the folder.
+            remove(&self.path.join(FRONT))?;
             None
         };
         let report = RunReport {
@@ -212,7 +215,7 @@ pub(super) fn front_table(study: &Study, summary: &RunSummary) -> io::Result<Vec
     let rows = summary.front.iter().zip(summary.marks(study)).map(|(member, mark)| {
         let entry = member.row();
         let cell = |column| match column {
-            Column::Mark => Cell::Text(mark.clone().into()),
+            Column::Mark => Cell::Text(as_text(&mark).into_owned().into()),
             column => column.cell(&entry),
         };
         Column::of_front(study).map(cell).collect()

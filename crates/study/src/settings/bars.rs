@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::declare::wrong_name;
+use crate::read_regular;
 use kinefront_model::mechanism::{Catalogue, CatalogueEntry, CrossSection, CrossSections, Wall};
 
 /// Shape of a cross-section.
@@ -97,9 +99,17 @@ pub enum CatalogueFault {
     /// The file cannot be read.
     #[error("cannot be read: {0}; give the path of a CSV file beside the study, or {known}", known = builtin_names())]
     Read(std::io::Error),
-    /// The file is not CSV with the columns of a catalogue.
-    #[error("{0}; the columns of a catalogue are name, outer_mm, wall_mm and, if known, kg_per_m")]
-    Csv(#[from] csv::Error),
+    /// The file is neither in the folder of the study nor below it.
+    #[error(
+        "is a file outside the folder of the study, which is not read unless you say so: move it there, or pass --outside-files"
+    )]
+    Outside,
+    /// A line is not an entry of a catalogue.
+    #[error("line {0} is not an entry of a catalogue; its columns are name, outer_mm, wall_mm and, if known, kg_per_m")]
+    Row(usize),
+    /// The name of an entry is wrong.
+    #[error("line {0}: the name {1}")]
+    Name(usize, String),
     /// The entries do not form a catalogue.
     #[error(transparent)]
     Entries(#[from] kinefront_model::mechanism::CatalogueError),
@@ -113,17 +123,26 @@ fn builtin_names() -> String {
     names.join(", ")
 }
 
+/// Which files a study may name.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum FileScope {
+    /// Those in its folder and below it.
+    #[default]
+    BesideStudy,
+    /// Any file.
+    Anywhere,
+}
+
 impl CatalogueChoice {
-    /// Replaces the path of a file, relative to `folder`, by the entries of the file.
+    /// Replaces the path of a file, relative to `folder`, by the entries of the file, if the file is within the scope.
     ///
     /// # Errors
     /// [`CatalogueFault`].
-    pub(crate) fn load(&mut self, folder: &Path) -> Result<(), CatalogueFault> {
+    pub(crate) fn load(&mut self, folder: &Path, scope: FileScope) -> Result<(), CatalogueFault> {
         if let Self::Named(name) = self
             && !CATALOGUES.iter().any(|builtin| builtin.name == name)
         {
-            let text = std::fs::read_to_string(folder.join(name)).map_err(CatalogueFault::Read)?;
-            *self = Self::Rows(rows(&text)?);
+            *self = Self::Rows(read_rows(folder, name, scope)?);
         }
         Ok(())
     }
@@ -137,7 +156,7 @@ impl CatalogueChoice {
             Self::Rows(rows) => rows.clone(),
             Self::Named(name) => match CATALOGUES.iter().find(|builtin| builtin.name == name) {
                 Some(builtin) => rows(builtin.text)?,
-                None => rows(&std::fs::read_to_string(name).map_err(CatalogueFault::Read)?)?,
+                None => read_rows(Path::new(""), name, FileScope::BesideStudy)?,
             },
         };
         let entries = rows.into_iter().map(|row| CatalogueEntry {
@@ -150,8 +169,38 @@ impl CatalogueChoice {
     }
 }
 
-fn rows(text: &str) -> Result<Vec<CatalogueRow>, csv::Error> {
-    csv::Reader::from_reader(text.as_bytes()).deserialize().collect()
+/// Largest catalogue \[bytes\].
+const LARGEST_CATALOGUE: u64 = 1 << 20;
+
+fn rows(text: &str) -> Result<Vec<CatalogueRow>, CatalogueFault> {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    // What is in a file that is not a catalogue is not told.
+    let row = |(row, line): (Result<CatalogueRow, csv::Error>, usize)| {
+        let row = row.map_err(|_| CatalogueFault::Row(line))?;
+        match wrong_name(&row.name) {
+            Some(message) => Err(CatalogueFault::Name(line, message)),
+            None => Ok(row),
+        }
+    };
+    reader.deserialize().zip(2..).map(row).collect()
+}
+
+/// Reads the catalogue in a file that a study names.
+fn read_rows(folder: &Path, name: &str, scope: FileScope) -> Result<Vec<CatalogueRow>, CatalogueFault> {
+    let path = folder.join(name);
+    if scope == FileScope::BesideStudy {
+        let folder = match folder.as_os_str().is_empty() {
+            true => Path::new("."),
+            false => folder,
+        };
+        // A link may lead out of the folder.
+        let [folder, file] = [folder, &path].map(|path| path.canonicalize().map_err(CatalogueFault::Read));
+        if !file?.starts_with(folder?) {
+            return Err(CatalogueFault::Outside);
+        }
+    }
+    let text = read_regular(&path, LARGEST_CATALOGUE).map_err(CatalogueFault::Read)?;
+    rows(&String::from_utf8(text).map_err(|_| CatalogueFault::Row(1))?)
 }
 
 impl SectionChoice {

@@ -116,7 +116,10 @@ impl Check {
                 (!valid).then(|| format!("is \"{name}\"; it must be one of {}", names.join(", ")))
             }
             (Check::Name, Value::String(name)) => {
-                name.trim().is_empty().then(|| "is empty; give a short name".to_owned())
+                if name.trim().is_empty() {
+                    return Some("is empty; give a short name".to_owned());
+                }
+                wrong_name(name)
             }
             _ => None,
         }
@@ -250,3 +253,28 @@ macro_rules! settings {
 }
 
 pub(super) use {section, settings};
+
+/// Largest number of characters of a name.
+const LONGEST_NAME: usize = 100;
+
+/// Returns what is wrong with a name that terminals, file systems and other programs show.
+pub(crate) fn wrong_name(name: &str) -> Option<String> {
+    if let Some(found) = name.chars().find(|&c| c == '\n' || c == '\t' || !is_shown(c)) {
+        return Some(format!(
+            "has the character {}, which changes what a terminal shows; omit it",
+            found.escape_unicode()
+        ));
+    }
+    let length = name.chars().count();
+    (length > LONGEST_NAME).then(|| format!("has {length} characters; a name has at most {LONGEST_NAME}"))
+}
+
+/// Whether a terminal shows a character and nothing else happens: control characters, and marks that change the direction of the text
+/// around them, are others. The end of a line and the tabulator are shown.
+pub fn is_shown(character: char) -> bool {
+    let turns = matches!(
+        character,
+        '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
+    );
+    matches!(character, '\n' | '\t') || !character.is_control() && !turns
+}

@@ -11,10 +11,11 @@ mod sections;
 mod variables;
 
 pub use bars::{
-    BuiltinCatalogue, CATALOGUES, CatalogueChoice, CatalogueFault, CatalogueRow, SectionChoice, SectionKind,
+    BuiltinCatalogue, CATALOGUES, CatalogueChoice, CatalogueFault, CatalogueRow, FileScope, SectionChoice, SectionKind,
     SectionsSection,
 };
-pub use declare::{Check, Initial, Setting};
+pub(crate) use declare::wrong_name;
+pub use declare::{Check, Initial, Setting, is_shown};
 pub use list::settings;
 pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnation};
 pub(crate) use question::unknown_quantity;

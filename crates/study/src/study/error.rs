@@ -39,6 +39,16 @@ pub enum StudyError {
         /// Its length.
         length: usize,
     },
+    /// A line has a character that a terminal does not show.
+    #[error("line {line} of the study {name} has the character {found}, which a terminal does not show; omit it")]
+    Hidden {
+        /// Name of the study's file.
+        name: String,
+        /// Number of the line, from 1.
+        line: usize,
+        /// The character, escaped.
+        found: String,
+    },
     /// The text is not TOML, or a key is unknown or has a value of the wrong type.
     #[error("cannot parse the study{}: {message}", key.as_ref().map(|key| format!(" at `{key}`")).unwrap_or_default())]
     Shape {

@@ -3,7 +3,7 @@
 use super::{Study, variables};
 use crate::settings::{
     AlgorithmName, Bounds, LengthChoice, LimitChoice, ObjectiveChoice, RailSection, RailSupportChoice, SectionChoice,
-    settings, unknown_quantity,
+    settings, unknown_quantity, wrong_name,
 };
 use kinefront_model::evaluation::{PoseScalar, Quantity, Scope};
 use kinefront_model::mechanism::{Architecture, Arrangement, Design, DesignVariable, Geometry};
@@ -233,6 +233,10 @@ fn check_moga2(study: &Study, faults: &mut Vec<Fault>) {
 fn check_references(study: &Study, faults: &mut Vec<Fault>) {
     for reference in &study.references {
         let name = &reference.name;
+        if let Some(message) = wrong_name(name) {
+            faults.push(Fault::new("references", format!("a name {message}")));
+            continue;
+        }
         if let Err(error) = reference.parse(study.working_mode) {
             faults.push(Fault::new("references", format!("`{name}`: {error}")));
         }

@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::error::LONGEST_LINE;
 use super::{Fault, Study};
-use crate::settings::CatalogueChoice;
+use crate::settings::{CatalogueChoice, FileScope, is_shown};
 use crate::{Builtin, StudyError};
 
 /// Largest size of a study file \[bytes\].
@@ -33,6 +33,14 @@ impl Study {
     /// # Errors
     /// [`StudyError`].
     pub fn load(argument: &OsStr) -> Result<Self, StudyError> {
+        Self::load_within(argument, FileScope::BesideStudy)
+    }
+
+    /// As [`Study::load`], for a study that may name other files than those in its folder and below it.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn load_within(argument: &OsStr, scope: FileScope) -> Result<Self, StudyError> {
         let path = Path::new(argument);
         // A study may come from a pipe, but not from a folder.
         let is_file = path.exists() && !path.is_dir();
@@ -40,21 +48,25 @@ impl Study {
             // A folder of that name does not take precedence over the built-in study.
             Some(builtin) if !is_file => builtin.study(),
             None if !is_file => Err(StudyError::Unknown { path: path.to_owned() }),
-            _ => Self::read(path),
+            _ => Self::read_within(path, scope),
         }
     }
 
-    /// Reads a study file.
+    /// Reads a study file, which may name other files in its folder and below it.
     ///
     /// # Errors
     /// [`StudyError`], a diagnostic that shows the location in the file.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
+        Self::read_within(path, FileScope::BesideStudy)
+    }
+
+    fn read_within(path: &Path, scope: FileScope) -> Result<Self, StudyError> {
         let text = read_limited(path).map_err(|cause| StudyError::Read {
             path: path.to_owned(),
             cause,
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::parse_in(folder, &text, &path.display().to_string())
+        Self::parse_within(folder, scope, &text, &path.display().to_string())
     }
 
     /// Parses a study from `text`; error messages refer to it by `name`.
@@ -70,6 +82,19 @@ impl Study {
     /// # Errors
     /// As [`Study::read`].
     pub fn parse_in(folder: &Path, text: &str, name: &str) -> Result<Self, StudyError> {
+        Self::parse_within(folder, FileScope::BesideStudy, text, name)
+    }
+
+    fn parse_within(folder: &Path, scope: FileScope, text: &str, name: &str) -> Result<Self, StudyError> {
+        // What a terminal would not show must not be in a message that quotes the study.
+        let hidden = |(line, text): (usize, &str)| Some((line, text.chars().find(|&found| !is_shown(found))?));
+        if let Some((line, found)) = (1..).zip(text.lines()).find_map(hidden) {
+            return Err(StudyError::Hidden {
+                name: name.to_owned(),
+                line,
+                found: found.escape_unicode().to_string(),
+            });
+        }
         if let Some((line, text)) = (1..).zip(text.lines()).find(|(_, text)| text.len() > LONGEST_LINE) {
             return Err(StudyError::Line {
                 name: name.to_owned(),
@@ -85,7 +110,7 @@ impl Study {
             span: error.span().map(SourceSpan::from),
         })?;
         let load = |(key, catalogue): (&'static str, &mut CatalogueChoice)| {
-            let message = catalogue.load(folder).err()?.to_string();
+            let message = catalogue.load(folder, scope).err()?.to_string();
             Some(Fault::new(key, message))
         };
         let mut faults: Vec<Fault> = study.sections.catalogues().filter_map(load).collect();

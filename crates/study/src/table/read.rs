@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::row::read_design;
 use super::{Column, ColumnType, Row, RowError, TableRow};
-use crate::{CertifiedRadius, Study};
+use crate::{CertifiedRadius, Study, open_regular};
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::Design;
 
@@ -264,9 +264,41 @@ fn is_list_of_constraints(text: &str) -> bool {
             .all(|id| Constraint::ALL.iter().any(|constraint| constraint.id() == id))
 }
 
+/// Largest length of a line of a table \[bytes\].
+const LONGEST_LINE: usize = 1 << 16;
+
+/// A file whose lines are limited: what is not a table may be one line without an end.
+struct LineLimit {
+    file: File,
+    /// Bytes since the last end of a line.
+    since: usize,
+}
+
+impl LineLimit {
+    fn new(file: File) -> Self {
+        Self { file, since: 0 }
+    }
+}
+
+impl Read for LineLimit {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.file.read(buffer)?;
+        let read = &buffer[..count];
+        self.since = match read.iter().rposition(|&byte| byte == b'\n') {
+            Some(end) => count - end - 1,
+            None => self.since + count,
+        };
+        if self.since > LONGEST_LINE {
+            let message = format!("it has a line of more than {LONGEST_LINE} bytes; is it a table of designs?");
+            return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+        }
+        Ok(count)
+    }
+}
+
 /// Reads a table line by line.
 struct TableReader {
-    records: csv::Reader<BufReader<File>>,
+    records: csv::Reader<BufReader<LineLimit>>,
     columns: Vec<Option<Column>>,
     record: csv::StringRecord,
     length: u64,
@@ -282,7 +314,7 @@ struct TableReader {
 
 impl TableReader {
     fn open(path: &Path) -> Result<Self, TableFault> {
-        let mut file = File::open(path)?;
+        let mut file = open_regular(path, u64::MAX)?;
         let length = file.metadata()?.len();
         let mut last = [b'\n'];
         if length > 0 {
@@ -290,7 +322,7 @@ impl TableReader {
             file.read_exact(&mut last)?;
             file.rewind()?;
         }
-        let mut records = csv::Reader::from_reader(BufReader::new(file));
+        let mut records = csv::Reader::from_reader(BufReader::new(LineLimit::new(file)));
         let columns = match records.headers() {
             Ok(header) => header.iter().map(Column::find).collect(),
             Err(error) => return Err(csv_fault(&error, 1)),

@@ -1,0 +1,200 @@
+//! Every call to the operating system fails once, as it does on a disk that is full or broken: nothing that was on the disk is lost,
+//! and what remains can be resumed to the run that was never disturbed.
+#![cfg(target_os = "linux")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use super::support::{check, folder, is_thorough, kinefront, optimize, resume, small_study, tables};
+
+/// Calls that a run makes to its files, with the error that each fails with in turn.
+const CALLS: [(&str, &[&str]); 9] = [
+    ("openat", &["EACCES", "EMFILE", "ENOSPC"]),
+    ("write", &["ENOSPC", "EIO", "EINTR"]),
+    ("fsync,fdatasync", &["EIO", "ENOSPC"]),
+    ("rename,renameat,renameat2", &["EIO", "EACCES"]),
+    ("unlink,unlinkat", &["EACCES", "EIO"]),
+    ("mkdir,mkdirat", &["ENOSPC", "EACCES"]),
+    ("flock", &["EIO", "EINTR"]),
+    ("ftruncate", &["EIO"]),
+    ("clone,clone3", &["EAGAIN"]),
+];
+
+/// A command to disturb, on a copy of a run in the folder.
+struct Scenario {
+    name: &'static str,
+    arguments: fn(&Path, &Path) -> Vec<PathBuf>,
+    /// Whether the command works in the run folder, which then has to be resumed or repaired.
+    changes_run: bool,
+}
+
+fn paths<const N: usize>(arguments: [&str; N]) -> Vec<PathBuf> {
+    arguments.map(PathBuf::from).to_vec()
+}
+
+const SCENARIOS: [Scenario; 6] = [
+    Scenario {
+        name: "optimize",
+        arguments: |folder, _| {
+            let mut all = paths(["optimize", "--evaluations", "90", "--no-recording", "--quiet"]);
+            all.extend([folder.join("small.toml"), "--out".into(), folder.join("new")]);
+            all
+        },
+        changes_run: false,
+    },
+    Scenario {
+        name: "resume",
+        arguments: |_, run| {
+            let mut all = paths(["optimize", "--evaluations", "120", "--no-recording", "--quiet"]);
+            all.extend(["--resume".into(), run.to_owned()]);
+            all
+        },
+        changes_run: true,
+    },
+    Scenario {
+        name: "repair",
+        arguments: |_, run| {
+            let front = run.join("front.csv");
+            let text = fs::read(&front).expect("a front");
+            fs::write(&front, &text[..text.len() / 2]).expect("a front");
+            vec!["check".into(), "--repair".into(), run.to_owned()]
+        },
+        changes_run: true,
+    },
+    Scenario {
+        name: "merge",
+        arguments: |folder, run| {
+            let mut all = paths(["merge", "--no-recording", "--quiet", "--out"]);
+            all.extend([folder.join("new"), run.to_owned(), folder.join("other")]);
+            all
+        },
+        changes_run: false,
+    },
+    Scenario {
+        name: "report",
+        arguments: |folder, run| {
+            let mut all = paths(["report", "--quiet", "--picture-width", "120", "--scale", "0.2", "--out"]);
+            all.extend([folder.join("new"), run.to_owned()]);
+            all
+        },
+        changes_run: false,
+    },
+    Scenario {
+        name: "export",
+        arguments: |folder, run| vec!["export".into(), run.to_owned(), "--out".into(), folder.join("new")],
+        changes_run: false,
+    },
+];
+
+/// Runs the program with the `when`-th of the calls failing.
+fn disturb(arguments: &[PathBuf], calls: &str, error: &str, when: usize) -> (Output, bool) {
+    let log = tempfile::NamedTempFile::new().expect("a file");
+    let output = Command::new("strace")
+        .args(["-f", "-qq", "-o"])
+        .arg(log.path())
+        .args(["-e", &format!("trace={calls}")])
+        .args(["-e", &format!("inject={calls}:error={error}:when={when}")])
+        .arg(env!("CARGO_BIN_EXE_kinefront"))
+        .args(arguments)
+        .env_remove("RERUN")
+        .env("NO_COLOR", "1")
+        .output()
+        .expect("strace runs");
+    let fired = fs::read_to_string(log.path()).expect("a log").contains("(INJECTED)");
+    (output, fired)
+}
+
+#[test]
+fn every_call_fails_once() {
+    if Command::new("strace").arg("-V").output().is_err() {
+        eprintln!("skipped: there is no strace");
+        return;
+    }
+    let folder = folder();
+    let study = small_study(folder.path());
+    let (whole, longer, other) = (
+        folder.path().join("whole"),
+        folder.path().join("longer"),
+        folder.path().join("other"),
+    );
+    let arguments = |count: &'static str| ["--evaluations", count, "--no-recording"];
+    optimize(&study, &whole, &arguments("90"));
+    optimize(&study, &longer, &arguments("120"));
+    optimize(
+        &study,
+        &other,
+        &["--evaluations", "90", "--no-recording", "--seed", "9"],
+    );
+    let [kept, extended] = [tables(&whole), tables(&longer)];
+    let cases: Vec<_> = SCENARIOS
+        .iter()
+        .flat_map(|scenario| CALLS.iter().map(move |(calls, errors)| (scenario, *calls, *errors)))
+        .collect();
+    let mut injected = 0;
+    for (place, (scenario, calls, errors)) in cases.into_iter().enumerate() {
+        // All calls until there are no more, or a few of them, others for each kind of call.
+        let few = [1 + place % 3, 4 + place % 11, 9 + place % 23];
+        let times: Vec<usize> = if is_thorough() {
+            (1..10_000).collect()
+        } else {
+            few.to_vec()
+        };
+        for when in times {
+            let error = errors[when % errors.len()];
+            let _ = fs::remove_dir_all(folder.path().join("new"));
+            let _ = fs::remove_file(folder.path().join("new"));
+            let run = folder.path().join("run");
+            let _ = fs::remove_dir_all(&run);
+            fs::create_dir(&run).expect("a folder");
+            for name in ["study.toml", "designs.csv", "front.csv", "run.json"] {
+                fs::copy(whole.join(name), run.join(name)).expect("a copy");
+            }
+            let arguments = (scenario.arguments)(folder.path(), &run);
+            let (output, fired) = disturb(&arguments, calls, error, when);
+            if !fired {
+                break;
+            }
+            injected += 1;
+            let said = String::from_utf8_lossy(&output.stderr);
+            // The loader of the program is not the program.
+            if said.contains("error while loading shared libraries") {
+                continue;
+            }
+            let what = format!("{}: {calls} {when} {error}: {:?} {said}", scenario.name, output.status);
+            assert!(!said.contains("panicked"), "{what}");
+            assert!(matches!(output.status.code(), Some(0..=3)), "{what}");
+            // The other runs are as they were, whatever failed.
+            assert!(tables(&whole) == kept && tables(&longer) == extended, "{what}");
+            if scenario.changes_run {
+                // No design is lost, and the run can be completed to what it would have been.
+                let rows = fs::read(run.join("designs.csv")).expect("designs");
+                assert!(rows.starts_with(&kept[1]) || kept[1].starts_with(&rows), "{what}");
+                resume(&run, &["--evaluations", "120", "--no-recording"]).success();
+                assert!(tables(&run) == extended, "{what}");
+                check(&run).success();
+            } else if scenario.name == "optimize" {
+                complete(&study, &folder.path().join("new"));
+                assert!(tables(&folder.path().join("new")) == kept, "{what}");
+            } else {
+                assert!(tables(&run) == kept, "{what}");
+            }
+        }
+    }
+    assert!(injected > 30, "only {injected} calls failed");
+}
+
+/// Brings a run that was disturbed to its end: resumes it, or starts it again where it has not begun.
+fn complete(study: &Path, run: &Path) {
+    if run.join("study.toml").exists() {
+        resume(run, &["--no-recording"]).success();
+    } else {
+        kinefront()
+            .args(["optimize", "--evaluations", "90", "--no-recording", "--quiet"])
+            .arg(study)
+            .arg("--out")
+            .arg(run)
+            .assert()
+            .success();
+    }
+}
