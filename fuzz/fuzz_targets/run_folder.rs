@@ -1,7 +1,7 @@
 //! A run folder with any files, which a line of `===` separates, is opened, resumed and checked, or refused.
 #![no_main]
 
-use kinefront_study::{Resumption, RunFolder};
+use kinefront_study::{ResumeOptions, Resumption, RunFolder};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -17,7 +17,12 @@ fuzz_target!(|bytes: &[u8]| {
         let _ = (run.designs(), run.front());
         // A study of large grids is valid, but takes its time.
         if run.study().grid.reference.directions < 40 && run.study().grid.reference.ray_steps < 60 {
-            let _ = Resumption::open(folder.path(), None, Some(1));
+            let options = ResumeOptions {
+                threads: Some(1),
+                accept_unverified: true,
+                ..ResumeOptions::default()
+            };
+            let _ = Resumption::open(folder.path(), &options);
         }
     }
 });

@@ -17,7 +17,7 @@ fuzz_target!(|line: &str| {
         return;
     };
     // A platform or a link that is long compared with R takes many steps.
-    if design.platform_radius.max(design.link_length) > 20.0 * design.base_radius {
+    if design.platform_radius().max(design.link_length()) > 20.0 * design.base_radius() {
         return;
     }
     let found = model.evaluate(&design, GridChoice::Reference);

@@ -28,6 +28,8 @@ use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 use kinefront_model::evaluation::GridChoice;
@@ -139,26 +141,7 @@ pub fn run() -> ExitCode {
         unpack_with(program);
     }
     OUTSIDE_FILES.store(arguments.outside_files, Ordering::Relaxed);
-    let outcome = match arguments.command {
-        #[cfg(feature = "explorer")]
-        None => explore::run(&explore::ExploreArguments::default()),
-        #[cfg(feature = "explorer")]
-        Some(Command::Explore(arguments)) => explore::run(&arguments),
-        // Not reached: `arg_required_else_help` prints the help if there is no command.
-        #[cfg(not(feature = "explorer"))]
-        None => Ok(Ending::Done),
-        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
-        Some(Command::Certify(arguments)) => certify::run(&arguments),
-        Some(Command::Pose(arguments)) => pose::run(&arguments),
-        Some(Command::Show(arguments)) => show::run(&arguments),
-        Some(Command::Export(arguments)) => export::run(&arguments),
-        Some(Command::Optimize(arguments)) => optimize::run(&arguments),
-        Some(Command::Merge(arguments)) => merge::run(&arguments),
-        Some(Command::Check(arguments)) => check::run(&arguments),
-        Some(Command::UnpackRecording(arguments)) => check::unpack(&arguments),
-        Some(Command::Report(arguments)) => report::run(&arguments),
-        Some(Command::Study(arguments)) => study::run(&arguments),
-    };
+    let outcome = start_threads().and_then(|()| perform(arguments.command));
     // What the standard output still holds may not be writable either.
     let outcome = match (outcome, std::io::stdout().flush()) {
         (Ok(Ending::Done), Err(error)) => Err(error.into()),
@@ -182,6 +165,61 @@ pub fn run() -> ExitCode {
             ExitCode::from(1)
         }
     }
+}
+
+/// Runs a command.
+fn perform(command: Option<Command>) -> Result<Ending, Failure> {
+    match command {
+        #[cfg(feature = "explorer")]
+        None => explore::run(&explore::ExploreArguments::default()),
+        #[cfg(feature = "explorer")]
+        Some(Command::Explore(arguments)) => explore::run(&arguments),
+        // Not reached: `arg_required_else_help` prints the help if there is no command.
+        #[cfg(not(feature = "explorer"))]
+        None => Ok(Ending::Done),
+        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
+        Some(Command::Certify(arguments)) => certify::run(&arguments),
+        Some(Command::Pose(arguments)) => pose::run(&arguments),
+        Some(Command::Show(arguments)) => show::run(&arguments),
+        Some(Command::Export(arguments)) => export::run(&arguments),
+        Some(Command::Optimize(arguments)) => optimize::run(&arguments),
+        Some(Command::Merge(arguments)) => merge::run(&arguments),
+        Some(Command::Check(arguments)) => check::run(&arguments),
+        Some(Command::UnpackRecording(arguments)) => check::unpack(&arguments),
+        Some(Command::Report(arguments)) => report::run(&arguments),
+        Some(Command::Study(arguments)) => study::run(&arguments),
+    }
+}
+
+/// Number of times that the start of a thread is tried again, after 10 ms each.
+const THREAD_PATIENCE: u32 = 20;
+
+/// Starts the threads that commands share: a system that has none to spare says so here, not in the middle of the work.
+fn start_threads() -> Result<(), Failure> {
+    let spawn = |thread: rayon::ThreadBuilder| {
+        // A start that fails drops what it was given: the thread that does start takes it.
+        let slot = Arc::new(Mutex::new(Some(thread)));
+        let mut patience = THREAD_PATIENCE;
+        loop {
+            let taken = Arc::clone(&slot);
+            let started = std::thread::Builder::new()
+                .name("kinefront-worker".to_owned())
+                .spawn(move || {
+                    if let Some(thread) = taken.lock().ok().and_then(|mut slot| slot.take()) {
+                        thread.run();
+                    }
+                });
+            match started {
+                Ok(_) => return Ok(()),
+                Err(error) if patience == 0 => return Err(error),
+                Err(_) => std::thread::sleep(Duration::from_millis(10)),
+            }
+            patience -= 1;
+        }
+    };
+    let pool = rayon::ThreadPoolBuilder::new().spawn_handler(spawn);
+    pool.build_global()
+        .map_err(|error| Failure::Runtime(miette!("the threads of the program cannot be started: {error}")))
 }
 
 /// Prints the help, the version, or what is wrong with the arguments.

@@ -86,7 +86,7 @@ impl Progress {
                 .unwrap_or_else(|_| ProgressStyle::default_bar());
         let bar = ProgressBar::with_draw_target(Some(budget as u64), ProgressDrawTarget::stderr_with_hz(10))
             .with_style(style);
-        bar.enable_steady_tick(Duration::from_millis(200));
+        keep_ticking(&bar);
         Self::Bar(bar)
     }
 
@@ -142,4 +142,19 @@ impl Progress {
             Self::Lines { printer, .. } => printer.finish(),
         }
     }
+}
+
+/// Redraws a display five times a second until it has finished. Without a thread to spare it stands still in between.
+pub fn keep_ticking(bar: &ProgressBar) {
+    let bar = bar.downgrade();
+    let tick = move || {
+        while let Some(bar) = bar.upgrade().filter(|bar| !bar.is_finished()) {
+            bar.tick();
+            drop(bar);
+            std::thread::sleep(Duration::from_millis(200));
+        }
+    };
+    let _ = std::thread::Builder::new()
+        .name("kinefront-progress".to_owned())
+        .spawn(tick);
 }

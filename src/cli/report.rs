@@ -7,6 +7,7 @@ use indicatif::ProgressBar;
 use kinefront_report::{Options, Report, ReportError, Source, free};
 use miette::Report as Words;
 
+use super::progress::keep_ticking;
 use super::{Ending, Failure, load_study, say};
 
 const SENSITIVITY: usize = 2000;
@@ -107,7 +108,7 @@ pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
     } else {
         ProgressBar::new_spinner()
     };
-    spinner.enable_steady_tick(std::time::Duration::from_millis(200));
+    keep_ticking(&spinner);
     let mut tell = |words: &str| spinner.set_message(words.to_owned());
     let report = if arguments.paper {
         let study = load_study(None).map_err(Failure::Input)?;

@@ -507,7 +507,7 @@ fn hostile_folders_are_survived() {
                     "--out".into(),
                     result("report"),
                     "--picture-width".into(),
-                    "120".into(),
+                    "160".into(),
                 ],
             ),
             (

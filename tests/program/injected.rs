@@ -2,6 +2,7 @@
 //! and what remains can be resumed to the run that was never disturbed.
 #![cfg(target_os = "linux")]
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -74,7 +75,15 @@ const SCENARIOS: [Scenario; 6] = [
     Scenario {
         name: "report",
         arguments: |folder, run| {
-            let mut all = paths(["report", "--quiet", "--picture-width", "120", "--scale", "0.2", "--out"]);
+            let mut all = paths([
+                "report",
+                "--quiet",
+                "--picture-width",
+                "160",
+                "--scale",
+                "0.25",
+                "--out",
+            ]);
             all.extend([folder.join("new"), run.to_owned()]);
             all
         },
@@ -82,7 +91,7 @@ const SCENARIOS: [Scenario; 6] = [
     },
     Scenario {
         name: "export",
-        arguments: |folder, run| vec!["export".into(), run.to_owned(), "--out".into(), folder.join("new")],
+        arguments: |folder, run| vec!["export".into(), run.to_owned(), "--out".into(), folder.join("new.csv")],
         changes_run: false,
     },
 ];
@@ -127,11 +136,27 @@ fn every_call_fails_once() {
         &["--evaluations", "90", "--no-recording", "--seed", "9"],
     );
     let [kept, extended] = [tables(&whole), tables(&longer)];
+    let prepare = || {
+        let _ = fs::remove_dir_all(folder.path().join("new"));
+        let _ = fs::remove_file(folder.path().join("new.csv"));
+        let run = folder.path().join("run");
+        let _ = fs::remove_dir_all(&run);
+        fs::create_dir(&run).expect("a folder");
+        for name in ["study.toml", "designs.csv", "front.csv", "run.json"] {
+            fs::copy(whole.join(name), run.join(name)).expect("a copy");
+        }
+        run
+    };
+    // What is disturbed does its work when it is not.
+    for scenario in &SCENARIOS {
+        let arguments = (scenario.arguments)(folder.path(), &prepare());
+        kinefront().args(arguments).assert().success();
+    }
     let cases: Vec<_> = SCENARIOS
         .iter()
         .flat_map(|scenario| CALLS.iter().map(move |(calls, errors)| (scenario, *calls, *errors)))
         .collect();
-    let mut injected = 0;
+    let (mut injected, mut table) = (0, BTreeMap::new());
     for (place, (scenario, calls, errors)) in cases.into_iter().enumerate() {
         // All calls until there are no more, or a few of them, others for each kind of call.
         let few = [1 + place % 3, 4 + place % 11, 9 + place % 23];
@@ -142,20 +167,14 @@ fn every_call_fails_once() {
         };
         for when in times {
             let error = errors[when % errors.len()];
-            let _ = fs::remove_dir_all(folder.path().join("new"));
-            let _ = fs::remove_file(folder.path().join("new"));
-            let run = folder.path().join("run");
-            let _ = fs::remove_dir_all(&run);
-            fs::create_dir(&run).expect("a folder");
-            for name in ["study.toml", "designs.csv", "front.csv", "run.json"] {
-                fs::copy(whole.join(name), run.join(name)).expect("a copy");
-            }
+            let run = prepare();
             let arguments = (scenario.arguments)(folder.path(), &run);
             let (output, fired) = disturb(&arguments, calls, error, when);
             if !fired {
                 break;
             }
             injected += 1;
+            *table.entry((scenario.name, calls)).or_insert(0) += 1;
             let said = String::from_utf8_lossy(&output.stderr);
             // The loader of the program is not the program.
             if said.contains("error while loading shared libraries") {
@@ -180,6 +199,9 @@ fn every_call_fails_once() {
                 assert!(tables(&run) == kept, "{what}");
             }
         }
+    }
+    for ((scenario, calls), count) in table {
+        println!("| {scenario} | {calls} | {count} |");
     }
     assert!(injected > 30, "only {injected} calls failed");
 }
