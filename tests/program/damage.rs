@@ -201,7 +201,7 @@ fn a_folder_is_repaired_where_nothing_is_guessed() {
     let folder = folder();
     let study = small_study(folder.path());
     let [whole, run] = ["whole", "run"].map(|name| folder.path().join(name));
-    optimize(&study, &whole, &[]);
+    optimize(&study, &whole, &["--evaluations", "180"]);
     let copy = |to: &Path| {
         let _ = fs::remove_dir_all(to);
         fs::create_dir(to).expect("a folder");

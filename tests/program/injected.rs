@@ -159,7 +159,7 @@ fn every_call_fails_once() {
     let (mut injected, mut table) = (0, BTreeMap::new());
     for (place, (scenario, calls, errors)) in cases.into_iter().enumerate() {
         // All calls until there are no more, or a few of them, others for each kind of call.
-        let few = [1 + place % 3, 4 + place % 11, 9 + place % 23];
+        let few = [1 + place % 3, 4 + place % 17];
         let times: Vec<usize> = if is_thorough() {
             (1..10_000).collect()
         } else {
