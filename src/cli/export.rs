@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use kinefront_export::{ExportError, ExportSubject, Format, export, front_to_parquet};
 use kinefront_model::evaluation::GridChoice;
 use kinefront_model::spatial::Pose;
-use kinefront_study::{PreparedStudy, RunFolder, read_regular, read_table, write_whole};
+use kinefront_study::{PreparedStudy, read_regular, read_table, write_whole};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
-use super::subject::SubjectArguments;
-use super::{Ending, Failure, exists_already, load_study, say};
+use super::subject::{SubjectArguments, run_of, study_beside};
+use super::{Ending, Failure, exists_already, say};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -182,21 +182,16 @@ fn front(arguments: &ExportArguments, target: ExportTarget) -> Result<Vec<u8>> {
 
 /// Checks that a table is the one that its run wrote, and that all its rows are complete and valid.
 fn check_table(table: &Path) -> Result<()> {
-    let folder = table.parent().filter(|folder| RunFolder::is_at(folder));
-    let study = match folder {
-        Some(folder) => {
-            let run = RunFolder::open(folder).into_diagnostic()?;
-            if !run.is_verifiable() {
-                return Err(miette!(
-                    help = "kinefront check says what is missing",
-                    "{} cannot be verified: no file states what its tables have to be",
-                    folder.display()
-                ));
-            }
-            run.check_file(table).into_diagnostic()?;
-            run.study().clone()
+    let study = match run_of(table)? {
+        Some(run) if !run.is_verifiable() => {
+            return Err(miette!(
+                help = "kinefront check says what is missing",
+                "{} cannot be verified: no file states what its tables have to be",
+                run.path().display()
+            ));
         }
-        None => load_study(None)?,
+        Some(run) => run.study().clone(),
+        None => study_beside(table)?,
     };
     let contents = read_table(table, &study).into_diagnostic()?;
     match contents.cut_line {

@@ -82,6 +82,21 @@ enum Command {
     UnpackRecording(check::UnpackArguments),
 }
 
+impl Command {
+    /// Whether the command computes on the threads that the whole program shares. Those that do not start without them; unpacking a
+    /// recording has little memory for their stacks, too.
+    fn shares_threads(&self) -> bool {
+        !matches!(
+            self,
+            Command::Evaluate(_)
+                | Command::Certify(_)
+                | Command::Pose(_)
+                | Command::Study(_)
+                | Command::UnpackRecording(_)
+        )
+    }
+}
+
 /// How a command that did not fail has ended.
 enum Ending {
     Done,
@@ -141,7 +156,11 @@ pub fn run() -> ExitCode {
         unpack_with(program);
     }
     OUTSIDE_FILES.store(arguments.outside_files, Ordering::Relaxed);
-    let outcome = start_threads().and_then(|()| perform(arguments.command));
+    let outcome = match &arguments.command {
+        Some(command) if !command.shares_threads() => Ok(()),
+        _ => start_threads(),
+    };
+    let outcome = outcome.and_then(|()| run_command(arguments.command));
     // What the standard output still holds may not be writable either.
     let outcome = match (outcome, std::io::stdout().flush()) {
         (Ok(Ending::Done), Err(error)) => Err(error.into()),
@@ -167,8 +186,8 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// Runs a command.
-fn perform(command: Option<Command>) -> Result<Ending, Failure> {
+/// Runs a command; without one, the window opens.
+fn run_command(command: Option<Command>) -> Result<Ending, Failure> {
     match command {
         #[cfg(feature = "explorer")]
         None => explore::run(&explore::ExploreArguments::default()),

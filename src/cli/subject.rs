@@ -40,21 +40,36 @@ impl SubjectArguments {
             miette!("`{row}` does not specify a row; expected TABLE#ID, as in run/front.csv#12")
         })?;
         let row = row.display();
-        let beside = table.with_file_name("study.toml");
-        let folder = table.parent().filter(|folder| RunFolder::is_at(folder));
-        let study = match (&self.study, folder) {
-            (Some(study), _) => load_study(Some(study))?,
-            // A run knows what it wrote: a study or a table that was damaged since would give another design.
-            (None, Some(folder)) => {
-                let run = RunFolder::open(folder).into_diagnostic()?;
-                run.check_file(table).into_diagnostic()?;
-                run.study().clone()
-            }
-            (None, None) if beside.exists() => Study::read(&beside)?,
-            (None, None) => load_study(None)?,
+        let study = match &self.study {
+            Some(study) => load_study(Some(study))?,
+            None => match run_of(table)? {
+                Some(run) => run.study().clone(),
+                None => study_beside(table)?,
+            },
         };
         let design = find_design(table, &study, &id).wrap_err_with(|| format!("cannot read {row}"))?;
         Ok((study, design, format!("{}, design #{id}", study_name(table))))
+    }
+}
+
+/// Opens the run that a table belongs to, if it stands in a run folder. A run knows what it wrote: a study or a table that was damaged
+/// since would give other designs.
+pub fn run_of(table: &Path) -> Result<Option<RunFolder>> {
+    let Some(folder) = table.parent().filter(|folder| RunFolder::is_at(folder)) else {
+        return Ok(None);
+    };
+    let run = RunFolder::open(folder).into_diagnostic()?;
+    run.check_file(table).into_diagnostic()?;
+    Ok(Some(run))
+}
+
+/// Reads the study of a table that does not stand in a run folder: the one beside it, or the paper's.
+pub fn study_beside(table: &Path) -> Result<Study> {
+    let beside = table.with_file_name("study.toml");
+    if beside.exists() {
+        Ok(Study::read(&beside)?)
+    } else {
+        load_study(None)
     }
 }
 

@@ -11,7 +11,7 @@ use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
 use tempfile::TempDir;
 
-pub use kinefront_testkit::DESIGN;
+pub use kinefront_testkit::{DESIGN, python};
 
 /// Returns the program without any setting of the caller's environment that Rerun would use.
 pub fn kinefront() -> assert_cmd::Command {
@@ -66,28 +66,6 @@ pub fn sample<Cases: ExactSizeIterator>(cases: Cases, count: usize) -> impl Iter
         false => cases.len().div_ceil(count),
     };
     cases.step_by(step)
-}
-
-/// Returns a Python interpreter that has `modules`, or prints a message on what is missing and returns `None`.
-///
-/// `KINEFRONT_PYTHON` names the interpreter; if `KINEFRONT_REQUIRE_PYTHON` is set, a missing one is a failure.
-pub fn python(modules: &[&str]) -> Option<Command> {
-    let interpreter = std::env::var("KINEFRONT_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let imports: Vec<String> = modules.iter().map(|module| format!("import {module}")).collect();
-    let found = Command::new(&interpreter)
-        .args(["-c", &imports.join("\n")])
-        .output()
-        .is_ok_and(|output| output.status.success());
-    if found {
-        return Some(Command::new(interpreter));
-    }
-    let message = format!(
-        "skipped: {interpreter} with {} was not found (see CONTRIBUTING.md)",
-        modules.join(", ")
-    );
-    assert!(std::env::var_os("KINEFRONT_REQUIRE_PYTHON").is_none(), "{message}");
-    eprintln!("{message}");
-    None
 }
 
 /// Runs a script of `tests/python` and returns what it prints.

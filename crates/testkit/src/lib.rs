@@ -3,6 +3,7 @@
 pub mod oracle;
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// The paper's design II.
 pub const DESIGN: &str = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056";
@@ -19,4 +20,26 @@ pub fn small_study(evaluations: usize) -> String {
 /// Returns the folder of a run of a small study that an earlier version wrote.
 pub fn run_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/run")
+}
+
+/// Returns a Python interpreter that has `modules`, or prints a message on what is missing and returns `None`.
+///
+/// `KINEFRONT_PYTHON` names the interpreter; if `KINEFRONT_REQUIRE_PYTHON` is set, a missing one is a failure.
+pub fn python(modules: &[&str]) -> Option<Command> {
+    let interpreter = std::env::var("KINEFRONT_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let imports: Vec<String> = modules.iter().map(|module| format!("import {module}")).collect();
+    let found = Command::new(&interpreter)
+        .args(["-c", &imports.join("\n")])
+        .output()
+        .is_ok_and(|output| output.status.success());
+    if found {
+        return Some(Command::new(interpreter));
+    }
+    let message = format!(
+        "skipped: {interpreter} with {} was not found (see CONTRIBUTING.md)",
+        modules.join(", ")
+    );
+    assert!(std::env::var_os("KINEFRONT_REQUIRE_PYTHON").is_none(), "{message}");
+    eprintln!("{message}");
+    None
 }

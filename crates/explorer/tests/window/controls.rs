@@ -7,7 +7,7 @@ use kinefront_explorer::{Panel, StudyEditor};
 use kinefront_model::evaluation::Quantity;
 use kinefront_study::{BUILTIN, Column};
 
-use super::support::{Window, idle_window, opened_window, until};
+use super::support::{Window, copied_text, idle_window, opened_window, until};
 
 /// Returns the controls without a name, or with a symbol alone as their name, which a screen reader cannot read.
 fn nameless(window: &Window) -> Vec<String> {
@@ -103,16 +103,7 @@ fn designs_in_a_box_are_marked_counted_listed_and_filtered() {
     window.run_steps(3);
     window.get_by_label("Copy table").click();
     window.step();
-    let copied = window
-        .output()
-        .platform_output
-        .commands
-        .iter()
-        .find_map(|command| match command {
-            egui::OutputCommand::CopyText(text) => Some(text.clone()),
-            _ => None,
-        });
-    let copied = copied.expect("a copied table");
+    let copied = copied_text(&window).expect("a copied table");
     let lines: Vec<Vec<&str>> = copied.lines().map(|line| line.split('\t').collect()).collect();
     assert_eq!(lines[0][..4], ["id", "architecture", "working_mode", "mass_kg"]);
     assert_eq!(lines.len(), 1 + marked.len());

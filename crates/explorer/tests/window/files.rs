@@ -10,9 +10,9 @@ use kinefront_explorer::{DesignOrigin, Explorer, FrontEntry, InitialContent, Pha
 use kinefront_model::evaluation::Quantity;
 use kinefront_recording::{Recorder, RunFiles, read_run};
 use kinefront_study::{Column, RunControl, RunWriter, StudySearch, spawn_search};
-use kinefront_testkit::run_folder;
+use kinefront_testkit::{python, run_folder};
 
-use super::support::{idle_window, opened_window, small_study, until, window};
+use super::support::{copied_text, idle_window, opened_window, small_study, until, window};
 
 /// Returns a window with a finished run.
 fn finished() -> super::support::Window {
@@ -61,7 +61,7 @@ fn a_recording_is_saved_and_read_back() {
         assert_eq!(design.generation, row.generation as usize);
     }
     // The recording is also read by an independent program.
-    if let Some(mut python) = python() {
+    if let Some(mut python) = python(&["rerun.experimental"]) {
         let script = "import json, pathlib, subprocess, sys, rerun\n\
             command = pathlib.Path(rerun.__file__).parent.parent / 'rerun_cli' / 'rerun'\n\
             done = subprocess.run([str(command), 'rrd', 'verify', sys.argv[1]], capture_output=True, text=True)\n\
@@ -88,20 +88,6 @@ fn a_recording_is_saved_and_read_back() {
     assert_eq!(opened.store.len(), 300);
     assert_eq!(opened.study, small_study());
     assert!(!opened.front.is_empty());
-}
-
-fn python() -> Option<std::process::Command> {
-    let interpreter = std::env::var("KINEFRONT_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let found = std::process::Command::new(&interpreter)
-        .args(["-c", "import rerun.experimental"])
-        .output()
-        .is_ok_and(|output| output.status.success());
-    if !found {
-        let message = format!("skipped: {interpreter} with rerun was not found (see CONTRIBUTING.md)");
-        assert!(std::env::var_os("KINEFRONT_REQUIRE_PYTHON").is_none(), "{message}");
-        eprintln!("{message}");
-    }
-    found.then(|| std::process::Command::new(interpreter))
 }
 
 #[test]
@@ -239,16 +225,7 @@ fn a_design_is_copied_and_pasted_as_text() {
         .design;
     window.event(egui::Event::Copy);
     window.step();
-    let copied = window
-        .output()
-        .platform_output
-        .commands
-        .iter()
-        .find_map(|command| match command {
-            egui::OutputCommand::CopyText(text) => Some(text.clone()),
-            _ => None,
-        });
-    assert_eq!(copied, Some(design.to_string()));
+    assert_eq!(copied_text(&window), Some(design.to_string()));
     window.event(egui::Event::Paste("3-RPR R=2 r=0.5 Lb=2 rj=0.03 rp=0.04".to_owned()));
     window.run_steps(2);
     let selected = window.state().session().document().selected.clone().expect("a design");

@@ -106,3 +106,12 @@ pub fn click_at(window: &mut Window, at: egui::Pos2) {
     });
     window.run_steps(3);
 }
+
+/// The text that the last frame put on the clipboard.
+pub fn copied_text(window: &Window) -> Option<String> {
+    let commands = &window.output().platform_output.commands;
+    commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    })
+}

@@ -9,6 +9,9 @@ use super::{RunFolder, RunFolderError, RunReport};
 use crate::run::verify_replayed;
 use crate::{EndReason, RunSummary, StudySearch, TableError, TableRow, open_regular};
 
+/// Largest length of a line of the origins of merged designs \[bytes\].
+const LONGEST_ORIGIN: u64 = 1024;
+
 /// Something that is wrong in a run folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Finding {
@@ -49,12 +52,7 @@ impl Inspection {
     /// [`RunFolderError`] if the path is not a run folder, or if its study or its report cannot be read.
     pub fn new(path: &Path) -> Result<Self, RunFolderError> {
         let folder = RunFolder::open(path)?;
-        if let Some(found) = folder.version().filter(|version| *version != env!("CARGO_PKG_VERSION")) {
-            return Err(RunFolderError::Version {
-                path: path.to_owned(),
-                found: found.to_owned(),
-            });
-        }
+        folder.require_this_version()?;
         let mut inspection = Self {
             folder,
             findings: Vec::new(),
@@ -141,7 +139,9 @@ impl Inspection {
             self.add(self.folder.report_path(), message, None);
         }
         let path = self.folder.path().join(ORIGINS);
-        let found = open_regular(&path, u64::MAX).map(|file| BufReader::new(file).split(b'\n').count());
+        // A line has two numbers and the name of a folder.
+        let most = (designs as u64 + 1) * LONGEST_ORIGIN;
+        let found = open_regular(&path, most).map(|file| BufReader::new(file).split(b'\n').count());
         let message = match found {
             Ok(lines) if lines == designs + 1 => return,
             Ok(lines) => format!("it has {lines} lines, but the folder holds {designs} designs of several runs"),

@@ -22,18 +22,6 @@ pub enum MergeError {
     /// The table of the designs of a run is damaged.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A run was made by another version of the program.
-    #[error(
-        "{} was written by Kinefront {found}, but this is {}; evaluations may differ between versions",
-        path.display(),
-        env!("CARGO_PKG_VERSION")
-    )]
-    Version {
-        /// Path of the folder.
-        path: PathBuf,
-        /// Version that wrote the run.
-        found: String,
-    },
     /// A folder does not state what its table has to be.
     #[error(
         "{} does not state the size and the checksum of its designs, so that lost rows would not be noticed; kinefront optimize \
@@ -221,12 +209,7 @@ fn sums_of(folder: &RunFolder) -> impl Iterator<Item = FileSum> {
 /// Reads a folder and its designs; a run that has not ended gives those that it has.
 fn read(path: &Path, notes: &mut Vec<String>) -> Result<(RunFolder, Vec<TableRow>), MergeError> {
     let folder = RunFolder::open(path)?;
-    if let Some(found) = folder.version().filter(|version| *version != env!("CARGO_PKG_VERSION")) {
-        return Err(MergeError::Version {
-            path: path.to_owned(),
-            found: found.to_owned(),
-        });
-    }
+    folder.require_this_version()?;
     if !folder.is_verifiable() {
         return Err(MergeError::Unverified(path.to_owned()));
     }

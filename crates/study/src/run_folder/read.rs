@@ -69,12 +69,12 @@ pub enum RunFolderError {
     },
     /// The run was written by another version of the program.
     #[error(
-        "{} was written by Kinefront {found}, but this is {}; use that version",
+        "{} was written by Kinefront {found}, but this is {}; evaluations may differ between versions, so use that version",
         path.display(),
         env!("CARGO_PKG_VERSION")
     )]
     Version {
-        /// Path of the file that states the version.
+        /// Path of the folder, or of the file in it that this version cannot read.
         path: PathBuf,
         /// Version that wrote it.
         found: String,
@@ -273,6 +273,20 @@ impl RunFolder {
             RunState::Ended(report) => Some(&report.kinefront_version),
             RunState::Unfinished(checkpoint) => Some(&checkpoint.kinefront_version),
             RunState::Unknown => None,
+        }
+    }
+
+    /// Requires that this version of the program wrote the run.
+    ///
+    /// # Errors
+    /// [`RunFolderError::Version`]; a run that states no version passes.
+    pub(super) fn require_this_version(&self) -> Result<(), RunFolderError> {
+        match self.version() {
+            Some(found) if found != env!("CARGO_PKG_VERSION") => Err(RunFolderError::Version {
+                path: self.path.clone(),
+                found: found.to_owned(),
+            }),
+            _ => Ok(()),
         }
     }
 

@@ -52,19 +52,6 @@ pub enum ResumeError {
     /// The table of the designs is damaged.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// The run was made by another version of the program.
-    #[error(
-        "{} was written by Kinefront {found}, but this is {}; evaluations may differ between versions, so resume the run \
-         with that version",
-        path.display(),
-        env!("CARGO_PKG_VERSION")
-    )]
-    Version {
-        /// Path of the folder.
-        path: PathBuf,
-        /// Version that wrote the run.
-        found: String,
-    },
     /// The folder does not state what its table has to be.
     #[error(
         "{} does not state the size and the checksum of its designs, so that lost rows would not be noticed; --accept-unverified \
@@ -114,12 +101,7 @@ impl Resumption {
         }
         let file = open_locked(path, false).map_err(ResumeError::Lock)?;
         let folder = RunFolder::open(path)?;
-        if let Some(found) = folder.version().filter(|version| *version != env!("CARGO_PKG_VERSION")) {
-            return Err(ResumeError::Version {
-                path: path.to_owned(),
-                found: found.to_owned(),
-            });
-        }
+        folder.require_this_version()?;
         if !folder.is_verifiable() && !accept_unverified {
             return Err(ResumeError::Unverified(path.to_owned()));
         }
