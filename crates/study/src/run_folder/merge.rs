@@ -1,11 +1,11 @@
 //! Joining the runs of equal studies into one run folder.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
 use super::{MergedRun, RunFolder, RunFolderError, RunWriter};
-use crate::table::as_text;
 use crate::{FileSum, ReplayError, Row, Study, StudySearch, TableError, TableRow};
 use crate::{WriteError, write_whole};
 use kinefront_optimize::{Archive, Outcome};
@@ -256,4 +256,13 @@ fn kept(placed: &[(usize, TableRow)], every: usize) -> Vec<bool> {
         kept[member.id] = true;
     }
     kept
+}
+
+/// Returns a text of others as a cell that no spreadsheet takes for a formula: one that begins like a formula, or with an apostrophe,
+/// gets an apostrophe in front, which spreadsheets do not show.
+fn as_text(text: &str) -> Cow<'_, str> {
+    match text.starts_with(['=', '+', '-', '@', '\'', '\t', '\r']) {
+        true => Cow::Owned(format!("'{text}")),
+        false => Cow::Borrowed(text),
+    }
 }

@@ -9,7 +9,7 @@ use super::design_table::{DesignTable, open_locked};
 use super::{Checkpoint, DESIGNS, FRONT, FileSums, MergedRun, PROGRESS, RECORDING, REPORT, RunReport, STUDY};
 use crate::FileSum;
 use crate::durable::{remove, sweep, sync_folder};
-use crate::table::{Cell, Column, as_text, table_bytes};
+use crate::table::{Cell, Column, table_bytes};
 use crate::{Event, RunSummary, Study};
 use crate::{WriteError, write_whole};
 
@@ -215,7 +215,7 @@ pub(super) fn front_table(study: &Study, summary: &RunSummary) -> io::Result<Vec
     let rows = summary.front.iter().zip(summary.marks(study)).map(|(member, mark)| {
         let entry = member.row();
         let cell = |column| match column {
-            Column::Mark => Cell::Text(as_text(&mark).into_owned().into()),
+            Column::Mark => Cell::Text(mark.clone().into()),
             column => column.cell(&entry),
         };
         Column::of_front(study).map(cell).collect()

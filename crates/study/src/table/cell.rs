@@ -66,12 +66,3 @@ impl Column {
         }
     }
 }
-
-/// Returns a text of others as a cell that no spreadsheet takes for a formula: one that begins like a formula, or with an apostrophe,
-/// gets an apostrophe in front, which spreadsheets do not show.
-pub(crate) fn as_text(text: &str) -> Cow<'_, str> {
-    match text.starts_with(['=', '+', '-', '@', '\'', '\t', '\r']) {
-        true => Cow::Owned(format!("'{text}")),
-        false => Cow::Borrowed(text),
-    }
-}

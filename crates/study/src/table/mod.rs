@@ -7,7 +7,6 @@ mod row;
 mod write;
 
 pub use cell::Cell;
-pub(crate) use cell::as_text;
 pub use column::{Column, ColumnType};
 pub use read::{TableContents, TableError, TableFault, read_designs, read_run_table, read_table};
 pub use row::{Row, RowError, TableRow, read_design};
