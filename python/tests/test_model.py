@@ -12,7 +12,7 @@ import kinefront
 from kinefront import Study
 
 ROOT = Path(__file__).resolve().parents[2]
-FIXTURE = ROOT / "tests/fixtures/run"
+FIXTURE = ROOT / "crates/testkit/fixtures/run"
 PAPER_DESIGN = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
 
 

@@ -25,7 +25,7 @@ pub struct OptimizeArguments {
     #[arg(long, value_name = "DIR", conflicts_with_all = ["study", "algorithm", "seed", "architectures", "out"])]
     resume: Option<PathBuf>,
     /// Resume a folder that does not state the size and the checksum of its designs, with the rows that are there.
-    #[arg(long, requires = "resume")]
+    #[arg(long, requires = "resume", conflicts_with_all = ["study", "algorithm", "seed", "architectures", "out"])]
     accept_unverified: bool,
     /// Algorithm; overrides that of the study.
     #[arg(long, value_parser = algorithms())]

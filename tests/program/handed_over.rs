@@ -118,6 +118,12 @@ fn a_folder_that_states_nothing_is_not_sound() {
         export_front(&run, &folder.path().join(format!("{name}.csv")))
             .code(2)
             .stderr(contains("cannot be verified"));
+        // A new run has nothing to accept.
+        kinefront()
+            .args(["optimize", "paper", "--accept-unverified"])
+            .assert()
+            .code(2)
+            .stderr(contains("--accept-unverified"));
         // The user may take what is there: the rows that are missing are evaluated again.
         cut_rows(&run.join("designs.csv"), 60);
         resume(&run, &["--accept-unverified"]).success();

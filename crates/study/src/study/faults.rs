@@ -234,7 +234,7 @@ fn check_references(study: &Study, faults: &mut Vec<Fault>) {
     for reference in &study.references {
         let name = &reference.name;
         if let Some(message) = wrong_name(name) {
-            faults.push(Fault::new("references", format!("a name {message}")));
+            faults.push(Fault::new("references", format!("hold a name that {message}")));
             continue;
         }
         if let Err(error) = reference.parse(study.working_mode) {
