@@ -19,7 +19,8 @@ use super::{Ending, Failure, load_study, tables, to_json};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 The lower bound is the radius of a disc in which every pose is proved feasible, at every orientation of the window; the upper
-bound is the distance of a pose that is proved infeasible. The verdict on the claimed radius is proved, refuted or open.")]
+bound is the distance of a pose that is proved infeasible. The verdict on the claimed radius is proved, refuted or open.
+If the study prescribes a region, the claim is that every pose of the region is feasible, unless --radius claims a disc.")]
 pub struct CertifyArguments {
     /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
     #[arg(long, required_unless_present = "stdin", conflicts_with = "stdin")]
@@ -33,7 +34,8 @@ pub struct CertifyArguments {
     /// Home orientation in degrees [default: the one that `evaluate --grid fine` reports].
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     phi_deg: Option<f64>,
-    /// Claimed workspace radius in metres [default: that of the fine grid at its own home orientation].
+    /// Claimed workspace radius in metres [default: the region that the study prescribes, or else the radius of the fine grid at its
+    /// own home orientation].
     #[arg(long, value_name = "C", allow_negative_numbers = true)]
     radius: Option<f64>,
     /// Relative tolerance of the claim, and gap between the bounds at which the proof ends.
@@ -99,6 +101,7 @@ impl Prover<'_> {
             claimed_radius: self.arguments.radius.unwrap_or(evaluation.workspace_radius()),
             tolerance: self.arguments.tolerance,
             max_boxes: self.arguments.max_boxes as usize,
+            is_of_region: self.study.study().region().is_prescribed() && self.arguments.radius.is_none(),
             ..CertifyOptions::default()
         };
         let certificate = model.certify(&design, &options)?;

@@ -272,6 +272,15 @@ pub fn certificate(found: &CertificateJson) -> String {
         Some(None) => "\nno bound over all home orientations was found".to_owned(),
         None => String::new(),
     };
+    if found.claim == "region" {
+        let infeasible = found.upper_m.map_or(String::new(), |upper| {
+            format!("\na pose of the region at {upper:.6} m from its centre is proved infeasible")
+        });
+        return format!(
+            "every pose of the region is feasible: {verdict}{infeasible}\n{} boxes{homes}",
+            found.boxes
+        );
+    }
     format!(
         "claimed R_w {:.6} m: {verdict}\nevery pose within {:.6} m is proved feasible; {upper}\n{} boxes{homes}",
         found.claimed_radius_m, found.lower_m, found.boxes

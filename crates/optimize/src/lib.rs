@@ -84,6 +84,7 @@ mod problem;
 mod random;
 mod run;
 mod selection;
+mod subset;
 mod variation;
 
 pub use archive::{Archive, ArchiveMember};
@@ -97,3 +98,4 @@ pub use nsga2::{Nsga2, Nsga2Settings};
 pub use problem::{Algorithm, Candidate, Evaluated, Objectives, Outcome, Problem, Target, Variable};
 pub use run::run;
 pub use selection::{groups, knee, ranking, spread};
+pub use subset::subset;

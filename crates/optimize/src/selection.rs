@@ -148,10 +148,10 @@ fn clusters(points: &[Vec<f64>], starts: &[usize]) -> Vec<Vec<usize>> {
 }
 
 /// Returns the best member in each objective, the first among equals; of the second of two objectives it is the last member.
-fn bests(points: &[Vec<f64>]) -> Vec<usize> {
-    let count = points.first().map_or(0, Vec::len);
+pub(super) fn bests(points: &[impl AsRef<[f64]>]) -> Vec<usize> {
+    let count = points.first().map_or(0, |first| first.as_ref().len());
     (0..count)
-        .filter_map(|k| smallest(points.iter().map(|point| point[k])))
+        .filter_map(|k| smallest(points.iter().map(|point| point.as_ref()[k])))
         .collect()
 }
 

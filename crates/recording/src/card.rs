@@ -4,7 +4,7 @@ use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable};
 use kinefront_scene::text::{self, short};
 use kinefront_scene::{EllipsoidSet, Tour};
-use kinefront_study::CertifiedRadius;
+use kinefront_study::CertifiedWorkspace;
 
 /// Returns the card of a design; `heading` names the design.
 pub(super) fn card(
@@ -13,7 +13,7 @@ pub(super) fn card(
     evaluation: &Evaluation,
     ellipsoids: &[EllipsoidSet],
     tour: Option<&Tour>,
-    certified: Option<&CertifiedRadius>,
+    certified: Option<&CertifiedWorkspace>,
 ) -> String {
     let design = &evaluation.design;
     let mut card = format!(

@@ -12,7 +12,7 @@ use kinefront_model::spatial::Pose;
 use kinefront_scene::{
     EllipsoidKind, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour, workspace_proof,
 };
-use kinefront_study::{CertifiedRadius, PreparedStudy, replace};
+use kinefront_study::{CertifiedWorkspace, PreparedStudy, replace};
 
 /// Number of cells along the longer side of a heatmap: of a single design, of a layer over φ, of a step of a front, and
 /// of an outline over φ.
@@ -65,10 +65,10 @@ fn draw_design(
         .flatten();
     let certified = proof
         .as_ref()
-        .map(|proof| CertifiedRadius::new(&proof.certificate, proof.claim.tolerance));
+        .map(|proof| CertifiedWorkspace::new(&proof.certificate, &proof.claim));
     // What is drawn is the workspace that is proved.
     let mut evaluation = evaluation.clone();
-    if let Some(certified) = &certified {
+    if let Some(certified) = certified.as_ref().filter(|certified| !certified.is_of_region) {
         evaluation.set_workspace_radius(certified.lower, &model.settings().objectives);
     }
     let evaluation = &evaluation;
@@ -133,7 +133,7 @@ pub(super) fn record_step(
     moment: Moment<'_>,
     model: &Model,
     evaluation: &Evaluation,
-    certified: Option<&CertifiedRadius>,
+    certified: Option<&CertifiedWorkspace>,
     heading: &str,
 ) -> Result<(), RecordingError> {
     let subject = DrawnDesign { model, evaluation };

@@ -8,7 +8,7 @@ use super::colors::{self, rgb};
 use super::draw::{Canvas, about_z, point};
 use super::writer::RecordingError;
 use kinefront_model::certify::BoxOutcome;
-use kinefront_model::evaluation::Constraint;
+use kinefront_model::evaluation::PoseScalar;
 use kinefront_scene::palette;
 use kinefront_scene::{ColorMap, ConfigurationSpace, WorkspaceProof};
 
@@ -31,7 +31,7 @@ impl Canvas<'_> {
         let centres = cells.iter().map(|cell| point(space.place(cell.position, cell.phi)));
         let boxes = Boxes3D::from_centers_and_half_sizes(centres, halves)
             .with_rotation_axis_angles(cells.iter().map(|cell| about_z(cell.theta)))
-            .with_colors(cells.iter().map(|cell| color(cell.outcome, cell.constraint)))
+            .with_colors(cells.iter().map(|cell| color(cell.outcome, cell.scalar)))
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.5), cells.len()))
             .with_fill_mode(FillMode::MajorWireframe);
         self.row(&format!("{root}/boxes"), &boxes)?;
@@ -68,7 +68,7 @@ impl Canvas<'_> {
             .iter()
             .map(|(_, outline)| outline.iter().map(lift).collect::<Vec<_>>());
         let strips = LineStrips3D::new(strips)
-            .with_colors(outlines.iter().map(|(part, _)| color(part.outcome, part.constraint)))
+            .with_colors(outlines.iter().map(|(part, _)| color(part.outcome, part.scalar)))
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.7), outlines.len()));
         self.row(&format!("{root}/boxes"), &strips)?;
         if let Some(violation) = proof.certificate.violation {
@@ -82,14 +82,14 @@ impl Canvas<'_> {
 fn words(proof: &WorkspaceProof) -> String {
     proof.certificate.violation.map_or(String::new(), |violation| {
         let degrees = (10.0 * violation.pose.phi.to_degrees()).round() / 10.0;
-        format!("{} is violated here at φ = {degrees}°", violation.constraint.id())
+        format!("{} is violated here at φ = {degrees}°", violation.scalar.limit_id())
     })
 }
 
-/// The colour of a box: that of the constraint which was proved on it last, or white where nothing is decided.
-fn color(outcome: BoxOutcome, constraint: Constraint) -> Color {
+/// The colour of a box: that of the limit which was proved on it last, or white where nothing is decided.
+fn color(outcome: BoxOutcome, scalar: PoseScalar) -> Color {
     match outcome {
-        BoxOutcome::Proved => rgb(palette::constraint(constraint)),
+        BoxOutcome::Proved => rgb(palette::limited(scalar)),
         BoxOutcome::Beyond => rgb(colors::LIMIT),
         BoxOutcome::Undecided => rgb(colors::WORKSPACE),
     }

@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use super::Source;
-use kinefront_model::evaluation::{Evaluation, Model, Objective};
+use kinefront_model::evaluation::{Evaluation, Objective};
 use kinefront_model::mechanism::{Architecture, Design};
 use kinefront_optimize::{Archive, Objectives, Outcome, knee, spread};
-use kinefront_study::{DesignProblem, FrontMember, FrontProofs, FrontProver, Study, keep_runners_up};
+use kinefront_study::{DesignProblem, FrontMember, FrontProofs, FrontProver, Study, keep_runners_up, proved_front};
 
 /// A front: non-dominated evaluations on the fine grid, the best in the first objective first.
 #[derive(Debug, Clone, Default)]
@@ -38,12 +38,11 @@ impl Front {
     }
 
     /// Proves the workspaces of the designs that are shown, as a run does.
-    fn certify(&mut self, study: &Study, model: &Model) {
+    fn certify(&mut self, study: &Study, problem: &DesignProblem) {
         let shown = self.shown.drain(..).enumerate();
         let shown: Vec<FrontMember> = shown.map(|(id, found)| FrontMember::of(id, found)).collect();
-        let mut prover = FrontProver::new(model, study.thickest_bars(), &|| true);
-        prover.prove(&shown);
-        let (proved, proofs) = prover.conclude(shown.len(), study.hypervolume_reference());
+        let proved = FrontProver::new(problem, &|| true).prove(&shown);
+        let (proved, proofs) = proved_front(proved, shown.len(), study.hypervolume_reference(), shown.len());
         self.shown = proved.into_iter().map(|member| member.evaluation).collect();
         self.proofs = Some(proofs);
     }
@@ -130,10 +129,10 @@ impl Fronts {
     }
 
     /// Proves the workspaces of the designs that are shown of each front.
-    pub fn certify(&mut self, study: &Study, model: &Model) {
+    pub fn certify(&mut self, study: &Study, problem: &DesignProblem) {
         let alone = self.alone.iter_mut().map(|(_, front)| front);
         for front in alone.chain([&mut self.together]) {
-            front.certify(study, model);
+            front.certify(study, problem);
         }
     }
 

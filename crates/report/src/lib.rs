@@ -222,7 +222,7 @@ impl Report {
         let model = problem.model().clone();
         if study.certifies() {
             tell("proving the workspaces");
-            fronts.certify(&study, &model);
+            fronts.certify(&study, &problem);
         }
         let references = reference::all(&study, &model, &fronts);
         let along = question.objectives[question.compared()].quantity;

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use crate::Part;
-use kinefront_model::evaluation::Constraint;
+use kinefront_model::evaluation::{Constraint, PoseScalar};
 use kinefront_model::mechanism::Architecture;
 
 /// Contour at a field's threshold, and its mark in the legend.
@@ -66,6 +66,15 @@ pub fn part(part: Part) -> [u8; 3] {
 /// Returns the colour of the nearest pair of members: red if it is too near, otherwise green.
 pub fn nearest(too_near: bool) -> [u8; 3] {
     if too_near { [255, 60, 60] } else { [90, 225, 130] }
+}
+
+/// Returns the colour of the limit of a scalar: that of its constraint, if it has an id of its own.
+pub fn limited(scalar: PoseScalar) -> [u8; 3] {
+    match scalar {
+        PoseScalar::Displacement => [238, 119, 170],
+        PoseScalar::Transmission => [0, 153, 136],
+        _ => constraint(Constraint::of_scalar(scalar).unwrap_or(Constraint::Assembly)),
+    }
 }
 
 /// Returns the colour of a constraint. The colours can be distinguished with any type of colour vision (Tol's bright scheme).

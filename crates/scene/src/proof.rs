@@ -2,10 +2,9 @@
 
 use glam::DVec2;
 
-use kinefront_model::certify::{BoxOutcome, Certificate, CertifyOptions, ExaminedBox, ProofObserver};
-use kinefront_model::evaluation::{Constraint, Evaluation, Model};
+use kinefront_model::certify::{BoxOutcome, Certificate, CertifyOptions, ExaminedBox, Patch, ProofObserver};
+use kinefront_model::evaluation::{Evaluation, Model, PoseScalar};
 use kinefront_model::mechanism::Design;
-use kinefront_model::spatial::unit;
 
 /// Largest number of boxes of a proof that is shown.
 const MOST_BOXES: usize = 50_000;
@@ -32,16 +31,16 @@ pub struct ProofCell {
     pub position: DVec2,
     /// Orientation of its middle \[rad\].
     pub phi: f64,
-    /// Half the side away from the centre and half the side across \[m\].
+    /// Half the side along `theta` and half the side across \[m\]; for a part of a triangle, whose sides are not at right angles, about.
     pub half: [f64; 2],
     /// Half the range of orientations \[rad\].
     pub half_phi: f64,
-    /// Direction of the middle from the centre \[rad\].
+    /// Direction in which the first coordinate of the patch moves the middle \[rad\].
     pub theta: f64,
     /// What became of the box.
     pub outcome: BoxOutcome,
-    /// The constraint that was proved last, or that is not proved.
-    pub constraint: Constraint,
+    /// The scalar whose limit was proved last, or is not proved.
+    pub scalar: PoseScalar,
 }
 
 struct Collector<'a> {
@@ -67,7 +66,7 @@ impl ProofObserver for Collector<'_> {
 pub fn workspace_proof(model: &Model, evaluation: &Evaluation, goes_on: &dyn Fn() -> bool) -> Option<WorkspaceProof> {
     let claim = CertifyOptions {
         max_boxes: MOST_BOXES,
-        ..CertifyOptions::of(evaluation)?
+        ..model.claim(evaluation)?
     };
     let mut collector = Collector {
         boxes: Vec::new(),
@@ -88,20 +87,24 @@ pub fn workspace_proof(model: &Model, evaluation: &Evaluation, goes_on: &dyn Fn(
 impl WorkspaceProof {
     /// The boxes up to a distance from the centre, as cells; those beyond it are of no interest.
     pub fn cells(&self) -> impl Iterator<Item = ProofCell> {
-        let limit = 1.05 * self.certificate.upper.unwrap_or(f64::INFINITY);
+        let limit = match self.claim.is_of_region {
+            true => f64::INFINITY,
+            false => 1.05 * self.certificate.upper.unwrap_or(f64::INFINITY),
+        };
         let near = self.boxes.iter().filter(move |part| part.lower[0] < limit);
         near.map(|part| {
             let middle = |k: usize| 0.5 * (part.lower[k] + part.upper[k]);
             let half = |k: usize| 0.5 * (part.upper[k] - part.lower[k]);
-            let (radius, theta) = (middle(0), middle(1));
+            let place = [middle(0), middle(1)];
+            let scale = part.patch.scale(place);
             ProofCell {
-                position: self.centre + unit(theta) * radius,
+                position: self.centre + part.patch.position(place),
                 phi: middle(2),
-                half: [half(0), radius * half(1)],
+                half: [scale[0] * half(0), scale[1] * half(1)],
                 half_phi: half(2),
-                theta,
+                theta: part.patch.direction(place),
                 outcome: part.outcome,
-                constraint: part.constraint,
+                scalar: part.scalar,
             }
         })
     }
@@ -114,11 +117,14 @@ impl WorkspaceProof {
             .iter()
             .filter(move |part| part.lower[2] <= phi && phi < part.upper[2]);
         at_phi.map(move |part| {
-            let corners = ((part.upper[1] - part.lower[1]) / 0.05).ceil().max(1.0) as u32;
-            let arc = |radius: f64, from: f64, to: f64| {
+            let corners = match part.patch {
+                Patch::Disc => ((part.upper[1] - part.lower[1]) / 0.05).ceil().max(1.0) as u32,
+                Patch::Rectangle(_) | Patch::Triangle(_) => 1,
+            };
+            let arc = |first: f64, from: f64, to: f64| {
                 (0..=corners).map(move |corner| {
-                    let theta = from + (to - from) * f64::from(corner) / f64::from(corners);
-                    centre + unit(theta) * radius
+                    let second = from + (to - from) * f64::from(corner) / f64::from(corners);
+                    centre + part.patch.position([first, second])
                 })
             };
             let mut outline: Vec<DVec2> = arc(part.lower[0], part.lower[1], part.upper[1]).collect();

@@ -4,7 +4,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::{CertifiedRadius, DesignProblem, Row, TableRow};
+use super::{CertifiedWorkspace, DesignProblem, Row, TableRow};
+use kinefront_model::certify::{Certificate, CertifyOptions};
 use kinefront_model::evaluation::{Evaluation, Objective};
 use kinefront_optimize::Objectives;
 
@@ -21,7 +22,7 @@ pub struct FrontMember {
     /// `R_w` on the reference grid \[m\].
     pub reference_radius: f64,
     /// What is proved about `R_w`; `None` if the study asks for no proof, or none is possible.
-    pub certified: Option<CertifiedRadius>,
+    pub certified: Option<CertifiedWorkspace>,
 }
 
 /// What the certificates of a front found.
@@ -95,9 +96,12 @@ impl FrontMember {
         }
     }
 
-    /// Reports the proved radius as `R_w`.
-    pub(super) fn report(&mut self, certified: CertifiedRadius, objectives: &[Objective]) {
-        self.evaluation.set_workspace_radius(certified.lower, objectives);
+    /// Reports what is proved about a claim: a radius as `R_w`.
+    pub(super) fn report(&mut self, certificate: &Certificate, claim: &CertifyOptions, objectives: &[Objective]) {
+        let certified = CertifiedWorkspace::new(certificate, claim);
+        if !claim.is_of_region {
+            self.evaluation.set_workspace_radius(certified.lower, objectives);
+        }
         self.certified = Some(certified);
     }
 

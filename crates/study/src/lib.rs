@@ -24,6 +24,7 @@
 
 mod builtin;
 mod certified;
+mod conclusion;
 mod control;
 mod durable;
 mod events;
@@ -44,7 +45,7 @@ mod sum;
 mod table;
 
 pub use builtin::{BUILTIN, Builtin};
-pub use certified::CertifiedRadius;
+pub use certified::CertifiedWorkspace;
 pub use control::RunControl;
 pub use durable::{WriteError, open_regular, read_regular, replace, write_whole};
 pub use events::{Batch, EndReason, Event, GenerationSummary, RunSummary, RunTimes, Started, Subscriber, front_marks};
@@ -52,7 +53,7 @@ pub use front::{FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
 pub use overrides::Overrides;
 pub use prepared::PreparedStudy;
 pub use problem::DesignProblem;
-pub use prove::FrontProver;
+pub use prove::{FrontProver, proved_front};
 pub use replay::ReplayError;
 pub use run::{spawn, spawn_search};
 pub use run_folder::{

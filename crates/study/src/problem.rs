@@ -16,6 +16,12 @@ use kinefront_optimize::{Candidate, Objectives, Outcome, Problem, Target, Variab
 /// Variables that are sized.
 const BARS: [DesignVariable; 2] = [DesignVariable::LegBarRadius, DesignVariable::PlatformBarRadius];
 
+/// Relative increases of the bars of a design whose proved radius falls short; the first that restores it is taken.
+const INCREASES: [f64; 5] = [1e-4, 2e-4, 3e-4, 5e-4, 1e-3];
+
+/// Relative increases of the dimensions of a design that misses a requirement somewhere in a prescribed region.
+const REGION_INCREASES: [f64; 7] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2];
+
 /// Variables that change when a design is scaled.
 const LENGTHS: [DesignVariable; 3] = [
     DesignVariable::BaseRadius,
@@ -277,8 +283,66 @@ impl DesignProblem {
         }
     }
 
+    /// Returns designs near one that misses a requirement by little, from the least change on, each with the largest relative change
+    /// of a dimension: with thicker bars; for a prescribed region also with the next bar of a list, and larger as a whole.
+    pub(super) fn strengthened(&self, design: &Design) -> Vec<(Design, f64)> {
+        let bars: Vec<DesignVariable> = BARS.into_iter().filter(|bar| self.is_free(*bar)).collect();
+        let lengths = LENGTHS.iter().filter(|length| self.is_free(**length));
+        let all: Vec<DesignVariable> = lengths.chain(&bars).copied().collect();
+        let mut found = Vec::new();
+        let mut take = |changed: Option<[f64; DESIGN_VARIABLES.len()]>, increase: f64| {
+            let of_values = |values| design.with_dimensions(self.settled(values)).ok();
+            let other = changed.and_then(of_values).filter(|other| other != design);
+            found.extend(other.map(|other| (other, increase)));
+        };
+        let increases = if self.is_prescribed { &REGION_INCREASES[..] } else { &INCREASES };
+        for &increase in increases {
+            take(self.times(design, &bars, 1.0 + increase), increase);
+        }
+        if self.is_prescribed {
+            for increase in REGION_INCREASES {
+                take(self.times(design, &all, 1.0 + increase), increase);
+            }
+            for bar in BARS {
+                let radius = design.values()[bar as usize];
+                let listed = self.listed[bar as usize].iter().flatten().copied();
+                if let Some(next) = listed.filter(|other| *other > radius).reduce(f64::min) {
+                    take(self.times(design, &[bar], next / radius).map(|mut values| {
+                        values[bar as usize] = next;
+                        values
+                    }), next / radius - 1.0);
+                }
+            }
+        }
+        found
+    }
+
+    /// Whether a dimension has a range of its own.
+    fn is_free(&self, variable: DesignVariable) -> bool {
+        let place = variable as usize;
+        self.listed[place].is_none() && self.ties[place].is_none() && self.ranges[place][0] < self.ranges[place][1]
+    }
+
+    /// Returns the dimensions of a design with some of them multiplied, if the bounds allow it.
+    fn times(
+        &self,
+        design: &Design,
+        variables: &[DesignVariable],
+        factor: f64,
+    ) -> Option<[f64; DESIGN_VARIABLES.len()]> {
+        let mut values = design.values();
+        for &variable in variables {
+            let value = &mut values[variable as usize];
+            *value *= factor;
+            if *value > self.ranges[variable as usize][1] {
+                return None;
+            }
+        }
+        (!variables.is_empty()).then_some(values)
+    }
+
     /// Returns the workspace radius that the study asks for at least \[m\].
-    fn least_radius(&self) -> Option<f64> {
+    pub(super) fn least_radius(&self) -> Option<f64> {
         self.model.settings().limits.iter().find_map(|limit| match limit.bound {
             Bound::AtLeast(radius) if limit.quantity == Quantity::WorkspaceRadius => Some(radius),
             _ => None,

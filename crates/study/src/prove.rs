@@ -1,23 +1,18 @@
-//! The proofs of the workspaces of a front, and the designs with thicker bars that replace refuted ones (docs/model.md,
-//! section 13.5).
+//! The proofs of the workspaces of a front, and the stronger designs that replace refuted ones (docs/model.md, section 13.5).
 
+use glam::DVec2;
 use rayon::prelude::*;
 
-use super::{CertifiedRadius, DesignProblem, FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
+use super::{DesignProblem, FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
 use kinefront_model::certify::{Certificate, CertifyOptions, ProofObserver, Verdict, Violation};
-use kinefront_model::evaluation::{Constraint, Evaluation, GridChoice, Model};
-use kinefront_model::mechanism::{Design, DesignVariable};
+use kinefront_model::evaluation::{Evaluation, GridChoice, Model, PoseScalar};
+use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
-use kinefront_optimize::{Archive, Objectives, hypervolume};
+use kinefront_model::workspace::Region;
+use kinefront_optimize::{Archive, Objectives, hypervolume, subset};
 
-/// Factors by which the bars of a refuted design are thickened, beyond 1; the first that restores its workspace is taken.
-const THICKENINGS: [f64; 5] = [1e-4, 2e-4, 3e-4, 5e-4, 1e-3];
-
-/// Part of the verified `R_w` that the proved radius of a refuted design must have; otherwise its bars are thickened.
+/// Part of the verified `R_w` that the proved radius of a refuted design must have; otherwise a stronger design is looked for.
 const RESTORED: f64 = 0.999;
-
-/// Radii of the bars, which are thickened.
-const BARS: [DesignVariable; 2] = [DesignVariable::LegBarRadius, DesignVariable::PlatformBarRadius];
 
 /// Ends a proof once a function returns false.
 struct Until<'a>(&'a dyn Fn() -> bool);
@@ -29,59 +24,72 @@ impl ProofObserver for Until<'_> {
 }
 
 /// A member of the front after its proof.
-struct ProvedMember {
+#[derive(Debug)]
+pub struct ProvedMember {
     member: FrontMember,
     refuted: Option<RefutedDesign>,
-    /// The thickened design that is reported instead, and the increase; its id is not known yet.
+    /// The stronger design that is reported instead, and the increase; its id is not known yet.
     instead: Option<(FrontMember, f64)>,
+    /// Whether the design does what the study requires, as far as it is known.
+    holds: bool,
 }
 
-/// A pose within a disc at which a constraint has the least margin that was found.
+impl ProvedMember {
+    /// A member of which nothing is to be proved.
+    pub(super) fn unproved(member: FrontMember) -> Self {
+        Self {
+            member,
+            refuted: None,
+            instead: None,
+            holds: true,
+        }
+    }
+
+    /// Returns the design that is reported: the member, or the stronger one; `None` if neither does what the study requires.
+    pub(super) fn reported(&self) -> Option<&FrontMember> {
+        match &self.instead {
+            Some((instead, _)) => Some(instead),
+            None => Some(&self.member).filter(|_| self.holds),
+        }
+    }
+}
+
+/// A pose of the region at which the limit of a scalar has the least margin that was found.
 #[derive(Clone, Copy)]
 struct Pocket {
     pose: Pose,
-    constraint: Constraint,
+    scalar: PoseScalar,
     margin: f64,
 }
 
 /// Proofs of the designs of a front.
 pub struct FrontProver<'a> {
-    model: &'a Model,
-    /// Largest radii of the bars \[m\].
-    thickest: [f64; 2],
+    problem: &'a DesignProblem,
     goes_on: &'a (dyn Fn() -> bool + Sync),
-    proved: Vec<ProvedMember>,
 }
 
 impl<'a> FrontProver<'a> {
-    /// Prepares the proofs; `thickest` are the upper bounds of the radii of the leg bars and of the platform bars \[m\]. Once
-    /// `goes_on` returns false, proofs end early, and the result is not to be used.
-    pub fn new(model: &'a Model, thickest: [f64; 2], goes_on: &'a (dyn Fn() -> bool + Sync)) -> Self {
-        Self {
-            model,
-            thickest,
-            goes_on,
-            proved: Vec::new(),
-        }
+    /// Prepares the proofs of designs of a problem. Once `goes_on` returns false, proofs end early, and the result is not to be used.
+    pub fn new(problem: &'a DesignProblem, goes_on: &'a (dyn Fn() -> bool + Sync)) -> Self {
+        Self { problem, goes_on }
+    }
+
+    fn model(&self) -> &Model {
+        self.problem.model()
     }
 
     /// Proves the workspaces of some designs, on the threads of the pool in which it is called.
-    pub fn prove(&mut self, members: &[FrontMember]) {
-        let proved: Vec<ProvedMember> = members.par_iter().map(|member| self.prove_one(member)).collect();
-        self.proved.extend(proved);
+    pub fn prove(&self, members: &[FrontMember]) -> Vec<ProvedMember> {
+        members.par_iter().map(|member| self.prove_one(member)).collect()
     }
 
     fn prove_one(&self, member: &FrontMember) -> ProvedMember {
-        let mut proved = ProvedMember {
-            member: member.clone(),
-            refuted: None,
-            instead: None,
-        };
+        let mut proved = ProvedMember::unproved(member.clone());
         let evaluation = &member.evaluation;
-        let Some(claim) = CertifyOptions::of(evaluation) else {
+        let Some(claim) = self.model().claim(evaluation) else {
             return proved;
         };
-        let wanted = RESTORED * claim.claimed_radius;
+        let wanted = self.wanted_radius(&claim);
         let first = CertifyOptions {
             enough: wanted,
             ..claim
@@ -94,9 +102,10 @@ impl<'a> FrontProver<'a> {
             .filter(|_| certificate.verdict == Verdict::Refuted)
         {
             let pocket = self.deepest(evaluation, violation);
-            if certificate.upper.is_some_and(|upper| upper < wanted) {
-                proved.instead = self.thicken(member, &pocket);
+            if claim.is_of_region || certificate.upper.is_some_and(|upper| upper < wanted) {
+                proved.instead = self.strengthen(member, &pocket);
                 if proved.instead.is_none()
+                    && !claim.is_of_region
                     && let Some(whole) = self.certify(&evaluation.design, &claim)
                 {
                     certificate = whole;
@@ -106,35 +115,50 @@ impl<'a> FrontProver<'a> {
                 id: member.id,
                 fine_radius_m: claim.claimed_radius,
                 infeasible_at_m: certificate.upper.unwrap_or_default(),
-                constraint: violation.constraint.id().to_owned(),
+                constraint: violation.scalar.limit_id().to_owned(),
                 margin: pocket.margin,
                 thickened: None,
             });
         }
-        proved.member.report(
-            CertifiedRadius::new(&certificate, claim.tolerance),
-            &self.model.settings().objectives,
-        );
+        proved.holds = if claim.is_of_region {
+            certificate.verdict != Verdict::Refuted
+        } else {
+            self.problem.least_radius().is_none_or(|least| certificate.lower >= least)
+        };
+        proved.member.report(&certificate, &claim, &self.model().settings().objectives);
         proved
+    }
+
+    /// Returns the radius that must be proved, so that no stronger design is looked for \[m\].
+    fn wanted_radius(&self, claim: &CertifyOptions) -> f64 {
+        let restored = RESTORED * claim.claimed_radius;
+        self.problem.least_radius().map_or(restored, |least| least.max(restored))
     }
 
     fn certify(&self, design: &Design, options: &CertifyOptions) -> Option<Certificate> {
         // Bars without a usable stiffness have no proof: such a design, of a study without stiffness, stays open.
-        self.model
+        self.model()
             .certify_observed(design, options, &mut Until(self.goes_on))
             .ok()
     }
 
-    /// Returns the deepest place of the pocket about an infeasible pose, within the radius that was claimed, by a pattern search.
+    /// Returns the deepest place of the pocket about an infeasible pose, within the region that was claimed, by a pattern search.
     fn deepest(&self, evaluation: &Evaluation, violation: Violation) -> Pocket {
-        let (design, constraint) = (&evaluation.design, violation.constraint);
-        let centre = self.model.settings().workspace.centre;
+        let (design, scalar) = (&evaluation.design, violation.scalar);
+        let model = self.model();
+        let workspace = &model.settings().workspace;
+        let centre = workspace.centre;
+        let contains = |position: DVec2| match &workspace.region {
+            Region::Largest => (position - centre).length() <= evaluation.workspace_radius(),
+            Region::Disc(radius) => (position - centre).length() <= *radius,
+            Region::Polygon(polygon) => polygon.contains(position - centre),
+        };
         let home = evaluation.home_phi_deg.unwrap_or_default().to_radians();
-        let half = 0.5 * self.model.settings().workspace.rotation_range_deg.to_radians();
+        let half = 0.5 * workspace.rotation_range_deg.to_radians();
         let mut pocket = Pocket {
             pose: violation.pose,
-            constraint,
-            margin: self.model.margin_at(design, &violation.pose, constraint),
+            scalar,
+            margin: model.margin_at(design, &violation.pose, scalar),
         };
         let mut steps = [0.05 * evaluation.workspace_radius(), 0.2 * half];
         for _ in 0..12 {
@@ -148,8 +172,8 @@ impl<'a> FrontProver<'a> {
                         1 => pose.position.y += sign * steps[0],
                         _ => pose.phi = (pose.phi + sign * steps[1]).clamp(home - half, home + half),
                     }
-                    let margin = self.model.margin_at(design, &pose, constraint);
-                    if pose.position.distance(centre) <= evaluation.workspace_radius() && margin < pocket.margin {
+                    let margin = model.margin_at(design, &pose, scalar);
+                    if contains(pose.position) && margin < pocket.margin {
                         pocket = Pocket { pose, margin, ..pocket };
                         has_moved = true;
                     }
@@ -160,69 +184,68 @@ impl<'a> FrontProver<'a> {
         pocket
     }
 
-    /// Returns the design with the least thickened bars whose proved radius is almost the verified one, and the increase.
-    fn thicken(&self, member: &FrontMember, pocket: &Pocket) -> Option<(FrontMember, f64)> {
+    /// Returns the least changed design that holds what the study requires where `member` does not, and the increase: with thicker
+    /// bars or, for a prescribed region, larger.
+    fn strengthen(&self, member: &FrontMember, pocket: &Pocket) -> Option<(FrontMember, f64)> {
+        let model = self.model();
         let verified = &member.evaluation;
-        let wanted = RESTORED * verified.workspace_radius();
-        THICKENINGS.into_iter().find_map(|increase| {
-            let design = self.thickened(&verified.design, increase)?;
+        self.problem.strengthened(&verified.design).into_iter().find_map(|(design, increase)| {
             // Where the pocket stays one, there is nothing to prove.
-            if self.model.margin_at(&design, &pocket.pose, pocket.constraint) < 0.0 {
+            if !(self.goes_on)() || model.margin_at(&design, &pocket.pose, pocket.scalar) < 0.0 {
                 return None;
             }
-            let evaluation = self.model.evaluate(&design, GridChoice::Fine);
+            let evaluation = model.evaluate(&design, GridChoice::Fine);
+            let claim = model.claim(&evaluation)?;
+            let wanted = self.wanted_radius(&CertifyOptions {
+                claimed_radius: verified.workspace_radius(),
+                ..claim
+            });
             let claim = CertifyOptions {
                 enough: wanted,
-                ..CertifyOptions::of(&evaluation)?
+                ..claim
             };
+            if claim.is_of_region && !evaluation.is_feasible() {
+                return None;
+            }
             let certificate = self.certify(&design, &claim)?;
-            if certificate.lower < wanted {
+            let is_restored = match claim.is_of_region {
+                true => certificate.verdict == Verdict::Proved,
+                false => certificate.lower >= wanted,
+            };
+            if !is_restored {
                 return None;
             }
             let mut instead = FrontMember {
                 evaluation,
-                reference_radius: self.model.evaluate(&design, GridChoice::Reference).workspace_radius(),
+                reference_radius: model.evaluate(&design, GridChoice::Reference).workspace_radius(),
                 ..member.clone()
             };
-            instead.report(
-                CertifiedRadius::new(&certificate, claim.tolerance),
-                &self.model.settings().objectives,
-            );
+            instead.report(&certificate, &claim, &model.settings().objectives);
             Some((instead, increase))
         })
     }
+}
 
-    /// Returns a design with thicker bars, if the bounds allow it.
-    fn thickened(&self, design: &Design, increase: f64) -> Option<Design> {
-        // A bar of a catalogue cannot be a little thicker.
-        let sections = &self.model.settings().sections;
-        if sections.legs.catalogue().is_some() || sections.platform.catalogue().is_some() {
-            return None;
-        }
-        let mut values = design.values();
-        for (variable, most) in BARS.into_iter().zip(self.thickest) {
-            let radius = &mut values[variable as usize];
-            *radius *= 1.0 + increase;
-            if *radius > most {
-                return None;
-            }
-        }
-        design.with_dimensions(values).ok()
-    }
-
-    /// Returns the front with the proved radii, in the order of the first objective, and what was found. Thickened designs get the ids from
-    /// `next_id` on; `reference` is the reference point of the hypervolume.
-    pub fn conclude(self, mut next_id: usize, reference: Objectives) -> (Vec<FrontMember>, FrontProofs) {
+/// Returns the front of designs that were proved, in the order of the first objective, and what was found. Stronger designs get the ids
+/// from `next_id` on; at most `most` designs are kept, and `reference` is the reference point of the hypervolume.
+pub fn proved_front(
+    proved: Vec<ProvedMember>,
+    mut next_id: usize,
+    reference: Objectives,
+    most: usize,
+) -> (Vec<FrontMember>, FrontProofs) {
         let mut proofs = FrontProofs {
             tolerance: CertifyOptions::TOLERANCE,
             ..FrontProofs::default()
         };
         let mut members = Vec::new();
+        let mut dropped = 0;
         for ProvedMember {
             member,
             refuted,
             instead,
-        } in self.proved
+            holds,
+        } in proved
         {
             let thickened = instead.map(|(instead, increase)| {
                 let id = next_id;
@@ -230,23 +253,27 @@ impl<'a> FrontProver<'a> {
                 (FrontMember { id, ..instead }, ThickenedDesign { id, increase })
             });
             let (instead, thickened) = thickened.unzip();
-            members.push(instead.unwrap_or(member));
+            match instead {
+                Some(instead) => members.push(instead),
+                None if holds => members.push(member),
+                None => dropped += 1,
+            }
             proofs
                 .refuted
                 .extend(refuted.map(|refuted| RefutedDesign { thickened, ..refuted }));
         }
         let mut archive = Archive::default();
         for (place, member) in members.iter().enumerate() {
-            if member.evaluation.workspace_radius() > 0.0 {
+            if member.certified.is_none_or(|certified| !certified.is_empty()) {
                 archive.insert(place, &[], &DesignProblem::outcome(&member.evaluation));
             }
         }
-        // On a front, the order by mass is also the order by R_w.
-        let front: Vec<FrontMember> = archive.iter().map(|kept| members[kept.id].clone()).collect();
-        proofs.dropped = members.len() - front.len();
+        proofs.dropped = dropped + members.len() - archive.len();
+        let objectives: Vec<Objectives> = archive.iter().map(|kept| kept.objectives).collect();
+        let kept = subset(&objectives, &reference, most);
+        let front: Vec<FrontMember> = kept.into_iter().map(|place| members[archive[place].id].clone()).collect();
         proofs.proved = front.iter().filter(|member| member.is_proved()).count();
         proofs.open = front.len() - proofs.proved;
         proofs.hypervolume_kg_m = hypervolume(front.iter().map(FrontMember::objectives), reference);
         (front, proofs)
-    }
 }

@@ -14,21 +14,14 @@
 //! of a generation are evaluated in parallel and told to the algorithm in their order, so the result depends neither on
 //! the number of threads nor on the listeners.
 
-use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
-use rayon::prelude::*;
-
-use super::search::{Found, SearchError};
-use super::{
-    DesignProblem, EndReason, Event, FrontMember, FrontProofs, FrontProver, RunControl, RunSummary, Started, Study,
-    StudySearch, Subscriber, TableRow,
-};
-use kinefront_model::evaluation::Evaluation;
-use kinefront_optimize::{Archive, ArchiveMember, Objectives, hypervolume, spread};
+use super::conclusion::conclude;
+use super::search::SearchError;
+use super::{Event, RunControl, Started, Study, StudySearch, Subscriber};
 
 /// Starts the run of a study on its own thread.
 ///
@@ -101,186 +94,8 @@ fn run(mut search: StudySearch, control: &RunControl, publisher: &mut Publisher)
     }
     let outcome = search.run(start, control, |event| publisher.send(event))?;
     search.times.search_s = start.elapsed().as_secs_f64();
-    if let Some(summary) = conclude(search, outcome, control, publisher) {
+    if let Some(summary) = conclude(search, outcome, control, &mut |event| publisher.send(event)) {
         publisher.send(Event::Finished(summary));
     }
     Ok(())
-}
-
-/// Verifies the front of a search that was resumed, as at the end of its run; returns the summary of a run that ended for
-/// the reason `outcome`.
-pub(super) fn verify_replayed(mut search: StudySearch, outcome: EndReason) -> Option<RunSummary> {
-    let control = RunControl::default();
-    search.send_replayed(&control, |_| {});
-    let mut nobody = Publisher {
-        subscribers: Vec::new(),
-        spent: Duration::ZERO,
-    };
-    conclude(search, outcome, &control, &mut nobody)
-}
-
-/// Verifies the front of a search that has ended and sums it up; `None` if the run was abandoned.
-fn conclude(
-    mut search: StudySearch,
-    outcome: EndReason,
-    control: &RunControl,
-    publisher: &mut Publisher,
-) -> Option<RunSummary> {
-    let verifying = Instant::now();
-    let front = search.found.candidates();
-    let verified = match outcome {
-        EndReason::Interrupted => None,
-        _ => verify(&front, &search, control, publisher),
-    };
-    search.times.verification_s = verifying.elapsed().as_secs_f64();
-    let certifying = Instant::now();
-    let reported = verified.and_then(|verified| report(verified, &search, control, publisher));
-    search.times.certification_s = certifying.elapsed().as_secs_f64();
-    search.times.publish_s = publisher.spent.as_secs_f64();
-    match reported {
-        Some(reported) => {
-            let found = search.found.front().len();
-            Some(summary(search, outcome, found, reported))
-        }
-        None if control.is_interrupted() || outcome == EndReason::Interrupted => {
-            Some(summary(search, EndReason::Interrupted, 0, Reported::default()))
-        }
-        None => None,
-    }
-}
-
-/// What a run reports of its verified front.
-#[derive(Default)]
-struct Reported {
-    /// Number of designs of the verified front.
-    verified: usize,
-    /// Its hypervolume.
-    hypervolume: f64,
-    /// The designs that are reported.
-    front: Vec<FrontMember>,
-    proofs: Option<FrontProofs>,
-}
-
-/// Thins the verified front to evenly spread designs and proves their workspaces, if the study asks for it. Returns `None` if
-/// the run was interrupted or abandoned.
-fn report(
-    verified: Vec<FrontMember>,
-    search: &StudySearch,
-    control: &RunControl,
-    publisher: &mut Publisher,
-) -> Option<Reported> {
-    let (study, reference) = (search.study(), search.found.reference);
-    let objectives: Vec<Objectives> = verified.iter().map(FrontMember::objectives).collect();
-    let shown = spread(&objectives, study.optimizer.front_designs);
-    let front: Vec<FrontMember> = shown.into_iter().map(|place| verified[place].clone()).collect();
-    let reported = Reported {
-        verified: verified.len(),
-        hypervolume: hypervolume(objectives, reference),
-        front,
-        proofs: None,
-    };
-    if !study.certifies() {
-        return Some(reported);
-    }
-    let goes_on = || !control.is_abandoned();
-    let mut prover = FrontProver::new(search.problem.model(), study.thickest_bars(), &goes_on);
-    let (found, total) = (search.found.front().len(), reported.front.len());
-    let mut done = 0;
-    for part in reported.front.chunks(4 * search.threads()) {
-        publisher.send(Event::Verifying {
-            done: found + done,
-            total: found + total,
-        });
-        search.pool.install(|| prover.prove(part));
-        if control.is_abandoned() {
-            return None;
-        }
-        done += part.len();
-    }
-    let (front, proofs) = prover.conclude(search.found.evaluated, reference);
-    Some(Reported {
-        front,
-        proofs: Some(proofs),
-        ..reported
-    })
-}
-
-fn summary(search: StudySearch, outcome: EndReason, found: usize, reported: Reported) -> RunSummary {
-    let threads = search.threads();
-    let StudySearch {
-        found: Found { history, .. },
-        times,
-        ..
-    } = search;
-    RunSummary {
-        outcome,
-        threads,
-        history,
-        dropped: found.saturating_sub(reported.verified),
-        verified_hypervolume: reported.hypervolume,
-        verified: reported.verified,
-        front: reported.front,
-        proofs: reported.proofs,
-        times,
-    }
-}
-
-/// Evaluates the front again on the fine grid and keeps the designs that are feasible and non-dominated there. Returns
-/// `None` if the run was interrupted or abandoned.
-fn verify(
-    front: &[Arc<TableRow>],
-    search: &StudySearch,
-    control: &RunControl,
-    publisher: &mut Publisher,
-) -> Option<Vec<FrontMember>> {
-    let study = search.study();
-    let proofs = if study.certifies() {
-        front.len().min(study.optimizer.front_designs)
-    } else {
-        0
-    };
-    let (total, problem) = (front.len() + proofs, &search.problem);
-    let mut next_id = search.found.evaluated;
-    let mut archive = Archive::default();
-    let mut verified: BTreeMap<usize, FrontMember> = BTreeMap::new();
-    let mut done = 0;
-    let is_single = study.objectives.len() == 1;
-    'parts: for part in front.chunks(if is_single { 1 } else { 4 } * search.threads()) {
-        publisher.send(Event::Verifying { done, total });
-        let evaluate = |entry: &Arc<TableRow>| {
-            if control.is_abandoned() {
-                return None;
-            }
-            Some(problem.verify(&entry.row.design))
-        };
-        let evaluations: Option<Vec<Evaluation>> = search.pool.install(|| part.par_iter().map(evaluate).collect());
-        for (entry, evaluation) in part.iter().zip(evaluations?) {
-            // Of runners-up, only those are of interest that are better than what holds on the fine grid.
-            let settles = |member: &ArchiveMember| member.objectives[0] <= entry.row.objectives[0];
-            if is_single && archive.iter().any(settles) {
-                break 'parts;
-            }
-            let mut id = entry.id;
-            if evaluation.design != entry.row.design {
-                // A design whose bars were sized again is not one of the search.
-                id = next_id;
-                next_id += 1;
-            }
-            archive.insert(id, &[], &DesignProblem::outcome(&evaluation));
-            verified.insert(
-                id,
-                FrontMember {
-                    id,
-                    generation: entry.row.generation as usize,
-                    evaluation,
-                    reference_radius: entry.row.workspace_radius(),
-                    certified: None,
-                },
-            );
-        }
-        done += part.len();
-    }
-    // On a front of two objectives, the order by one is also the order by the other.
-    let front = archive.iter().filter_map(|member| verified.remove(&member.id));
-    Some(front.collect())
 }

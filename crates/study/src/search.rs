@@ -279,12 +279,7 @@ impl Found {
         self.front = self.archive.iter().map(|member| member.id).filter_map(entry).collect();
     }
 
-    /// The front so far, in the order of the first objective.
-    pub fn front(&self) -> &[Arc<TableRow>] {
-        &self.front
-    }
-
-    /// The designs of which the verified front consists: those of the front, and with one objective the runners-up, because the best
+    /// The designs from which the reported front is selected: those of the front, and with one objective the runners-up, because the best
     /// one may not hold on the fine grid.
     pub fn candidates(&self) -> Vec<Arc<TableRow>> {
         let runners_up = self

@@ -37,6 +37,8 @@ pub struct CertificateJson {
     /// Bound of the workspace radius over all home orientations, rounded up, if it was asked for and found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub upper_all_homes_m: Option<Option<f64>>,
+    /// What was claimed: `region`, that of the study, or `radius`.
+    pub claim: &'static str,
 }
 
 /// A pose that is proved infeasible; `phi_rad` is the orientation of the proof.
@@ -88,19 +90,20 @@ impl CertificateJson {
             upper_m: printed.upper,
             relative_gap: printed.relative_gap(),
             tolerance: options.tolerance,
-            closed: printed.is_closed(options.tolerance),
+            closed: !options.is_of_region && printed.is_closed(options.tolerance),
             verdict,
             why,
             found: certificate.verdict,
             violation: certificate.violation.map(|violation| ViolationJson {
                 pose: PoseJson::new(&violation.pose, violation.pose.phi.to_degrees()),
                 phi_rad: violation.pose.phi,
-                id: violation.constraint.id(),
-                margin: model.margin_at(design, &violation.pose, violation.constraint),
+                id: violation.scalar.limit_id(),
+                margin: model.margin_at(design, &violation.pose, violation.scalar),
             }),
             boxes: certificate.boxes,
             seconds,
             upper_all_homes_m: homes.map(|bound| bound.map(f64::next_up)),
+            claim: if options.is_of_region { "region" } else { "radius" },
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kinefront_model::evaluation::Evaluation;
 use kinefront_optimize::{Archive, Objectives, Outcome};
 use kinefront_study::Row;
-use kinefront_study::{CertifiedRadius, FrontMember, TableRow};
+use kinefront_study::{CertifiedWorkspace, FrontMember, TableRow};
 
 /// A non-dominated design.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +19,7 @@ pub struct FrontEntry {
     /// Whether it was evaluated on the fine grid.
     pub verified: bool,
     /// What is proved about `R_w`.
-    pub certified: Option<CertifiedRadius>,
+    pub certified: Option<CertifiedWorkspace>,
     /// Its evaluation on the fine grid, if the run is in the window; a table holds no evaluations.
     pub evaluation: Option<Arc<Evaluation>>,
 }

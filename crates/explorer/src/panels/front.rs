@@ -309,7 +309,11 @@ fn draw_row(
                 theme::active(ui)
             };
             let upper = certified.upper.map_or("∞".to_owned(), |upper| format!("{upper:.4}"));
-            let words = format!("{} [{:.4}, {upper}]", certified.state(), certified.lower);
+            let words = if certified.is_of_region {
+                certified.state().to_owned()
+            } else {
+                format!("{} [{:.4}, {upper}]", certified.state(), certified.lower)
+            };
             let words = RichText::new(words);
             let words = if state.selected { words } else { words.color(color) };
             ui.add(Label::new(words).selectable(false))

@@ -171,7 +171,8 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
         ui.horizontal(|ui| {
             let certified = session.certified().filter(|_| known.verified);
             if evaluation.home.is_some() {
-                let radius = certified.map_or(evaluation.workspace_radius(), |certified| certified.lower);
+                let proved = certified.filter(|certified| !certified.is_of_region);
+                let radius = proved.map_or(evaluation.workspace_radius(), |certified| certified.lower);
                 ui.strong(format!("{} m", theme::number(radius)));
             } else {
                 ui.colored_label(theme::bad(ui), "infeasible: no regular workspace");
@@ -243,14 +244,19 @@ fn proof(ui: &mut Ui, session: &mut Session) {
     };
     let mut has_asked = false;
     ui.horizontal_wrapped(|ui| {
-        ui.label("R_w is");
-        ui.colored_label(color, RichText::new(verdict).strong());
-        let upper = certificate.upper.map_or("∞".to_owned(), |upper| format!("{upper:.5}"));
-        ui.label(format!("R* in [{:.5}, {upper}] m", certificate.lower))
-            .on_hover_text("every pose nearer than the first number is feasible; a pose at the second is not");
+        if proof.claim.is_of_region {
+            ui.label("the region is").on_hover_text("that every pose of it is feasible");
+            ui.colored_label(color, RichText::new(verdict).strong());
+        } else {
+            ui.label("R_w is");
+            ui.colored_label(color, RichText::new(verdict).strong());
+            let upper = certificate.upper.map_or("∞".to_owned(), |upper| format!("{upper:.5}"));
+            ui.label(format!("R* in [{:.5}, {upper}] m", certificate.lower))
+                .on_hover_text("every pose nearer than the first number is feasible; a pose at the second is not");
+        }
         if let Some(violation) = proof.certificate.violation {
             let hover = "moves the platform to the infeasible pose, and shows the boxes of the proof";
-            let words = format!("pose that violates {}", violation.constraint.id());
+            let words = format!("pose that violates {}", violation.scalar.limit_id());
             has_asked = ui.small_button(words).on_hover_text(hover).clicked();
         }
     });

@@ -19,7 +19,7 @@ use kinefront_model::evaluation::{Evaluation, GridChoice, Model, Quantity};
 use kinefront_model::spatial::Pose;
 use kinefront_recording::{FrontPoint, LiveScene, Viewpoint, VisibleLayers};
 use kinefront_scene::{FieldLegend, WorkspaceProof};
-use kinefront_study::{CertifiedRadius, Column, EndReason, GenerationSummary, PreparedStudy, Study};
+use kinefront_study::{CertifiedWorkspace, Column, EndReason, GenerationSummary, PreparedStudy, Study};
 
 /// Largest number of designs that can be pinned for comparison.
 pub const MOST_PINS: usize = 4;
@@ -280,7 +280,7 @@ impl Session {
     }
 
     /// Returns what the front states about the workspace of the selected design, if it is a design of a certified front.
-    pub fn certified(&self) -> Option<CertifiedRadius> {
+    pub fn certified(&self) -> Option<CertifiedWorkspace> {
         match self.document().selected.as_ref()?.origin {
             DesignOrigin::Evaluated(id) => self.front[self.place_on_front(id)?].certified,
             _ => None,

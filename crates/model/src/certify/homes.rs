@@ -6,7 +6,7 @@
 use super::CertifyError;
 use super::forms::{Forms, ProvedForms};
 use crate::enclosure::{Interval, PoseEnclosure};
-use crate::evaluation::{Constraint, Model};
+use crate::evaluation::{Model, PoseScalar};
 use crate::mechanism::Design;
 
 /// Number of orientations of the first sample per window.
@@ -143,7 +143,7 @@ impl Homes<'_> {
         let pose = PoseEnclosure::point(position, Interval::exactly(phi));
         let found = self.forms.enclose_pose(&pose, ProvedForms::default());
         // The sign of det A that counts is that of each home orientation, not that of one of them.
-        let is_of_all_homes = |constraint| constraint != Constraint::DeterminantSign;
+        let is_of_all_homes = |scalar| scalar != PoseScalar::Determinant;
         found.violated().any(is_of_all_homes)
     }
 

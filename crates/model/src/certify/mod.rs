@@ -7,13 +7,15 @@
 
 mod forms;
 mod homes;
-mod polar_box;
+mod patch;
+mod pose_box;
 mod search;
 
 use forms::ProvedForms;
+pub use patch::Patch;
 
 use crate::enclosure::{PoseEnclosure, TaylorModel, VARIABLES};
-use crate::evaluation::{Constraint, Evaluation, Model, PoseScalar, Thresholds};
+use crate::evaluation::{Evaluation, Model, PoseScalar, Thresholds};
 use crate::mechanism::Design;
 use crate::spatial::Pose;
 
@@ -35,6 +37,8 @@ pub struct CertifyOptions {
     pub max_boxes: usize,
     /// Distance from the centre \[m\]: the proof ends once a pose nearer than this is proved infeasible.
     pub enough: f64,
+    /// Whether the claim is that every pose of the region is feasible which the study prescribes, instead of a radius.
+    pub is_of_region: bool,
     /// Radius from which to prove without looking for infeasible poses, as a check of the proof itself: its lower bound must not
     /// pass an infeasible pose that is known otherwise.
     pub blind_radius: Option<f64>,
@@ -48,6 +52,7 @@ impl Default for CertifyOptions {
             tolerance: Self::TOLERANCE,
             max_boxes: Self::MAX_BOXES,
             enough: 0.0,
+            is_of_region: false,
             blind_radius: None,
         }
     }
@@ -58,19 +63,12 @@ impl CertifyOptions {
     pub const TOLERANCE: f64 = 1e-4;
     /// Number of boxes by default.
     pub const MAX_BOXES: usize = 200_000;
-
-    /// What is to be proved about an evaluated design: its radius at its home orientation; `None` for a design without a
-    /// workspace.
-    pub fn of(evaluation: &Evaluation) -> Option<Self> {
-        Some(Self {
-            phi_deg: evaluation.home_phi_deg?,
-            claimed_radius: evaluation.workspace_radius(),
-            ..Self::default()
-        })
-    }
 }
 
 /// What is proved about a design at one home orientation.
+///
+/// Where the claim is a prescribed region, `lower` is the radius of the largest disc about its centre within it if the whole region
+/// is proved, and 0 otherwise; `upper` is the distance of an infeasible pose of the region from the centre.
 ///
 /// `R*` is the distance from the centre of the nearest pose that violates a constraint, over all orientations of the window.
 /// Every statement is about real numbers: lengths, thresholds and the orientation in degrees are the doubles given, and `π`, `√3`
@@ -89,7 +87,8 @@ pub struct Certificate {
     pub boxes: usize,
 }
 
-/// Verdict on a claimed radius `c` with the tolerance `t`.
+/// Verdict on a claimed radius `c` with the tolerance `t`, or on a prescribed region: that every pose of it is feasible, or that one is
+/// not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// `lower ≥ (1 − t) c`.
@@ -105,14 +104,16 @@ pub enum Verdict {
 /// A box that a proof has finished with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExaminedBox {
-    /// Lower ends: distance from the centre \[m\], direction \[rad\], orientation \[rad\].
+    /// Part of the region in which it lies.
+    pub patch: Patch,
+    /// Lower ends: the coordinates of the position in the patch, and the orientation \[rad\].
     pub lower: [f64; VARIABLES],
     /// Upper ends.
     pub upper: [f64; VARIABLES],
     /// What became of it.
     pub outcome: BoxOutcome,
-    /// The constraint that was proved last, or that is not proved; where none is known, that which ends the proof.
-    pub constraint: Constraint,
+    /// The scalar whose limit was proved last, or is not proved; where none is known, that which ends the proof.
+    pub scalar: PoseScalar,
     /// Number of divisions that led to it.
     pub depth: u32,
 }
@@ -147,13 +148,13 @@ pub trait ProofObserver {
 /// Observes nothing.
 impl ProofObserver for () {}
 
-/// A pose that violates a constraint.
+/// A pose at which a limit is violated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Violation {
     /// The pose, as three doubles.
     pub pose: Pose,
-    /// The constraint.
-    pub constraint: Constraint,
+    /// The scalar whose limit it violates.
+    pub scalar: PoseScalar,
 }
 
 /// Why nothing can be proved.
@@ -191,6 +192,17 @@ impl Certificate {
 }
 
 impl Model {
+    /// Returns what is to be proved about an evaluated design: that the region which the study prescribes is feasible in its window, or
+    /// its radius at its home orientation; `None` for a design without a workspace.
+    pub fn claim(&self, evaluation: &Evaluation) -> Option<CertifyOptions> {
+        Some(CertifyOptions {
+            phi_deg: evaluation.home_phi_deg?,
+            claimed_radius: evaluation.workspace_radius(),
+            is_of_region: self.settings().workspace.region.is_prescribed(),
+            ..CertifyOptions::default()
+        })
+    }
+
     /// Proves bounds of the radius of the disc about the centre in which every pose within the range of orientations about
     /// `phi_deg` is feasible.
     ///
@@ -292,7 +304,7 @@ impl Model {
         &self,
         design: &Design,
         pose: &PoseEnclosure,
-    ) -> Result<Vec<(Constraint, TaylorModel)>, CertifyError> {
+    ) -> Result<Vec<(PoseScalar, TaylorModel)>, CertifyError> {
         let forms = forms::Forms::new(self, design)?;
         Ok(forms.enclose(pose, ProvedForms::default()).iter().copied().collect())
     }

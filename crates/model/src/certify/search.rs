@@ -1,15 +1,19 @@
-//! Branch and bound over boxes of positions, in polar coordinates, and orientations.
+//! Branch and bound over boxes of positions and orientations.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use glam::DVec2;
+
 use super::forms::{Enclosures, Forms, ProvedForms};
-use super::polar_box::PolarBox;
+use super::patch::Patch;
+use super::pose_box::PoseBox;
 use super::{BoxOutcome, Certificate, CertifyError, CertifyOptions, ExaminedBox, ProofObserver, Verdict, Violation};
 use crate::enclosure::{Interval, PoseEnclosure, TaylorModel, VARIABLES};
-use crate::evaluation::{Constraint, Model};
+use crate::evaluation::{Model, PoseScalar};
 use crate::mechanism::Design;
 use crate::spatial::Pose;
+use crate::workspace::Region;
 
 /// A box narrower than this multiple of `R` is not divided.
 const NARROWEST: f64 = 1e-11;
@@ -34,7 +38,11 @@ pub(super) fn certify(
 ) -> Result<Certificate, CertifyError> {
     let mut proof = Proof::new(model, design, options, observer)?;
     if options.blind_radius.is_none() {
-        proof.find_bad_poses();
+        if proof.is_prescribed() {
+            proof.try_boundary();
+        } else {
+            proof.find_bad_poses();
+        }
     }
     proof.divide();
     proof.report_rest();
@@ -52,9 +60,13 @@ struct Proof<'a> {
     inner_window: [f64; 2],
     /// Range of the direction `θ` \[rad\].
     sector: f64,
+    /// The prescribed region, if the claim is about that.
+    region: Option<&'a Region>,
+    /// Whether every box of the prescribed region was examined.
+    is_exhausted: bool,
     upper: Option<f64>,
     violation: Option<Violation>,
-    heap: BinaryHeap<Reverse<PolarBox>>,
+    heap: BinaryHeap<Reverse<PoseBox>>,
     /// Least distance of the boxes that were put aside.
     aside: f64,
     /// Everything nearer than this is proved, apart from the boxes that were put aside.
@@ -78,11 +90,19 @@ impl<'a> Proof<'a> {
         let to_radians = Interval::PI / Interval::exactly(180.0);
         let [first, last] = [(middle - half) * to_radians, (middle + half) * to_radians];
         let turn = if model.is_symmetric(design) { 120.0 } else { 360.0 };
+        let workspace = &model.settings().workspace;
+        let region = Some(&workspace.region).filter(|region| options.is_of_region && region.is_prescribed());
+        let within = match region {
+            Some(Region::Polygon(polygon)) => polygon.corners()[0],
+            _ => DVec2::ZERO,
+        };
         Ok(Self {
             forms: Forms::new(model, design)?.with_sign_at(&Pose {
-                position: model.settings().workspace.centre,
+                position: workspace.centre + within,
                 phi: options.phi_deg.to_radians(),
             }),
+            region,
+            is_exhausted: false,
             model,
             design,
             options,
@@ -104,6 +124,11 @@ impl<'a> Proof<'a> {
 
     /// The radius up to which boxes must be proved.
     fn target(&self) -> f64 {
+        match self.region {
+            Some(Region::Disc(radius)) => return *radius,
+            Some(_) => return f64::INFINITY,
+            None => {}
+        }
         if let Some(radius) = self.options.blind_radius {
             return radius;
         }
@@ -118,35 +143,29 @@ impl<'a> Proof<'a> {
         }
     }
 
-    fn enclose_box(&self, polar: &PolarBox) -> Enclosures {
-        let [(r, dr), (theta, dtheta), (phi, dphi)] = [0, 1, 2].map(|k| polar.middle_and_radius(k));
-        let radius = TaylorModel::variable(0, r, dr);
-        let (sine, cosine) = TaylorModel::sine_and_cosine(1, theta, dtheta);
-        let (phi_sine, phi_cosine) = TaylorModel::sine_and_cosine(2, phi, dphi);
+    fn enclose_box(&self, part: &PoseBox) -> Enclosures {
+        let (phi, by_phi) = part.middle_and_radius(2);
+        let (phi_sine, phi_cosine) = TaylorModel::sine_and_cosine(2, phi, by_phi);
         let centre = self.model.settings().workspace.centre;
+        let [x, y] = part.patch.enclose(part);
         let pose = PoseEnclosure {
-            position: [
-                (radius * cosine).plus(Interval::exactly(centre.x)),
-                (radius * sine).plus(Interval::exactly(centre.y)),
-            ],
+            position: [x.plus(Interval::exactly(centre.x)), y.plus(Interval::exactly(centre.y))],
             cosine: phi_cosine,
             sine: phi_sine,
         };
-        self.forms.enclose(&pose, polar.proved)
+        self.forms.enclose(&pose, part.proved)
     }
 
-    /// The pose at a point in polar coordinates, within the window.
-    fn pose_at(&self, [r, theta, phi]: [f64; VARIABLES]) -> Pose {
-        let centre = self.model.settings().workspace.centre;
-        Pose::new(
-            centre.x + r * libm::cos(theta),
-            centre.y + r * libm::sin(theta),
-            phi.clamp(self.inner_window[0], self.inner_window[1]),
-        )
+    /// The pose at a point of a patch, within the window.
+    fn pose_at(&self, patch: Patch, [first, second, phi]: [f64; VARIABLES]) -> Pose {
+        Pose {
+            position: self.model.settings().workspace.centre + patch.position([first, second]),
+            phi: phi.clamp(self.inner_window[0], self.inner_window[1]),
+        }
     }
 
     /// Returns a constraint that is proved to be violated at a pose, of those that are not proved there.
-    fn violated_at(&self, pose: &Pose, proved: ProvedForms) -> Option<Constraint> {
+    fn violated_at(&self, pose: &Pose, proved: ProvedForms) -> Option<PoseScalar> {
         let position = pose.position.to_array().map(Interval::exactly);
         let pose = PoseEnclosure::point(position, Interval::exactly(pose.phi));
         self.forms.enclose_pose(&pose, proved).violated().next()
@@ -154,20 +173,30 @@ impl<'a> Proof<'a> {
 
     /// Lowers the upper bound if the pose at a point is bad; returns a constraint that it violates, of those that are not proved
     /// there.
-    fn try_point(&mut self, point: [f64; VARIABLES], proved: ProvedForms) -> Option<Constraint> {
+    fn try_point(&mut self, point: [f64; VARIABLES], proved: ProvedForms) -> Option<PoseScalar> {
+        self.try_point_of(Patch::Disc, point, proved)
+    }
+
+    /// Does what [`Proof::try_point`] does with a point of a patch.
+    fn try_point_of(
+        &mut self,
+        patch: Patch,
+        point: [f64; VARIABLES],
+        proved: ProvedForms,
+    ) -> Option<PoseScalar> {
         // In a window without width, no double is known to lie.
         let [first, last] = self.inner_window;
         if self.options.blind_radius.is_some() || first > last || proved.is_all() {
             return None;
         }
-        let pose = self.pose_at(point);
-        let constraint = self.violated_at(&pose, proved)?;
+        let pose = self.pose_at(patch, point);
+        let scalar = self.violated_at(&pose, proved)?;
         let distance = self.distance(&pose);
         if self.upper.is_none_or(|upper| distance < upper) {
             self.upper = Some(distance);
-            self.violation = Some(Violation { pose, constraint });
+            self.violation = Some(Violation { pose, scalar });
         }
-        Some(constraint)
+        Some(scalar)
     }
 
     /// Returns the distance of a pose from the centre, rounded up.
@@ -205,9 +234,9 @@ impl<'a> Proof<'a> {
                 let phi = first + (last - first) * (place / DIRECTIONS) as f64 / (ORIENTATIONS - 1) as f64;
                 let point = [radius, theta, phi];
                 if self.upper.is_none_or(|upper| radius <= upper)
-                    && let Some(constraint) = self.try_point(point, ProvedForms::default())
+                    && let Some(scalar) = self.try_point(point, ProvedForms::default())
                 {
-                    self.move_inwards(point, constraint);
+                    self.move_inwards(point, scalar);
                 }
             }
             radius *= 1.5;
@@ -216,12 +245,12 @@ impl<'a> Proof<'a> {
 
     /// Moves a bad point towards the centre while it stays bad: along the ray by halving, and sideways by a pattern search.
     /// Only the constraint that it violates is looked at, which any bad pose nearer to the centre may violate.
-    fn move_inwards(&mut self, mut point: [f64; VARIABLES], constraint: Constraint) {
-        let others = ProvedForms::all_but(constraint);
+    fn move_inwards(&mut self, mut point: [f64; VARIABLES], scalar: PoseScalar) {
+        let others = ProvedForms::all_but(scalar);
         let [first, last] = self.inner_window;
         let mut steps = [0.05, 0.2 * (last - first)];
         for _ in 0..40 {
-            point[0] = self.nearest_bad(point, constraint);
+            point[0] = self.nearest_bad(point, scalar);
             let mut has_moved = false;
             for (k, &step) in [1, 2].iter().zip(&steps) {
                 for direction in [-1.0, 1.0] {
@@ -243,12 +272,12 @@ impl<'a> Proof<'a> {
                 break;
             }
         }
-        self.nearest_bad(point, constraint);
+        self.nearest_bad(point, scalar);
     }
 
     /// Returns the least radius found at which the pose in the direction of a bad point violates the same constraint.
-    fn nearest_bad(&mut self, point: [f64; VARIABLES], constraint: Constraint) -> f64 {
-        let others = ProvedForms::all_but(constraint);
+    fn nearest_bad(&mut self, point: [f64; VARIABLES], scalar: PoseScalar) -> f64 {
+        let others = ProvedForms::all_but(scalar);
         let (mut good, mut bad) = (0.95 * point[0], point[0]);
         for _ in 0..18 {
             let middle = 0.5 * (good + bad);
@@ -261,23 +290,65 @@ impl<'a> Proof<'a> {
         bad
     }
 
-    /// Divides the disc until everything within the target is proved, or the number of boxes is used up.
-    fn divide(&mut self) {
-        let is_enough = |proof: &Self| proof.upper.is_some_and(|upper| upper < proof.options.enough);
+    /// Tries poses of the boundary of a prescribed region: those at which a constraint is most often missed.
+    fn try_boundary(&mut self) {
+        const POSITIONS: usize = 48;
+        const ORIENTATIONS: usize = 5;
+        let Some(region) = self.region else { return };
+        let [first, last] = self.inner_window;
+        for position in region.outline(POSITIONS) {
+            for place in 0..ORIENTATIONS {
+                let phi = first + (last - first) * place as f64 / (ORIENTATIONS - 1) as f64;
+                let at = Patch::Rectangle([position; 2]);
+                self.try_point_of(at, [position.x, position.y, phi], ProvedForms::default());
+            }
+        }
+    }
+
+    /// Pushes the boxes with which the search begins; those of a disc begin at the distance `from`.
+    fn push_whole(&mut self, from: f64) {
         let [first, last] = self.window;
-        let nothing = ProvedForms::default();
-        self.push([0.0, 0.0, first], [self.target(), self.sector, last], nothing, 0);
+        for patch in self.region.map_or(vec![Patch::Disc], Patch::of) {
+            let [along, across] = patch.ranges(self.target(), self.sector);
+            let least = along[0].max(from);
+            self.push(&PoseBox {
+                patch,
+                lower: [least, across[0], first],
+                upper: [along[1], across[1], last],
+                proved: ProvedForms::default(),
+                depth: 0,
+                number: 0,
+            });
+        }
+    }
+
+    /// Whether the claim is about the region that the study prescribes.
+    fn is_prescribed(&self) -> bool {
+        self.region.is_some()
+    }
+
+    /// Divides the region until everything within the target is proved, or the number of boxes is used up.
+    fn divide(&mut self) {
+        let is_enough = |proof: &Self| match proof.region {
+            Some(_) => proof.violation.is_some(),
+            None => proof.upper.is_some_and(|upper| upper < proof.options.enough),
+        };
+        self.push_whole(f64::NEG_INFINITY);
         loop {
             match self.heap.pop() {
-                Some(Reverse(polar)) if polar.lower[0] < self.target() => {
-                    self.proved = self.proved.max(polar.lower[0]);
+                Some(Reverse(part)) if part.lower[0] < self.target() => {
+                    self.proved = self.proved.max(part.lower[0]);
                     let is_ended = self.boxes.is_multiple_of(BOXES_BETWEEN_QUESTIONS) && !self.observer.goes_on();
                     if self.boxes >= self.options.max_boxes || is_ended || is_enough(self) {
                         self.is_out_of_budget = true;
-                        self.heap.push(Reverse(polar));
+                        self.heap.push(Reverse(part));
                         return;
                     }
-                    self.examine(polar);
+                    self.examine(part);
+                }
+                _ if self.is_prescribed() => {
+                    self.is_exhausted = true;
+                    return;
                 }
                 _ => {
                     self.proved = self.proved.max(self.target());
@@ -293,140 +364,151 @@ impl<'a> Proof<'a> {
                     self.gap *= 0.1;
                     // What lies beyond the former target was not examined, or cut off there.
                     self.heap.clear();
-                    let [first, last] = self.window;
-                    let proved = self.proved;
-                    self.push([proved, 0.0, first], [self.target(), self.sector, last], nothing, 0);
+                    self.push_whole(self.proved);
                 }
             }
         }
     }
 
-    fn push(&mut self, lower: [f64; VARIABLES], upper: [f64; VARIABLES], proved: ProvedForms, depth: u32) {
+    fn push(&mut self, part: &PoseBox) {
         self.created += 1;
-        self.heap.push(Reverse(PolarBox {
-            lower,
-            upper,
-            proved,
-            depth,
+        self.heap.push(Reverse(PoseBox {
             number: self.created,
+            ..*part
         }));
     }
 
     /// Proves, contracts or divides one box.
-    fn examine(&mut self, mut polar: PolarBox) {
+    fn examine(&mut self, mut part: PoseBox) {
         for _ in 0..=CONTRACTIONS {
-            if polar.lower[0] >= self.target() {
-                self.report(&polar, BoxOutcome::Beyond, || None);
+            if part.lower[0] >= self.target() {
+                self.report(&part, BoxOutcome::Beyond, || None);
                 return;
             }
             // The box is cut before it is enclosed: what is found refers to the box as enclosed.
-            polar.upper[0] = polar.upper[0].min(self.target());
+            part.upper[0] = part.upper[0].min(self.target());
             self.boxes += 1;
-            let found = self.enclose_box(&polar);
-            let open: Vec<&(Constraint, TaylorModel)> = found.open().collect();
+            let found = self.enclose_box(&part);
+            let open: Vec<&(PoseScalar, TaylorModel)> = found.open().collect();
             if found.is_complete && open.is_empty() {
-                self.report(&polar, BoxOutcome::Proved, || weakest(found.iter()));
+                self.report(&part, BoxOutcome::Proved, || weakest(found.iter()));
                 return;
             }
-            polar.proved = polar.proved.with(&found);
+            part.proved = part.proved.with(&found);
             // What the polynomials tell of a pose need not be tried.
-            let known_at = |epsilon| polar.proved.with_those_that_hold_at(&found, epsilon);
-            let middle = polar.point([0.0; VARIABLES]);
-            self.try_point(middle, known_at([0.0; VARIABLES]));
-            if polar.lower[0] == 0.0 {
-                self.try_point([0.0, 0.0, middle[2]], polar.proved);
+            let known_at = |epsilon| part.proved.with_those_that_hold_at(&found, epsilon);
+            let middle = part.point([0.0; VARIABLES]);
+            self.try_point_of(part.patch, middle, known_at([0.0; VARIABLES]));
+            if part.lower[0] == 0.0 && part.patch == Patch::Disc {
+                self.try_point([0.0, 0.0, middle[2]], part.proved);
             }
             let worst = weakest(open.iter().copied());
             if let Some(least) = worst.map(|(_, value)| value.least_point()) {
-                let point = polar.point(least);
-                if let Some(constraint) = self.try_point(point, known_at(least)) {
-                    self.nearest_bad(point, constraint);
+                let point = part.point(least);
+                if let Some(scalar) = self.try_point_of(part.patch, point, known_at(least))
+                    && !self.is_prescribed()
+                {
+                    self.nearest_bad(point, scalar);
                 }
             }
-            if polar.lower[0] >= self.target() {
-                self.report(&polar, BoxOutcome::Beyond, || worst);
+            if part.lower[0] >= self.target() {
+                self.report(&part, BoxOutcome::Beyond, || worst);
                 return;
             }
             if !found.is_complete {
                 break;
             }
-            let before = polar;
+            let before = part;
             let open: Vec<&TaylorModel> = open.iter().map(|(_, value)| value).collect();
-            if !polar.contract(&open) {
+            if !part.contract(&open) {
                 self.report(&before, BoxOutcome::Proved, || worst);
                 return;
             }
             if self.observer.watches_boxes() {
-                for part in before.cut_to(&polar) {
+                for part in before.cut_to(&part) {
                     self.report(&part, BoxOutcome::Proved, || worst);
                 }
             }
-            if polar.volume() >= WORTHWHILE * before.volume() {
+            if part.volume() >= WORTHWHILE * before.volume() {
                 break;
             }
         }
-        self.halve(polar);
+        self.halve(part);
     }
 
     /// Tells the observer, if it watches, what became of a box; `decisive` is the constraint that is nearest to its threshold on it.
     fn report<'b>(
         &mut self,
-        polar: &PolarBox,
+        part: &PoseBox,
         outcome: BoxOutcome,
-        decisive: impl FnOnce() -> Option<&'b (Constraint, TaylorModel)>,
+        decisive: impl FnOnce() -> Option<&'b (PoseScalar, TaylorModel)>,
     ) {
         if !self.observer.watches_boxes() {
             return;
         }
-        let decisive = decisive().map(|&(constraint, _)| constraint);
+        let decisive = decisive().map(|&(scalar, _)| scalar);
         self.observer.examined(&ExaminedBox {
-            lower: polar.lower,
-            upper: polar.upper,
+            patch: part.patch,
+            lower: part.lower,
+            upper: part.upper,
             outcome,
-            constraint: decisive
-                .or(self.violation.map(|violation| violation.constraint))
-                .unwrap_or(Constraint::Reach),
-            depth: polar.depth,
+            scalar: decisive
+                .or(self.violation.map(|violation| violation.scalar))
+                .unwrap_or(PoseScalar::Reach),
+            depth: part.depth,
         });
     }
 
     /// Tells the observer the boxes that are left.
     fn report_rest(&mut self) {
         let target = self.target();
-        for Reverse(polar) in std::mem::take(&mut self.heap) {
-            let outcome = if polar.lower[0] >= target {
+        for Reverse(part) in std::mem::take(&mut self.heap) {
+            let outcome = if part.lower[0] >= target {
                 BoxOutcome::Beyond
             } else {
                 BoxOutcome::Undecided
             };
-            self.report(&polar, outcome, || None);
+            self.report(&part, outcome, || None);
         }
     }
 
     /// Halves a box along its longest side; a box that is too narrow is put aside.
-    fn halve(&mut self, polar: PolarBox) {
-        let side = |k: usize| polar.upper[k] - polar.lower[k];
+    fn halve(&mut self, part: PoseBox) {
+        let side = |k: usize| part.upper[k] - part.lower[k];
+        let scale = part.patch.scale([part.upper[0], part.upper[1]]);
         let sides = [
-            side(0),
-            polar.upper[0] * side(1),
+            scale[0] * side(0),
+            scale[1] * side(1),
             self.design.platform_radius() * side(2),
         ];
         let widest = (0..VARIABLES).fold(0, |best, k| if sides[k] > sides[best] { k } else { best });
-        let middle = 0.5 * (polar.lower[widest] + polar.upper[widest]);
+        let middle = 0.5 * (part.lower[widest] + part.upper[widest]);
         let is_narrow = sides[widest] < NARROWEST * self.design.base_radius();
-        if is_narrow || middle <= polar.lower[widest] || middle >= polar.upper[widest] {
-            self.aside = self.aside.min(polar.lower[0]);
-            self.report(&polar, BoxOutcome::Undecided, || None);
+        if is_narrow || middle <= part.lower[widest] || middle >= part.upper[widest] {
+            self.aside = self.aside.min(part.lower[0]);
+            self.report(&part, BoxOutcome::Undecided, || None);
             return;
         }
-        let (mut lower, mut upper) = (polar.lower, polar.upper);
-        upper[widest] = middle;
-        self.push(polar.lower, upper, polar.proved, polar.depth + 1);
-        lower[widest] = middle;
-        self.push(lower, polar.upper, polar.proved, polar.depth + 1);
+        let [mut below, mut above] = [part; 2].map(|part| PoseBox {
+            depth: part.depth + 1,
+            ..part
+        });
+        below.upper[widest] = middle;
+        above.lower[widest] = middle;
+        self.push(&below);
+        self.push(&above);
+    }
+
+    /// Whether every pose of the prescribed region is proved feasible.
+    fn holds_region(&self) -> bool {
+        self.is_exhausted && self.violation.is_none() && self.aside == f64::INFINITY
     }
 
     fn lower(&self) -> f64 {
+        if let Some(region) = self.region {
+            let inscribed = region.inscribed_radius().filter(|_| self.holds_region());
+            return inscribed.unwrap_or(0.0);
+        }
         match self.upper {
             Some(0.0) => 0.0,
             _ => self.proved.min(self.aside).max(0.0),
@@ -434,6 +516,14 @@ impl<'a> Proof<'a> {
     }
 
     fn verdict(&self) -> Verdict {
+        if self.is_prescribed() {
+            return match self.violation {
+                Some(_) => Verdict::Refuted,
+                None if self.holds_region() => Verdict::Proved,
+                None if self.is_out_of_budget => Verdict::OpenBudget,
+                None => Verdict::OpenPrecision,
+            };
+        }
         let claim = (1.0 - self.options.tolerance) * self.options.claimed_radius;
         if self.lower() >= claim {
             Verdict::Proved
@@ -458,7 +548,7 @@ impl<'a> Proof<'a> {
 }
 
 /// Returns the constraint that is nearest to its threshold, relative to the size of its value.
-fn weakest<'a>(values: impl Iterator<Item = &'a (Constraint, TaylorModel)>) -> Option<&'a (Constraint, TaylorModel)> {
+fn weakest<'a>(values: impl Iterator<Item = &'a (PoseScalar, TaylorModel)>) -> Option<&'a (PoseScalar, TaylorModel)> {
     values.min_by(|(_, a), (_, b)| relative_least(a).total_cmp(&relative_least(b)))
 }
 

@@ -47,13 +47,19 @@ fn words(shortfall: &Shortfall) -> String {
 }
 
 impl Model {
-    /// Returns the margin of a constraint at a pose, in doubles; that of g2 at a pose that is not reached, and for a constraint that
-    /// has no value there, is the shortfall of the leg. The margin of `det_sign` is the absolute value.
-    pub fn margin_at(&self, design: &Design, pose: &Pose, constraint: Constraint) -> f64 {
-        let posed = self.posed(design);
-        match posed.at(pose) {
-            Err(unreachable) => Constraint::Reach.margin(unreachable.shortfall.limit_margin, 0.0, design),
-            Ok(found) => posed.margins(&found)[constraint as usize],
+    /// Returns the margin of the limit of a scalar at a pose, in doubles; at a pose that is not reached, it is the shortfall of the
+    /// leg. The margin of `det A` is the absolute value; without a limit, the limit is 0.
+    pub fn margin_at(&self, design: &Design, pose: &Pose, scalar: PoseScalar) -> f64 {
+        match self.pose(design, pose) {
+            Err(unreachable) => PoseScalar::Reach.margin(unreachable.shortfall.limit_margin, 0.0, design),
+            Ok(found) => {
+                let value = match scalar {
+                    PoseScalar::Determinant => found.values[scalar].abs(),
+                    _ => found.values[scalar],
+                };
+                let limit = self.settings().thresholds.get(scalar).unwrap_or(0.0);
+                scalar.margin(value, limit, design)
+            }
         }
     }
 

@@ -97,11 +97,6 @@ pub struct ConstraintSet(u32);
 const _: () = assert!(Constraint::COUNT <= 32, "a set of constraints has a bit for each");
 
 impl ConstraintSet {
-    /// Returns the set of all constraints.
-    pub fn all() -> Self {
-        Constraint::ALL.into_iter().collect()
-    }
-
     /// Returns whether the set contains a constraint.
     pub fn contains(self, constraint: Constraint) -> bool {
         self.0 & (1 << constraint as u32) != 0
@@ -110,16 +105,6 @@ impl ConstraintSet {
     /// Returns the set with a constraint.
     pub fn with(self, constraint: Constraint) -> Self {
         Self(self.0 | 1 << constraint as u32)
-    }
-
-    /// Returns the constraints that are in this set or in another one.
-    pub fn or(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    /// Returns the constraints that are not in the set.
-    pub fn complement(self) -> Self {
-        Self(Self::all().0 & !self.0)
     }
 
     /// Iterates over the constraints in their order.

@@ -86,6 +86,16 @@ impl ScalarSet {
     pub fn with(self, scalar: PoseScalar) -> Self {
         Self(self.0 | 1 << scalar as u32)
     }
+
+    /// Returns the scalars that are in this set or in another one.
+    pub fn or(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Returns the scalars that are not in the set.
+    pub fn complement(self) -> Self {
+        Self(Self::all().0 & !self.0)
+    }
 }
 
 impl FromIterator<PoseScalar> for ScalarSet {

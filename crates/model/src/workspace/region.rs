@@ -108,6 +108,14 @@ impl Polygon {
         &self.0
     }
 
+    /// Returns the lower and the upper corner \[m\] if the polygon is a rectangle with sides along the axes.
+    pub fn as_rectangle(&self) -> Option<[DVec2; 2]> {
+        let [low, high] = self.bounds();
+        let is_corner = |corner: &DVec2| [low.x, high.x].contains(&corner.x) && [low.y, high.y].contains(&corner.y);
+        let along_axes = self.sides().all(|[from, to]| from.x == to.x || from.y == to.y);
+        (self.0.len() == 4 && along_axes && self.0.iter().all(is_corner)).then_some([low, high])
+    }
+
     fn sides(&self) -> impl Iterator<Item = [DVec2; 2]> {
         let next = self.0.iter().cycle().skip(1);
         self.0.iter().zip(next).map(|(from, to)| [*from, *to])
@@ -235,6 +243,26 @@ impl Region {
             Region::Disc(radius) => Region::Disc(radius * factor),
             Region::Polygon(Polygon(corners)) => {
                 Region::Polygon(Polygon(corners.iter().map(|corner| *corner * factor).collect()))
+            }
+        }
+    }
+
+    /// Whether the study prescribes the region.
+    pub fn is_prescribed(&self) -> bool {
+        *self != Region::Largest
+    }
+
+    /// Returns about `count` positions on the boundary, relative to the centre \[m\], with all corners.
+    pub(crate) fn outline(&self, count: usize) -> Vec<DVec2> {
+        match self {
+            Region::Largest => Vec::new(),
+            Region::Disc(radius) => {
+                let angle = |k: usize| std::f64::consts::TAU * k as f64 / count as f64;
+                (0..count).map(|k| unit(angle(k)) * *radius).collect()
+            }
+            Region::Polygon(polygon) => {
+                let around: f64 = polygon.sides().map(|[from, to]| from.distance(to)).sum();
+                polygon.boundary(around / count as f64)
             }
         }
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::merge::ORIGINS;
 use super::write::front_table;
 use super::{RunFolder, RunFolderError, RunReport};
-use crate::run::verify_replayed;
+use crate::conclusion::verify_replayed;
 use crate::{EndReason, RunSummary, StudySearch, TableError, TableRow, open_regular};
 
 /// Largest length of a line of the origins of merged designs \[bytes\].

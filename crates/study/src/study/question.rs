@@ -15,12 +15,9 @@ impl Study {
         self.objectives.iter().filter_map(ObjectiveChoice::objective).collect()
     }
 
-    /// Whether the workspaces of the front are proved: proofs cover the largest disc and the constraints of the paper.
+    /// Whether the workspaces of the front are proved, unless the study limits at every pose what proofs do not cover.
     pub fn certifies(&self) -> bool {
-        let covered = certify::uncovered(&self.thresholds()).is_none();
-        // A radius that is exactly at its limit would fall below it by the tolerance of the proof.
-        let bounds_radius = self.limits().any(|limit| limit.quantity == Quantity::WorkspaceRadius);
-        self.workspace.certify && !self.workspace.region.is_prescribed() && covered && !bounds_radius
+        self.workspace.certify && certify::uncovered(&self.thresholds()).is_none()
     }
 
     /// Iterates over the limits of the study.

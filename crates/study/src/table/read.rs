@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::row::read_design;
 use super::{Column, ColumnType, Row, RowError, TableRow};
-use crate::{CertifiedRadius, Study, open_regular};
+use crate::{CertifiedWorkspace, Study, open_regular};
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::Design;
 
@@ -207,7 +207,7 @@ impl<'a> Fields<'a> {
                 ColumnType::Flag => matches!(text, "true" | "false"),
                 ColumnType::Text if column == Column::Active => is_list_of_constraints(text),
                 ColumnType::Text if column == Column::Certificate => {
-                    matches!(text, "" | CertifiedRadius::PROVED | CertifiedRadius::OPEN)
+                    matches!(text, "" | CertifiedWorkspace::PROVED | CertifiedWorkspace::OPEN)
                 }
                 ColumnType::Text => true,
             };
@@ -218,14 +218,15 @@ impl<'a> Fields<'a> {
         Ok(())
     }
 
-    fn certified(&self) -> Result<Option<CertifiedRadius>, RowError> {
+    fn certified(&self, study: &Study) -> Result<Option<CertifiedWorkspace>, RowError> {
         let state = self.text(Column::Certificate).filter(|state| !state.is_empty());
         let Some(state) = state else { return Ok(None) };
         let lower = self.number(Column::CertifiedLower);
-        Ok(Some(CertifiedRadius {
+        Ok(Some(CertifiedWorkspace {
             lower: lower.ok_or(RowError::Value(Column::CertifiedLower))?,
             upper: self.number(Column::CertifiedUpper),
-            is_proved: state == CertifiedRadius::PROVED,
+            is_proved: state == CertifiedWorkspace::PROVED,
+            is_of_region: study.region().is_prescribed(),
         }))
     }
 
@@ -248,7 +249,7 @@ impl<'a> Fields<'a> {
             id: self.whole(Column::Id)?,
             row,
             reference_radius: self.number(Column::ReferenceRadius),
-            certified: self.certified()?,
+            certified: self.certified(study)?,
         })
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::Column;
-use crate::{CertifiedRadius, Study};
+use crate::{CertifiedWorkspace, Study};
 use kinefront_model::evaluation::{Constraint, ConstraintSet, Evaluation, Quantity, QuantityValues};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignError, TextError};
 use kinefront_optimize::Objectives;
@@ -191,5 +191,5 @@ pub struct TableRow {
     /// `R_w` on the reference grid \[m\], in a verified front.
     pub reference_radius: Option<f64>,
     /// What is proved about `R_w`, in a front whose workspaces were proved.
-    pub certified: Option<CertifiedRadius>,
+    pub certified: Option<CertifiedWorkspace>,
 }

@@ -10,7 +10,7 @@ use crate::clearance::{DISTAL, PLATFORM, PROXIMAL, ROWS, kinds, pairs_not_joined
 use crate::enclosure::{
     AxisEnclosure, Interval, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, difference, dot, sum,
 };
-use crate::evaluation::{Constraint, Model, PoseScalar};
+use crate::evaluation::{Model, PoseScalar};
 use crate::mechanism::{AnyLeg, Design, LegEnclosure, LegFrameEnclosure, LegSettings, MemberKind};
 use crate::spatial::LEGS;
 
@@ -112,13 +112,13 @@ impl Separations {
         self.enclose_rail_ends(boxes, found);
         self.for_near_pairs(boxes, |pair, a, b| {
             let way = difference(nearest(b, a), nearest(a, b));
-            found.push(Constraint::Clearance, dot(way, way).plus(-pair.square));
+            found.push(PoseScalar::Clearance, dot(way, way).plus(-pair.square));
         });
     }
 
     fn enclose_rail_ends(&self, boxes: &MemberBoxes, found: &mut Enclosures) {
         for distance in boxes.rails.iter().flatten().flatten() {
-            found.push(Constraint::Clearance, distance.plus(-self.from_rail_end));
+            found.push(PoseScalar::Clearance, distance.plus(-self.from_rail_end));
         }
     }
 
@@ -230,7 +230,7 @@ impl Bounds {
 fn separate(a: &AxisEnclosure, b: &AxisEnclosure, distance: f64, found: &mut Enclosures) {
     let mut push = |value: TaylorModel| {
         if !value.is_positive() {
-            found.push(Constraint::Clearance, value);
+            found.push(PoseScalar::Clearance, value);
         }
     };
     let keep = Interval::exactly(distance);

@@ -23,6 +23,8 @@ pub(super) struct Compliances {
     pub platform: [PlatformCompliances; LEGS],
     /// `T`, as a multiple of the reciprocal of the unit; the threshold of `k_xy`.
     pub in_plane: Interval,
+    /// The least stiffness with which the displacement under the force in the plane keeps its limit, likewise.
+    pub yielding: Interval,
     /// `T_φ / r²`, likewise.
     pub rotation: Interval,
     /// `T_z`, as a multiple of the reciprocal of the unit of bending.
@@ -103,6 +105,7 @@ impl Compliances {
                     }
                 }),
             in_plane: limit(PoseScalar::StiffnessXy) * unit,
+            yielding: exactly(model.settings().in_plane_force) / limit(PoseScalar::Displacement) * unit,
             rotation: limit(PoseScalar::StiffnessPhiZ) * unit / radius.square(),
             vertical: limit(PoseScalar::StiffnessZ) * bend * link.square(),
             leg: [link * leg[1] / bend, link * leg[2] / bend],

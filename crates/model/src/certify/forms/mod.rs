@@ -14,18 +14,21 @@ use compliances::Compliances;
 
 use super::CertifyError;
 use crate::enclosure::{Interval, PoseEnclosure, TaylorModel, VARIABLES, cross, dot};
-use crate::evaluation::{Constraint, ConstraintSet, Model, PoseScalar, Thresholds};
+use crate::evaluation::{Model, PoseScalar, Thresholds};
 use crate::kinematics::CharacteristicLength;
-use crate::mechanism::{AnyLeg, Design, LegEnclosure, LegFrameEnclosure};
+use crate::mechanism::{AnyLeg, Design, JointKind, LegEnclosure, LegFrameEnclosure};
+use crate::pose::ScalarSet;
 use crate::spatial::{LEGS, Pose};
 
 /// The scalars whose limits have forms. The reach and the sign of `det A` have forms of their own.
-const COVERED: [PoseScalar; 5] = [
+const COVERED: [PoseScalar; 7] = [
     PoseScalar::Dexterity,
     PoseScalar::StiffnessXy,
     PoseScalar::StiffnessZ,
     PoseScalar::StiffnessPhiZ,
     PoseScalar::Clearance,
+    PoseScalar::Displacement,
+    PoseScalar::Transmission,
 ];
 
 /// Returns a limited scalar that has no form.
@@ -34,14 +37,14 @@ pub(super) fn uncovered(thresholds: &Thresholds) -> Option<PoseScalar> {
     limited.find(|scalar| !COVERED.contains(scalar))
 }
 
-/// Which constraints are proved on a box, and therefore on every part of it.
+/// The scalars whose limits are proved on a box, and therefore on every part of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct ProvedForms(ConstraintSet);
+pub(super) struct ProvedForms(ScalarSet);
 
 impl ProvedForms {
-    /// Everything but one constraint, where no other is of interest.
-    pub fn all_but(constraint: Constraint) -> Self {
-        Self(ConstraintSet::default().with(constraint).complement())
+    /// Everything but the limit of one scalar, where no other is of interest.
+    pub fn all_but(scalar: PoseScalar) -> Self {
+        Self(ScalarSet::default().with(scalar).complement())
     }
 
     /// Adds the constraints that, of those that are open on a box, its polynomials tell to hold at `ε`.
@@ -54,18 +57,18 @@ impl ProvedForms {
             let holds = value.value(epsilon) - value.remainder > 0.0;
             !holds
         });
-        let fails: ConstraintSet = fails.map(|(constraint, _)| *constraint).collect();
+        let fails: ScalarSet = fails.map(|(scalar, _)| *scalar).collect();
         Self(self.0.or(fails.complement()))
     }
 
     /// Whether every constraint is proved.
     pub fn is_all(self) -> bool {
-        self.0 == ConstraintSet::all()
+        self.0 == ScalarSet::all()
     }
 
-    /// Whether a constraint is proved.
-    pub fn contains(self, constraint: Constraint) -> bool {
-        self.0.contains(constraint)
+    /// Whether the limit of a scalar is proved.
+    pub fn contains(self, scalar: PoseScalar) -> bool {
+        self.0.contains(scalar)
     }
 
     /// Adds what is proved on a box on which `found` was enclosed.
@@ -74,16 +77,16 @@ impl ProvedForms {
         if !found.is_complete {
             return self;
         }
-        let open: ConstraintSet = found.open().map(|(constraint, _)| *constraint).collect();
+        let open: ScalarSet = found.open().map(|(scalar, _)| *scalar).collect();
         // What a leg reaches is part of every other constraint, and is enclosed in any case.
-        Self(self.0.or(open.with(Constraint::Reach).complement()))
+        Self(self.0.or(open.with(PoseScalar::Reach).complement()))
     }
 }
 
 /// The constraints over a box of poses.
 #[derive(Debug, Clone)]
 pub(super) struct Enclosures {
-    values: Vec<(Constraint, TaylorModel)>,
+    values: Vec<(PoseScalar, TaylorModel)>,
     /// Whether every constraint could be evaluated: where a leg may not reach, the others have no value.
     pub is_complete: bool,
     /// Constraints that need no form.
@@ -99,27 +102,27 @@ impl Enclosures {
         }
     }
 
-    fn push(&mut self, constraint: Constraint, value: TaylorModel) {
-        self.values.push((constraint, value));
+    fn push(&mut self, scalar: PoseScalar, value: TaylorModel) {
+        self.values.push((scalar, value));
     }
 
-    fn needs(&self, constraint: Constraint) -> bool {
-        !self.proved.contains(constraint)
+    fn needs(&self, scalar: PoseScalar) -> bool {
+        !self.proved.contains(scalar)
     }
 
     /// The constraints that are not proved, with their values.
-    pub fn open(&self) -> impl Iterator<Item = &(Constraint, TaylorModel)> {
+    pub fn open(&self) -> impl Iterator<Item = &(PoseScalar, TaylorModel)> {
         self.iter().filter(|(_, value)| !value.is_positive())
     }
 
     /// The constraints that are proved to be violated, of those at a pose.
-    pub fn violated(&self) -> impl Iterator<Item = Constraint> {
+    pub fn violated(&self) -> impl Iterator<Item = PoseScalar> {
         let violated = self.iter().filter(|(_, value)| value.is_negative());
-        violated.map(|&(constraint, _)| constraint)
+        violated.map(|&(scalar, _)| scalar)
     }
 
     /// The constraints with their values.
-    pub fn iter(&self) -> impl Iterator<Item = &(Constraint, TaylorModel)> {
+    pub fn iter(&self) -> impl Iterator<Item = &(PoseScalar, TaylorModel)> {
         self.values.iter()
     }
 }
@@ -184,16 +187,17 @@ impl<'a> Forms<'a> {
         let mut found = Enclosures::new(proved);
         let legs = enclose_legs(self.model, self.design, &self.frames, pose);
         for reach in legs.iter().flat_map(|leg| leg.chain.reach) {
-            found.push(Constraint::Reach, reach);
+            found.push(PoseScalar::Reach, reach);
             found.is_complete &= reach.is_positive();
         }
         if found.is_complete {
             if found.needs(self.dexterity()) {
                 self.enclose_dexterity(&legs, &mut found);
             }
+            self.enclose_transmission(&legs, &mut found);
             self.enclose_stiffness(&legs, &mut found);
             if let Some(separations) = &self.separations
-                && found.needs(Constraint::Clearance)
+                && found.needs(PoseScalar::Clearance)
             {
                 separate(
                     separations,
@@ -212,12 +216,12 @@ impl<'a> Forms<'a> {
         self.model.settings().thresholds.get(scalar).unwrap_or(0.0)
     }
 
-    /// The constraint that keeps poses away from singularities: g3, or the sign of `det A` if g3 has no threshold.
-    fn dexterity(&self) -> Constraint {
+    /// The scalar that keeps poses away from singularities: that of g3, or `det A` if g3 has no threshold.
+    fn dexterity(&self) -> PoseScalar {
         if self.limit(PoseScalar::Dexterity) > 0.0 {
-            Constraint::Dexterity
+            PoseScalar::Dexterity
         } else {
-            Constraint::DeterminantSign
+            PoseScalar::Determinant
         }
     }
 
@@ -239,14 +243,31 @@ impl<'a> Forms<'a> {
             forward = forward + legs[i].transmission_square * row;
             inverse = inverse + (one + squares[i]) * legs[i].transmission_square.reciprocal();
         }
-        let constraint = self.dexterity();
-        let value = if constraint == Constraint::Dexterity {
+        let scalar = self.dexterity();
+        let value = if scalar == PoseScalar::Dexterity {
             let threshold = Interval::exactly(self.limit(PoseScalar::Dexterity));
             determinant.squared().times(9.0) - (forward * inverse).scaled(threshold.square())
         } else {
             determinant.times(self.sign)
         };
-        found.push(constraint, value);
+        found.push(scalar, value);
+    }
+
+    /// The least transmission, `B_ii² − (t a)²` of each leg, where `t` is the threshold and `a` the lever of a revolute actuator.
+    fn enclose_transmission(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
+        let threshold = self.limit(PoseScalar::Transmission);
+        if threshold <= 0.0 || !found.needs(PoseScalar::Transmission) {
+            return;
+        }
+        let architecture = self.design.architecture();
+        let lever = match architecture.actuator() {
+            JointKind::Prismatic => Interval::exactly(1.0),
+            JointKind::Revolute => Interval::exactly(architecture.longest_lever(self.design)) * self.frames[0].to_unit,
+        };
+        let least = (Interval::exactly(threshold) * lever).square();
+        for leg in legs {
+            found.push(PoseScalar::Transmission, leg.transmission_square.plus(-least));
+        }
     }
 }
 

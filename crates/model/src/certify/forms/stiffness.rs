@@ -3,7 +3,7 @@
 use super::rails::{RailCompliances, RailForms};
 use super::{Enclosures, Forms, others, turn};
 use crate::enclosure::{Interval, PlanarModel, TaylorModel, dot};
-use crate::evaluation::{Constraint, PoseScalar};
+use crate::evaluation::PoseScalar;
 use crate::mechanism::LegEnclosure;
 use crate::spatial::LEGS;
 use crate::stiffness::StiffnessDefinition;
@@ -23,7 +23,12 @@ impl Forms<'_> {
     /// g4, g5 and g6, as the study defines the stiffness values.
     pub(super) fn enclose_stiffness(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
         let definition = self.model.settings().stiffness_definition;
-        if self.is_required(Constraint::StiffnessXy, found) || self.is_required(Constraint::StiffnessPhiZ, found) {
+        let in_plane = [
+            PoseScalar::StiffnessXy,
+            PoseScalar::StiffnessPhiZ,
+            PoseScalar::Displacement,
+        ];
+        if in_plane.iter().any(|&scalar| self.is_required(scalar, found)) {
             let one = [0, 1, 2].map(|i| self.along_line(&legs[i], i));
             let pairs = [one[1] * one[2], one[2] * one[0], one[0] * one[1]];
             let along = AlongLines {
@@ -35,8 +40,11 @@ impl Forms<'_> {
                 StiffnessDefinition::Stiffness => self.enclose_entries(legs, &along, found),
                 StiffnessDefinition::Compliance => self.enclose_reciprocals(legs, &along, found),
             }
+            if self.is_required(PoseScalar::Displacement, found) {
+                self.enclose_compliant_xy(legs, &along, (PoseScalar::Displacement, self.compliance.yielding), found);
+            }
         }
-        if self.is_required(Constraint::StiffnessZ, found) {
+        if self.is_required(PoseScalar::StiffnessZ, found) {
             match definition {
                 StiffnessDefinition::Stiffness => self.enclose_vertical(legs, found),
                 StiffnessDefinition::Compliance => self.enclose_vertical_reciprocal(legs, found),
@@ -44,55 +52,65 @@ impl Forms<'_> {
         }
     }
 
-    /// Whether a stiffness value has a threshold that is not proved yet.
-    fn is_required(&self, constraint: Constraint, found: &Enclosures) -> bool {
-        let limit = constraint.scalar().map_or(0.0, |scalar| self.limit(scalar));
-        limit > 0.0 && found.needs(constraint)
+    /// Whether a scalar has a threshold that is not proved yet.
+    fn is_required(&self, scalar: PoseScalar, found: &Enclosures) -> bool {
+        self.limit(scalar) > 0.0 && found.needs(scalar)
     }
 
     /// g4 and g6 for the entries of `K`. With `T` the threshold, `k_xy > T` where `(λ₁ − T)(λ₂ − T) > 0` and `λ₁ + λ₂ > 2T`.
     fn enclose_entries(&self, legs: &[LegEnclosure; LEGS], along: &AlongLines, found: &mut Enclosures) {
         let product = along.product;
-        if self.is_required(Constraint::StiffnessXy, found) {
+        if self.is_required(PoseScalar::StiffnessXy, found) {
             let sum = along.pairs[0] + along.pairs[1] + along.pairs[2];
             let threshold = self.compliance.in_plane;
             let determinant = sum_of_legs(|i| along.one[i] * turn(legs, i).squared()) - sum.scaled(threshold)
                 + product.scaled(threshold.square());
-            found.push(Constraint::StiffnessXy, determinant);
-            found.push(Constraint::StiffnessXy, sum - product.times(2.0).scaled(threshold));
+            found.push(PoseScalar::StiffnessXy, determinant);
+            found.push(PoseScalar::StiffnessXy, sum - product.times(2.0).scaled(threshold));
         }
-        if self.is_required(Constraint::StiffnessPhiZ, found) {
+        if self.is_required(PoseScalar::StiffnessPhiZ, found) {
             let moments = sum_of_legs(|i| legs[i].moment.squared() * along.pairs[i]);
             found.push(
-                Constraint::StiffnessPhiZ,
+                PoseScalar::StiffnessPhiZ,
                 moments - product.scaled(self.compliance.rotation),
             );
         }
     }
 
-    /// g4 and g6 for the reciprocals of entries of `K⁻¹`. Let `S = K_xy − k k^T/K_φφ`, with `k` the column of the rotation, whose
-    /// inverse is the block of `K⁻¹`. Multiplied by `γ_1 γ_2 γ_3 K_φφ/r²`, its determinant is `D²`, its trace
-    /// `Σ γ_i (μ_j² + μ_k² − 2 μ_j μ_k C_i)`, and 1 is `Σ μ_i² γ_j γ_k`. The reciprocal for the rotation is `r² D²/Σ γ_i w_i²`.
-    fn enclose_reciprocals(&self, legs: &[LegEnclosure; LEGS], along: &AlongLines, found: &mut Enclosures) {
+    /// The least stiffness in the plane of a platform that is free to turn, as the limit of a scalar. Let `S = K_xy − k k^T/K_φφ`, with
+    /// `k` the column of the rotation, whose inverse is the block of `K⁻¹`. Multiplied by `γ_1 γ_2 γ_3 K_φφ/r²`, its determinant is
+    /// `D²`, its trace `Σ γ_i (μ_j² + μ_k² − 2 μ_j μ_k C_i)`, and 1 is `Σ μ_i² γ_j γ_k`.
+    fn enclose_compliant_xy(
+        &self,
+        legs: &[LegEnclosure; LEGS],
+        along: &AlongLines,
+        (scalar, threshold): (PoseScalar, Interval),
+        found: &mut Enclosures,
+    ) {
         let square = sum_of_legs(|i| legs[i].moment * turn(legs, i)).squared();
-        if self.is_required(Constraint::StiffnessXy, found) {
-            let trace = sum_of_legs(|i| {
-                let [a, b] = others(i).map(|leg| legs[leg]);
-                let mixed = (a.moment * b.moment * dot(a.u, b.u)).times(2.0);
-                along.one[i] * (a.moment.squared() + b.moment.squared() - mixed)
-            });
-            let whole = sum_of_legs(|i| legs[i].moment.squared() * along.pairs[i]);
-            let threshold = self.compliance.in_plane;
-            found.push(
-                Constraint::StiffnessXy,
-                square - trace.scaled(threshold) + whole.scaled(threshold.square()),
-            );
-            found.push(Constraint::StiffnessXy, trace - whole.times(2.0).scaled(threshold));
+        let trace = sum_of_legs(|i| {
+            let [a, b] = others(i).map(|leg| legs[leg]);
+            let mixed = (a.moment * b.moment * dot(a.u, b.u)).times(2.0);
+            along.one[i] * (a.moment.squared() + b.moment.squared() - mixed)
+        });
+        let whole = sum_of_legs(|i| legs[i].moment.squared() * along.pairs[i]);
+        found.push(
+            scalar,
+            square - trace.scaled(threshold) + whole.scaled(threshold.square()),
+        );
+        found.push(scalar, trace - whole.times(2.0).scaled(threshold));
+    }
+
+    /// g4 and g6 for the reciprocals of entries of `K⁻¹`. That for the rotation is `r² D²/Σ γ_i w_i²`.
+    fn enclose_reciprocals(&self, legs: &[LegEnclosure; LEGS], along: &AlongLines, found: &mut Enclosures) {
+        if self.is_required(PoseScalar::StiffnessXy, found) {
+            self.enclose_compliant_xy(legs, along, (PoseScalar::StiffnessXy, self.compliance.in_plane), found);
         }
-        if self.is_required(Constraint::StiffnessPhiZ, found) {
+        if self.is_required(PoseScalar::StiffnessPhiZ, found) {
+            let square = sum_of_legs(|i| legs[i].moment * turn(legs, i)).squared();
             let turns = sum_of_legs(|i| along.one[i] * turn(legs, i).squared());
             found.push(
-                Constraint::StiffnessPhiZ,
+                PoseScalar::StiffnessPhiZ,
                 square - turns.scaled(self.compliance.rotation),
             );
         }
@@ -109,7 +127,7 @@ impl Forms<'_> {
         for [minor, determinant] in [first, self.vertical(&legs[1], 1), self.vertical(&legs[2], 2)] {
             stiffness = stiffness + minor * determinant.reciprocal();
         }
-        found.push(Constraint::StiffnessZ, stiffness);
+        found.push(PoseScalar::StiffnessZ, stiffness);
     }
 
     /// g5 for the reciprocal of the entry of `K⁻¹`, which is `det K/det K_φφ` of the block out of the plane. `K` is the sum of the
@@ -129,7 +147,7 @@ impl Forms<'_> {
             let whole = determinant(&stiffness, &cofactors);
             // The first cofactor is the determinant of the block of the rotations.
             found.push(
-                Constraint::StiffnessZ,
+                PoseScalar::StiffnessZ,
                 whole - cofactors[0].scaled(self.compliance.vertical),
             );
         }

@@ -238,6 +238,11 @@ impl PoseScalar {
         &Self::ALL[Self::ALWAYS.len()..]
     }
 
+    /// The id of the constraint that bounds the scalar; the key of the quantity for one that has no id of its own.
+    pub fn limit_id(self) -> &'static str {
+        Constraint::of_scalar(self).map_or(self.entry().quantity.key, Constraint::id)
+    }
+
     /// Whether a limit of the quantity bounds each pose.
     pub fn bounds_poses(self) -> bool {
         self.entry().quantity.scope == Scope::Poses

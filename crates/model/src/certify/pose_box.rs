@@ -1,13 +1,16 @@
-//! Boxes of poses in polar coordinates.
+//! Boxes of poses.
 
 use std::cmp::Ordering;
 
 use super::forms::ProvedForms;
+use super::patch::Patch;
 use crate::enclosure::{Interval, TaylorModel, VARIABLES};
 
-/// A box in `(r, θ, φ)`, by its ends.
+/// A box of poses: two coordinates of the position in its patch and the orientation, by its ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PolarBox {
+pub struct PoseBox {
+    /// Part of the region in which it lies.
+    pub patch: Patch,
     /// Lower ends.
     pub lower: [f64; VARIABLES],
     /// Upper ends.
@@ -20,7 +23,20 @@ pub struct PolarBox {
     pub number: usize,
 }
 
-impl PolarBox {
+impl PoseBox {
+    /// A box of a disc, of which nothing is proved.
+    #[cfg(test)]
+    pub fn between(lower: [f64; VARIABLES], upper: [f64; VARIABLES]) -> Self {
+        Self {
+            patch: Patch::Disc,
+            lower,
+            upper,
+            proved: ProvedForms::default(),
+            depth: 0,
+            number: 1,
+        }
+    }
+
     /// Middle, and a radius that reaches both ends.
     pub fn middle_and_radius(&self, k: usize) -> (f64, f64) {
         let middle = 0.5 * (self.lower[k] + self.upper[k]);
@@ -86,15 +102,15 @@ impl PolarBox {
     }
 }
 
-impl Eq for PolarBox {}
+impl Eq for PoseBox {}
 
-impl PartialOrd for PolarBox {
+impl PartialOrd for PoseBox {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for PolarBox {
+impl Ord for PoseBox {
     fn cmp(&self, other: &Self) -> Ordering {
         self.lower[0]
             .total_cmp(&other.lower[0])
@@ -184,13 +200,7 @@ mod tests {
                 }
             };
             let open = [model(1.0), model(0.7)];
-            let before = PolarBox {
-                lower: [1.0, -0.3, 2.0],
-                upper: [1.5, 0.4, 2.2],
-                proved: ProvedForms::default(),
-                depth: 0,
-                number: 1,
-            };
+            let before = PoseBox::between([1.0, -0.3, 2.0], [1.5, 0.4, 2.2]);
             let mut after = before;
             let is_left = after.contract(&open.iter().collect::<Vec<_>>());
             cut += usize::from(after != before || !is_left);

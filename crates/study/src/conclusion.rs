@@ -1,0 +1,280 @@
+//! The end of a run: the designs that are reported are selected, verified on the fine grid, and proved.
+//!
+//! A search leaves many more designs than a person looks at. Those that together cover the front best are selected first, and only they
+//! are verified and proved. One that does not hold, or that another one dominates then, is replaced by its neighbours.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+use super::prove::{FrontProver, ProvedMember, proved_front};
+use super::search::{Found, StudySearch};
+use super::{DesignProblem, EndReason, Event, FrontMember, FrontProofs, RunControl, RunSummary, RunTimes, TableRow};
+use kinefront_model::evaluation::Evaluation;
+use kinefront_optimize::{Archive, Objectives, hypervolume, subset};
+
+/// Number of times that designs which fell are replaced by their neighbours.
+const ROUNDS: usize = 8;
+
+/// Verifies the front of a search that was resumed, as at the end of its run; returns the summary of a run that ended for
+/// the reason `outcome`.
+pub(super) fn verify_replayed(mut search: StudySearch, outcome: EndReason) -> Option<RunSummary> {
+    let control = RunControl::default();
+    search.send_replayed(&control, |_| {});
+    conclude(search, outcome, &control, &mut |_| {})
+}
+
+/// Selects, verifies and proves the designs to be reported of a search that has ended, and sums it up; `None` if the run was
+/// abandoned.
+pub(super) fn conclude(
+    mut search: StudySearch,
+    outcome: EndReason,
+    control: &RunControl,
+    send: &mut dyn FnMut(Event),
+) -> Option<RunSummary> {
+    let interrupted = |search| Some(summary(search, EndReason::Interrupted, Reported::default()));
+    if outcome == EndReason::Interrupted {
+        return interrupted(search);
+    }
+    let mut times = search.times;
+    match Settling::new(&search, control).run(&mut times, send) {
+        Some(reported) => {
+            search.times = times;
+            Some(summary(search, outcome, reported))
+        }
+        None if control.is_interrupted() => interrupted(search),
+        None => None,
+    }
+}
+
+/// What a run reports.
+#[derive(Default)]
+struct Reported {
+    /// Number of designs that hold on the fine grid and are non-dominated there.
+    verified: usize,
+    /// Number of designs that were verified and do not hold, or are dominated.
+    dropped: usize,
+    /// Hypervolume of those that hold.
+    hypervolume: f64,
+    /// The designs that are reported.
+    front: Vec<FrontMember>,
+    proofs: Option<FrontProofs>,
+}
+
+fn summary(search: StudySearch, outcome: EndReason, reported: Reported) -> RunSummary {
+    let threads = search.threads();
+    let StudySearch {
+        found: Found { history, .. },
+        times,
+        ..
+    } = search;
+    RunSummary {
+        outcome,
+        threads,
+        history,
+        dropped: reported.dropped,
+        verified_hypervolume: reported.hypervolume,
+        verified: reported.verified,
+        front: reported.front,
+        proofs: reported.proofs,
+        times,
+    }
+}
+
+/// The designs of a search that are being verified and proved.
+struct Settling<'a> {
+    search: &'a StudySearch,
+    control: &'a RunControl,
+    /// The front of the search; with one objective, the best design and its runners-up.
+    candidates: Vec<Arc<TableRow>>,
+    is_tried: Vec<bool>,
+    /// The designs that hold on the fine grid, each with the place of its candidate.
+    held: Vec<(usize, ProvedMember)>,
+    /// Next id of a design that is not one of the search.
+    next_id: usize,
+    tried: usize,
+    planned: usize,
+}
+
+impl<'a> Settling<'a> {
+    fn new(search: &'a StudySearch, control: &'a RunControl) -> Self {
+        let candidates = search.found.candidates();
+        Self {
+            search,
+            control,
+            is_tried: vec![false; candidates.len()],
+            candidates,
+            held: Vec::new(),
+            next_id: search.found.evaluated,
+            tried: 0,
+            planned: 0,
+        }
+    }
+
+    /// Settles which designs are reported; `None` if the run was abandoned.
+    fn run(mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<Reported> {
+        let study = self.search.study();
+        let most = study.optimizer.front_designs;
+        if study.objectives.len() == 1 {
+            self.settle_best(times, send)?;
+        } else {
+            let objectives: Vec<Objectives> = self.candidates.iter().map(|entry| entry.row.objectives).collect();
+            let chosen = subset(&objectives, &self.search.found.reference, most);
+            let wanted = chosen.len();
+            self.settle(&chosen, times, send)?;
+            for _ in 0..ROUNDS {
+                let replacements = self.replacements(&objectives, wanted);
+                if replacements.is_empty() {
+                    break;
+                }
+                self.settle(&replacements, times, send)?;
+            }
+        }
+        Some(self.reported(most))
+    }
+
+    /// Verifies and proves the best designs, one after the other, until one holds that is better than all that are left.
+    fn settle_best(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
+        for place in 0..self.candidates.len() {
+            let value = self.candidates[place].row.objectives[0];
+            let settles = |member: &FrontMember| member.objectives()[0] <= value;
+            if self.held.iter().filter_map(|(_, proved)| proved.reported()).any(settles) {
+                break;
+            }
+            self.settle(&[place], times, send)?;
+        }
+        Some(())
+    }
+
+    /// Verifies some candidates and proves those that hold; `None` if the run was abandoned.
+    fn settle(&mut self, places: &[usize], times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
+        let (control, problem, pool) = (self.control, &self.search.problem, &self.search.pool);
+        let goes_on = || !control.is_abandoned();
+        let prover = FrontProver::new(problem, &goes_on);
+        self.planned += places.len();
+        for part in places.chunks(4 * self.search.threads()) {
+            send(Event::Verifying {
+                done: self.tried,
+                total: self.planned,
+            });
+            let verifying = Instant::now();
+            let candidates = &self.candidates;
+            let verify = |&place: &usize| goes_on().then(|| problem.verify(&candidates[place].row.design));
+            let evaluations: Option<Vec<Evaluation>> = pool.install(|| part.par_iter().map(verify).collect());
+            let mut members = Vec::new();
+            for (&place, evaluation) in part.iter().zip(evaluations?) {
+                self.is_tried[place] = true;
+                if evaluation.is_feasible() {
+                    let member = self.member(place, evaluation);
+                    members.push((place, member));
+                }
+            }
+            times.verification_s += verifying.elapsed().as_secs_f64();
+            let proving = Instant::now();
+            let (places, members): (Vec<usize>, Vec<FrontMember>) = members.into_iter().unzip();
+            let proved = if self.search.study().certifies() {
+                pool.install(|| prover.prove(&members))
+            } else {
+                members.into_iter().map(ProvedMember::unproved).collect()
+            };
+            self.held.extend(places.into_iter().zip(proved));
+            times.certification_s += proving.elapsed().as_secs_f64();
+            if !goes_on() {
+                return None;
+            }
+            self.tried += part.len();
+        }
+        Some(())
+    }
+
+    /// The member of the front that a candidate becomes.
+    fn member(&mut self, place: usize, evaluation: Evaluation) -> FrontMember {
+        let entry = &self.candidates[place];
+        let mut id = entry.id;
+        if evaluation.design != entry.row.design {
+            // A design whose bars were sized again is not one of the search.
+            id = self.next_id;
+            self.next_id += 1;
+        }
+        FrontMember {
+            id,
+            generation: entry.row.generation as usize,
+            evaluation,
+            reference_radius: entry.row.workspace_radius(),
+            certified: None,
+        }
+    }
+
+    /// The designs that hold and that no other one of them dominates, as places in `held`.
+    fn standing(&self) -> Archive {
+        let mut archive = Archive::default();
+        for (index, (_, proved)) in self.held.iter().enumerate() {
+            if let Some(member) = proved.reported() {
+                archive.insert(index, &[], &DesignProblem::outcome(&member.evaluation));
+            }
+        }
+        archive
+    }
+
+    /// Returns the candidates that take the place of those that fell: of each the nearest that was not tried, as long as designs are
+    /// missing.
+    fn replacements(&self, objectives: &[Objectives], wanted: usize) -> Vec<usize> {
+        let standing = self.standing();
+        let missing = wanted.saturating_sub(standing.len());
+        let mut stands = vec![false; objectives.len()];
+        for member in standing.iter() {
+            stands[self.held[member.id].0] = true;
+        }
+        let mut taken = self.is_tried.clone();
+        let scales = scales(objectives);
+        let mut found = Vec::new();
+        for fallen in (0..objectives.len()).filter(|&place| self.is_tried[place] && !stands[place]) {
+            if found.len() == missing {
+                break;
+            }
+            let distance = |place: usize| -> f64 {
+                let along = |(k, scale): (usize, &f64)| scale * (objectives[place][k] - objectives[fallen][k]);
+                scales.iter().enumerate().map(along).map(|part| part * part).sum()
+            };
+            let nearest = (0..objectives.len())
+                .filter(|&place| !taken[place])
+                .min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+            if let Some(place) = nearest {
+                taken[place] = true;
+                found.push(place);
+            }
+        }
+        found
+    }
+
+    /// Returns what is reported of the designs that were settled.
+    fn reported(self, most: usize) -> Reported {
+        let reference = self.search.found.reference;
+        let standing = self.standing();
+        let (verified, whole) = (
+            standing.len(),
+            hypervolume(standing.iter().map(|member| member.objectives), reference),
+        );
+        let proved = self.held.into_iter().map(|(_, proved)| proved).collect();
+        let (front, proofs) = proved_front(proved, self.next_id, reference, most);
+        Reported {
+            verified,
+            dropped: self.tried - verified,
+            hypervolume: whole,
+            front,
+            proofs: self.search.study().certifies().then_some(proofs),
+        }
+    }
+}
+
+/// Reciprocals of the ranges of the objectives; 0 for one without a range.
+fn scales(objectives: &[Objectives]) -> Vec<f64> {
+    let count = objectives.first().map_or(0, |first| first.len());
+    let range = |k: usize| {
+        let values = || objectives.iter().map(|point| point[k]);
+        let range = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+        if range > 0.0 { 1.0 / range } else { 0.0 }
+    };
+    (0..count).map(range).collect()
+}
