@@ -280,6 +280,7 @@ impl PyStudy {
             evaluations,
             seed,
             threads,
+            front_designs: None,
             architectures: architectures.map(parse).transpose().map_err(of_design)?,
         };
         let study = overrides.apply(self.study().clone());

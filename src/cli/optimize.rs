@@ -22,10 +22,10 @@ pub struct OptimizeArguments {
     /// Study file, or name of a built-in study [default: paper].
     study: Option<OsString>,
     /// Run folder to continue. With a larger --evaluations, a run that has ended is extended.
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["study", "algorithm", "seed", "architectures", "out"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["study", "algorithm", "seed", "front", "architectures", "out"])]
     resume: Option<PathBuf>,
     /// Resume a folder that does not state the size and the checksum of its designs, with the rows that are there.
-    #[arg(long, requires = "resume", conflicts_with_all = ["study", "algorithm", "seed", "architectures", "out"])]
+    #[arg(long, requires = "resume", conflicts_with_all = ["study", "algorithm", "seed", "front", "architectures", "out"])]
     accept_unverified: bool,
     /// Algorithm; overrides that of the study.
     #[arg(long, value_parser = algorithms())]
@@ -36,6 +36,9 @@ pub struct OptimizeArguments {
     /// Random seed; overrides that of the study.
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
     seed: Option<u64>,
+    /// Number of designs that are reported, or `all` for the whole verified front; overrides that of the study.
+    #[arg(long, value_name = "N|all", value_parser = front_size)]
+    front: Option<usize>,
     /// Architectures, as in 3-PRR,3-RRR; override those of the study.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     architectures: Option<Vec<Architecture>>,
@@ -134,10 +137,22 @@ fn study(arguments: &OptimizeArguments) -> Result<Study, Failure> {
         evaluations: arguments.evaluations.map(|evaluations| evaluations as usize),
         seed: arguments.seed,
         threads: arguments.run.threads(),
+        front_designs: arguments.front,
         architectures: arguments.architectures.clone(),
     };
     let study = overrides.apply(study);
     study.map_err(|fault| Failure::Input(miette!("`{}` {}", fault.key, fault.message)))
+}
+
+/// Largest number of designs that a study may report, so that all are.
+const WHOLE_FRONT: usize = 100_000;
+
+fn front_size(text: &str) -> Result<usize, String> {
+    match (text, text.parse()) {
+        ("all", _) => Ok(WHOLE_FRONT),
+        (_, Ok(count @ 3..=WHOLE_FRONT)) => Ok(count),
+        _ => Err(format!("it must be 3 to {WHOLE_FRONT}, or `all`")),
+    }
 }
 
 /// Returns the folders `runs/STUDY-seedS`, `runs/STUDY-seedS-2`, and so on.

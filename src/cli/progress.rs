@@ -4,10 +4,11 @@
 use std::io::IsTerminal;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::Builder;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use kinefront_study::GenerationSummary;
+use kinefront_scene::text;
+use kinefront_study::{GenerationSummary, Study};
 
 use super::say;
 
@@ -23,6 +24,8 @@ pub enum Progress {
         budget: usize,
         /// Number of twentieths of the budget reported so far.
         reported: usize,
+        /// When the verification of the front began, and the number of its fifths reported so far.
+        verifying: Option<(Instant, usize)>,
         /// What prints the lines.
         printer: Printer,
     },
@@ -78,59 +81,75 @@ impl Progress {
             return Self::Lines {
                 budget,
                 reported,
+                verifying: None,
                 printer,
             };
         }
-        let style =
-            ProgressStyle::with_template("{bar:30.cyan/blue} {pos}/{len} evaluations  {per_sec:.0}  {eta} left  {msg}")
-                .unwrap_or_else(|_| ProgressStyle::default_bar());
         let bar = ProgressBar::with_draw_target(Some(budget as u64), ProgressDrawTarget::stderr_with_hz(10))
-            .with_style(style);
+            .with_style(style(
+                "{bar:30.cyan/blue} {pos}/{len} evaluations  {per_sec:.0}  {eta} left  {msg}",
+            ));
         keep_ticking(&bar);
         Self::Bar(bar)
     }
 
     /// Reports a complete generation.
-    pub fn generation(&mut self, summary: &GenerationSummary) {
+    pub fn generation(&mut self, study: &Study, summary: &GenerationSummary) {
         match self {
             Self::Quiet => {}
             Self::Bar(bar) => {
                 bar.set_position(summary.evaluations as u64);
-                bar.set_message(format!(
-                    "front {}  hypervolume {:.1}",
-                    summary.front_size, summary.hypervolume
-                ));
+                bar.set_message(reached(study, summary));
             }
             Self::Lines {
                 budget,
                 reported,
                 printer,
+                ..
             } => {
-                let reached = 20 * summary.evaluations / *budget;
-                if reached > *reported {
-                    *reported = reached;
+                let twentieths = 20 * summary.evaluations / *budget;
+                if twentieths > *reported {
+                    *reported = twentieths;
                     printer.print(format!(
-                        "generation {}: {}/{budget} evaluations, {} feasible, front {}, hypervolume {:.1} kg m",
+                        "generation {}: {}/{budget} evaluations, {} feasible, {}",
                         summary.generation,
                         summary.evaluations,
                         summary.feasible,
-                        summary.front_size,
-                        summary.hypervolume
+                        reached(study, summary)
                     ));
                 }
             }
         }
     }
 
-    /// Reports the progress of the verification of the front.
+    /// Reports the progress of the verification and the proofs of the designs that are reported.
     pub fn verifying(&mut self, done: usize, total: usize) {
         match self {
             Self::Quiet => {}
-            Self::Bar(bar) => bar.set_message(format!("verifying the front on the fine grid: {done}/{total}")),
-            Self::Lines { printer, .. } if done == 0 => {
-                printer.print(format!("verifying {total} designs of the front on the fine grid"));
+            Self::Bar(bar) => {
+                if done == 0 {
+                    bar.set_style(style(
+                        "{bar:30.cyan/blue} {pos}/{len} designs verified and proved  {eta} left",
+                    ));
+                    bar.reset();
+                }
+                bar.set_length(total as u64);
+                bar.set_position(done as u64);
             }
-            Self::Lines { .. } => {}
+            Self::Lines { printer, verifying, .. } => match verifying {
+                None => {
+                    *verifying = Some((Instant::now(), 0));
+                    printer.print(format!("verifying and proving {total} designs of the front"));
+                }
+                Some((since, fifths)) if 5 * done / total > *fifths => {
+                    *fifths = 5 * done / total;
+                    let left = since.elapsed().as_secs_f64() * (total - done) as f64 / done as f64;
+                    printer.print(format!(
+                        "verified and proved {done}/{total} designs, about {left:.0} s left"
+                    ));
+                }
+                Some(_) => {}
+            },
         }
     }
 
@@ -142,6 +161,23 @@ impl Progress {
             Self::Lines { printer, .. } => printer.finish(),
         }
     }
+}
+
+/// What a search has reached: the best value of the only objective, or the front and its hypervolume.
+fn reached(study: &Study, summary: &GenerationSummary) -> String {
+    if let Some((objective, value)) = study.best_value(summary.hypervolume) {
+        return format!("best {}", text::quantity(objective.quantity, value));
+    }
+    if study.objectives.len() == 1 {
+        return "none yet".to_owned();
+    }
+    let hypervolume = text::number(summary.hypervolume);
+    let unit = study.hypervolume_unit();
+    format!("front {}, hypervolume {hypervolume} {unit}", summary.front_size)
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
 /// Redraws a display five times a second until it has finished. Without a thread to spare it stands still in between.

@@ -89,13 +89,14 @@ pub fn search_and_write(
     control: &Arc<RunControl>,
     progress: &mut Progress,
 ) -> Result<(Result<RunSummary, String>, Vec<RunFileError>), Failure> {
-    let recorder = Recorder::of_run(&folder, search.study()).map_err(Failure::files)?;
+    let study = Arc::clone(search.study());
+    let recorder = Recorder::of_run(&folder, &study).map_err(Failure::files)?;
     let (next, events) = sync_channel(CHANNEL);
     let tell = |error: &RunFileError| say(format_args!("error: {error}"));
     let (listeners, files) =
         RunFiles::start(folder, recorder, next, Arc::clone(control), tell).map_err(Failure::runtime)?;
     let worker = spawn_search(search, Arc::clone(control), listeners).map_err(Failure::runtime)?;
-    let ended = watch(&events, progress);
+    let ended = watch(&events, &study, progress);
     progress.finish();
     let failures = files.join();
     let ended = match worker.join() {
@@ -105,11 +106,11 @@ pub fn search_and_write(
     Ok((ended, failures))
 }
 
-fn watch(events: &Receiver<Arc<Event>>, progress: &mut Progress) -> Result<RunSummary, String> {
+fn watch(events: &Receiver<Arc<Event>>, study: &Study, progress: &mut Progress) -> Result<RunSummary, String> {
     let mut ended = Err("the worker thread ended without a result".to_owned());
     for event in events {
         match &*event {
-            Event::Generation(summary) => progress.generation(summary),
+            Event::Generation(summary) => progress.generation(study, summary),
             Event::Verifying { done, total } => progress.verifying(*done, *total),
             Event::Finished(summary) => ended = Ok(summary.clone()),
             Event::Failed(message) => ended = Err(message.clone()),

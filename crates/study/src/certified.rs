@@ -53,13 +53,26 @@ impl fmt::Display for CertifiedWorkspace {
         write!(f, "{}: ", self.state())?;
         match (self.is_of_region, self.is_proved, self.upper) {
             (true, true, _) => write!(f, "every pose of the region is feasible"),
-            (true, false, None) => write!(f, "no infeasible pose of the region was found, and not every pose is proved feasible"),
-            (true, false, Some(upper)) => write!(f, "a pose of the region at {upper:.5} m from its centre is infeasible"),
+            (true, false, None) => write!(
+                f,
+                "no infeasible pose of the region was found, and not every pose is proved feasible"
+            ),
+            (true, false, Some(upper)) => {
+                write!(f, "a pose of the region at {upper:.5} m from its centre is infeasible")
+            }
             (false, _, Some(upper)) => {
-                write!(f, "every pose within {:.5} m is feasible, and one at {upper:.5} m is not", self.lower)
+                write!(
+                    f,
+                    "every pose within {:.5} m is feasible, and one at {upper:.5} m is not",
+                    self.lower
+                )
             }
             (false, _, None) => {
-                write!(f, "every pose within {:.5} m is feasible, and no infeasible pose was found", self.lower)
+                write!(
+                    f,
+                    "every pose within {:.5} m is feasible, and no infeasible pose was found",
+                    self.lower
+                )
             }
         }
     }

@@ -134,12 +134,21 @@ impl<'a> Settling<'a> {
         Some(self.reported(most))
     }
 
-    /// Verifies and proves the best designs, one after the other, until one holds that is better than all that are left.
+    /// Verifies and proves the best designs, one after the other, until one holds that those left would hardly be better than; once one
+    /// holds, only a few more are tried, for on the fine grid all become worse alike.
     fn settle_best(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
+        /// Relative gain for which no other design is tried.
+        const HARDLY: f64 = 1e-5;
+        const MORE: usize = 3;
+        let mut since_held = 0;
         for place in 0..self.candidates.len() {
             let value = self.candidates[place].row.objectives[0];
-            let settles = |member: &FrontMember| member.objectives()[0] <= value;
-            if self.held.iter().filter_map(|(_, proved)| proved.reported()).any(settles) {
+            let enough = value + HARDLY * value.abs();
+            let mut held = self.held.iter().filter_map(|(_, proved)| proved.reported()).peekable();
+            if held.peek().is_some() {
+                since_held += 1;
+            }
+            if since_held > MORE || held.any(|member| member.objectives()[0] <= enough) {
                 break;
             }
             self.settle(&[place], times, send)?;

@@ -14,6 +14,8 @@ pub struct Overrides {
     pub seed: Option<u64>,
     /// Number of worker threads.
     pub threads: Option<usize>,
+    /// Number of designs that are reported.
+    pub front_designs: Option<usize>,
     /// The architectures that are searched.
     pub architectures: Option<Vec<Architecture>>,
 }
@@ -28,6 +30,7 @@ impl Overrides {
         optimizer.algorithm = self.algorithm.unwrap_or(optimizer.algorithm);
         optimizer.evaluations = self.evaluations.unwrap_or(optimizer.evaluations);
         optimizer.seed = self.seed.unwrap_or(optimizer.seed);
+        optimizer.front_designs = self.front_designs.unwrap_or(optimizer.front_designs);
         optimizer.threads = self.threads.or(optimizer.threads);
         if let Some(architectures) = self.architectures {
             study.architectures = architectures;

@@ -295,7 +295,11 @@ impl DesignProblem {
             let other = changed.and_then(of_values).filter(|other| other != design);
             found.extend(other.map(|other| (other, increase)));
         };
-        let increases = if self.is_prescribed { &REGION_INCREASES[..] } else { &INCREASES };
+        let increases = if self.is_prescribed {
+            &REGION_INCREASES[..]
+        } else {
+            &INCREASES
+        };
         for &increase in increases {
             take(self.times(design, &bars, 1.0 + increase), increase);
         }
@@ -307,10 +311,13 @@ impl DesignProblem {
                 let radius = design.values()[bar as usize];
                 let listed = self.listed[bar as usize].iter().flatten().copied();
                 if let Some(next) = listed.filter(|other| *other > radius).reduce(f64::min) {
-                    take(self.times(design, &[bar], next / radius).map(|mut values| {
-                        values[bar as usize] = next;
-                        values
-                    }), next / radius - 1.0);
+                    take(
+                        self.times(design, &[bar], next / radius).map(|mut values| {
+                            values[bar as usize] = next;
+                            values
+                        }),
+                        next / radius - 1.0,
+                    );
                 }
             }
         }

@@ -123,16 +123,22 @@ impl<'a> FrontProver<'a> {
         proved.holds = if claim.is_of_region {
             certificate.verdict != Verdict::Refuted
         } else {
-            self.problem.least_radius().is_none_or(|least| certificate.lower >= least)
+            self.problem
+                .least_radius()
+                .is_none_or(|least| certificate.lower >= least)
         };
-        proved.member.report(&certificate, &claim, &self.model().settings().objectives);
+        proved
+            .member
+            .report(&certificate, &claim, &self.model().settings().objectives);
         proved
     }
 
     /// Returns the radius that must be proved, so that no stronger design is looked for \[m\].
     fn wanted_radius(&self, claim: &CertifyOptions) -> f64 {
         let restored = RESTORED * claim.claimed_radius;
-        self.problem.least_radius().map_or(restored, |least| least.max(restored))
+        self.problem
+            .least_radius()
+            .map_or(restored, |least| least.max(restored))
     }
 
     fn certify(&self, design: &Design, options: &CertifyOptions) -> Option<Certificate> {
@@ -189,40 +195,43 @@ impl<'a> FrontProver<'a> {
     fn strengthen(&self, member: &FrontMember, pocket: &Pocket) -> Option<(FrontMember, f64)> {
         let model = self.model();
         let verified = &member.evaluation;
-        self.problem.strengthened(&verified.design).into_iter().find_map(|(design, increase)| {
-            // Where the pocket stays one, there is nothing to prove.
-            if !(self.goes_on)() || model.margin_at(&design, &pocket.pose, pocket.scalar) < 0.0 {
-                return None;
-            }
-            let evaluation = model.evaluate(&design, GridChoice::Fine);
-            let claim = model.claim(&evaluation)?;
-            let wanted = self.wanted_radius(&CertifyOptions {
-                claimed_radius: verified.workspace_radius(),
-                ..claim
-            });
-            let claim = CertifyOptions {
-                enough: wanted,
-                ..claim
-            };
-            if claim.is_of_region && !evaluation.is_feasible() {
-                return None;
-            }
-            let certificate = self.certify(&design, &claim)?;
-            let is_restored = match claim.is_of_region {
-                true => certificate.verdict == Verdict::Proved,
-                false => certificate.lower >= wanted,
-            };
-            if !is_restored {
-                return None;
-            }
-            let mut instead = FrontMember {
-                evaluation,
-                reference_radius: model.evaluate(&design, GridChoice::Reference).workspace_radius(),
-                ..member.clone()
-            };
-            instead.report(&certificate, &claim, &model.settings().objectives);
-            Some((instead, increase))
-        })
+        self.problem
+            .strengthened(&verified.design)
+            .into_iter()
+            .find_map(|(design, increase)| {
+                // Where the pocket stays one, there is nothing to prove.
+                if !(self.goes_on)() || model.margin_at(&design, &pocket.pose, pocket.scalar) < 0.0 {
+                    return None;
+                }
+                let evaluation = model.evaluate(&design, GridChoice::Fine);
+                let claim = model.claim(&evaluation)?;
+                let wanted = self.wanted_radius(&CertifyOptions {
+                    claimed_radius: verified.workspace_radius(),
+                    ..claim
+                });
+                let claim = CertifyOptions {
+                    enough: wanted,
+                    ..claim
+                };
+                if claim.is_of_region && !evaluation.is_feasible() {
+                    return None;
+                }
+                let certificate = self.certify(&design, &claim)?;
+                let is_restored = match claim.is_of_region {
+                    true => certificate.verdict == Verdict::Proved,
+                    false => certificate.lower >= wanted,
+                };
+                if !is_restored {
+                    return None;
+                }
+                let mut instead = FrontMember {
+                    evaluation,
+                    reference_radius: model.evaluate(&design, GridChoice::Reference).workspace_radius(),
+                    ..member.clone()
+                };
+                instead.report(&certificate, &claim, &model.settings().objectives);
+                Some((instead, increase))
+            })
     }
 }
 
@@ -234,46 +243,49 @@ pub fn proved_front(
     reference: Objectives,
     most: usize,
 ) -> (Vec<FrontMember>, FrontProofs) {
-        let mut proofs = FrontProofs {
-            tolerance: CertifyOptions::TOLERANCE,
-            ..FrontProofs::default()
-        };
-        let mut members = Vec::new();
-        let mut dropped = 0;
-        for ProvedMember {
-            member,
-            refuted,
-            instead,
-            holds,
-        } in proved
-        {
-            let thickened = instead.map(|(instead, increase)| {
-                let id = next_id;
-                next_id += 1;
-                (FrontMember { id, ..instead }, ThickenedDesign { id, increase })
-            });
-            let (instead, thickened) = thickened.unzip();
-            match instead {
-                Some(instead) => members.push(instead),
-                None if holds => members.push(member),
-                None => dropped += 1,
-            }
-            proofs
-                .refuted
-                .extend(refuted.map(|refuted| RefutedDesign { thickened, ..refuted }));
+    let mut proofs = FrontProofs {
+        tolerance: CertifyOptions::TOLERANCE,
+        ..FrontProofs::default()
+    };
+    let mut members = Vec::new();
+    let mut dropped = 0;
+    for ProvedMember {
+        member,
+        refuted,
+        instead,
+        holds,
+    } in proved
+    {
+        let thickened = instead.map(|(instead, increase)| {
+            let id = next_id;
+            next_id += 1;
+            (FrontMember { id, ..instead }, ThickenedDesign { id, increase })
+        });
+        let (instead, thickened) = thickened.unzip();
+        match instead {
+            Some(instead) => members.push(instead),
+            None if holds => members.push(member),
+            None => dropped += 1,
         }
-        let mut archive = Archive::default();
-        for (place, member) in members.iter().enumerate() {
-            if member.certified.is_none_or(|certified| !certified.is_empty()) {
-                archive.insert(place, &[], &DesignProblem::outcome(&member.evaluation));
-            }
+        proofs
+            .refuted
+            .extend(refuted.map(|refuted| RefutedDesign { thickened, ..refuted }));
+    }
+    let mut archive = Archive::default();
+    for (place, member) in members.iter().enumerate() {
+        if member.certified.is_none_or(|certified| !certified.is_empty()) {
+            archive.insert(place, &[], &DesignProblem::outcome(&member.evaluation));
         }
-        proofs.dropped = dropped + members.len() - archive.len();
-        let objectives: Vec<Objectives> = archive.iter().map(|kept| kept.objectives).collect();
-        let kept = subset(&objectives, &reference, most);
-        let front: Vec<FrontMember> = kept.into_iter().map(|place| members[archive[place].id].clone()).collect();
-        proofs.proved = front.iter().filter(|member| member.is_proved()).count();
-        proofs.open = front.len() - proofs.proved;
-        proofs.hypervolume_kg_m = hypervolume(front.iter().map(FrontMember::objectives), reference);
-        (front, proofs)
+    }
+    proofs.dropped = dropped + members.len() - archive.len();
+    let objectives: Vec<Objectives> = archive.iter().map(|kept| kept.objectives).collect();
+    let kept = subset(&objectives, &reference, most);
+    let front: Vec<FrontMember> = kept
+        .into_iter()
+        .map(|place| members[archive[place].id].clone())
+        .collect();
+    proofs.proved = front.iter().filter(|member| member.is_proved()).count();
+    proofs.open = front.len() - proofs.proved;
+    proofs.hypervolume_kg_m = hypervolume(front.iter().map(FrontMember::objectives), reference);
+    (front, proofs)
 }

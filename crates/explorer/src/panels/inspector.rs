@@ -245,7 +245,8 @@ fn proof(ui: &mut Ui, session: &mut Session) {
     let mut has_asked = false;
     ui.horizontal_wrapped(|ui| {
         if proof.claim.is_of_region {
-            ui.label("the region is").on_hover_text("that every pose of it is feasible");
+            ui.label("the region is")
+                .on_hover_text("that every pose of it is feasible");
             ui.colored_label(color, RichText::new(verdict).strong());
         } else {
             ui.label("R_w is");

@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::{Session, theme};
 use kinefront_model::mechanism::Architecture;
 use kinefront_scene::text;
-use kinefront_study::GenerationSummary;
+use kinefront_study::{GenerationSummary, Study};
 
 /// Number of intervals of evaluations in which candidates are counted.
 const INTERVALS: usize = 60;
@@ -38,19 +38,32 @@ impl ProgressCurve {
         ProgressCurve::Architectures,
     ];
 
-    fn title(self) -> &'static str {
+    fn title(self, study: &Study) -> String {
+        let with_unit = |name: &str, unit: &str| match unit {
+            "" => name.to_owned(),
+            unit => format!("{name} [{unit}]"),
+        };
         match self {
-            ProgressCurve::Hypervolume => "hypervolume [kg·m]",
-            ProgressCurve::FeasibleShare => "feasible designs [%]",
-            ProgressCurve::FrontSize => "designs on the front",
-            ProgressCurve::TimePerDesign => "time for each design [ms]",
-            ProgressCurve::Architectures => "candidates of each architecture [%]",
+            ProgressCurve::Hypervolume => match study.objectives()[..] {
+                [objective] => {
+                    let entry = objective.quantity.entry();
+                    with_unit(&format!("best {}", entry.label), entry.unit)
+                }
+                _ => with_unit("hypervolume", &study.hypervolume_unit()),
+            },
+            ProgressCurve::FeasibleShare => "feasible designs [%]".to_owned(),
+            ProgressCurve::FrontSize => "designs on the front".to_owned(),
+            ProgressCurve::TimePerDesign => "time for each design [ms]".to_owned(),
+            ProgressCurve::Architectures => "candidates of each architecture [%]".to_owned(),
         }
     }
 
     /// Returns the value after a generation, for the curves that have one.
-    fn value(self, generation: &GenerationSummary) -> Option<f64> {
+    fn value(self, study: &Study, generation: &GenerationSummary) -> Option<f64> {
         match self {
+            ProgressCurve::Hypervolume if study.objectives.len() == 1 => {
+                study.best_value(generation.hypervolume).map(|(_, value)| value)
+            }
             ProgressCurve::Hypervolume => Some(generation.hypervolume),
             ProgressCurve::FeasibleShare => {
                 Some(100.0 * generation.feasible as f64 / generation.evaluations.max(1) as f64)
@@ -115,11 +128,11 @@ impl ProgressPlot {
     /// Draws the plot, and a field to choose what it shows.
     pub(super) fn ui(&mut self, ui: &mut Ui, session: &Session) {
         ComboBox::from_id_salt("progress")
-            .selected_text(self.shown.title())
+            .selected_text(self.shown.title(session.study()))
             .width(220.0)
             .show_ui(ui, |ui| {
                 for curve in ProgressCurve::ALL {
-                    ui.selectable_value(&mut self.shown, curve, curve.title());
+                    ui.selectable_value(&mut self.shown, curve, curve.title(session.study()));
                 }
             });
         let curves = self.curves(ui, session);
@@ -135,8 +148,10 @@ impl ProgressPlot {
             .allow_zoom(false)
             .allow_scroll(false)
             .allow_boxed_zoom(false)
-            .include_y(0.0)
             .label_formatter(move |pointed| label(pointed, &generations));
+        if self.shown != ProgressCurve::Hypervolume || session.study().objectives.len() > 1 {
+            plot = plot.include_y(0.0);
+        }
         if height >= NAMED {
             plot = plot.x_axis_label("evaluations");
         }
@@ -151,7 +166,7 @@ impl ProgressPlot {
                 }
             }
         });
-        let name = format!("{} over evaluations", self.shown.title());
+        let name = format!("{} over evaluations", self.shown.title(session.study()));
         shown
             .response
             .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, &name));
@@ -188,11 +203,16 @@ impl ProgressPlot {
                 .last()
                 .filter(|_| !(generations.len() - 1).is_multiple_of(every));
             kept.chain(last)
-                .filter_map(|generation| Some([generation.evaluations as f64, self.shown.value(generation)?]))
+                .filter_map(|generation| {
+                    Some([
+                        generation.evaluations as f64,
+                        self.shown.value(session.study(), generation)?,
+                    ])
+                })
                 .collect()
         };
         vec![Curve {
-            name: self.shown.title().to_owned(),
+            name: self.shown.title(session.study()),
             points,
             color: theme::good(ui),
         }]

@@ -133,7 +133,15 @@ mod tests {
     /// The triangles of a polygon that is not convex have its area, and all of their points lie within it.
     #[test]
     fn triangles_fill_a_polygon() {
-        let corners = [[0.0, 0.0], [2.0, 0.0], [4.0, 0.0], [4.0, 3.0], [2.0, 1.0], [1.0, 3.0], [0.5, 1.0]];
+        let corners = [
+            [0.0, 0.0],
+            [2.0, 0.0],
+            [4.0, 0.0],
+            [4.0, 3.0],
+            [2.0, 1.0],
+            [1.0, 3.0],
+            [0.5, 1.0],
+        ];
         for reversed in [false, true] {
             let mut corners: Vec<DVec2> = corners.iter().map(|&[x, y]| DVec2::new(x, y)).collect();
             if reversed {

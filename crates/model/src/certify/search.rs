@@ -178,12 +178,7 @@ impl<'a> Proof<'a> {
     }
 
     /// Does what [`Proof::try_point`] does with a point of a patch.
-    fn try_point_of(
-        &mut self,
-        patch: Patch,
-        point: [f64; VARIABLES],
-        proved: ProvedForms,
-    ) -> Option<PoseScalar> {
+    fn try_point_of(&mut self, patch: Patch, point: [f64; VARIABLES], proved: ProvedForms) -> Option<PoseScalar> {
         // In a window without width, no double is known to lie.
         let [first, last] = self.inner_window;
         if self.options.blind_radius.is_some() || first > last || proved.is_all() {

@@ -32,6 +32,8 @@ pub(crate) struct RegionMargins<'a, L> {
     pub signs: Vec<f64>,
     directions: Vec<DVec2>,
     samples: RegionPositions,
+    /// Those of a polygon as it is, about the origin: they are in proportion to it.
+    of_polygon: Option<RegionPositions>,
     /// The positions that are examined first, and the others.
     parts: [Positions; 2],
 }
@@ -54,8 +56,13 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
             signs: Vec::new(),
             directions: directions(sampling.grid(), symmetric),
             samples: RegionPositions::default(),
+            of_polygon: None,
             parts: Default::default(),
         };
+        if let Region::Polygon(_) = spec.region {
+            let (_, grid, step) = margins.grid();
+            margins.of_polygon = Some(spec.region.positions(DVec2::ZERO, grid, step, &margins.directions));
+        }
         margins.lay(1.0);
         margins.read_signs(1.0);
         margins
@@ -64,8 +71,17 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
     /// Lays out the region with its centre and all its lengths multiplied by `factor`.
     pub fn lay(&mut self, factor: f64) {
         let (spec, grid, step) = self.grid();
-        let region = spec.region.scaled(factor);
-        self.samples = region.positions(spec.centre * factor, grid, step, &self.directions);
+        let centre = spec.centre * factor;
+        self.samples = match &self.of_polygon {
+            Some(samples) => RegionPositions {
+                all: samples.all.iter().map(|position| centre + *position * factor).collect(),
+                first: samples.first,
+            },
+            None => spec
+                .region
+                .scaled(factor)
+                .positions(centre, grid, step, &self.directions),
+        };
         let parts = self.samples.all.split_at(self.samples.first);
         for (columns, positions) in self.parts.iter_mut().zip([parts.0, parts.1]) {
             columns.clear();
@@ -116,13 +132,28 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         self.at(orientation, &self.parts[1])
     }
 
-    fn at(&self, orientation: usize, positions: &Positions) -> f64 {
-        let oriented = OrientationLanes {
+    /// Returns whether no position that is not examined first has a negative margin in one orientation.
+    pub fn holds_at_others(&self, orientation: usize) -> bool {
+        /// Number of positions after which the margins so far are looked at.
+        const PART: usize = 16 * MAX_LANES;
+        let oriented = self.oriented(orientation);
+        let [_, others] = &self.parts;
+        let parts = others.xs.chunks(PART).zip(others.ys.chunks(PART));
+        parts
+            .map(|(xs, ys)| self.checker.worst_margin(oriented, xs, ys, self.step_base))
+            .all(|margin| margin >= 0.0)
+    }
+
+    fn oriented(&self, orientation: usize) -> OrientationLanes<'_> {
+        OrientationLanes {
             arms: &self.orientations[orientation].arms,
             sign: self.signs[orientation],
-        };
+        }
+    }
+
+    fn at(&self, orientation: usize, positions: &Positions) -> f64 {
         self.checker
-            .worst_margin(oriented, &positions.xs, &positions.ys, self.step_base)
+            .worst_margin(self.oriented(orientation), &positions.xs, &positions.ys, self.step_base)
     }
 }
 

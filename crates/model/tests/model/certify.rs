@@ -3,7 +3,7 @@
 use kinefront_model::certify::{Certificate, CertifyOptions, Verdict};
 use kinefront_model::clearance::Layers;
 use kinefront_model::enclosure::{Interval, PoseEnclosure, TaylorModel};
-use kinefront_model::evaluation::{Constraint, GridChoice, Model, PoseScalar};
+use kinefront_model::evaluation::{GridChoice, Model, PoseScalar};
 use kinefront_model::kinematics::CharacteristicLength;
 use kinefront_model::mechanism::{CrossSection, Design, WorkingMode};
 use kinefront_model::spatial::Pose;
@@ -109,7 +109,7 @@ fn poses_that_miss_a_threshold_by_little_are_proved_infeasible() {
         let values = model.enclose(&case.design, &point(&case.violation)).expect("values");
         let violated = values
             .iter()
-            .any(|(constraint, value)| constraint.id() == case.violated && value.range()[1] < 0.0);
+            .any(|(constraint, value)| constraint.limit_id() == case.violated && value.range()[1] < 0.0);
         assert!(violated, "{}: {}", case.name, case.violated);
         // The enclosure of a pose is narrow: its width is rounding alone.
         for (constraint, value) in &values {
@@ -118,7 +118,7 @@ fn poses_that_miss_a_threshold_by_little_are_proved_infeasible() {
                 upper - lower < 1e-9 * (1.0 + value.constant.abs()),
                 "{}: {}",
                 case.name,
-                constraint.id()
+                constraint.limit_id()
             );
         }
     }
@@ -169,17 +169,25 @@ fn holds(model: &Model, design: &Design, pose: &Pose, margin: f64) -> bool {
     model.pose(design, pose).is_ok()
         && AT_POSES
             .iter()
-            .filter(|constraint| constraint.is_required(&model.settings().thresholds))
-            .all(|&constraint| model.margin_at(design, pose, constraint) >= margin)
+            .filter(|scalar| is_required(model, **scalar))
+            .all(|&scalar| model.margin_at(design, pose, scalar) >= margin)
 }
 
-const AT_POSES: [Constraint; 6] = [
-    Constraint::Reach,
-    Constraint::Dexterity,
-    Constraint::StiffnessXy,
-    Constraint::StiffnessZ,
-    Constraint::StiffnessPhiZ,
-    Constraint::Clearance,
+/// Whether a scalar is limited: the clearance, and what only some studies need, where the model states a threshold.
+fn is_required(model: &Model, scalar: PoseScalar) -> bool {
+    let is_optional = scalar == PoseScalar::Clearance || !PoseScalar::ALWAYS.contains(&scalar);
+    !is_optional || model.settings().thresholds.get(scalar).is_some()
+}
+
+const AT_POSES: [PoseScalar; 8] = [
+    PoseScalar::Reach,
+    PoseScalar::Dexterity,
+    PoseScalar::StiffnessXy,
+    PoseScalar::StiffnessZ,
+    PoseScalar::StiffnessPhiZ,
+    PoseScalar::Clearance,
+    PoseScalar::Displacement,
+    PoseScalar::Transmission,
 ];
 
 /// The model whose characteristic length depends on which orientations are reached.
@@ -206,6 +214,17 @@ fn other_models() -> Vec<(&'static str, Model)> {
             model(|settings| {
                 settings.thresholds.set(PoseScalar::Clearance, Some(0.005));
                 settings.bodies.layers = Layers::ONE_PLANE;
+            }),
+        ),
+        (
+            "a limit of the transmission",
+            model(|settings| settings.thresholds.set(PoseScalar::Transmission, Some(0.3))),
+        ),
+        (
+            "a limit of the displacement, on rails that are pinned at their ends",
+            model(|settings| {
+                settings.thresholds.set(PoseScalar::Displacement, Some(2e-4));
+                settings.rails = on_rails(RailSupports::Pinned).settings().rails.clone();
             }),
         ),
         (
@@ -266,20 +285,20 @@ proptest! {
         let values = model.enclose(&design, &point(&pose)).expect("values");
         let is_reached = model.pose(&design, &pose).is_ok();
         // The forms of a clearance are those that are not proved.
-        let least = |wanted: Constraint| {
-            let of = values.iter().filter(|(constraint, _)| *constraint == wanted);
+        let least = |wanted: PoseScalar| {
+            let of = values.iter().filter(|(scalar, _)| *scalar == wanted);
             of.map(|(_, value)| value.constant).fold(f64::INFINITY, f64::min)
         };
-        let reach = least(Constraint::Reach);
+        let reach = least(PoseScalar::Reach);
         // At a joint limit, rounding tells.
         prop_assert!(reach.abs() < 1e-12 || (reach > 0.0) == is_reached, "{} {:?}", design, pose);
         if !is_reached || reach <= 0.0 {
             return Err(TestCaseError::reject("the legs do not reach"));
         }
-        for constraint in AT_POSES {
-            let margin = model.margin_at(&design, &pose, constraint);
-            if margin.abs() > 1e-6 && constraint.is_required(&model.settings().thresholds) {
-                let of = values.iter().filter(|(found, _)| *found == constraint);
+        for scalar in AT_POSES {
+            let margin = model.margin_at(&design, &pose, scalar);
+            if margin.abs() > 1e-6 && is_required(&model, scalar) {
+                let of = values.iter().filter(|(found, _)| *found == scalar);
                 let ranges: Vec<[f64; 2]> = of.map(|(_, value)| value.range()).collect();
                 let is_proved = ranges.iter().all(|[lower, _]| *lower > 0.0);
                 let is_refuted = ranges.iter().any(|[_, upper]| *upper < 0.0);
@@ -288,7 +307,7 @@ proptest! {
                 let is_open = !is_proved && !is_refuted && name == ISOTROPIC;
                 prop_assert!(
                     is_open || is_proved == (margin > 0.0),
-                    "{}: {} {:?} {}: {}", name, design, pose, constraint.id(), margin
+                    "{}: {} {:?} {}: {}", name, design, pose, scalar.limit_id(), margin
                 );
             }
         }
@@ -306,12 +325,12 @@ proptest! {
         let (_, model) = other_models().swap_remove(if in_one_plane { 4 } else { 3 });
         let (pose, widths) = polar_box(&design, middle, width);
         let enclosed = model.enclose(&design, &pose).expect("values");
-        let is_open = |(constraint, value): &(Constraint, TaylorModel)| {
+        let is_open = |(scalar, value): &(PoseScalar, TaylorModel)| {
             // A comparison with NaN is false: nothing is proved then.
             let is_proved = value.range()[0] > 0.0;
-            *constraint == Constraint::Clearance && !is_proved
+            *scalar == PoseScalar::Clearance && !is_proved
         };
-        let may_be_unreached = enclosed.iter().all(|(constraint, _)| *constraint == Constraint::Reach);
+        let may_be_unreached = enclosed.iter().all(|(scalar, _)| *scalar == PoseScalar::Reach);
         if may_be_unreached || enclosed.iter().any(is_open) {
             return Err(TestCaseError::reject("the clearance is not proved"));
         }
@@ -319,7 +338,7 @@ proptest! {
             let at = middle.0 * design.base_radius() + a * widths[0];
             let (theta, phi) = (middle.1 + b * widths[1], middle.2 + c * widths[2]);
             let pose = Pose::new(at * theta.cos(), at * theta.sin(), phi);
-            let margin = model.margin_at(&design, &pose, Constraint::Clearance);
+            let margin = model.margin_at(&design, &pose, PoseScalar::Clearance);
             prop_assert!(margin >= -1e-12, "{} {:?}: {}", design, pose, margin);
         }
     }
@@ -353,9 +372,9 @@ proptest! {
                 // Within the remainder of the polynomial, not only within its range.
                 let polynomial = whole.value([a, b, c]);
                 let slack = whole.remainder + value.remainder + 1e-13 * (1.0 + polynomial.abs());
-                prop_assert!((value.constant - polynomial).abs() <= slack, "{}: {} is not {} ± {}", constraint.id(), value.constant, polynomial, slack);
+                prop_assert!((value.constant - polynomial).abs() <= slack, "{}: {} is not {} ± {}", constraint.limit_id(), value.constant, polynomial, slack);
                 let [low, high] = whole.range();
-                prop_assert!(lower <= high && upper >= low, "{}: [{}, {}] in [{}, {}]", constraint.id(), lower, upper, low, high);
+                prop_assert!(lower <= high && upper >= low, "{}: [{}, {}] in [{}, {}]", constraint.limit_id(), lower, upper, low, high);
             }
         }
     }
@@ -421,11 +440,11 @@ fn other_definitions_are_certified() {
                 "{name}, {design}: {} claimed, [{}, {upper}] by {}, {} boxes, {:?}",
                 evaluation.workspace_radius(),
                 found.lower,
-                violation.constraint.id(),
+                violation.scalar.limit_id(),
                 found.boxes,
                 found.verdict
             );
-            assert!(model.margin_at(&design, &violation.pose, violation.constraint) < 1e-12);
+            assert!(model.margin_at(&design, &violation.pose, violation.scalar) < 1e-12);
             assert!(upper < 1.01 * evaluation.workspace_radius());
             for pose in random_poses(&model, found.lower, phi_deg, POSES) {
                 assert!(holds(&model, &design, &pose, -1e-9), "{name}, {design}: {pose:?}");
@@ -454,7 +473,7 @@ fn the_bound_of_all_homes_encloses_the_radius() {
         .map(|case| {
             let (_, model) = &models[0];
             let evaluation = model.evaluate(&case.design, GridChoice::Fine);
-            let claim = CertifyOptions::of(&evaluation).expect("a workspace");
+            let claim = model.claim(&evaluation).expect("a workspace");
             let found = model.certify(&case.design, &claim).expect("a certificate");
             let bound = model
                 .bound_of_homes(&case.design, found.lower)
@@ -539,8 +558,5 @@ fn extreme_settings_are_certified() {
     // Reach and the sign of det A alone allow a larger disc, and end it.
     assert!(free.lower > paper.lower && free.is_closed(1e-4), "{free:?}");
     let violation = free.violation.expect("a pose");
-    assert!(matches!(
-        violation.constraint,
-        Constraint::Reach | Constraint::DeterminantSign
-    ));
+    assert!(matches!(violation.scalar, PoseScalar::Reach | PoseScalar::Determinant));
 }

@@ -10,6 +10,7 @@ mod lanes;
 mod legs;
 mod quantities;
 mod reference;
+mod region_proofs;
 mod regions;
 mod search;
 mod sections;

@@ -292,16 +292,28 @@ fn limits_of_poses_bound_the_workspace() {
     assert!(driven.workspace_radius() > 0.0 && driven.workspace_radius() < free.workspace_radius());
     let inside = bounded(|settings| settings.thresholds.set(PoseScalar::Reach, Some(0.3)));
     assert!(inside.constraint(Constraint::Reach).value.expect("a value") >= 0.3);
-    // A proof that leaves a bound out would prove too much.
+    // The proof counts the limit, and one that it does not cover is refused: a proof that left it out would prove too much.
     let model = strategies::model(|settings| {
         settings.thresholds.set(PoseScalar::Transmission, Some(0.5));
     });
-    let options = kinefront_model::certify::CertifyOptions::of(&driven).expect("a workspace");
+    let claim = model.claim(&driven).expect("a workspace");
+    let found = model.certify(&design, &claim).expect("a certificate");
+    let upper = found.upper.expect("an infeasible pose");
+    assert!(
+        found.is_closed(1e-4) && (upper / driven.workspace_radius() - 1.0).abs() < 0.01,
+        "{found:?}"
+    );
+    assert!(
+        found
+            .violation
+            .is_some_and(|violation| violation.scalar == PoseScalar::Transmission)
+    );
+    let model = strategies::model(|settings| {
+        settings.thresholds.set(PoseScalar::Reach, Some(0.3));
+    });
     assert_eq!(
-        model.certify(&design, &options),
-        Err(kinefront_model::certify::CertifyError::Uncovered(
-            PoseScalar::Transmission
-        ))
+        model.certify(&design, &claim),
+        Err(kinefront_model::certify::CertifyError::Uncovered(PoseScalar::Reach))
     );
     // The same limits of a prescribed disc.
     let radius = driven.workspace_radius();

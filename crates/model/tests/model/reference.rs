@@ -1,6 +1,5 @@
 //! Compares results with values from independent programs (tests/fixtures/README.md) and with the designs of the paper.
 
-use kinefront_model::certify::CertifyOptions;
 use kinefront_model::evaluation::{GridChoice, Model, PoseScalar};
 use kinefront_model::mechanism::{Design, WorkingMode};
 use kinefront_model::spatial::Pose;
@@ -165,7 +164,7 @@ fn certificates_agree_with_the_fine_grid_of_the_reference() {
     let mut agreeing = 0;
     for case in cases["designs"].as_array().expect("designs") {
         let (design, wanted) = (design(case), number(&case["workspace_radius_fine_grid"]));
-        let Some(claim) = CertifyOptions::of(&model.evaluate(&design, GridChoice::Fine)) else {
+        let Some(claim) = model.claim(&model.evaluate(&design, GridChoice::Fine)) else {
             assert_eq!(wanted, 0.0, "{design}");
             continue;
         };
@@ -177,7 +176,7 @@ fn certificates_agree_with_the_fine_grid_of_the_reference() {
             agreeing += 1;
         } else {
             let violation = found.violation.expect("an infeasible pose");
-            let margin = model.margin_at(&design, &violation.pose, violation.constraint);
+            let margin = model.margin_at(&design, &violation.pose, violation.scalar);
             assert!(margin < 0.0, "{design}: {margin}");
         }
     }

@@ -76,7 +76,10 @@ fn examine(model: &Model, design: &Design, positions: &[DVec2]) {
                 phi: phi_deg.to_radians(),
             };
             for report in &found.constraints {
-                let margin = model.margin_at(design, &pose, report.constraint);
+                let Some(scalar) = report.constraint.scalar() else {
+                    continue;
+                };
+                let margin = model.margin_at(design, &pose, scalar);
                 assert!(
                     margin >= report.margin - 1e-6 * report.margin.abs() - 1e-9,
                     "{design}: {:?} {margin} below {} at {pose:?}",

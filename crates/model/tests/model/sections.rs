@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use kinefront_model::certify::CertifyOptions;
 use kinefront_model::evaluation::{GridChoice, Model, PoseScalar};
 use kinefront_model::mechanism::{
     AnyLeg, Catalogue, CatalogueEntry, CatalogueError, CrossSection, CrossSections, Design, Manipulator, Wall,
@@ -154,7 +153,7 @@ fn the_certificate_of_square_tubes_agrees_with_the_grid() {
         let design: Design = text.parse().expect("a design");
         let evaluation = model.evaluate(&design, GridChoice::Fine);
         assert!(evaluation.workspace_radius() > 0.1, "{text}");
-        let options = CertifyOptions::of(&evaluation).expect("a workspace");
+        let options = model.claim(&evaluation).expect("a workspace");
         let certificate = model.certify(&design, &options).expect("a certificate");
         assert!(certificate.is_closed(1e-3), "{text}: {certificate:?}");
         let upper = certificate.upper.expect("a limit");

@@ -117,7 +117,7 @@ const SECTIONS: [&[Setting]; 25] = [
         Setting {
             section: "optimizer",
             key: "front_designs",
-            description: "Number of designs of the verified front that are kept: evenly spread, including both ends and the knee.",
+            description: "Number of designs that are reported: those that together cover the front best, including the ends and the knee.",
             check: Check::Count(3, 100_000),
             initial: None,
         },

@@ -85,7 +85,7 @@ pub struct OptimizerSection {
     /// machine.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_limit_s: Option<f64>,
-    /// Number of designs of the verified front that are kept: evenly spread, including both ends and the knee.
+    /// Number of designs that are reported: those that together cover the front best, including the ends and the knee.
     pub front_designs: usize,
     /// Number of worker threads; all cores if omitted. The result does not depend on it.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -115,6 +115,20 @@ impl Study {
         }
     }
 
+    /// Returns the best value so far of the only objective, by the hypervolume; `None` for several objectives, or before a design is
+    /// feasible.
+    pub fn best_value(&self, hypervolume: f64) -> Option<(Objective, f64)> {
+        let [objective] = self.objectives()[..] else {
+            return None;
+        };
+        let minimised = self.hypervolume_reference()[0] - hypervolume;
+        let value = match objective.goal {
+            Better::Lower => minimised,
+            Better::Higher => -minimised,
+        };
+        (hypervolume > 0.0).then_some((objective, value))
+    }
+
     /// Returns the unit of the hypervolume: the product of the units of the objectives.
     pub fn hypervolume_unit(&self) -> String {
         let units = self

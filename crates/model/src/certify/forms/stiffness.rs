@@ -41,7 +41,12 @@ impl Forms<'_> {
                 StiffnessDefinition::Compliance => self.enclose_reciprocals(legs, &along, found),
             }
             if self.is_required(PoseScalar::Displacement, found) {
-                self.enclose_compliant_xy(legs, &along, (PoseScalar::Displacement, self.compliance.yielding), found);
+                self.enclose_compliant_xy(
+                    legs,
+                    &along,
+                    (PoseScalar::Displacement, self.compliance.yielding),
+                    found,
+                );
             }
         }
         if self.is_required(PoseScalar::StiffnessZ, found) {

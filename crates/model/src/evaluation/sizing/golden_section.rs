@@ -5,7 +5,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Returns where in an interval a function with one minimum is smallest, to within `accuracy`. The function may be infinite below
 /// some place.
-pub(super) fn golden_section([mut low, mut high]: [f64; 2], accuracy: f64, value: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn golden_section([mut low, mut high]: [f64; 2], accuracy: f64, mut value: impl FnMut(f64) -> f64) -> f64 {
     let mut left = high - GOLDEN * (high - low);
     let mut right = low + GOLDEN * (high - low);
     let (mut at_left, mut at_right) = (value(left), value(right));

@@ -20,6 +20,9 @@ const NARROW: f64 = 1.01;
 /// thinner bars with a slightly larger factor.
 const MORE_FACTORS: usize = 2;
 
+/// Number of times that a range of factors is halved before secants are taken: the margins of a disc have steps.
+const HALVED: usize = 5;
+
 /// Relative accuracy of a factor.
 const ACCURACY: f64 = 1e-12;
 
@@ -112,7 +115,7 @@ impl<'a, L: Leg> Growth<'a, L> {
         self.margins.lay(1.0 / factor);
         self.margins.read_signs(1.0 / factor);
         for (k, sign) in self.signs.iter_mut().enumerate() {
-            if sign.is_none() && self.margins.at_first(k) >= 0.0 && self.margins.at_others(k) >= 0.0 {
+            if sign.is_none() && self.margins.at_first(k) >= 0.0 && self.margins.holds_at_others(k) {
                 *sign = Some(self.margins.signs[k]);
             }
         }
@@ -123,21 +126,53 @@ impl<'a, L: Leg> Growth<'a, L> {
         self.orientation_grid.homes_of_one_sign(|k| self.signs[k]).collect()
     }
 
-    /// Narrows a range of factors by halving: the upper end holds the region in the window of a home orientation, the lower one
-    /// does not, unless both are equal.
+    /// Narrows a range of factors by secants (the Illinois method, Dowell and Jarratt 1971) and halving: the upper end holds the region in the window of a
+    /// home orientation, the lower one does not, unless both are equal.
     fn exactly(&mut self, home: usize, [mut below, mut above]: [f64; 2]) -> GrownHome {
         let window: Vec<usize> = self.orientation_grid.window(home).collect();
         for &k in &window {
             self.margins.signs[k] = self.signs[k].unwrap_or(1.0);
         }
-        while above - below > ACCURACY * above {
-            let middle = 0.5 * (below + above);
-            self.margins.lay_boundary(1.0 / middle);
-            if window.iter().all(|&k| self.margins.at_first(k) >= 0.0) {
-                above = middle;
+        let mut worst = |factor: f64| {
+            self.margins.lay_boundary(1.0 / factor);
+            let margins = window.iter().map(|&k| self.margins.at_first(k));
+            let worst = margins.fold(f64::INFINITY, f64::min);
+            // Where a leg does not reach a pose, the margin jumps to −1 less the shortfall.
+            if worst <= -1.0 {
+                (worst + 1.0).min(-f64::MIN_POSITIVE)
             } else {
-                below = middle;
+                worst
             }
+        };
+        let (mut at_below, mut at_above) = (worst(below), worst(above));
+        if at_below >= 0.0 {
+            above = below;
+        }
+        let mut has_lowered = None;
+        for turn in 0_usize.. {
+            if above - below <= ACCURACY * above {
+                break;
+            }
+            let secant = above - (above - below) * at_above / (at_above - at_below);
+            let at = if turn >= HALVED && turn % 4 < 3 && secant > below && secant < above {
+                // Next to an end, the other one would stay where it is.
+                let aside = 0.4 * ACCURACY * above;
+                secant.max(below + aside).min(above - aside)
+            } else {
+                0.5 * (below + above)
+            };
+            let found = worst(at);
+            let lowers = found >= 0.0;
+            // An end that stays twice counts half, so that the next secant ends on its side.
+            let factor = if has_lowered == Some(lowers) { 0.5 } else { 1.0 };
+            if lowers {
+                (above, at_above) = (at, found);
+                at_below *= factor;
+            } else {
+                (below, at_below) = (at, found);
+                at_above *= factor;
+            }
+            has_lowered = Some(lowers);
         }
         GrownHome { home, factor: above }
     }

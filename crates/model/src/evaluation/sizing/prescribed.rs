@@ -17,6 +17,8 @@ pub(super) struct SizedPoses {
     /// shows that they do.
     pub near: f64,
     pub accuracy: SizingAccuracy,
+    /// Whether the design's own bars are the lightest ones of some of the poses, so that they are taken if they carry at all of them.
+    pub keeps_bars: bool,
     /// Largest number of times that poses are added and the bars sized again.
     pub repeats: usize,
 }
@@ -27,6 +29,7 @@ impl SizedPoses {
         must_hold: true,
         near: 1.7,
         accuracy: SizingAccuracy::COARSE,
+        keeps_bars: false,
         repeats: 5,
     };
 
@@ -36,7 +39,19 @@ impl SizedPoses {
             must_hold: true,
             near: 1.1,
             accuracy,
+            keeps_bars: false,
             repeats: 10,
+        }
+    }
+
+    /// For bars that were sized at some of the poses of a geometry that is known to hold the region.
+    pub fn at_the_others(accuracy: SizingAccuracy) -> Self {
+        Self {
+            must_hold: false,
+            keeps_bars: true,
+            near: 1.002,
+            repeats: 30,
+            ..Self::exactly(accuracy)
         }
     }
 }
@@ -128,19 +143,26 @@ impl<L: Leg> Sizer<'_, L> {
                 return None;
             }
         }
-        self.lay_positions(positions, &window);
+        if !how.must_hold {
+            self.lay_positions(positions, &window);
+        }
         let own = [self.design.leg_bar_radius(), self.design.platform_bar_radius()];
-        let mut near = near_weakest(&self.ratios_at_all(own), how.near);
-        let everything = std::mem::take(&mut self.laid);
+        let ratios = self.ratios_at_all(own);
+        if how.keeps_bars && below_one(&ratios).is_empty() {
+            return Some(self.design);
+        }
+        let mut near = near_weakest(&ratios, how.near);
+        let mut everything = std::mem::take(&mut self.laid);
         for _ in 0..how.repeats {
             self.laid = everything.chosen(&near);
             let bars = self.lightest_bars(how.accuracy)?;
-            self.laid = everything.chosen(&(0..everything.count).collect::<Vec<_>>());
-            let missed = below_one(&self.ratios_at_all(bars));
-            if missed.is_empty() {
+            std::mem::swap(&mut self.laid, &mut everything);
+            let ratios = self.ratios_at_all(bars);
+            std::mem::swap(&mut self.laid, &mut everything);
+            if below_one(&ratios).is_empty() {
                 return Some(self.with_bars(bars));
             }
-            near.extend(missed);
+            near.extend(near_weakest(&ratios, how.near));
             near.sort_unstable();
             near.dedup();
         }
@@ -167,11 +189,21 @@ impl<L: Leg> Sizer<'_, L> {
     }
 }
 
-/// Returns the poses whose ratio is near the smallest of its kind.
+/// Returns the poses whose ratio is near the smallest of its kind. A kind that exceeds its limit by far more than another one, or has
+/// none, determines no bars.
 fn near_weakest(ratios: &Ratios, near: f64) -> Vec<usize> {
+    const FAR: f64 = 4.0;
+    let least_of = |column: &[f64]| column.iter().copied().fold(f64::INFINITY, f64::min);
+    let weakest = ratios
+        .iter()
+        .map(|column| least_of(column))
+        .fold(f64::INFINITY, f64::min);
     let mut poses = Vec::new();
     for column in ratios {
-        let least = column.iter().copied().fold(f64::INFINITY, f64::min);
+        let least = least_of(column);
+        if least > FAR * weakest && weakest > 0.0 {
+            continue;
+        }
         poses.extend((0..column.len()).filter(|&pose| column[pose] <= near * least));
     }
     poses.sort_unstable();

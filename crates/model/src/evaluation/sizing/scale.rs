@@ -76,7 +76,7 @@ impl<L: Leg> Sizer<'_, L> {
         let exact = |(home, coarse): &(GrownHome, Fitted)| {
             let with_bars = self.starting_with(&coarse.design, grid);
             let fitted = with_bars.fitted(*home, largest, grid, EXACT)?;
-            with_bars.sized_in(fitted.grown, grid, EXACT.bars, false)
+            self.sized_everywhere(&fitted, grid)
         };
         let lightest = near
             .filter_map(exact)
@@ -95,18 +95,17 @@ impl<L: Leg> Sizer<'_, L> {
 
     /// Returns a sizer of the same geometry that starts with the bars of another design.
     fn starting_with(&self, bars: &Design, grid: GridChoice) -> Self {
-        let design = self.with_bars([bars.leg_bar_radius(), bars.platform_bar_radius()]);
+        let design = self.with_bars(bars_of(bars));
         Self::new(self.model, &design, self.ranges, grid)
     }
 
-    /// Returns the design that is similar to this one, with bars sized for one home orientation, at all positions or only at those
-    /// on which scales are compared.
-    fn sized_in(&self, grown: GrownHome, grid: GridChoice, bars: SizingAccuracy, spread_only: bool) -> Option<Fitted> {
-        let larger = self.design.with_lengths_times(grown.factor);
+    /// Returns the design that is similar to this one, with bars sized for one home orientation at the positions on which scales are
+    /// compared. `start` are the radii of the bars at which sizing starts.
+    fn sized_in(&self, grown: GrownHome, start: [f64; 2], grid: GridChoice, bars: SizingAccuracy) -> Option<Fitted> {
+        let larger = self.design.with_bars(start).with_lengths_times(grown.factor);
         let mut sizer = Self::new(self.model, &larger, self.ranges, grid);
         let samples = sizer.samples(grid);
-        let positions = if spread_only { spread(&samples) } else { samples.all };
-        let design = sizer.sized_at(grown.home, &positions, SizedPoses::exactly(bars))?;
+        let design = sizer.sized_at(grown.home, &spread(&samples), SizedPoses::exactly(bars))?;
         Some(Fitted {
             mass: self.model.mass(&design),
             grown,
@@ -114,10 +113,29 @@ impl<L: Leg> Sizer<'_, L> {
         })
     }
 
+    /// Returns a design that was sized at some positions with bars that carry at all of them.
+    fn sized_everywhere(&self, fitted: &Fitted, grid: GridChoice) -> Option<Fitted> {
+        let mut sizer = Self::new(self.model, &fitted.design, self.ranges, grid);
+        let positions = sizer.samples(grid).all;
+        let how = SizedPoses::at_the_others(EXACT.bars);
+        let design = sizer.sized_at(fitted.grown.home, &positions, how)?;
+        Some(Fitted {
+            mass: self.model.mass(&design),
+            design,
+            ..*fitted
+        })
+    }
+
     /// Returns the design with the scale that is lightest in one home orientation, from the least scale with which the geometry
     /// holds the region to `largest`. The mass grows with the scale, unless poses near the limits of reach require thick bars.
     fn fitted(&self, least: GrownHome, largest: f64, grid: GridChoice, accuracy: FitAccuracy) -> Option<Fitted> {
-        let at = |factor: f64| self.sized_in(GrownHome { factor, ..least }, grid, accuracy.bars, true);
+        // The bars of one scale are nearly those of the next.
+        let mut start = bars_of(&self.design);
+        let mut at = |factor: f64| {
+            let found = self.sized_in(GrownHome { factor, ..least }, start, grid, accuracy.bars);
+            start = found.map_or(start, |fitted| bars_of(&fitted.design));
+            found
+        };
         let mass = |fitted: &Option<Fitted>| fitted.map_or(f64::INFINITY, |fitted| fitted.mass);
         let larger = |change: f64| (least.factor * (1.0 + change)).min(largest);
         let mut lightest = at(least.factor);
@@ -143,6 +161,10 @@ impl<L: Leg> Sizer<'_, L> {
         let logarithm = golden_section([below, above].map(libm::log), accuracy.scale, of_logarithm);
         at(libm::exp(logarithm).clamp(below, above))
     }
+}
+
+fn bars_of(design: &Design) -> [f64; 2] {
+    [design.leg_bar_radius(), design.platform_bar_radius()]
 }
 
 /// Returns the positions that are examined first, and some of the others.
