@@ -401,6 +401,7 @@ fn certificates_answer_one_design_or_a_stream() {
         [
             "architecture",
             "boxes",
+            "claim",
             "claimed_radius_m",
             "closed",
             "design",

@@ -9,6 +9,7 @@ mod injected;
 mod merging;
 mod outside;
 mod recordings;
+mod regions;
 mod reports;
 mod runs;
 mod support;

@@ -296,7 +296,7 @@ mod tests {
         let ends = [Duration::from_millis(800)];
         assert_eq!(times(&[generation], &ends), [[80.0, 10.0]]);
         assert_eq!(times(&[generation], &[]), [] as [[f64; 2]; 0], "a run that was opened");
-        let values = ProgressCurve::ALL.map(|curve| curve.value(&generation));
+        let values = ProgressCurve::ALL.map(|curve| curve.value(&Study::default(), &generation));
         assert_eq!(values, [Some(3.5), Some(25.0), Some(7.0), None, None]);
     }
 }

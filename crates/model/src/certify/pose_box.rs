@@ -171,6 +171,7 @@ fn part_not_above_zero(a: f64, b: f64, k: f64) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec2;
 
     /// Numbers between −1 and 1 that look random.
     fn numbers() -> impl FnMut() -> f64 {
@@ -214,5 +215,31 @@ mod tests {
             }
         }
         assert!(cut > 500, "{cut} contractions");
+    }
+
+    /// The enclosure of a box of each kind of patch contains its positions.
+    #[test]
+    fn boxes_contain_their_positions() {
+        let corners = [[0.1, 0.2], [0.7, -0.3], [0.4, 0.9]].map(|[x, y]| DVec2::new(x, y));
+        let patches = [
+            Patch::Disc,
+            Patch::Rectangle([DVec2::new(-0.3, -0.2), DVec2::new(0.3, 0.2)]),
+            Patch::Triangle(corners),
+        ];
+        for patch in patches {
+            let part = PoseBox {
+                patch,
+                ..PoseBox::between([0.1, -0.15, 0.0], [0.25, 0.1, 0.1])
+            };
+            let enclosed = patch.enclose([0, 1].map(|k| part.middle_and_radius(k)));
+            for epsilon in [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.3, 0.7, 0.0], [1.0, 1.0, 0.0]] {
+                let [a, b, _] = part.point(epsilon);
+                let position = patch.position([a, b]).to_array();
+                for (model, value) in enclosed.iter().zip(position) {
+                    let off = (model.value(epsilon) - value).abs();
+                    assert!(off <= model.remainder + 1e-15, "{patch:?}: {off}");
+                }
+            }
+        }
     }
 }

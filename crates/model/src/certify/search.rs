@@ -147,7 +147,7 @@ impl<'a> Proof<'a> {
         let (phi, by_phi) = part.middle_and_radius(2);
         let (phi_sine, phi_cosine) = TaylorModel::sine_and_cosine(2, phi, by_phi);
         let centre = self.model.settings().workspace.centre;
-        let [x, y] = part.patch.enclose(part);
+        let [x, y] = part.patch.enclose([0, 1].map(|k| part.middle_and_radius(k)));
         let pose = PoseEnclosure {
             position: [x.plus(Interval::exactly(centre.x)), y.plus(Interval::exactly(centre.y))],
             cosine: phi_cosine,

@@ -1,0 +1,162 @@
+//! Runs for prescribed regions: every design that is reported is proved, and no random pose of its region misses a limit.
+
+use std::fs;
+
+use glam::DVec2;
+use kinefront_model::evaluation::PoseScalar;
+use kinefront_model::spatial::Pose;
+use kinefront_model::workspace::Region;
+use kinefront_study::RunFolder;
+use predicates::str::contains;
+
+use super::support::{check, folder, is_thorough, kinefront, optimize};
+
+/// Studies of builders, each with the least number of designs that its front has.
+const STUDIES: [(&str, &str, usize); 3] = [
+    (
+        "cell",
+        r#"
+objectives = [{ minimize = "mass_kg" }, { maximize = "k_xy_n_per_m" }]
+[constraints]
+footprint_m = { at_most = 1.2 }
+[sections]
+legs = { kind = "tube", catalogue = "en-10255-medium" }
+platform = { kind = "square_tube", wall_ratio = 0.15 }
+[workspace.region]
+kind = "rectangle"
+width_m = 0.6
+height_m = 0.4
+[variables]
+r_m = 0.25
+"#,
+        5,
+    ),
+    (
+        "polygon",
+        r#"
+objectives = [{ minimize = "mass_kg" }, { minimize = "footprint_m" }]
+[constraints]
+displacement_max_m = { at_most = 8e-5 }
+transmission_min = { at_least = 0.25 }
+[requirements]
+clearance_min_m = 0.005
+[workspace.region]
+kind = "polygon"
+corners_m = [[-0.3, -0.2], [0.3, -0.2], [0.3, 0.1], [0.0, 0.0], [-0.3, 0.25]]
+"#,
+        2,
+    ),
+    (
+        "disc",
+        r#"
+objectives = [{ minimize = "mass_kg" }]
+[workspace.region]
+kind = "disc"
+radius_m = 0.5
+"#,
+        1,
+    ),
+];
+
+#[test]
+fn reported_designs_hold_their_region() {
+    let folder = folder();
+    let poses = if is_thorough() { 200_000 } else { 2000 };
+    for (name, text, least) in STUDIES {
+        let study = folder.path().join(format!("{name}.toml"));
+        fs::write(&study, text).expect("a study");
+        let out = folder.path().join(name);
+        optimize(
+            &study,
+            &out,
+            &["--evaluations", "600", "--front", "20", "--no-recording"],
+        );
+        let run = RunFolder::open(&out).expect("a run");
+        let report = run.report().expect("a report");
+        let proofs = report.proofs.as_ref().expect("proofs");
+        let front = run.front().expect("a table").expect("a front").rows;
+        assert!(
+            front.len() >= least && front.len() <= 20,
+            "{name}: {} designs",
+            front.len()
+        );
+        assert_eq!((proofs.proved, proofs.open), (front.len(), 0), "{name}: {proofs}");
+        let model = run.study().model().expect("a model");
+        let workspace = &model.settings().workspace;
+        for entry in &front {
+            let certified = entry.certified.expect("a certificate");
+            assert!(certified.is_proved && certified.is_of_region && certified.upper.is_none());
+            let phi = entry.row.phi.expect("a home").to_radians();
+            let mut state = 17 + entry.id as u64;
+            let mut next = || {
+                state = state
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
+                (state >> 11) as f64 / (1u64 << 53) as f64
+            };
+            let half = 0.5 * workspace.rotation_range_deg.to_radians();
+            for _ in 0..poses {
+                let position = match &workspace.region {
+                    Region::Polygon(polygon) => {
+                        // Some on the boundary, the others within.
+                        let corners = polygon.corners();
+                        let [a, b, c] =
+                            [0; 3].map(|_| corners[(next() * corners.len() as f64) as usize % corners.len()]);
+                        let at = a.lerp(b.lerp(c, next()), next());
+                        if !polygon.contains(at) && polygon.distance_to_boundary(at) > 1e-12 {
+                            continue;
+                        }
+                        at
+                    }
+                    Region::Disc(radius) => DVec2::from_angle(std::f64::consts::TAU * next()) * *radius * next().sqrt(),
+                    Region::Largest => unreachable!("each study prescribes its region"),
+                };
+                let turn = match (3.0 * next()) as u32 {
+                    0 => half * (1.0 - 1e-12),
+                    1 => -half * (1.0 - 1e-12),
+                    _ => half * (2.0 * next() - 1.0),
+                };
+                let pose = Pose {
+                    position: workspace.centre + position,
+                    phi: phi + turn,
+                };
+                assert!(
+                    model.pose(&entry.row.design, &pose).is_ok(),
+                    "{name} #{} at {pose:?}",
+                    entry.id
+                );
+                for (scalar, _) in model.settings().thresholds.iter() {
+                    let margin = model.margin_at(&entry.row.design, &pose, scalar);
+                    let is_kept = margin >= -1e-9 || scalar == PoseScalar::Determinant;
+                    assert!(is_kept, "{name} #{}: {scalar:?} {margin} at {pose:?}", entry.id);
+                }
+            }
+        }
+        check(&out).success();
+        // The command proves the same, and refutes a region that is larger.
+        let certify = |study: &std::path::Path| {
+            kinefront()
+                .args([
+                    "certify",
+                    "--json",
+                    "--design",
+                    &front[0].row.design.to_string(),
+                    "--study",
+                ])
+                .arg(study)
+                .assert()
+                .success()
+        };
+        certify(&study)
+            .stdout(contains(r#""verdict":"proved""#))
+            .stdout(contains(r#""claim":"region""#));
+        let larger = folder.path().join(format!("{name}-larger.toml"));
+        let grown = text
+            .replace("width_m = 0.6", "width_m = 1.9")
+            .replace("[0.3, -0.2]", "[1.9, -0.2]")
+            .replace("radius_m = 0.5", "radius_m = 1.5");
+        assert_ne!(grown, text);
+        fs::write(&larger, grown).expect("a study");
+        certify(&larger).stdout(contains(r#""verdict":"refuted""#));
+    }
+}
