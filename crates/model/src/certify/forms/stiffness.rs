@@ -121,16 +121,31 @@ impl Forms<'_> {
         }
     }
 
-    /// g5 for the entry of `K`, unless the stiffness of one leg alone suffices: those of the others are positive, and no quotient is
-    /// needed for one.
+    /// g5 for the entry of `K`, unless the stiffness of one leg or of two legs suffices: those of the others are positive, and no
+    /// quotient is needed. Where the distal bar of a leg has almost no length, its own stiffness is enclosed badly.
     fn enclose_vertical(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
+        let threshold = self.compliance.vertical;
+        let suffices = |[minor, determinant]: &[TaylorModel; 2]| (*minor - determinant.scaled(threshold)).is_positive();
         let first = self.vertical(&legs[0], 0);
-        if (first[0] - first[1].scaled(self.compliance.vertical)).is_positive() {
+        if suffices(&first) {
             return;
         }
-        let mut stiffness = TaylorModel::constant(-self.compliance.vertical);
-        for [minor, determinant] in [first, self.vertical(&legs[1], 1), self.vertical(&legs[2], 2)] {
+        let all = [first, self.vertical(&legs[1], 1), self.vertical(&legs[2], 2)];
+        if all[1..].iter().any(suffices) {
+            return;
+        }
+        let mut stiffness = TaylorModel::constant(-threshold);
+        for [minor, determinant] in all {
             stiffness = stiffness + minor * determinant.reciprocal();
+        }
+        if !stiffness.is_positive() {
+            let pairs = [[0, 1], [1, 2], [2, 0]].map(|pair| {
+                let [[minor, determinant], [other_minor, other]] = pair.map(|leg| all[leg]);
+                [minor * other + other_minor * determinant, determinant * other]
+            });
+            if pairs.iter().any(suffices) {
+                return;
+            }
         }
         found.push(PoseScalar::StiffnessZ, stiffness);
     }
