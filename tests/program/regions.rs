@@ -2,9 +2,8 @@
 
 use std::fs;
 
-use glam::DVec2;
 use kinefront_model::evaluation::PoseScalar;
-use kinefront_model::spatial::Pose;
+use kinefront_model::spatial::{Pose, unit};
 use kinefront_model::workspace::Region;
 use kinefront_study::RunFolder;
 use predicates::str::contains;
@@ -108,7 +107,7 @@ fn reported_designs_hold_their_region() {
                         }
                         at
                     }
-                    Region::Disc(radius) => DVec2::from_angle(std::f64::consts::TAU * next()) * *radius * next().sqrt(),
+                    Region::Disc(radius) => unit(std::f64::consts::TAU * next()) * *radius * next().sqrt(),
                     Region::Largest => unreachable!("each study prescribes its region"),
                 };
                 let turn = match (3.0 * next()) as u32 {

@@ -1,7 +1,7 @@
 //! Proofs of workspaces, beside the evaluations on the fine grid that they complete.
 
 use criterion::{BenchmarkId, Criterion, Throughput};
-use kinefront_model::certify::{Certificate, CertifyOptions};
+use kinefront_model::certify::Certificate;
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::Architecture;
 
@@ -26,7 +26,7 @@ fn front(model: &Model, architecture: Architecture) -> Vec<Evaluation> {
 }
 
 fn certify(model: &Model, evaluation: &Evaluation) -> Certificate {
-    let claim = CertifyOptions::of(evaluation).expect("a workspace");
+    let claim = model.claim(evaluation).expect("a workspace");
     model.certify(&evaluation.design, &claim).expect("a certificate")
 }
 
