@@ -29,13 +29,7 @@ pub fn subset(front: &[impl AsRef<[f64]>], reference: &[f64], most: usize) -> Ve
         2 => {
             let chosen = best_staircase(&scales, most);
             match knee(front) {
-                Some(knee) if !chosen.contains(&knee) => {
-                    let mut chosen = best_staircase(&scales, most - 1);
-                    chosen.push(knee);
-                    chosen.sort_unstable();
-                    chosen.dedup();
-                    chosen
-                }
+                Some(knee) if !chosen.contains(&knee) => with_knee(&scales, &chosen, knee),
                 _ => chosen,
             }
         }
@@ -48,6 +42,28 @@ pub fn subset(front: &[impl AsRef<[f64]>], reference: &[f64], most: usize) -> Ve
             one_after_the_other(&scales, first, most)
         }
     }
+}
+
+/// Puts the knee in the place of one of its neighbours, but for the ends: that without which the others cover more.
+fn with_knee(scales: &[Scale], chosen: &[usize], knee: usize) -> Vec<usize> {
+    let at = chosen.partition_point(|&place| place < knee);
+    let others = (at.saturating_sub(1)..=at).filter(|&place| place > 0 && place + 1 < chosen.len());
+    let exchanged = others.map(|place| {
+        let mut exchanged = chosen.to_vec();
+        exchanged[place] = knee;
+        (covered(scales, &exchanged), exchanged)
+    });
+    let best = exchanged.reduce(|best, next| if next.0 > best.0 { next } else { best });
+    best.map_or(chosen.to_vec(), |(_, exchanged)| exchanged)
+}
+
+/// What some members cover, as a share of the whole front, summed over the scales.
+fn covered(scales: &[Scale], chosen: &[usize]) -> f64 {
+    let of_scale = |scale: &Scale| {
+        let points = chosen.iter().map(|&place| &scale.points[place]);
+        scale.weight * hypervolume(points, &scale.reference)
+    };
+    scales.iter().map(of_scale).sum()
 }
 
 /// The front on one scale of its objectives.
@@ -167,13 +183,6 @@ impl Ord for Waiting {
 }
 
 fn one_after_the_other(scales: &[Scale], mut chosen: Vec<usize>, most: usize) -> Vec<usize> {
-    let covered = |chosen: &[usize], another: Option<usize>| {
-        let of_scale = |scale: &Scale| {
-            let points = chosen.iter().chain(&another).map(|&place| &scale.points[place]);
-            scale.weight * hypervolume(points, &scale.reference)
-        };
-        scales.iter().map(of_scale).sum::<f64>()
-    };
     let mut waiting: BinaryHeap<Waiting> = (0..scales[0].points.len())
         .filter(|place| !chosen.contains(place))
         .map(|place| Waiting {
@@ -182,15 +191,18 @@ fn one_after_the_other(scales: &[Scale], mut chosen: Vec<usize>, most: usize) ->
             known_at: usize::MAX,
         })
         .collect();
-    let mut so_far = covered(&chosen, None);
+    let mut so_far = covered(scales, &chosen);
     while chosen.len() < most {
         let Some(next) = waiting.pop() else { break };
         if next.known_at == chosen.len() {
             so_far += next.gain;
             chosen.push(next.place);
         } else {
+            chosen.push(next.place);
+            let gain = covered(scales, &chosen) - so_far;
+            chosen.pop();
             waiting.push(Waiting {
-                gain: covered(&chosen, Some(next.place)) - so_far,
+                gain,
                 known_at: chosen.len(),
                 ..next
             });
@@ -229,12 +241,7 @@ mod tests {
         let reference = [2.0 * front[10][0], 1.0];
         let scales = scales(&front, &reference);
         assert_eq!(scales.len(), 2);
-        let covers = |places: &[usize]| {
-            let of_scale = |scale: &Scale| {
-                scale.weight * hypervolume(places.iter().map(|&place| &scale.points[place]), &scale.reference)
-            };
-            scales.iter().map(of_scale).sum::<f64>()
-        };
+        let covers = |places: &[usize]| covered(&scales, places);
         for most in [3, 5, 8] {
             let chosen = best_staircase(&scales, most);
             assert_eq!(chosen.len(), most);
@@ -252,8 +259,10 @@ mod tests {
     fn a_subset_has_the_ends_and_the_knee() {
         let front = front(300);
         let reference = [1.1 * front[299][0], 1.0];
+        for most in 3..40 {
+            assert_eq!(subset(&front, &reference, most).len(), most);
+        }
         let chosen = subset(&front, &reference, 20);
-        assert_eq!(chosen.len(), 20);
         assert!(chosen.is_sorted());
         for member in [Some(0), Some(299), knee(&front)] {
             assert!(member.is_some_and(|member| chosen.contains(&member)));

@@ -123,8 +123,8 @@ impl<'a> Settling<'a> {
             let chosen = subset(&objectives, &self.search.found.reference, most);
             let wanted = chosen.len();
             self.settle(&chosen, times, send)?;
-            for _ in 0..ROUNDS {
-                let replacements = self.replacements(&objectives, wanted);
+            for round in 0..ROUNDS {
+                let replacements = self.replacements(&objectives, wanted, round);
                 if replacements.is_empty() {
                     break;
                 }
@@ -226,11 +226,14 @@ impl<'a> Settling<'a> {
         archive
     }
 
-    /// Returns the candidates that take the place of those that fell: of each the nearest that was not tried, as long as designs are
-    /// missing.
-    fn replacements(&self, objectives: &[Objectives], wanted: usize) -> Vec<usize> {
+    /// Returns the candidates that take the place of those that fell: of each the nearest that was not tried, as many as designs are
+    /// missing, and one more in every round, because neighbours may fall together.
+    fn replacements(&self, objectives: &[Objectives], wanted: usize, round: usize) -> Vec<usize> {
         let standing = self.standing();
-        let missing = wanted.saturating_sub(standing.len());
+        let missing = match wanted.saturating_sub(standing.len()) {
+            0 => return Vec::new(),
+            missing => missing + round,
+        };
         let mut stands = vec![false; objectives.len()];
         for member in standing.iter() {
             stands[self.held[member.id].0] = true;
@@ -238,10 +241,10 @@ impl<'a> Settling<'a> {
         let mut taken = self.is_tried.clone();
         let scales = scales(objectives);
         let mut found = Vec::new();
-        for fallen in (0..objectives.len()).filter(|&place| self.is_tried[place] && !stands[place]) {
-            if found.len() == missing {
-                break;
-            }
+        let all_fallen: Vec<usize> = (0..objectives.len())
+            .filter(|&place| self.is_tried[place] && !stands[place])
+            .collect();
+        for &fallen in all_fallen.iter().cycle().take(missing) {
             let distance = |place: usize| -> f64 {
                 let along = |(k, scale): (usize, &f64)| scale * (objectives[place][k] - objectives[fallen][k]);
                 scales.iter().enumerate().map(along).map(|part| part * part).sum()
