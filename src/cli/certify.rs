@@ -101,7 +101,7 @@ impl Prover<'_> {
             claimed_radius: self.arguments.radius.unwrap_or(evaluation.workspace_radius()),
             tolerance: self.arguments.tolerance,
             max_boxes: self.arguments.max_boxes as usize,
-            is_of_region: self.study.study().region().is_prescribed() && self.arguments.radius.is_none(),
+            is_of_region: self.study.study().workspace.region.is_prescribed() && self.arguments.radius.is_none(),
             ..CertifyOptions::default()
         };
         let certificate = model.certify(&design, &options)?;

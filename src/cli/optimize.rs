@@ -9,7 +9,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use kinefront_model::mechanism::Architecture;
 use kinefront_study::{
     AlgorithmName, Overrides, ResumeError, ResumeOptions, Resumption, RunControl, RunFolderError, RunWriter, Study,
-    StudySearch, WriteError,
+    StudySearch, WHOLE_FRONT, WriteError,
 };
 use miette::miette;
 
@@ -143,9 +143,6 @@ fn study(arguments: &OptimizeArguments) -> Result<Study, Failure> {
     let study = overrides.apply(study);
     study.map_err(|fault| Failure::Input(miette!("`{}` {}", fault.key, fault.message)))
 }
-
-/// Largest number of designs that a study may report, so that all are.
-const WHOLE_FRONT: usize = 100_000;
 
 fn front_size(text: &str) -> Result<usize, String> {
     match (text, text.parse()) {

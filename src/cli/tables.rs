@@ -277,7 +277,7 @@ pub fn certificate(found: &CertificateJson) -> String {
             format!("\na pose of the region at {upper:.6} m from its centre is proved infeasible")
         });
         return format!(
-            "every pose of the region is feasible: {verdict}{infeasible}\n{} boxes{homes}",
+            "claimed that every pose of the region is feasible: {verdict}{infeasible}\n{} boxes{homes}",
             found.boxes
         );
     }

@@ -3,9 +3,8 @@
 use std::fs;
 
 use kinefront_model::evaluation::PoseScalar;
-use kinefront_model::spatial::{Pose, unit};
-use kinefront_model::workspace::Region;
 use kinefront_study::RunFolder;
+use kinefront_testkit::poses_of_region;
 use predicates::str::contains;
 
 use super::support::{check, folder, is_thorough, kinefront, optimize};
@@ -81,44 +80,11 @@ fn reported_designs_hold_their_region() {
         );
         assert_eq!((proofs.proved, proofs.open), (front.len(), 0), "{name}: {proofs}");
         let model = run.study().model().expect("a model");
-        let workspace = &model.settings().workspace;
         for entry in &front {
             let certified = entry.certified.expect("a certificate");
             assert!(certified.is_proved && certified.is_of_region && certified.upper.is_none());
-            let phi = entry.row.phi.expect("a home").to_radians();
-            let mut state = 17 + entry.id as u64;
-            let mut next = || {
-                state = state
-                    .wrapping_mul(6_364_136_223_846_793_005)
-                    .wrapping_add(1_442_695_040_888_963_407);
-                (state >> 11) as f64 / (1u64 << 53) as f64
-            };
-            let half = 0.5 * workspace.rotation_range_deg.to_radians();
-            for _ in 0..poses {
-                let position = match &workspace.region {
-                    Region::Polygon(polygon) => {
-                        // Some on the boundary, the others within.
-                        let corners = polygon.corners();
-                        let [a, b, c] =
-                            [0; 3].map(|_| corners[(next() * corners.len() as f64) as usize % corners.len()]);
-                        let at = a.lerp(b.lerp(c, next()), next());
-                        if !polygon.contains(at) && polygon.distance_to_boundary(at) > 1e-12 {
-                            continue;
-                        }
-                        at
-                    }
-                    Region::Disc(radius) => unit(std::f64::consts::TAU * next()) * *radius * next().sqrt(),
-                    Region::Largest => unreachable!("each study prescribes its region"),
-                };
-                let turn = match (3.0 * next()) as u32 {
-                    0 => half * (1.0 - 1e-12),
-                    1 => -half * (1.0 - 1e-12),
-                    _ => half * (2.0 * next() - 1.0),
-                };
-                let pose = Pose {
-                    position: workspace.centre + position,
-                    phi: phi + turn,
-                };
+            let phi_deg = entry.row.phi.expect("a home");
+            for pose in poses_of_region(&model.settings().workspace, phi_deg, poses, 17 + entry.id as u64) {
                 assert!(
                     model.pose(&entry.row.design, &pose).is_ok(),
                     "{name} #{} at {pose:?}",

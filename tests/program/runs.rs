@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use kinefront_model::evaluation::PoseScalar;
+use kinefront_testkit::numbers;
 
 use super::support::{check, folder, kinefront, optimize, program, small_study};
 
@@ -134,13 +135,7 @@ fn a_front_with_pockets_is_proved() {
         let certified = entry.certified.expect("a certificate");
         assert!(certified.is_proved && certified.lower == entry.row.workspace_radius());
         let phi = entry.row.phi.expect("a home").to_radians();
-        let mut state = entry.id as u64;
-        let mut next = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut next = numbers(entry.id as u64);
         for _ in 0..2000 {
             let (radius, theta) = (
                 entry.row.workspace_radius() * next().sqrt(),

@@ -97,5 +97,5 @@ pub use moga2::{Moga2, Moga2Settings};
 pub use nsga2::{Nsga2, Nsga2Settings};
 pub use problem::{Algorithm, Candidate, Evaluated, Objectives, Outcome, Problem, Target, Variable};
 pub use run::run;
-pub use selection::{groups, knee, ranking, spread};
+pub use selection::{groups, knee, ranking, scaled, spread};
 pub use subset::subset;

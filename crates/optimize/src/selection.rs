@@ -160,7 +160,7 @@ fn length(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Scales each objective to \[0, 1\], where 0 is the best value of the front and 1 the worst.
-pub(super) fn scaled(front: &[impl AsRef<[f64]>]) -> Vec<Vec<f64>> {
+pub fn scaled(front: &[impl AsRef<[f64]>]) -> Vec<Vec<f64>> {
     let count = front.first().map_or(0, |first| first.as_ref().len());
     let range = |k: usize| {
         front

@@ -12,7 +12,7 @@ use super::prove::{FrontProver, ProvedMember, proved_front};
 use super::search::{Found, StudySearch};
 use super::{DesignProblem, EndReason, Event, FrontMember, FrontProofs, RunControl, RunSummary, RunTimes, TableRow};
 use kinefront_model::evaluation::Evaluation;
-use kinefront_optimize::{Archive, Objectives, hypervolume, subset};
+use kinefront_optimize::{Archive, Objectives, hypervolume, scaled, subset};
 
 /// Number of times that designs which fell are replaced by their neighbours.
 const ROUNDS: usize = 8;
@@ -120,11 +120,12 @@ impl<'a> Settling<'a> {
             self.settle_best(times, send)?;
         } else {
             let objectives: Vec<Objectives> = self.candidates.iter().map(|entry| entry.row.objectives).collect();
+            let points = scaled(&objectives);
             let chosen = subset(&objectives, &self.search.found.reference, most);
             let wanted = chosen.len();
             self.settle(&chosen, times, send)?;
             for round in 0..ROUNDS {
-                let replacements = self.replacements(&objectives, wanted, round);
+                let replacements = self.replacements(&points, wanted, round);
                 if replacements.is_empty() {
                     break;
                 }
@@ -227,29 +228,28 @@ impl<'a> Settling<'a> {
     }
 
     /// Returns the candidates that take the place of those that fell: of each the nearest that was not tried, as many as designs are
-    /// missing, and one more in every round, because neighbours may fall together.
-    fn replacements(&self, objectives: &[Objectives], wanted: usize, round: usize) -> Vec<usize> {
+    /// missing, and one more in every round, because neighbours may fall together. `points` are the scaled objectives of the candidates.
+    fn replacements(&self, points: &[Vec<f64>], wanted: usize, round: usize) -> Vec<usize> {
         let standing = self.standing();
         let missing = match wanted.saturating_sub(standing.len()) {
             0 => return Vec::new(),
             missing => missing + round,
         };
-        let mut stands = vec![false; objectives.len()];
+        let mut stands = vec![false; points.len()];
         for member in standing.iter() {
             stands[self.held[member.id].0] = true;
         }
         let mut taken = self.is_tried.clone();
-        let scales = scales(objectives);
         let mut found = Vec::new();
-        let all_fallen: Vec<usize> = (0..objectives.len())
+        let all_fallen: Vec<usize> = (0..points.len())
             .filter(|&place| self.is_tried[place] && !stands[place])
             .collect();
         for &fallen in all_fallen.iter().cycle().take(missing) {
             let distance = |place: usize| -> f64 {
-                let along = |(k, scale): (usize, &f64)| scale * (objectives[place][k] - objectives[fallen][k]);
-                scales.iter().enumerate().map(along).map(|part| part * part).sum()
+                let parts = points[place].iter().zip(&points[fallen]);
+                parts.map(|(a, b)| (a - b) * (a - b)).sum()
             };
-            let nearest = (0..objectives.len())
+            let nearest = (0..points.len())
                 .filter(|&place| !taken[place])
                 .min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
             if let Some(place) = nearest {
@@ -278,15 +278,4 @@ impl<'a> Settling<'a> {
             proofs: self.search.study().certifies().then_some(proofs),
         }
     }
-}
-
-/// Reciprocals of the ranges of the objectives; 0 for one without a range.
-fn scales(objectives: &[Objectives]) -> Vec<f64> {
-    let count = objectives.first().map_or(0, |first| first.len());
-    let range = |k: usize| {
-        let values = || objectives.iter().map(|point| point[k]);
-        let range = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
-        if range > 0.0 { 1.0 / range } else { 0.0 }
-    };
-    (0..count).map(range).collect()
 }

@@ -66,7 +66,7 @@ pub use settings::{
     CatalogueRow, Check, FileScope, GridSection, Grids, HypervolumeSection, Initial, LengthChoice, LimitChoice, Limits,
     MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, ReferenceDesign, RegionKind, RegionSection,
     RequirementSection, SectionChoice, SectionKind, SectionsSection, Setting, Stagnation, StiffnessChoice,
-    TelescopicBar, Tie, VariableChoice, Variables, WorkspaceSection, is_shown, settings,
+    TelescopicBar, Tie, VariableChoice, Variables, WHOLE_FRONT, WorkspaceSection, is_shown, settings,
 };
 pub use study::{Fault, Study, StudyError};
 pub use sum::{Difference, FileSum};

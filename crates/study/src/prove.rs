@@ -89,7 +89,7 @@ impl<'a> FrontProver<'a> {
         let Some(claim) = self.model().claim(evaluation) else {
             return proved;
         };
-        let wanted = self.wanted_radius(&claim);
+        let wanted = self.wanted_radius(claim.claimed_radius);
         let first = CertifyOptions {
             enough: wanted,
             ..claim
@@ -133,9 +133,9 @@ impl<'a> FrontProver<'a> {
         proved
     }
 
-    /// Returns the radius that must be proved, so that no stronger design is looked for \[m\].
-    fn wanted_radius(&self, claim: &CertifyOptions) -> f64 {
-        let restored = RESTORED * claim.claimed_radius;
+    /// Returns the radius that must be proved of a verified one, so that no stronger design is looked for \[m\].
+    fn wanted_radius(&self, verified: f64) -> f64 {
+        let restored = RESTORED * verified;
         self.problem
             .least_radius()
             .map_or(restored, |least| least.max(restored))
@@ -195,6 +195,7 @@ impl<'a> FrontProver<'a> {
     fn strengthen(&self, member: &FrontMember, pocket: &Pocket) -> Option<(FrontMember, f64)> {
         let model = self.model();
         let verified = &member.evaluation;
+        let wanted = self.wanted_radius(verified.workspace_radius());
         self.problem
             .strengthened(&verified.design)
             .into_iter()
@@ -204,14 +205,9 @@ impl<'a> FrontProver<'a> {
                     return None;
                 }
                 let evaluation = model.evaluate(&design, GridChoice::Fine);
-                let claim = model.claim(&evaluation)?;
-                let wanted = self.wanted_radius(&CertifyOptions {
-                    claimed_radius: verified.workspace_radius(),
-                    ..claim
-                });
                 let claim = CertifyOptions {
                     enough: wanted,
-                    ..claim
+                    ..model.claim(&evaluation)?
                 };
                 if claim.is_of_region && !evaluation.is_feasible() {
                     return None;

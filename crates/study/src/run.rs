@@ -94,7 +94,8 @@ fn run(mut search: StudySearch, control: &RunControl, publisher: &mut Publisher)
     }
     let outcome = search.run(start, control, |event| publisher.send(event))?;
     search.times.search_s = start.elapsed().as_secs_f64();
-    if let Some(summary) = conclude(search, outcome, control, &mut |event| publisher.send(event)) {
+    if let Some(mut summary) = conclude(search, outcome, control, &mut |event| publisher.send(event)) {
+        summary.times.publish_s = publisher.spent.as_secs_f64();
         publisher.send(Event::Finished(summary));
     }
     Ok(())

@@ -1,6 +1,9 @@
 //! What the tests of several packages share.
 
 pub mod oracle;
+mod random;
+
+pub use random::{numbers, poses_of_region};
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

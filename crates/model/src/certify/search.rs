@@ -62,8 +62,6 @@ struct Proof<'a> {
     sector: f64,
     /// The prescribed region, if the claim is about that.
     region: Option<&'a Region>,
-    /// Whether every box of the prescribed region was examined.
-    is_exhausted: bool,
     upper: Option<f64>,
     violation: Option<Violation>,
     heap: BinaryHeap<Reverse<PoseBox>>,
@@ -102,7 +100,6 @@ impl<'a> Proof<'a> {
                 phi: options.phi_deg.to_radians(),
             }),
             region,
-            is_exhausted: false,
             model,
             design,
             options,
@@ -341,10 +338,7 @@ impl<'a> Proof<'a> {
                     }
                     self.examine(part);
                 }
-                _ if self.is_prescribed() => {
-                    self.is_exhausted = true;
-                    return;
-                }
+                _ if self.is_prescribed() => return,
                 _ => {
                     self.proved = self.proved.max(self.target());
                     // The claimed radius may lie between the bounds: then they are brought closer.
@@ -494,9 +488,9 @@ impl<'a> Proof<'a> {
         self.push(&above);
     }
 
-    /// Whether every pose of the prescribed region is proved feasible.
+    /// Whether every pose of the prescribed region is proved feasible, once its boxes were examined.
     fn holds_region(&self) -> bool {
-        self.is_exhausted && self.violation.is_none() && self.aside == f64::INFINITY
+        !self.is_out_of_budget && self.violation.is_none() && self.aside == f64::INFINITY
     }
 
     fn lower(&self) -> f64 {

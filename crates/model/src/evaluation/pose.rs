@@ -50,16 +50,10 @@ impl Model {
     /// Returns the margin of the limit of a scalar at a pose, in doubles; at a pose that is not reached, it is the shortfall of the
     /// leg. The margin of `det A` is the absolute value; without a limit, the limit is 0.
     pub fn margin_at(&self, design: &Design, pose: &Pose, scalar: PoseScalar) -> f64 {
-        match self.pose(design, pose) {
+        let posed = self.posed(design);
+        match posed.at(pose) {
             Err(unreachable) => PoseScalar::Reach.margin(unreachable.shortfall.limit_margin, 0.0, design),
-            Ok(found) => {
-                let value = match scalar {
-                    PoseScalar::Determinant => found.values[scalar].abs(),
-                    _ => found.values[scalar],
-                };
-                let limit = self.settings().thresholds.get(scalar).unwrap_or(0.0);
-                scalar.margin(value, limit, design)
-            }
+            Ok(found) => posed.margin(&found, scalar),
         }
     }
 
@@ -113,14 +107,22 @@ impl PosedDesign {
     /// Returns the margins of all constraints at a pose that is reached, in the order of [`Constraint::ALL`]; that of `det_sign` is
     /// the absolute value.
     pub fn margins(&self, found: &PoseEvaluation) -> [f64; Constraint::COUNT] {
-        Constraint::ALL.map(|constraint| {
-            let value = match constraint.scalar() {
-                None => self.checker.assembly.value,
-                Some(scalar @ PoseScalar::Determinant) => found.values[scalar].abs(),
-                Some(scalar) => found.values[scalar],
-            };
-            let threshold = constraint.threshold(&self.checker.assembly, &self.checker.thresholds);
-            constraint.margin(value, threshold, &self.design)
+        Constraint::ALL.map(|constraint| match constraint.scalar() {
+            None => {
+                let assembly = &self.checker.assembly;
+                constraint.margin(assembly.value, assembly.threshold, &self.design)
+            }
+            Some(scalar) => self.margin(found, scalar),
         })
+    }
+
+    /// Returns the margin of the limit of a scalar at a pose that is reached; without a limit, the limit is 0.
+    fn margin(&self, found: &PoseEvaluation, scalar: PoseScalar) -> f64 {
+        let value = match scalar {
+            PoseScalar::Determinant => found.values[scalar].abs(),
+            _ => found.values[scalar],
+        };
+        let limit = self.checker.thresholds.get(scalar).unwrap_or(0.0);
+        scalar.margin(value, limit, &self.design)
     }
 }

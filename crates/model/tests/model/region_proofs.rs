@@ -2,12 +2,14 @@
 
 use glam::DVec2;
 use kinefront_model::certify::{Certificate, CertifyOptions, Patch, Verdict};
-use kinefront_model::evaluation::{GridChoice, Model, PoseScalar, SizingRanges, WorkspaceTarget};
+use kinefront_model::evaluation::{GridChoice, Model, PoseScalar, WorkspaceTarget};
 use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
 use kinefront_model::spatial::Pose;
 use kinefront_model::workspace::{Polygon, Region};
+use kinefront_testkit::poses_of_region;
 use rayon::prelude::*;
 
+use super::regions::RANGES;
 use super::strategies;
 
 fn with_region(region: Region) -> Model {
@@ -45,15 +47,8 @@ fn regions() -> Vec<(&'static str, Region)> {
 
 /// Returns a design of an architecture whose bars are sized for the region of a model, and so much thicker.
 fn sized(model: &Model, architecture: Architecture, increase: f64) -> Option<Design> {
-    let ranges = SizingRanges {
-        leg: [0.001, 0.2],
-        platform: [0.001, 0.2],
-        listed: [None, None],
-        is_exact: true,
-        scale: [1.0; 2],
-    };
     let start = Design::new(architecture, WorkingMode::new([true; 3]), [1.5, 0.4, 1.2, 0.03, 0.03]).expect("a design");
-    let found = model.sized(&start, &ranges, WorkspaceTarget::Prescribed(GridChoice::Reference))?;
+    let found = model.sized(&start, &RANGES, WorkspaceTarget::Prescribed(GridChoice::Reference))?;
     let factor = 1.0 + increase;
     let mut values = found.values();
     values[3..].iter_mut().for_each(|radius| *radius *= factor);
@@ -70,57 +65,8 @@ fn proof(model: &Model, design: &Design, phi_deg: f64) -> Certificate {
     model.certify(design, &claim).expect("a certificate")
 }
 
-/// Numbers in [0, 1) that look random.
-fn numbers(mut state: u64) -> impl FnMut() -> f64 {
-    move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
-/// Returns random poses of the region and the window of a model, about half of them on its boundary or at an end of the window.
 fn random_poses(model: &Model, phi_deg: f64, count: usize) -> Vec<Pose> {
-    let workspace = &model.settings().workspace;
-    let mut next = numbers(11);
-    let bound = match &workspace.region {
-        Region::Polygon(polygon) => polygon
-            .corners()
-            .iter()
-            .map(|corner| corner.length())
-            .fold(0.0, f64::max),
-        Region::Disc(radius) => *radius,
-        Region::Largest => unreachable!("the region is prescribed"),
-    };
-    let mut poses = Vec::new();
-    while poses.len() < count {
-        let position = match (&workspace.region, next() < 0.3) {
-            (Region::Polygon(polygon), true) => {
-                let corners = polygon.corners();
-                let side = (next() * corners.len() as f64) as usize % corners.len();
-                corners[side].lerp(corners[(side + 1) % corners.len()], next())
-            }
-            (Region::Disc(radius), true) => DVec2::from_angle(std::f64::consts::TAU * next()) * *radius,
-            _ => DVec2::new(bound * (2.0 * next() - 1.0), bound * (2.0 * next() - 1.0)),
-        };
-        let is_inside = match &workspace.region {
-            Region::Polygon(polygon) => polygon.contains(position) || polygon.distance_to_boundary(position) < 1e-12,
-            _ => position.length() <= bound * (1.0 + 1e-15),
-        };
-        let half = 0.5 * workspace.rotation_range_deg;
-        let turn = match (4.0 * next()) as u32 {
-            0 => [-half, half][usize::from(next() < 0.5)],
-            _ => half * (2.0 * next() - 1.0),
-        };
-        if is_inside {
-            poses.push(Pose {
-                position: workspace.centre + position,
-                phi: (phi_deg + turn).to_radians(),
-            });
-        }
-    }
-    poses
+    poses_of_region(&model.settings().workspace, phi_deg, count, 11)
 }
 
 /// The least margin of the paper's limits at a pose; negative where a leg does not reach it.

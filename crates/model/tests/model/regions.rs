@@ -165,7 +165,7 @@ fn corners_that_are_no_polygon_are_refused() {
     assert!(concave.contains(DVec2::new(1.0, 0.4)) && !concave.contains(DVec2::new(1.0, 0.6)));
 }
 
-const RANGES: SizingRanges = SizingRanges {
+pub const RANGES: SizingRanges = SizingRanges {
     leg: [0.0, 0.1],
     platform: [0.0, 0.1],
     listed: [None, None],

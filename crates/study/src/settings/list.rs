@@ -5,7 +5,7 @@ use kinefront_model::mechanism::Architecture;
 use super::declare::{Check, Initial, Setting, settings};
 use super::{
     ActuatorSection, AlgorithmName, Bounds, GeometrySection, HypervolumeSection, MaterialSection, ModelSection,
-    RailSection, RegionKind, RequirementSection, Variables, WorkspaceSection,
+    RailSection, RegionKind, RequirementSection, Variables, WHOLE_FRONT, WorkspaceSection,
 };
 
 const MOST: i64 = 100_000_000;
@@ -118,7 +118,7 @@ const SECTIONS: [&[Setting]; 25] = [
             section: "optimizer",
             key: "front_designs",
             description: "Number of designs that are reported: those that together cover the front best, including the ends and the knee.",
-            check: Check::Count(3, 100_000),
+            check: Check::Count(3, WHOLE_FRONT as i64),
             initial: None,
         },
         Setting {

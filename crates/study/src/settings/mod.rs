@@ -17,7 +17,7 @@ pub use bars::{
 pub(crate) use declare::wrong_name;
 pub use declare::{Check, Initial, Setting, is_shown};
 pub use list::settings;
-pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnation};
+pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnation, WHOLE_FRONT};
 pub(crate) use question::unknown_quantity;
 pub use question::{LimitChoice, Limits, ObjectiveChoice};
 pub use region::{RegionKind, RegionSection};

@@ -71,6 +71,9 @@ impl std::fmt::Display for AlgorithmName {
     }
 }
 
+/// Largest number of designs that a run reports: as many as its front has.
+pub const WHOLE_FRONT: usize = 100_000;
+
 /// Algorithm, budget, random seed and settings of the search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

@@ -226,7 +226,7 @@ impl<'a> Fields<'a> {
             lower: lower.ok_or(RowError::Value(Column::CertifiedLower))?,
             upper: self.number(Column::CertifiedUpper),
             is_proved: state == CertifiedWorkspace::PROVED,
-            is_of_region: study.region().is_prescribed(),
+            is_of_region: study.workspace.region.is_prescribed(),
         }))
     }
 

@@ -126,8 +126,8 @@ impl<'a, L: Leg> Growth<'a, L> {
         self.orientation_grid.homes_of_one_sign(|k| self.signs[k]).collect()
     }
 
-    /// Narrows a range of factors by secants (the Illinois method, Dowell and Jarratt 1971) and halving: the upper end holds the region in the window of a
-    /// home orientation, the lower one does not, unless both are equal.
+    /// Narrows a range of factors by halving and secants (the Illinois method, Dowell and Jarratt 1971): the upper end holds the region
+    /// in the window of a home orientation, the lower one does not, unless both are equal.
     fn exactly(&mut self, home: usize, [mut below, mut above]: [f64; 2]) -> GrownHome {
         let window: Vec<usize> = self.orientation_grid.window(home).collect();
         for &k in &window {
