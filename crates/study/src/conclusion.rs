@@ -135,8 +135,8 @@ impl<'a> Settling<'a> {
         Some(self.reported(most))
     }
 
-    /// Verifies and proves the best designs, one after the other, until one holds that those left would hardly be better than; once one
-    /// holds, only a few more are tried, for on the fine grid all become worse alike.
+    /// Verifies and proves the best designs, one after the other, until one holds and those that are left promise hardly more. Once one
+    /// holds, only a few more are tried: on the fine grid, all become worse alike.
     fn settle_best(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
         /// Relative gain for which no other design is tried.
         const HARDLY: f64 = 1e-5;

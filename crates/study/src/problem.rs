@@ -283,8 +283,8 @@ impl DesignProblem {
         }
     }
 
-    /// Returns designs near one that misses a requirement by little, from the least change on, each with the largest relative change
-    /// of a dimension: with thicker bars; for a prescribed region also with the next bar of a list, and larger as a whole.
+    /// Returns designs near one that misses a requirement by little, in the order in which they are tried, each with the relative increase
+    /// of its dimensions: with ever thicker bars; for a prescribed region then ever larger as a whole, and with the next bar of a list.
     pub(super) fn strengthened(&self, design: &Design) -> Vec<(Design, f64)> {
         let bars: Vec<DesignVariable> = BARS.into_iter().filter(|bar| self.is_free(*bar)).collect();
         let lengths = LENGTHS.iter().filter(|length| self.is_free(**length));
@@ -311,13 +311,8 @@ impl DesignProblem {
                 let radius = design.values()[bar as usize];
                 let listed = self.listed[bar as usize].iter().flatten().copied();
                 if let Some(next) = listed.filter(|other| *other > radius).reduce(f64::min) {
-                    take(
-                        self.times(design, &[bar], next / radius).map(|mut values| {
-                            values[bar as usize] = next;
-                            values
-                        }),
-                        next / radius - 1.0,
-                    );
+                    // Listed bars are within their bounds; the nearest entry of the list is the next one.
+                    take(self.times(design, &[bar], next / radius), next / radius - 1.0);
                 }
             }
         }
