@@ -93,9 +93,13 @@ impl PyRun {
         let columns: Vec<Column> = Column::of_front(&self.study).collect();
         let objectives: Vec<_> = front.iter().map(|entry| entry.row.objectives).collect();
         let marks = front_marks(&self.study, &objectives);
+        let sections = self.study.sections.cross_sections();
         let cell = |place: usize, column: Column, entry: &TableRow| match column {
             Column::Mark => Cell::Text(marks[place].clone().into()),
-            column => column.cell(entry),
+            column => match column.section_of(&sections, &entry.row.design) {
+                Some(name) => Cell::Text(name.to_owned().into()),
+                None => column.cell(entry),
+            },
         };
         let made = Py::new(py, PyTable::with(py, &columns, front, cell)?)?;
         Ok(self.front_table.get_or_init(|| made).clone_ref(py))

@@ -14,12 +14,13 @@ use super::{Ending, Failure, exists_already, say};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Formats of a design: gltf (.glb), mjcf (.xml), sdf, urdf, dxf, json.
+Formats of a design: gltf (.glb), mjcf (.xml), sdf, urdf, dxf, json, csv-parts (.csv: what has to be ordered and cut).
 Formats of a front: csv, parquet; specify the run folder instead of a design.
 
 Examples:
   kinefront export --design \"3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056\" --out design.glb
   kinefront export run/front.csv#12 --format mjcf --out design.xml
+  kinefront export run/front.csv#12 --out parts.csv
   kinefront export run --out front.parquet")]
 pub struct ExportArguments {
     #[command(flatten)]
@@ -72,7 +73,8 @@ impl ExportArguments {
                 .find(|format| format.extension() == extension)
         };
         match extension.as_ref() {
-            "csv" => Ok(ExportTarget::Csv),
+            // A front and the parts of a design have one extension.
+            "csv" if !self.subject.is_design() => Ok(ExportTarget::Csv),
             "parquet" => Ok(ExportTarget::Parquet),
             _ => design().map(ExportTarget::Design).ok_or_else(|| {
                 miette!(
@@ -157,7 +159,7 @@ fn front(arguments: &ExportArguments, target: ExportTarget) -> Result<Vec<u8>> {
         .subject
         .row
         .as_ref()
-        .filter(|run| !run.as_encoded_bytes().contains(&b'#'))
+        .filter(|_| !arguments.subject.is_design())
     else {
         return Err(miette!(
             help = "kinefront export run --out front.parquet",

@@ -7,7 +7,7 @@ use super::wire::AssemblyModesJson;
 use kinefront_export::PoseReportJson;
 use kinefront_model::kinematics::assembly_modes;
 use kinefront_model::mechanism::Design;
-use kinefront_model::spatial::{JointValues, Pose};
+use kinefront_model::spatial::{JointValues, Pose, Wrench};
 
 use super::{Ending, Failure, load_study, tables, to_json};
 
@@ -25,6 +25,9 @@ pub struct PoseArguments {
     /// Study file, or name of a built-in study [default: paper].
     #[arg(long, value_name = "FILE")]
     study: Option<OsString>,
+    /// Wrench on the platform in place of the loads of the study, as in "fx=100 fy=0 mz=-5" (N and N·m; absent parts are 0).
+    #[arg(long, conflicts_with = "actuators")]
+    wrench: Option<String>,
     /// Print the result as one JSON object.
     #[arg(long)]
     json: bool,
@@ -48,15 +51,16 @@ pub fn run(arguments: &PoseArguments) -> Result<Ending, Failure> {
         return Ok(Ending::Done);
     };
     let pose = pose.parse::<Pose>().map_err(Failure::input)?;
-    let outcome = model.pose(&design, &pose);
+    let wrench = arguments.wrench.as_deref().map(str::parse::<Wrench>).transpose();
+    let wrench = wrench.map_err(Failure::input)?.map(|Wrench(wrench)| wrench);
+    let posed = model.posed(&design);
+    let outcome = posed.at(&pose);
+    let strength = posed.strength_at(&pose, wrench).ok().flatten();
     if arguments.json {
-        writeln!(
-            out,
-            "{}",
-            to_json(&PoseReportJson::from(&outcome)).map_err(Failure::Runtime)?
-        )?;
+        let json = PoseReportJson::new(&outcome, strength.as_ref());
+        writeln!(out, "{}", to_json(&json).map_err(Failure::Runtime)?)?;
     } else {
-        writeln!(out, "{}", tables::pose(&design, &pose, &outcome))?;
+        writeln!(out, "{}", tables::pose(&design, &pose, &outcome, strength.as_ref()))?;
     }
     Ok(Ending::Done)
 }

@@ -5,7 +5,7 @@ use std::io::{self, BufRead, Write};
 
 use kinefront_model::evaluation::{Better, Quantity};
 use kinefront_model::mechanism::Architecture;
-use kinefront_study::{CATALOGUES, Study, StudyError};
+use kinefront_study::{CATALOGUES, MATERIALS, Study, StudyError};
 
 /// Asks questions on a terminal; an empty answer takes the value in brackets.
 struct Dialogue<'a, R, W> {
@@ -46,10 +46,23 @@ impl<R: BufRead, W: Write> Dialogue<'_, R, W> {
     }
 
     fn number(&mut self, question: &str, initial: &str) -> io::Result<f64> {
-        self.ask(question, initial, |answer| match answer.parse::<f64>() {
-            Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
-            _ => Err(format!("`{answer}` is not a number above 0")),
+        self.ask(question, initial, above_zero)
+    }
+
+    /// Asks for a number above 0, or `none`.
+    fn optional(&mut self, question: &str, initial: &str) -> io::Result<Option<f64>> {
+        let question = format!("{question}, or none");
+        self.ask(&question, initial, |answer| match answer {
+            "none" => Ok(None),
+            number => above_zero(number).map(Some),
         })
+    }
+}
+
+fn above_zero(answer: &str) -> Result<f64, String> {
+    match answer.parse::<f64>() {
+        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+        _ => Err(format!("`{answer}` is not a number above 0")),
     }
 }
 
@@ -74,6 +87,7 @@ pub fn ask(answers: &mut impl BufRead, out: &mut impl Write) -> io::Result<Strin
     limits(&mut dialogue, &mut text)?;
     write_region(&mut dialogue, &mut text, &region)?;
     sections(&mut dialogue, &mut text)?;
+    machine(&mut dialogue, &mut text)?;
     let evaluations = dialogue.number("Number of designs to evaluate", "3000")?;
     let _ = writeln!(text, "\n[optimizer]\nevaluations = {}", evaluations.round().max(1.0));
     Study::parse(&text, &name).map_err(|error| {
@@ -214,6 +228,31 @@ fn sections(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut String
     Ok(())
 }
 
+/// Asks for what a machine needs besides: members that do not collide, its material, and joints with a mass.
+fn machine(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut String) -> io::Result<()> {
+    let clearance = dialogue.optional("Least clearance of members that are not joined in m", "0.005")?;
+    if let Some(clearance) = clearance {
+        let _ = writeln!(text, "\n[requirements]\nclearance_min_m = {clearance}");
+    }
+    let names: Vec<&str> = MATERIALS.iter().map(|builtin| builtin.name).collect();
+    let material = dialogue.choose("Material", &names, names[0])?;
+    let _ = writeln!(text, "\n[material]\nname = {}", quoted(&material));
+    let mut joints = String::new();
+    for (question, key) in [
+        ("Mass of a revolute joint in kg", "revolute_kg"),
+        ("Mass of the carriage of a prismatic joint in kg", "carriage_kg"),
+        ("Mass of a motor in kg", "motor_kg"),
+    ] {
+        if let Some(mass) = dialogue.optional(question, "none")? {
+            let _ = writeln!(joints, "{key} = {mass}");
+        }
+    }
+    if !joints.is_empty() {
+        let _ = write!(text, "\n[joints]\n{joints}");
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -226,16 +265,18 @@ mod tests {
 
     #[test]
     fn empty_answers_ask_the_paper_s_question() {
-        let (text, _) = answer(&"\n".repeat(12)).expect("a study");
+        let (text, _) = answer(&"\n".repeat(20)).expect("a study");
         let study = Study::parse(&text, "answers").expect("a study");
         assert_eq!(study.objectives(), Study::default().objectives());
+        // But for members that do not collide.
+        assert_eq!(study.requirements.clearance_min_m, Some(0.005));
         assert!(study.constraints.is_empty() && study.architectures.len() == Architecture::ALL.len());
     }
 
     #[test]
     fn answers_become_a_study_and_wrong_ones_are_asked_again() {
         let lines = "cell\n3-PRR 3-XXX\n3-PRR\nrectangle\nweight\nmass_kg footprint_m\nfootprint_m<1\nfootprint_m<=1.5 \
-                     dexterity>=0.2\n30\n0.5\n0.3\ntube\n0.25\ncatalogue\n\n500\n";
+                     dexterity>=0.2\n30\n0.5\n0.3\ntube\n0.25\ncatalogue\n\nnone\nS355\n0.4\n-1\nnone\n2.5\n500\n";
         let (text, said) = answer(lines).expect("a study");
         let study = Study::parse(&text, "answers").expect("a study");
         assert_eq!(
@@ -244,8 +285,21 @@ mod tests {
         );
         assert_eq!(study.workspace.region.width_m, Some(0.5));
         assert_eq!(study.sections.legs.wall_ratio, Some(0.25));
+        assert_eq!(
+            (study.requirements.clearance_min_m, study.material.yield_strength_pa),
+            (None, Some(355e6))
+        );
+        assert_eq!(
+            (
+                study.joints.revolute_kg,
+                study.joints.carriage_kg,
+                study.joints.motor_kg
+            ),
+            (0.4, 0.0, 2.5)
+        );
         assert!(study.sections.platform.catalogue.is_some() && study.optimizer.evaluations == 500);
         for complaint in [
+            "`-1` is not a number above 0",
             "unknown architecture `3-XXX`",
             "`weight` is none",
             "`footprint_m<1` has neither",

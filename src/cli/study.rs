@@ -29,14 +29,14 @@ enum StudyCommand {
         /// File to write, which must not exist; `-` writes to standard output.
         #[arg(default_value = "study.toml")]
         file: PathBuf,
-        /// Built-in study to copy.
-        #[arg(long, default_value = "paper")]
-        from: String,
+        /// Built-in study to copy [default: the paper's with a clearance between members].
+        #[arg(long)]
+        from: Option<String>,
         /// Ask for the study on the terminal instead of copying one.
         #[arg(long, conflicts_with = "from")]
         question: bool,
     },
-    /// Check a study file and report its errors.
+    /// Check a study file, and report its errors or what it leaves open.
     Check {
         /// Study file to check.
         file: PathBuf,
@@ -46,6 +46,11 @@ enum StudyCommand {
 fn builtin(name: &str) -> Result<Builtin, Failure> {
     Builtin::find(name)
         .ok_or_else(|| Failure::Input(miette!("no study `{name}`; expected one of {}", Builtin::names())))
+}
+
+/// Returns the text of a study with the requirement of a clearance that it has as a comment: members of a machine do not collide.
+fn with_clearance(text: &str) -> String {
+    text.replace("# clearance_min_m =", "clearance_min_m =")
 }
 
 pub fn run(arguments: &StudyArguments) -> Result<Ending, Failure> {
@@ -72,7 +77,10 @@ pub fn run(arguments: &StudyArguments) -> Result<Ending, Failure> {
                 };
                 asked.map_err(|error| Failure::Input(miette!("no study was written: {error}")))?
             } else {
-                builtin(from)?.text.to_owned()
+                match from {
+                    Some(name) => builtin(name)?.text.to_owned(),
+                    None => with_clearance(builtin("paper")?.text),
+                }
             };
             if file == Path::new("-") {
                 write!(out, "{text}")?;
@@ -84,6 +92,9 @@ pub fn run(arguments: &StudyArguments) -> Result<Ending, Failure> {
         StudyCommand::Check { file } => {
             let study: Study = load_study(Some(file.as_os_str())).map_err(Failure::Input)?;
             writeln!(out, "{}: valid ({})", file.display(), study.name)?;
+            for point in study.open_points() {
+                writeln!(out, "left open: {point}")?;
+            }
         }
     }
     Ok(Ending::Done)

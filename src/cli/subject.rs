@@ -27,6 +27,12 @@ pub struct SubjectArguments {
 }
 
 impl SubjectArguments {
+    /// Whether a design is specified, not a table as a whole.
+    pub fn is_design(&self) -> bool {
+        let is_row = |row: &OsString| row.as_encoded_bytes().contains(&b'#');
+        self.design.is_some() || self.row.as_ref().is_some_and(is_row)
+    }
+
     /// Reads the study, the design and a heading for the design.
     pub fn read(&self) -> Result<(Study, Design, String)> {
         if let Some(text) = &self.design {

@@ -8,6 +8,7 @@ use kinefront_model::evaluation::{Bound, Evaluation, Model, PoseEvaluation, Pose
 use kinefront_model::kinematics::AssemblyMode;
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
+use kinefront_model::strength::{LARGEST_FACTOR, StrengthReport};
 use kinefront_scene::text::{self, number};
 use kinefront_study::{FrontMember, RunSummary, Study};
 
@@ -134,8 +135,13 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
     format!("{facts}\n{constraints}")
 }
 
-/// Formats the report on a design at one pose.
-pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseEvaluation, Unreachable>) -> String {
+/// Formats the report on a design at one pose, with its strength there.
+pub fn pose(
+    design: &Design,
+    pose: &Pose,
+    outcome: &Result<PoseEvaluation, Unreachable>,
+    strength: Option<&StrengthReport>,
+) -> String {
     let mut facts = table(["design", &design.to_string()], &[]);
     facts.add_row(["pose".to_owned(), pose_text(pose)]);
     let report = match outcome {
@@ -156,10 +162,10 @@ pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseEvaluation, Unrea
             point(report.c[leg]),
         ]);
     }
-    // The clearance has a row of its own, with the members between which it is.
+    // The clearance has a row of its own, with the members between which it is, and the strength has tables.
     let scalars = PoseScalar::ALL
         .iter()
-        .filter(|scalar| **scalar != PoseScalar::Clearance);
+        .filter(|scalar| **scalar != PoseScalar::Clearance && !scalar.is_of_loads());
     for scalar in scalars {
         if let Some(value) = report.values.get(*scalar) {
             let entry = scalar.entry();
@@ -174,7 +180,89 @@ pub fn pose(design: &Design, pose: &Pose, outcome: &Result<PoseEvaluation, Unrea
         row.extend((0..6).map(|j| number(report.stiffness[(i, j)])));
         stiffness.add_row(row);
     }
-    format!("{facts}\n{joints}\n{stiffness}")
+    let strength = strength
+        .map(|report| strength_tables(design, report))
+        .unwrap_or_default();
+    format!("{facts}\n{joints}\n{stiffness}{strength}")
+}
+
+/// Formats the strength at a pose: the worst values, the members and the joints.
+fn strength_tables(design: &Design, report: &StrengthReport) -> String {
+    let mut worst = table(["strength", "worst"], &[]);
+    worst.add_row([
+        "largest stress".to_owned(),
+        format!("{} MPa", number(1e-6 * report.stress)),
+    ]);
+    for (name, factor) in [
+        ("safety factor against yielding", report.safety_factor),
+        ("factor against buckling, at least", report.buckling_factor),
+    ] {
+        let words = match factor {
+            Some(factor) if factor >= LARGEST_FACTOR => "no load".to_owned(),
+            Some(factor) => number(factor),
+            None => "–".to_owned(),
+        };
+        worst.add_row([name.to_owned(), words]);
+    }
+    let unit = design.architecture().actuator().effort_unit();
+    let efforts = report.actuators.map(number).join(", ");
+    worst.add_row(["drives of legs 1, 2, 3".to_owned(), format!("{efforts} {unit}")]);
+
+    let headings = [
+        "member",
+        "stress MPa",
+        "at",
+        "axial N",
+        "M in plane N·m",
+        "M out N·m",
+        "torsion N·m",
+        "buckling factor",
+    ];
+    let mut members = table(headings, &[1, 2, 3, 4, 5, 6, 7]);
+    let moments = report
+        .members
+        .iter()
+        .flat_map(|member| [member.moment_in_plane, member.moment_out_of_plane, member.torsion]);
+    let largest = moments.fold(0.0, f64::max);
+    // What rounding leaves of nothing is nothing.
+    let moment = |value: f64| number(if value < 1e-12 * largest { 0.0 } else { value });
+    for member in &report.members {
+        let [least, most] = member.axial.map(number);
+        members.add_row([
+            member.member.to_string(),
+            number(1e-6 * member.stress),
+            format!("{:.0} %", 100.0 * member.share),
+            if least == most {
+                least
+            } else {
+                format!("{least} … {most}")
+            },
+            moment(member.moment_in_plane),
+            moment(member.moment_out_of_plane),
+            moment(member.torsion),
+            match member.buckling_factor {
+                Some(factor) if factor < LARGEST_FACTOR => number(factor),
+                Some(_) => "no compression".to_owned(),
+                None => "–".to_owned(),
+            },
+        ]);
+    }
+    let mut joints = table(
+        ["joint", "kind", "radial N", "axial N", "force N", "moment N·m"],
+        &[2, 3, 4, 5],
+    );
+    for joint in &report.joints {
+        let driven = if joint.is_driven { ", driven" } else { "" };
+        joints.add_row([
+            joint.name(),
+            format!("{}{driven}", joint.kind.letter()),
+            number(joint.radial),
+            number(joint.axial),
+            number(joint.force),
+            number(joint.moment),
+        ]);
+    }
+    format!("\n{worst}\n{members}\n{joints}")
 }
 
 /// Formats all poses at which the driven joints of a design have the given values.

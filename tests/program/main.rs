@@ -12,6 +12,7 @@ mod recordings;
 mod regions;
 mod reports;
 mod runs;
+mod strength;
 mod support;
 mod survival;
 #[cfg(feature = "explorer")]

@@ -31,7 +31,8 @@ pub fn ui(ui: &mut Ui, pane: Rect, session: &mut Session, pointed: Option<&Descr
     if !session.view().comparing {
         viewpoints(ui, below_tabs, session);
         if let Some(legend) = session.legend().copied() {
-            legend_of_field(ui, below_tabs, &legend, &mut session.view_mut().layers);
+            let fields = session.fields();
+            legend_of_field(ui, below_tabs, &legend, &fields, &mut session.view_mut().layers);
         }
     }
     if session.document().selected.is_none() {
@@ -83,7 +84,7 @@ fn viewpoints(ui: &mut Ui, area: Rect, session: &mut Session) {
 }
 
 /// Draws the legend of the heatmap, with which the user chooses another field, or none, and whether its range is locked.
-fn legend_of_field(ui: &mut Ui, area: Rect, legend: &FieldLegend, layers: &mut VisibleLayers) {
+fn legend_of_field(ui: &mut Ui, area: Rect, legend: &FieldLegend, fields: &[Field], layers: &mut VisibleLayers) {
     boxed(ui, "legend", Align2::RIGHT_TOP, area, |ui| {
         ui.set_max_width(LEGEND_WIDTH);
         let field = legend.field;
@@ -92,7 +93,7 @@ fn legend_of_field(ui: &mut Ui, area: Rect, legend: &FieldLegend, layers: &mut V
             .width(LEGEND_WIDTH)
             .truncate()
             .show_ui(ui, |ui| {
-                for other in Field::all() {
+                for &other in fields {
                     ui.selectable_value(&mut layers.heatmap, Some(other), other.title());
                 }
                 ui.selectable_value(&mut layers.heatmap, None, "no heatmap");

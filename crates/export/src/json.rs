@@ -43,6 +43,7 @@ struct MaterialJson {
     youngs_modulus_pa: f64,
     shear_modulus_pa: f64,
     density_kg_per_m3: f64,
+    yield_strength_pa: Option<f64>,
 }
 
 impl From<&Material> for MaterialJson {
@@ -51,6 +52,7 @@ impl From<&Material> for MaterialJson {
             youngs_modulus_pa: material.youngs_modulus,
             shear_modulus_pa: material.shear_modulus,
             density_kg_per_m3: material.density,
+            yield_strength_pa: material.yield_strength,
         }
     }
 }
@@ -195,7 +197,9 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         ..
     } = subject;
     let design = &evaluation.design;
-    let at = |pose: &Pose| model.pose(design, pose);
+    let posed = model.posed(design);
+    let at = |pose: &Pose| posed.at(pose);
+    let strength = posed.strength_at(pose, None).ok().flatten();
     let actuator = design.architecture().actuator();
     let tour = subject.tour.iter().flat_map(|tour| &tour.poses);
     let document = ExportJson {
@@ -204,7 +208,7 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         design: subject.title(),
         evaluation: EvaluationJson::new(evaluation),
         pose: PoseJson::new(pose, pose.phi.to_degrees()),
-        at_pose: (&at(pose)).into(),
+        at_pose: PoseReportJson::new(&at(pose), strength.as_ref()),
         material: (&model.settings().material).into(),
         actuator: ActuatorJson {
             kind: kind(actuator),

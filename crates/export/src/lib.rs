@@ -16,8 +16,10 @@ mod format;
 mod gltf;
 mod json;
 mod mjcf;
+mod parts;
 mod prepared;
 mod sdf;
+mod strength;
 #[cfg(feature = "parquet")]
 mod table;
 mod urdf;
@@ -44,6 +46,7 @@ impl Format {
         urdf::FORMAT,
         dxf::FORMAT,
         json::FORMAT,
+        parts::FORMAT,
     ];
 }
 

@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::strength::StrengthJson;
 use kinefront_model::evaluation::{Bound, Evaluation, LimitResult, PoseEvaluation, PoseScalar, Quantity, Unreachable};
 use kinefront_model::mechanism::{Design, DesignVariable};
 use kinefront_model::spatial::Pose;
+use kinefront_model::strength::StrengthReport;
 
 /// The variables of a design \[m, and deg where the key says so\].
 #[derive(Debug, Serialize)]
@@ -191,10 +193,13 @@ pub struct PoseReportJson {
     clearance_m: Option<f64>,
     clearance_pair: Option<[String; 2]>,
     stiffness: Option<[[f64; 6]; 6]>,
+    /// Strength under the loads of the study or a given wrench; nothing at a singularity.
+    strength: Option<StrengthJson>,
 }
 
-impl From<&Result<PoseEvaluation, Unreachable>> for PoseReportJson {
-    fn from(outcome: &Result<PoseEvaluation, Unreachable>) -> Self {
+impl PoseReportJson {
+    /// Creates the output for a pose, with the strength there.
+    pub fn new(outcome: &Result<PoseEvaluation, Unreachable>, strength: Option<&StrengthReport>) -> Self {
         let report = outcome.as_ref().ok();
         let value = |scalar: PoseScalar| report.map(|report| report.values[scalar]);
         Self {
@@ -210,6 +215,7 @@ impl From<&Result<PoseEvaluation, Unreachable>> for PoseReportJson {
             clearance_m: value(PoseScalar::Clearance),
             clearance_pair: report.map(|report| report.nearest.pair()),
             stiffness: report.map(|report| std::array::from_fn(|i| std::array::from_fn(|j| report.stiffness[(i, j)]))),
+            strength: strength.map(StrengthJson::from),
         }
     }
 }

@@ -90,4 +90,5 @@ pub mod lanes;
 mod pose;
 pub mod spatial;
 pub mod stiffness;
+pub mod strength;
 pub mod workspace;

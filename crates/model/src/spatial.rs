@@ -184,9 +184,13 @@ pub enum PoseTextError {
     },
 }
 
-/// Parses three finite numbers with keys, in any order; `expected` names the keys and units in messages.
-fn three_numbers(text: &str, keys: [&'static str; 3], expected: &'static str) -> Result<[f64; 3], PoseTextError> {
-    let mut values = [None; 3];
+/// Parses finite numbers with keys, in any order; `expected` names the keys and units in messages.
+fn numbers<const N: usize>(
+    text: &str,
+    keys: [&'static str; N],
+    expected: &'static str,
+) -> Result<[Option<f64>; N], PoseTextError> {
+    let mut values = [None; N];
     for word in text.split_whitespace() {
         let (key, value) = word
             .split_once('=')
@@ -210,6 +214,12 @@ fn three_numbers(text: &str, keys: [&'static str; 3], expected: &'static str) ->
             return Err(PoseTextError::Repeated(key));
         }
     }
+    Ok(values)
+}
+
+/// Parses three finite numbers with keys, in any order; `expected` names the keys and units in messages.
+fn three_numbers(text: &str, keys: [&'static str; 3], expected: &'static str) -> Result<[f64; 3], PoseTextError> {
+    let values = numbers(text, keys, expected)?;
     let value = |index: usize| {
         values[index].ok_or(PoseTextError::Missing {
             key: keys[index],
@@ -240,6 +250,21 @@ impl std::str::FromStr for JointValues {
     /// Parses values from text such as `q1=0.9 q2=1.0 q3=1.1`.
     fn from_str(text: &str) -> Result<Self, PoseTextError> {
         three_numbers(text, ["q1", "q2", "q3"], "q1, q2 and q3 (m or rad)").map(Self)
+    }
+}
+
+/// A wrench that the surroundings exert on the platform at `P`, in base axes: `f_x`, `f_y`, `f_z` \[N\], `m_x`, `m_y`, `m_z` \[N·m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wrench(pub [f64; 6]);
+
+impl std::str::FromStr for Wrench {
+    type Err = PoseTextError;
+
+    /// Parses a wrench from text such as `fx=100 mz=-5`; what is absent is 0.
+    fn from_str(text: &str) -> Result<Self, PoseTextError> {
+        let expected = "fx, fy, fz (N), mx, my and mz (N·m)";
+        let values = numbers(text, ["fx", "fy", "fz", "mx", "my", "mz"], expected)?;
+        Ok(Self(values.map(Option::unwrap_or_default)))
     }
 }
 

@@ -66,15 +66,16 @@ pub(super) fn send_run_layout(
 
 /// Sends the layout of the recording of one design that extends to the distance `extent` \[m\] from O.
 ///
-/// `first` is the field whose heatmap is in front; `None` brings the proof of the workspace to the front.
+/// `fields` have heatmaps, and `first` is the one that is in front; `None` brings the proof of the workspace to the front.
 pub(super) fn send_design_layout(
     recording: &RecordingStream,
     extent: f64,
+    fields: &[Field],
     first: Option<Field>,
 ) -> Result<(), ChunkError> {
     let mut layout = ViewLayout::new();
     let mut maps = Vec::new();
-    let others = Field::all().filter(|&field| Some(field) != first);
+    let others = fields.iter().copied().filter(|&field| Some(field) != first);
     for field in first.into_iter().chain(others) {
         let key = field.key();
         let mut contents = vec![

@@ -77,7 +77,8 @@ fn draw_design(
     let tour = cylinder.and_then(|cylinder| tour(model, &evaluation.design, &cylinder, TOUR_STEPS));
     let still = [subject.home()];
     let poses: &[Pose] = tour.as_ref().map_or(&still, |tour| &tour.poses);
-    blueprint::send_design_layout(writer.stream(), subject.extent(poses), first)?;
+    let fields: Vec<Field> = Field::of(model, &evaluation.design).collect();
+    blueprint::send_design_layout(writer.stream(), subject.extent(poses), &fields, first)?;
     let canvas = Canvas::at(&writer, ALWAYS);
     let floor = subject.floor();
     let home = subject.home();
@@ -90,7 +91,7 @@ fn draw_design(
             sets.push(set);
         }
     }
-    for field in Field::all() {
+    for field in fields {
         let heatmap = Heatmap::new(model, &evaluation.design, field, home.phi, FINE);
         subject.heatmap(&canvas, &heatmap, floor)?;
     }

@@ -25,6 +25,15 @@ impl Field {
         scalars.chain([Field::WorstMargin])
     }
 
+    /// The fields that have values for a design.
+    pub fn of(model: &Model, design: &Design) -> impl Iterator<Item = Field> {
+        let has = |field: &Field| match *field {
+            Field::Scalar(scalar) => model.has(design, scalar),
+            Field::WorstMargin => true,
+        };
+        Self::all().filter(has)
+    }
+
     /// Returns the field with a short name.
     pub fn find(key: &str) -> Option<Field> {
         Self::all().find(|field| field.key() == key)
@@ -96,12 +105,13 @@ impl Field {
         }
     }
 
-    /// Evaluates the field at a reachable pose. The value is finite: an unbounded displacement is limited to 1 km.
+    /// Evaluates the field at a reachable pose. The value is finite: an unbounded displacement is limited to 1 km, and what has no
+    /// value is 0.
     pub(super) fn value(self, model: &Model, design: &Design, values: &PoseValues) -> f64 {
         const FARTHEST: f64 = 1e3;
         match self {
             Field::Scalar(scalar @ PoseScalar::Displacement) => values[scalar].min(FARTHEST),
-            Field::Scalar(scalar) => values[scalar],
+            Field::Scalar(scalar) => values.get(scalar).unwrap_or_default(),
             Field::WorstMargin => {
                 let of_limits = model.settings().thresholds.iter().map(|(scalar, limit)| {
                     let value = values.get(scalar).unwrap_or(f64::NAN);

@@ -5,7 +5,9 @@ use glam::DVec2;
 use super::Solid;
 use super::manipulator::Sizes;
 use kinefront_model::evaluation::{Model, Unreachable};
-use kinefront_model::mechanism::{AnyLeg, CrossSection, Design, JointKind, LegBody, LegPart, Manipulator, MemberKind};
+use kinefront_model::mechanism::{
+    AnyLeg, ChainPosture, CrossSection, Design, JointKind, JointPoint, LegBody, LegPart, Manipulator, MemberKind,
+};
 use kinefront_model::spatial::{LEGS, Pose, Rotation};
 
 /// A planar frame, given in the base frame or in the frame of another body.
@@ -61,8 +63,10 @@ pub struct Body {
     pub height: f64,
     /// The joint to the parent; `None` for the platform, which only the closures hold in the plane.
     pub joint: Option<Joint>,
-    /// The bars that have mass. A slider has no mass in this model, as in the paper.
+    /// The bars that have mass.
     pub bars: Vec<MassBar>,
+    /// Joints and motors that move with the body: where they are \[m\], and their masses \[kg\]. They have none in the paper.
+    pub joints: Vec<(DVec2, f64)>,
     /// The solids to draw, in the frame of the body.
     pub solids: Vec<Solid>,
 }
@@ -70,13 +74,15 @@ pub struct Body {
 impl Body {
     /// Returns the mass \[kg\].
     pub fn mass(&self) -> f64 {
-        self.bars.iter().fold(0.0, |sum, bar| sum + bar.mass)
+        let bars = self.bars.iter().fold(0.0, |sum, bar| sum + bar.mass);
+        self.joints.iter().fold(bars, |sum, (_, mass)| sum + mass)
     }
 
     /// Returns the centre of mass in the body's frame \[m\]; the origin if the body has no mass.
     pub fn centre_of_mass(&self) -> DVec2 {
         let mass = self.mass();
-        let weighted: DVec2 = self.bars.iter().map(|bar| 0.5 * (bar.from + bar.to) * bar.mass).sum();
+        let bars: DVec2 = self.bars.iter().map(|bar| 0.5 * (bar.from + bar.to) * bar.mass).sum();
+        let weighted = self.joints.iter().fold(bars, |sum, (at, mass)| sum + *at * *mass);
         if mass > 0.0 { weighted / mass } else { DVec2::ZERO }
     }
 
@@ -100,6 +106,13 @@ impl Body {
             inertia[1] += along * ss + across * cc + bar.mass * offset.x * offset.x;
             inertia[2] += across + bar.mass * offset.length_squared();
             inertia[3] += (along - across) * cs - bar.mass * offset.x * offset.y;
+        }
+        for (at, mass) in &self.joints {
+            let offset = *at - centre;
+            inertia[0] += mass * offset.y * offset.y;
+            inertia[1] += mass * offset.x * offset.x;
+            inertia[2] += mass * offset.length_squared();
+            inertia[3] -= mass * offset.x * offset.y;
         }
         inertia
     }
@@ -165,6 +178,7 @@ pub fn linkage(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage, U
     let mut bodies: Vec<Body> = Vec::new();
     let mut last = [0; LEGS];
     for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
+        let first = bodies.len();
         for (depth, body) in leg.bodies(state).iter().enumerate() {
             last[index] = bodies.len();
             let parent = (depth > 0).then(|| bodies.len() - 1);
@@ -183,6 +197,7 @@ pub fn linkage(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage, U
         if let [.., before, end] = bodies.as_mut_slice() {
             share_mass(before, end, &sizes);
         }
+        add_joints(model, design, &mut bodies[first..], &state.chain);
     }
     let ends = posture.arms.map(|arm| pose.position + arm);
     bodies.push(platform_body(model, design, &sizes, pose, ends, has_mounts));
@@ -249,7 +264,39 @@ fn leg_body(
         height: sizes.height(body.kind),
         joint: Some(joint),
         bars: bars.collect(),
+        joints: Vec::new(),
         solids: body.parts.iter().map(solid).collect(),
+    }
+}
+
+/// Gives the bodies of a leg the masses of its joints and of its motor that move: a joint belongs to the body that it carries, and to the
+/// last one if that is the platform; a motor belongs to the body before its joint.
+fn add_joints(model: &Model, design: &Design, bodies: &mut [Body], chain: &ChainPosture) {
+    let architecture = design.architecture();
+    let masses = &model.settings().joints;
+    let description = architecture.chain();
+    let last = bodies.len() - 1;
+    for (place, kind) in description.joints.into_iter().enumerate() {
+        let is_bush = kind == JointKind::Prismatic && description.distal == MemberKind::TelescopicLeg;
+        let tube = model.settings().legs.tube_length(design.link_length());
+        let at = match description.points[place] {
+            _ if is_bush => chain.a + chain.distal.direction * tube,
+            JointPoint::A => chain.a,
+            JointPoint::B => chain.b,
+            JointPoint::C => chain.c,
+        };
+        // The bush belongs to the tube, and a carriage on a guide of the platform to what it connects the guide with.
+        let carrier = match kind {
+            JointKind::Prismatic if is_bush || place == 2 => place - 1,
+            _ => place,
+        };
+        let motor = (architecture.driven() == place && place > 0).then(|| (place - 1, masses.motor));
+        let joint = kind.moves(place).then(|| (carrier, masses.of(kind)));
+        for (body, mass) in joint.into_iter().chain(motor).filter(|(_, mass)| *mass > 0.0) {
+            let body = &mut bodies[body.min(last)];
+            let at = Rotation::new(-body.frame.angle).apply(at - body.frame.origin);
+            body.joints.push((at, mass));
+        }
     }
 }
 
@@ -267,6 +314,7 @@ fn mount(sizes: &Sizes, index: usize, at: DVec2, phi: f64, value: f64, parent: u
             limits: None,
         }),
         bars: Vec::new(),
+        joints: Vec::new(),
         solids: Vec::new(),
     }
 }
@@ -325,6 +373,7 @@ fn platform_body(
         height: sizes.height(MemberKind::PlatformBar),
         joint: None,
         bars: bars.to_vec(),
+        joints: Vec::new(),
         solids: (0..LEGS).map(solid).collect(),
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model, ModelSettings, PoseEvaluation, PoseScalar};
-use kinefront_model::mechanism::{Design, JointKind, MemberKind};
+use kinefront_model::mechanism::{Architecture, Design, JointKind, JointMasses, MemberKind, WorkingMode};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::StiffnessDefinition;
 use kinefront_scene::{
@@ -275,7 +275,7 @@ fn heatmaps_hold_the_values_of_their_poses_and_contours_lie_on_the_threshold() {
     each(|model, evaluation| {
         let design = &evaluation.design;
         let phi = evaluation.home.expect("a home").phi;
-        for field in Field::all() {
+        for field in Field::of(model, design) {
             let heatmap = Heatmap::new(model, design, field, phi, HeatmapSettings { cells: 60 });
             assert!(heatmap.triangles.len() > 200, "{design} {field:?}");
             let on_edge = |position| heatmap.edges.iter().any(|edge| edge.points.contains(&position));
@@ -466,6 +466,42 @@ fn meshes_are_closed_and_as_large_as_their_solids() {
                 "{solid:?}: the volume is {volume}, not {wanted}"
             );
         }
+    }
+}
+
+/// Joints and motors move with the bodies that carry them, of every architecture.
+#[test]
+fn the_linkage_has_the_masses_of_joints_and_motors() {
+    let settings = ModelSettings {
+        joints: JointMasses {
+            revolute: 0.5,
+            carriage: 1.5,
+            motor: 4.0,
+        },
+        ..ModelSettings::default()
+    };
+    let model = Model::new(settings).expect("the grids fit");
+    for &architecture in Architecture::ALL {
+        let values = [1.0, 0.3, 1.1, 0.02, 0.02];
+        let design = Design::new(architecture, WorkingMode::ALL_PLUS, values).expect("a design");
+        let mut poses = (0..72).map(|k| Pose::new(0.02, 0.01, (5.0 * f64::from(k)).to_radians()));
+        let found = poses
+            .find_map(|pose| linkage(&model, &design, &pose).ok())
+            .expect("a pose in reach");
+        let mass: f64 = found.bodies.iter().map(Body::mass).sum();
+        assert!(
+            (mass - model.mass(&design)).abs() < 1e-9 * mass,
+            "{architecture}: {mass}"
+        );
+        let moving: f64 = found
+            .bodies
+            .iter()
+            .flat_map(|body| &body.joints)
+            .map(|(_, mass)| mass)
+            .sum();
+        assert!(moving > 0.0 && moving + 1e-9 < mass, "{architecture}: {moving}");
+        let [xx, yy, zz, _] = found.bodies[0].inertia();
+        assert!(xx >= 0.0 && yy >= 0.0 && zz >= 0.0, "{architecture}");
     }
 }
 

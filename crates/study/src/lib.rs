@@ -62,11 +62,12 @@ pub use run_folder::{
 };
 pub use search::{SearchError, StudySearch, keep_runners_up};
 pub use settings::{
-    ActuatorSection, AlgorithmName, Bounds, BuiltinCatalogue, CATALOGUES, CatalogueChoice, CatalogueFault,
-    CatalogueRow, Check, FileScope, GridSection, Grids, HypervolumeSection, Initial, LengthChoice, LimitChoice, Limits,
-    MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, ReferenceDesign, RegionKind, RegionSection,
-    RequirementSection, SectionChoice, SectionKind, SectionsSection, Setting, Stagnation, StiffnessChoice,
-    TelescopicBar, Tie, VariableChoice, Variables, WHOLE_FRONT, WorkspaceSection, is_shown, settings,
+    ActuatorSection, AlgorithmName, Bounds, BuiltinCatalogue, BuiltinMaterial, CATALOGUES, CatalogueChoice,
+    CatalogueFault, CatalogueRow, Check, FileScope, GridSection, Grids, HypervolumeSection, Initial, JointSection,
+    LengthChoice, LimitChoice, Limits, LoadShapeChoice, MATERIALS, MaterialSection, ModelSection, ObjectiveChoice,
+    OptimizerSection, ReferenceDesign, RegionKind, RegionSection, RequirementSection, SectionChoice, SectionKind,
+    SectionsSection, Setting, Stagnation, StiffnessChoice, StrengthSection, TelescopicBar, Tie, VariableChoice,
+    Variables, WHOLE_FRONT, WorkspaceSection, is_shown, settings,
 };
 pub use study::{Fault, Study, StudyError};
 pub use sum::{Difference, FileSum};

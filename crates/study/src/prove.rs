@@ -97,9 +97,12 @@ impl<'a> FrontProver<'a> {
         let Some(mut certificate) = self.certify(&evaluation.design, &first) else {
             return proved;
         };
+        // A radius that is proved within the tolerance may still miss a limit of the study.
+        let least = self.problem.least_radius().filter(|_| !claim.is_of_region);
+        let misses_limit = least.is_some_and(|least| certificate.upper.is_some_and(|upper| upper < least));
         if let Some(violation) = certificate
             .violation
-            .filter(|_| certificate.verdict == Verdict::Refuted)
+            .filter(|_| misses_limit || certificate.verdict == Verdict::Refuted)
         {
             let pocket = self.deepest(evaluation, violation);
             if claim.is_of_region || certificate.upper.is_some_and(|upper| upper < wanted) {

@@ -99,7 +99,8 @@ impl Explorer {
                 _ => {}
             }
         }
-        if key(Key::Escape) {
+        // A field that Escape restores has lost the focus already, and must see the key, too.
+        if ctx.input(|input| input.key_pressed(Key::Escape)) {
             session.dismiss_all();
             self.help = false;
         }

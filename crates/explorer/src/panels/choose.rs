@@ -3,7 +3,7 @@
 use egui::{DragValue, ScrollArea, Slider, Ui};
 use kinefront_study::Column;
 
-use super::named;
+use super::{named, typed};
 use crate::{Filter, Purpose, Session, theme};
 use kinefront_model::evaluation::{Better, Objective};
 use kinefront_optimize::{Objectives, groups, ranking};
@@ -100,7 +100,7 @@ impl ChoosePanel {
     fn clusters(&mut self, ui: &mut Ui, session: &mut Session) {
         ui.horizontal(|ui| {
             ui.strong("Groups of similar designs");
-            let field = ui.add(DragValue::new(&mut self.groups).range(2..=12).speed(0.05));
+            let field = ui.add(typed(ui, DragValue::new(&mut self.groups)).range(2..=12).speed(0.05));
             ui.ctx()
                 .accesskit_node_builder(field.id, |node| node.set_label("Number of groups"));
         });
@@ -146,10 +146,10 @@ fn filter(ui: &mut Ui, session: &mut Session) {
             let mut lift = false;
             if let Some([low, high]) = edited.ranges.get_mut(&key) {
                 let speed = ((*high - *low).abs() * 0.01).max(1e-4);
-                ui.add(DragValue::new(low).speed(speed).max_decimals(4))
+                ui.add(typed(ui, DragValue::new(low)).speed(speed).max_decimals(4))
                     .labelled_by(label.id);
                 ui.label("to");
-                ui.add(DragValue::new(high).speed(speed).max_decimals(4))
+                ui.add(typed(ui, DragValue::new(high)).speed(speed).max_decimals(4))
                     .labelled_by(label.id);
                 lift = named(
                     ui.small_button("×"),

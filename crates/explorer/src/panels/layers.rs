@@ -3,7 +3,7 @@
 use egui::{Slider, Ui};
 
 use crate::Session;
-use kinefront_scene::{EllipsoidKind, Field};
+use kinefront_scene::EllipsoidKind;
 
 /// The layers panel.
 #[derive(Default)]
@@ -12,6 +12,7 @@ pub struct LayersPanel;
 impl LayersPanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        let fields = session.fields();
         let layers = &mut session.view_mut().layers;
         for (flag, name) in [
             (&mut layers.legs, "Legs"),
@@ -34,7 +35,7 @@ impl LayersPanel {
         ui.separator();
         ui.label("heatmap");
         ui.radio_value(&mut layers.heatmap, None, "no heatmap");
-        for field in Field::all() {
+        for field in fields {
             ui.radio_value(&mut layers.heatmap, Some(field), field.title());
         }
         let Some(home) = session.home() else {

@@ -31,6 +31,26 @@ pub(super) fn named(button: egui::Response, name: &str) -> egui::Response {
     button.on_hover_text(name)
 }
 
+/// Makes a field of a number take what is typed as a whole, when it is left or Enter is pressed: half of a number is often invalid.
+/// Escape restores the value.
+pub(super) fn typed<'a>(ui: &egui::Ui, field: egui::DragValue<'a>) -> egui::DragValue<'a> {
+    // A field takes its text also in the frame after the one in which Escape has ended its editing.
+    let (frame, id) = (
+        ui.ctx().cumulative_frame_nr(),
+        egui::Id::new("frame of the last Escape"),
+    );
+    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        ui.data_mut(|data| data.insert_temp(id, frame));
+    }
+    let ended = ui.data(|data| data.get_temp::<u64>(id));
+    let is_restored = ended.is_some_and(|ended| frame <= ended + 1);
+    field.update_while_editing(false).custom_parser(move |text| {
+        let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+        let number = text.replace('−', "-").parse().ok();
+        number.filter(|_| !is_restored)
+    })
+}
+
 /// The group of tabs that a panel is in when the window opens for the first time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {

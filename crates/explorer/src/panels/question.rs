@@ -2,7 +2,7 @@
 
 use egui::{ComboBox, DragValue, Ui};
 
-use super::named;
+use super::{named, typed};
 use kinefront_model::evaluation::{Better, PoseScalar, Quantity};
 use kinefront_study::{LimitChoice, ObjectiveChoice, Study};
 
@@ -98,7 +98,7 @@ fn limits(ui: &mut Ui, study: &mut Study) {
                 if let Some(value) = bound {
                     ui.label(sign);
                     let speed = (value.abs() * 0.01).max(1e-4);
-                    ui.add(DragValue::new(value).speed(speed).max_decimals(6))
+                    ui.add(typed(ui, DragValue::new(value)).speed(speed).max_decimals(6))
                         .labelled_by(label.id);
                 }
             }

@@ -3,6 +3,7 @@
 use egui::{ComboBox, DragValue, Grid, ProgressBar, Ui};
 
 use super::progress::ProgressPlot;
+use super::typed;
 use crate::{Phase, Session, theme};
 use kinefront_study::{AlgorithmName, BUILTIN, EndReason};
 
@@ -66,7 +67,7 @@ fn settings(ui: &mut Ui, session: &mut Session) {
             .labelled_by(label.id);
         let label = ui.label("evaluations");
         ui.add(
-            DragValue::new(&mut study.optimizer.evaluations)
+            typed(ui, DragValue::new(&mut study.optimizer.evaluations))
                 .range(1..=100_000_000)
                 .speed(50),
         )
@@ -75,7 +76,7 @@ fn settings(ui: &mut Ui, session: &mut Session) {
         let label = ui.label("seed");
         ui.horizontal(|ui| {
             ui.add(
-                DragValue::new(&mut study.optimizer.seed)
+                typed(ui, DragValue::new(&mut study.optimizer.seed))
                     .range(0..=i64::MAX as u64)
                     .speed(0.1),
             )
@@ -89,7 +90,7 @@ fn settings(ui: &mut Ui, session: &mut Session) {
             let cores = std::thread::available_parallelism().map_or(1, usize::from);
             let mut threads = study.optimizer.threads.unwrap_or(cores);
             let field = ui
-                .add(DragValue::new(&mut threads).range(1..=1024).speed(0.05))
+                .add(typed(ui, DragValue::new(&mut threads)).range(1..=1024).speed(0.05))
                 .labelled_by(label.id);
             if field.changed() {
                 study.optimizer.threads = Some(threads);

@@ -5,9 +5,9 @@ use std::sync::LazyLock;
 use egui::{Button, CollapsingHeader, DragValue, ScrollArea, TextEdit, Ui};
 use toml::{Table, Value};
 
-use super::named;
 use super::question;
 use super::sketch::Sketch;
+use super::{named, typed};
 use crate::{Purpose, Session, theme};
 use kinefront_study::{Check, Fault, Initial, Setting, Study, settings};
 
@@ -58,11 +58,16 @@ impl StudyPanel {
             }
         });
         let faults: Vec<Fault> = session.editor().faults().cloned().collect();
-        for fault in &faults {
-            ui.colored_label(theme::bad(ui), format!("`{}` {}", fault.key, fault.message));
-        }
+        // What is below keeps its identity, and with it the focus and the cursor, however many faults there are.
+        ui.vertical(|ui| {
+            for fault in &faults {
+                ui.colored_label(theme::bad(ui), format!("`{}` {}", fault.key, fault.message));
+            }
+            if faults.is_empty() {
+                ui.colored_label(theme::good(ui), "valid");
+            }
+        });
         if faults.is_empty() {
-            ui.colored_label(theme::good(ui), "valid");
             self.typed = None;
         }
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
@@ -104,7 +109,7 @@ impl StudyPanel {
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Mechanism", &["", "geometry", "rails", "bodies", "bodies.layers"]),
     ("Task", &["workspace", "workspace.region"]),
-    ("Loads and accuracy", &["requirements", "model"]),
+    ("Loads and accuracy", &["requirements", "strength", "model"]),
     (
         "Material, bars and drives",
         &[
@@ -113,6 +118,7 @@ const GROUPS: [(&str, &[&str]); 6] = [
             "sections.platform",
             "sections.rails",
             "actuators",
+            "joints",
         ],
     ),
     ("Bounds", &["bounds", "variables"]),
@@ -147,7 +153,7 @@ fn fields(ui: &mut Ui, session: &mut Session, faults: &[Fault], sketch: Option<&
     let Ok(before) = Table::try_from(session.editor().study()) else {
         return;
     };
-    differences(ui, session, &before);
+    at_times(ui, !session.store().is_empty(), |ui| differences(ui, session, &before));
     let mut table = before.clone();
     let context = Context {
         defaults: &DEFAULTS,
@@ -242,9 +248,6 @@ fn differences(ui: &mut Ui, session: &Session, edited: &Table) {
     let Ok(run) = Table::try_from(session.study()) else {
         return;
     };
-    if session.store().is_empty() {
-        return;
-    }
     let differs = |setting: &&Setting| setting.value(&run) != setting.value(edited);
     let changed: Vec<String> = settings().filter(differs).map(Setting::path).collect();
     if !changed.is_empty() {
@@ -252,6 +255,15 @@ fn differences(ui: &mut Ui, session: &Session, edited: &Table) {
             theme::active(ui),
             format!("differs from the study that was run: {}", changed.join(", ")),
         );
+    }
+}
+
+/// Draws something that is not always there, so that what follows keeps its identity, and with it the focus.
+fn at_times(ui: &mut Ui, is_shown: bool, draw: impl FnOnce(&mut Ui)) {
+    if is_shown {
+        ui.scope(draw);
+    } else {
+        ui.skip_ahead_auto_ids(1);
     }
 }
 
@@ -356,9 +368,12 @@ fn field(ui: &mut Ui, setting: &Setting, value: &mut Value, context: &Context<'_
         }
     });
     let path = setting.path();
-    for fault in context.faults.iter().filter(|fault| fault.key == path) {
-        ui.colored_label(theme::bad(ui), &fault.message);
-    }
+    let faults = || context.faults.iter().filter(|fault| fault.key == path);
+    at_times(ui, faults().next().is_some(), |ui| {
+        for fault in faults() {
+            ui.colored_label(theme::bad(ui), &fault.message);
+        }
+    });
 }
 
 /// Returns what a setting means, which values are valid, and its default.
@@ -413,10 +428,10 @@ fn edit(ui: &mut Ui, setting: &Setting, value: &mut Value, label: egui::Id) {
 
 fn number(ui: &mut Ui, value: &mut Value) -> egui::Response {
     match value {
-        Value::Integer(number) => ui.add(DragValue::new(number).speed(0.2)),
+        Value::Integer(number) => ui.add(typed(ui, DragValue::new(number)).speed(0.2)),
         Value::Float(number) => {
             let speed = (number.abs() * 0.01).max(1e-4);
-            ui.add(DragValue::new(number).speed(speed).max_decimals(9))
+            ui.add(typed(ui, DragValue::new(number)).speed(speed).max_decimals(9))
         }
         _ => ui.label(""),
     }

@@ -18,7 +18,7 @@ use super::{Filter, FrontEntry, Row, Store, StudyEditor};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model, Quantity};
 use kinefront_model::spatial::Pose;
 use kinefront_recording::{FrontPoint, LiveScene, Viewpoint, VisibleLayers};
-use kinefront_scene::{FieldLegend, WorkspaceProof};
+use kinefront_scene::{Field, FieldLegend, WorkspaceProof};
 use kinefront_study::{CertifiedWorkspace, Column, EndReason, GenerationSummary, PreparedStudy, Study};
 
 /// Largest number of designs that can be pinned for comparison.
@@ -354,6 +354,14 @@ impl Session {
             .known
             .as_ref()
             .filter(|known| known.evaluation.design == selected.design)
+    }
+
+    /// Returns the fields that have values for the selected design, or all without one.
+    pub fn fields(&self) -> Vec<Field> {
+        match &self.document().selected {
+            Some(selected) => Field::of(self.model(), &selected.design).collect(),
+            None => Field::all().collect(),
+        }
     }
 
     /// Returns the legend of the heatmap that was drawn last, if there is one.

@@ -132,3 +132,88 @@ fn the_question_is_edited_where_the_study_is() {
         ObjectiveChoice::Minimize("workspace_radius_m".to_owned())
     );
 }
+
+/// Types a text key by key, with a frame after each.
+fn type_keys(window: &mut Window, text: &str) {
+    for key in text.chars() {
+        window.event(egui::Event::Text(key.to_string()));
+        window.step();
+    }
+}
+
+/// A number is taken as a whole: neither half of it nor what follows an invalid half is.
+#[test]
+fn numbers_are_typed_into_the_fields_of_the_study() {
+    let mut window = idle_window();
+    window.state_mut().show(Panel::Study);
+    window.run_steps(3);
+    let dexterity = |window: &Window| {
+        window
+            .state()
+            .session()
+            .editor()
+            .study()
+            .requirements
+            .inverse_condition_min
+    };
+    let field = |window: &mut Window| {
+        window
+            .get_by_role_and_label(Role::SpinButton, "inverse condition min")
+            .focus();
+        window.run_steps(2);
+    };
+    // As it is typed, nothing is taken; "0." and "1" would both be refused.
+    field(&mut window);
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.step();
+    type_keys(&mut window, "0.25");
+    assert_eq!(dexterity(&window), 0.1);
+    window.key_press(egui::Key::Enter);
+    window.run_steps(3);
+    assert_eq!(dexterity(&window), 0.25);
+    assert!(window.state().session().editor().faults().next().is_none());
+    // Escape restores.
+    field(&mut window);
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.step();
+    type_keys(&mut window, "0.7");
+    window.key_press(egui::Key::Escape);
+    window.run_steps(3);
+    assert_eq!(dexterity(&window), 0.25);
+    // A number out of range is refused when it is complete, and the field shows what the study holds.
+    field(&mut window);
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.step();
+    type_keys(&mut window, "7");
+    window.key_press(egui::Key::Enter);
+    window.run_steps(3);
+    assert_eq!(dexterity(&window), 0.25);
+    assert!(
+        window
+            .query_all_by_label_contains("inverse_condition_min")
+            .next()
+            .is_some()
+    );
+}
+
+/// The text view keeps its cursor while what is typed is invalid for a time.
+#[test]
+fn text_is_typed_into_the_study_as_fast_as_keys_come() {
+    let mut window = idle_window();
+    window.state_mut().show(Panel::Study);
+    window.run_steps(3);
+    window.get_by_label("Text").click();
+    window.run_steps(3);
+    let at = window.get_by_label("Study text").rect().left_top() + egui::vec2(30.0, 8.0);
+    click_at(&mut window, at);
+    window.run_steps(2);
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Home);
+    window.step();
+    let line = "constraints = { footprint_m = { at_most = 1.25 }, dexterity = { at_least = 0.35 } } # ";
+    let typed = line.repeat(2);
+    let once = typed.replace("# constraints", "# Constraints");
+    type_keys(&mut window, &once);
+    window.run_steps(3);
+    let text = window.state().session().editor().text().to_owned();
+    assert!(text.starts_with(&once), "{}", &text[..once.len().min(text.len())]);
+}

@@ -65,13 +65,16 @@ fn evaluate<L: Leg>(
         let positions = reporter.positions(grid);
         quantities::add_of_region(&mut quantities, model, checker, &found, home, &positions, grid);
     }
-    let limits: Vec<LimitResult> = model
+    let mut limits: Vec<LimitResult> = model
         .settings()
         .limits
         .iter()
         .map(|limit| limit.result(quantities.get(limit.quantity)))
         .collect();
     violation += limits.iter().map(|limit| (-limit.margin).max(0.0)).sum::<f64>();
+    // The search of the region has counted what these are violated by.
+    let of_poses = model.limits_of_poses();
+    limits.extend(of_poses.map(|limit| limit.result(quantities.get(limit.quantity))));
     let home_phi_deg = home.map(|home| found.orientations[home].phi_deg);
     let centre = model.settings().workspace.centre;
     Evaluation {

@@ -13,6 +13,7 @@
 mod evaluate;
 mod members;
 mod model;
+mod parts;
 mod pose;
 mod quantities;
 mod quantity;
@@ -26,6 +27,7 @@ pub use crate::pose::{
 pub use crate::stiffness::Contribution;
 pub use members::MemberReport;
 pub use model::{GridChoice, Model, ModelSettings};
+pub use parts::{CutBar, Part};
 pub use pose::{PoseEvaluation, PosedDesign, Unreachable};
 pub use quantity::{Bound, LimitResult, Objective, Quantity, QuantityLimit, QuantitySet, QuantityValues};
 pub use sizing::{SizingRanges, WorkspaceTarget};

@@ -2,17 +2,21 @@
 
 use glam::DVec2;
 
-use super::{Better, Evaluation, Objective, PoseScalar, Quantity, QuantityLimit, QuantitySet, Thresholds};
+use super::{
+    Better, Bound, Constraint, Evaluation, Objective, PoseScalar, Quantity, QuantityLimit, QuantitySet, Thresholds,
+};
 use crate::clearance::{Bodies, BodySettings};
 use crate::kinematics::{CharacteristicLength, Jacobian};
 use crate::lanes::{InstructionSet, Planar, Real};
 use crate::mechanism::{
-    AnyLeg, Assembly, CrossSection, CrossSections, Design, Geometry, Leg, LegSettings, Manipulator,
+    AnyLeg, Architecture, Assembly, CrossSection, CrossSections, Design, Geometry, JointMasses, Leg, LegSettings,
+    Manipulator,
 };
 use crate::pose::{PoseChecker, ScalarSet, computed};
 use crate::spatial::{LEGS, Pose, Rotation};
 use crate::stiffness::planar::ActuatorStiffness;
 use crate::stiffness::{Material, RailSettings, StiffnessDefinition, StiffnessModel};
+use crate::strength::{Loads, StrengthModel};
 use crate::workspace::{Grid, GridError, PoseEvaluator, Region, WorkspaceSampling, WorkspaceSpec};
 
 /// All inputs of an evaluation other than the design. The default is the model of the paper, with the choices of this
@@ -25,6 +29,8 @@ pub struct ModelSettings {
     pub sections: CrossSections,
     /// Actuator stiffness.
     pub actuators: ActuatorStiffness,
+    /// Masses of joints and motors.
+    pub joints: JointMasses,
     /// Rails of the base; `None` if they are rigid and have no mass, as in the paper.
     pub rails: Option<RailSettings>,
     /// Settings of the legs.
@@ -41,6 +47,8 @@ pub struct ModelSettings {
     pub thresholds: Thresholds,
     /// In-plane force of the study's requirement \[N\], used for displacements; the thresholds already account for it.
     pub in_plane_force: f64,
+    /// Loads under which strength, buckling and the forces of joints and drives are computed.
+    pub loads: Loads,
     /// Region, centre, home orientation and rotation range of the workspace.
     pub workspace: WorkspaceSpec,
     /// Objectives of the study.
@@ -103,6 +111,7 @@ impl Default for ModelSettings {
                 prismatic: 1e7,
                 revolute: 1e7,
             },
+            joints: JointMasses::default(),
             rails: None,
             legs: LegSettings::default(),
             bodies: BodySettings::default(),
@@ -115,6 +124,7 @@ impl Default for ModelSettings {
                 .with(PoseScalar::StiffnessZ, 1e5)
                 .with(PoseScalar::StiffnessPhiZ, 10.0 / 1f64.to_radians()),
             in_plane_force: 100.0,
+            loads: Loads::default(),
             workspace: WorkspaceSpec {
                 region: Region::Largest,
                 rotation_range_deg: 20.0,
@@ -173,15 +183,27 @@ impl Model {
     }
 
     /// Returns the objective `f1` \[kg\], the mass in motion: `ν·π·(n·r_j²·L_b + 3·r_p²·r)` for solid round bars, where 3 is the
-    /// default number of platform bars. Rails with a cross-section add their mass, although they do not move.
+    /// default number of platform bars. Rails with a cross-section add their mass, although they do not move, and joints and motors
+    /// that move add theirs.
     pub fn mass(&self, design: &Design) -> f64 {
         self.legs_mass(design) + self.platform_mass(design)
     }
 
-    /// Returns the mass of all legs \[kg\]: their bars, and their rails if these have a cross-section.
+    /// Returns the mass of all legs \[kg\]: their bars, their rails if these have a cross-section, and what moves of their joints and
+    /// motors.
     pub fn legs_mass(&self, design: &Design) -> f64 {
         let bars = self.leg_bars_mass(design);
-        (0..LEGS).fold(bars, |sum, leg| sum + self.rail_mass(design, leg))
+        let legs = (0..LEGS).fold(bars, |sum, leg| sum + self.rail_mass(design, leg));
+        legs + LEGS as f64 * self.leg_joints_mass(design.architecture())
+    }
+
+    /// Returns the mass of the joints and the motor of a leg that move \[kg\].
+    fn leg_joints_mass(&self, architecture: Architecture) -> f64 {
+        let (joints, driven) = (&self.settings.joints, architecture.driven());
+        let kinds = architecture.chain().joints.into_iter().enumerate();
+        let moving = kinds.filter(|(place, kind)| kind.moves(*place));
+        let bare = moving.fold(0.0, |sum, (_, kind)| sum + joints.of(kind));
+        if driven > 0 { bare + joints.motor } else { bare }
     }
 
     /// Returns the mass of the bars of all legs \[kg\].
@@ -224,9 +246,14 @@ impl Model {
     /// Prepares the design for evaluation at many poses.
     pub(crate) fn checker<L: Leg>(&self, design: &Design) -> PoseChecker<L> {
         let manipulator = Manipulator::new(design, &self.settings.legs);
+        let stiffness = self.stiffness(design);
         PoseChecker {
             manipulator,
-            stiffness: self.stiffness(design),
+            strength: stiffness
+                .as_ref()
+                .filter(|_| self.depends_on_loads())
+                .map(|stiffness| self.strength_of_stiffness(design, stiffness)),
+            stiffness,
             definition: self.settings.stiffness_definition,
             length: self.length(design, &manipulator),
             bodies: self.bodies_of(design),
@@ -244,7 +271,15 @@ impl Model {
 
     /// Prepares the design for evaluation at many poses, whatever its legs are.
     pub fn pose_evaluator(&self, design: &Design) -> Box<dyn PoseEvaluator> {
-        with_leg!(design.architecture(), L => Box::new(self.checker::<L>(design)))
+        with_leg!(design.architecture(), L => Box::new(self.complete_checker::<L>(design)))
+    }
+
+    /// Prepares the design for all scalars, also for those that an evaluation does not compute.
+    pub(super) fn complete_checker<L: Leg>(&self, design: &Design) -> PoseChecker<L> {
+        let mut checker = self.checker(design);
+        let stiffness = checker.stiffness.as_ref();
+        checker.strength = stiffness.map(|stiffness| self.strength_of_stiffness(design, stiffness));
+        checker
     }
 
     /// Returns `k_xy` at a position in the orientation of `arms`, by the formulas of every scalar but the clearance, on any type of
@@ -267,6 +302,18 @@ impl Model {
             &self.settings.actuators,
             self.rails_of(design),
         )
+    }
+
+    /// Returns the strength of a design whose stiffness is known.
+    pub(crate) fn strength_of_stiffness(&self, design: &Design, stiffness: &StiffnessModel) -> StrengthModel {
+        let ModelSettings {
+            legs,
+            material,
+            sections,
+            loads,
+            ..
+        } = &self.settings;
+        StrengthModel::new(design, legs, material, sections, stiffness, loads)
     }
 
     /// Returns the members of a design, prepared for clearance computations.
@@ -345,6 +392,39 @@ impl Model {
         self.settings.workspace.centre == DVec2::ZERO
             && design.working_mode().is_uniform()
             && self.settings.legs.geometry.is_three_fold()
+            && (self.settings.loads.are_three_fold() || !self.depends_on_loads())
+    }
+
+    /// Returns whether a scalar of a pose has values for a design: some that depend on the loads do not exist for every design.
+    pub fn has(&self, design: &Design, scalar: PoseScalar) -> bool {
+        let on_rails = self.rails_of(design).is_some();
+        let (strength, actuator) = (self.settings.material.yield_strength, design.architecture().actuator());
+        scalar
+            .of_strength()
+            .is_none_or(|value| value.exists(strength, actuator, on_rails))
+    }
+
+    /// Returns the limits of the scalars at each pose that no constraint reports.
+    pub(super) fn limits_of_poses(&self) -> impl Iterator<Item = QuantityLimit> {
+        let limits = self.settings.thresholds.iter();
+        let others = limits.filter(|(scalar, _)| Constraint::of_scalar(*scalar).is_none());
+        others.map(|(scalar, threshold)| QuantityLimit {
+            quantity: Quantity::Worst(scalar),
+            bound: match scalar.entry().quantity.better {
+                Better::Higher => Bound::AtLeast(threshold),
+                Better::Lower => Bound::AtMost(threshold),
+            },
+        })
+    }
+
+    /// Returns whether an evaluation computes scalars that depend on the loads.
+    pub(super) fn depends_on_loads(&self) -> bool {
+        let ModelSettings {
+            thresholds, quantities, ..
+        } = &self.settings;
+        PoseScalar::OF_LOADS
+            .iter()
+            .any(|&scalar| thresholds.get(scalar).is_some() || quantities.contains(Quantity::Worst(scalar)))
     }
 }
 

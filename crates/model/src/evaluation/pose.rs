@@ -5,9 +5,11 @@ use nalgebra::Matrix6;
 use super::{Constraint, Model, PoseScalar, PoseValues};
 use crate::clearance::Clearance;
 use crate::kinematics::Jacobian;
+use crate::lanes::Planar;
 use crate::mechanism::{AnyLeg, Design, ReachReason, Shortfall};
 use crate::pose::{PoseChecker, ScalarSet};
 use crate::spatial::{LEGS, Pose};
+use crate::strength::StrengthReport;
 
 /// Values of a design at a reachable pose.
 #[derive(Debug, Clone)]
@@ -69,7 +71,7 @@ impl Model {
     pub fn posed(&self, design: &Design) -> PosedDesign {
         PosedDesign {
             design: *design,
-            checker: self.checker(design),
+            checker: self.complete_checker(design),
         }
     }
 }
@@ -102,6 +104,26 @@ impl PosedDesign {
             nearest: checker.nearest(pose.position, &posture),
             stiffness: checker.stiffness_at(&posture, &jacobian).matrix(),
         })
+    }
+
+    /// Returns the strength of the design at `pose`, under a single wrench instead of the loads of the study if one is given; `None` for
+    /// an infinitely compliant design and at a singularity.
+    ///
+    /// # Errors
+    /// The leg that does not reach the pose, and why.
+    pub fn strength_at(&self, pose: &Pose, wrench: Option<[f64; 6]>) -> Result<Option<StrengthReport>, Unreachable> {
+        let checker = &self.checker;
+        let posture = checker
+            .manipulator
+            .posture(pose)
+            .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+        let (Some(strength), Some(stiffness)) = (&checker.strength, &checker.stiffness) else {
+            return Ok(None);
+        };
+        let strength = wrench.map_or(*strength, |wrench| strength.with_wrench(wrench));
+        let arms = posture.arms.map(Planar::from);
+        let inputs = checker.strength_inputs(stiffness, pose.position.into(), &arms);
+        Ok(strength.report(&inputs))
     }
 
     /// Returns the margins of all constraints at a pose that is reached, in the order of [`Constraint::ALL`]; that of `det_sign` is

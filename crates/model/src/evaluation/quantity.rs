@@ -340,6 +340,9 @@ mod tests {
                 "m" => "_m",
                 "N/m" => "_n_per_m",
                 "N·m/rad" => "_nm_per_rad",
+                "Pa" => "_pa",
+                "N" => "_n",
+                "N·m" => "_nm",
                 unit => panic!("{unit} has no suffix"),
             };
             assert!(entry.key.ends_with(suffix), "{}", entry.key);

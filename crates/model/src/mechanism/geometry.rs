@@ -120,6 +120,11 @@ impl Geometry {
         self.platform[index] * platform_radius
     }
 
+    /// Returns `|PC_i|` \[m\].
+    pub fn platform_length(&self, index: usize, platform_radius: f64) -> f64 {
+        self.arrangement.platform_radii[index] * platform_radius
+    }
+
     /// Returns whether a rotation by 120° maps base and platform onto themselves.
     pub fn is_three_fold(&self) -> bool {
         self.is_three_fold
@@ -140,7 +145,7 @@ impl Geometry {
     }
 
     /// Returns the smallest and the largest distance along a guide of length `length` \[m\].
-    pub(super) fn travel(&self, length: f64) -> [f64; 2] {
+    pub(crate) fn travel(&self, length: f64) -> [f64; 2] {
         self.arrangement.guide.map(|share| share * length)
     }
 }

@@ -146,6 +146,12 @@ impl CrossSection {
         }
     }
 
+    /// Returns the name of the entry of the catalogue whose outer radius is nearest, if there is a catalogue.
+    pub fn catalogue_name(&self, radius: f64) -> Option<&str> {
+        self.catalogue()
+            .map(|catalogue| catalogue.nearest(radius).name.as_str())
+    }
+
     /// Returns whether all sections are similar, so that the area is in proportion to the squared outer radius.
     pub fn is_scaled_by_its_radius(&self) -> bool {
         matches!(self.wall(), None | Some(Wall::Ratio(_)))
@@ -202,6 +208,17 @@ impl CrossSection {
             0.25 * area * radius * radius
         };
         of_outline * (1.0 + inner * inner)
+    }
+
+    /// Returns the length by which the torsion constant is divided for the largest shear stress per torque \[m\]: the outer radius of a
+    /// circular section. Of a square tube of width `b` and wall `t` it is `(b + t)/2`, which adds to Bredt's mean stress what the
+    /// thickness of the wall does.
+    pub fn torsion_radius(&self, radius: f64) -> f64 {
+        if self.is_square() {
+            radius * (1.0 + 0.5 * self.wall_ratio(radius))
+        } else {
+            radius
+        }
     }
 
     /// Returns the torsion constant \[m⁴\]: the polar moment of a circular section, and Bredt's `t(b − t)³` of a square tube of

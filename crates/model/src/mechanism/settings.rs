@@ -22,6 +22,15 @@ pub struct LegSettings {
     pub geometry: Geometry,
 }
 
+impl LegSettings {
+    /// Returns the length of the tube of a telescopic leg whose largest length is `link_length` \[m\]: half of that, so that the leg can
+    /// retract to half of it. If the smallest leg length is shorter than that, the tube has this length and the rod can protrude behind
+    /// it.
+    pub fn tube_length(&self, link_length: f64) -> f64 {
+        link_length * self.telescopic_shortest.min(0.5)
+    }
+}
+
 impl Default for LegSettings {
     fn default() -> Self {
         Self {

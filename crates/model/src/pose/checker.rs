@@ -10,6 +10,7 @@ use crate::lanes::{InstructionSet, Planar, Real};
 use crate::mechanism::{Assembly, JointKind, Leg, LegLanes, Manipulator, Posture};
 use crate::spatial::LEGS;
 use crate::stiffness::{PlanarStiffness, StiffnessDefinition, StiffnessModel};
+use crate::strength::StrengthModel;
 
 /// One design, prepared for evaluation at many poses.
 #[derive(Debug, Clone, Copy)]
@@ -18,6 +19,8 @@ pub(crate) struct PoseChecker<L> {
     pub manipulator: Manipulator<L>,
     /// Stiffness model of the bars and actuators; `None` if the design is infinitely compliant.
     pub stiffness: Option<StiffnessModel>,
+    /// Strength of the members; `None` if the design is infinitely compliant, or if nothing that depends on loads is computed.
+    pub strength: Option<StrengthModel>,
     /// Definition of the three stiffness values.
     pub definition: StiffnessDefinition,
     /// Characteristic length `ℓ` \[m\].

@@ -7,9 +7,12 @@ use crate::mechanism::{Assembly, Design};
 
 impl PoseScalar {
     /// Returns the relative margin of a value, which is negative where the limit is violated: the excess over the threshold, divided by
-    /// `R` for distances between parts, otherwise by the threshold, unless that is 0.
+    /// `R` for distances between parts, otherwise by the threshold, unless that is 0. Without a value it is −1.
     pub fn margin(self, value: f64, threshold: f64, design: &Design) -> f64 {
         let entry = self.entry();
+        if !value.is_finite() {
+            return -1.0;
+        }
         let excess = match entry.quantity.better {
             Better::Higher => value - threshold,
             Better::Lower => threshold - value,

@@ -91,23 +91,6 @@ impl<L: Leg> PoseChecker<L> {
         values
     }
 
-    /// Computes those scalars of a set that only some studies need, at several poses at once; meaningless where a leg does not reach
-    /// the pose.
-    #[inline(always)]
-    pub fn fill_on_demand<V: Real>(
-        &self,
-        set: ScalarSet,
-        position: Planar<V>,
-        arms: &[Planar<V>; LEGS],
-        scalars: &mut PoseScalars<V>,
-    ) {
-        for &scalar in PoseScalar::on_demand() {
-            if set.contains(scalar) {
-                scalars[scalar] = self.on_demand_lanes(scalar, position, arms);
-            }
-        }
-    }
-
     /// Returns the smallest clearance at several poses at once where it is below `limit`, otherwise `limit` \[m\].
     /// `distals` are the distal bars of the legs as [`PoseChecker::core_lanes`] returns them. The result
     /// is meaningless where a leg does not reach the pose.

@@ -28,7 +28,7 @@ impl<L: Leg> PoseChecker<L> {
             scalars[PoseScalar::Clearance] = self.nearest(position, posture).distance;
         }
         self.fill_on_demand(set, position.into(), &posture.arms.map(Planar::from), &mut scalars);
-        PoseValues::new(scalars, set)
+        PoseValues::new(|scalar| scalars[scalar], set)
     }
 
     /// Returns the sign of `det A` with `P` at `position`, if the pose is feasible in every other respect.

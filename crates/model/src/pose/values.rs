@@ -82,6 +82,17 @@ impl ScalarSet {
         self.0 & (1 << scalar as u32) != 0
     }
 
+    /// Iterates over the scalars of the set.
+    #[inline(always)]
+    pub fn iter(self) -> impl Iterator<Item = PoseScalar> {
+        let mut left = self.0;
+        std::iter::from_fn(move || {
+            let place = left.trailing_zeros() as usize;
+            left &= left.wrapping_sub(1);
+            PoseScalar::ALL.get(place).copied()
+        })
+    }
+
     /// Returns the set with a scalar.
     pub fn with(self, scalar: PoseScalar) -> Self {
         Self(self.0 | 1 << scalar as u32)
@@ -110,14 +121,10 @@ pub struct PoseValues(PoseScalars<f64>);
 
 impl PoseValues {
     /// Creates the values from numbers; those that are not finite become finite, so that the model returns only such.
-    pub(crate) fn new(mut values: PoseScalars<f64>, computed: ScalarSet) -> Self {
-        for &scalar in PoseScalar::ALL {
-            let is_computed = computed.contains(scalar);
-            values[scalar] = if is_computed {
-                finite(scalar, values[scalar])
-            } else {
-                f64::NAN
-            };
+    pub(crate) fn new(value: impl Fn(PoseScalar) -> f64, computed: ScalarSet) -> Self {
+        let mut values = PoseScalars::splat(f64::NAN);
+        for scalar in computed.iter() {
+            values[scalar] = finite(scalar, value(scalar));
         }
         Self(values)
     }
@@ -128,11 +135,13 @@ impl PoseValues {
     }
 }
 
-/// Returns the value of a scalar that the model reports: a number that is not finite becomes the worst one.
+/// Returns the value of a scalar that the model reports: a number that is not finite becomes the worst one, or NaN for a scalar
+/// of loads.
 #[inline]
 pub(crate) fn finite(scalar: PoseScalar, value: f64) -> f64 {
     match scalar.entry().quantity.better {
         _ if value.is_finite() => value.clamp(-NUMBER_LIMIT, NUMBER_LIMIT),
+        _ if scalar.is_of_loads() => f64::NAN,
         Better::Higher => 0.0,
         Better::Lower => NUMBER_LIMIT,
     }

@@ -13,6 +13,8 @@ pub struct Material {
     pub shear_modulus: f64,
     /// `ν`: density \[kg/m³\].
     pub density: f64,
+    /// `f_y`: yield strength \[Pa\], if it is known.
+    pub yield_strength: Option<f64>,
 }
 
 impl Material {
@@ -21,6 +23,7 @@ impl Material {
         youngs_modulus: 210e9,
         shear_modulus: 80e9,
         density: 7850.0,
+        yield_strength: None,
     };
 }
 

@@ -11,7 +11,7 @@ use crate::spatial::LEGS;
 /// Computes `Σ w wᵀ k`, where `w` are the rows of the direct Jacobian and `k` the stiffnesses along the legs' lines;
 /// upper triangle, ordered as in [`PlanarStiffness::in_plane`](super::PlanarStiffness::in_plane).
 #[inline(always)]
-pub(super) fn in_plane_block<V: Real>(jacobian: &Jacobian<V>, stiffness: &[V; LEGS]) -> [V; 6] {
+pub(crate) fn in_plane_block<V: Real>(jacobian: &Jacobian<V>, stiffness: &[V; LEGS]) -> [V; 6] {
     let mut k = [stiffness[0].splat(0.0); 6];
     for i in 0..LEGS {
         let (x, y, m) = (jacobian.ux[i], jacobian.uy[i], jacobian.moment[i]);
@@ -71,7 +71,7 @@ pub(super) fn first_of_inverse(s: &[f64; 6]) -> f64 {
 
 /// Computes the inverse of a symmetric positive definite 3×3 matrix; both are given as upper triangles.
 #[inline(always)]
-pub(super) fn inverse<V: Real>(s: &[V; 6]) -> [V; 6] {
+pub(crate) fn inverse<V: Real>(s: &[V; 6]) -> [V; 6] {
     let [a, b, c, d, e, f] = *s;
     let cofactors = [
         d * f - e * e,

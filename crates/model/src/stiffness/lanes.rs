@@ -1,7 +1,7 @@
 //! The closed form reduced to `k_xy`, `k_z` and `k_φz`, at several poses at once (docs/model.md, sections 4.3 to 4.5).
 
 use super::blocks::{add_bar, in_plane_block, inverse, vertical_schur};
-use super::{StiffnessDefinition, StiffnessModel};
+use super::{BarCompliance, StiffnessDefinition, StiffnessModel};
 use crate::kinematics::Jacobian;
 use crate::lanes::{Planar, Real};
 use crate::mechanism::LegLanes;
@@ -39,6 +39,11 @@ impl<V: Real> Sliders<V> for [[V; 2]; LEGS] {
 }
 
 impl StiffnessModel {
+    /// Returns the compliances of the bars of the legs and of the platform.
+    pub(crate) fn bars_of_design(&self) -> [BarCompliance; 2] {
+        [self.leg_bar, self.platform_bar]
+    }
+
     /// Returns whether the legs are on rails that bend.
     #[inline(always)]
     pub(crate) fn is_on_bending_rails(&self) -> bool {
@@ -100,6 +105,29 @@ impl StiffnessModel {
                 [k_xy, vertical_schur(&k), k_phi_z]
             }
         }
+    }
+
+    /// Computes `c_i`, the compliances along the lines of the legs \[m/N\], and `S_out,i`, their compliances out of the plane at `P` in
+    /// base axes, as upper triangles.
+    #[inline(always)]
+    pub(crate) fn leg_compliance_lanes<V: Real, S: Sliders<V>>(
+        &self,
+        legs: &[LegLanes<V>; LEGS],
+        arms: &[Planar<V>; LEGS],
+        sliders: &S,
+    ) -> ([V; LEGS], [[V; 6]; LEGS]) {
+        let unit = legs[0].moment.splat(self.reduced.along_unit);
+        let along = [
+            unit * self.along_line(&legs[0], sliders, 0),
+            unit * self.along_line(&legs[1], sliders, 1),
+            unit * self.along_line(&legs[2], sliders, 2),
+        ];
+        let bending = [
+            self.bending_lanes(&legs[0], arms[0], sliders, 0),
+            self.bending_lanes(&legs[1], arms[1], sliders, 1),
+            self.bending_lanes(&legs[2], arms[2], sliders, 2),
+        ];
+        (along, bending)
     }
 
     /// Computes `k_xy` by compliance, whatever definition the study uses: the reciprocal of the largest displacement per unit of

@@ -93,7 +93,7 @@ impl ValueColumns {
                 -NUMBER_LIMIT
             });
         }
-        Ok(PoseValues::new(PoseScalars::from_fn(number), self.computed))
+        Ok(PoseValues::new(number, self.computed))
     }
 
     /// Returns whether the pose `index` is reached, has the sign `sign` of `det A` or any other than 0 if there is none yet, and keeps

@@ -85,7 +85,7 @@ impl<L: Leg> PoseEvaluator for PoseChecker<L> {
         let computed = self.computed;
         let found = self.lanes(position.into(), &arms.map(Planar::from), computed);
         if found.reachable {
-            Ok(PoseValues::new(found.scalars, computed))
+            Ok(PoseValues::new(|scalar| found.scalars[scalar], computed))
         } else {
             Err(found.scalars[PoseScalar::Reach].max(-NUMBER_LIMIT).min(0.0))
         }

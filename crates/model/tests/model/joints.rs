@@ -189,7 +189,11 @@ proptest! {
             .pose(&design, &pose)
             .map_err(|unreachable| TestCaseError::reject(unreachable.to_string()))?;
         prop_assert!(report.stiffness.iter().all(|entry| entry.is_finite()));
-        prop_assert!(PoseScalar::ALL.iter().all(|&scalar| report.values[scalar].is_finite()));
+        // Without bars, at a singularity and for some designs, loads have no value.
+        for &scalar in PoseScalar::ALL {
+            let value = report.values.get(scalar);
+            prop_assert!(value.is_some_and(f64::is_finite) || value.is_none() && scalar.is_of_loads());
+        }
         if zero[0] || zero[1] {
             for scalar in [PoseScalar::StiffnessXy, PoseScalar::StiffnessZ, PoseScalar::StiffnessPhiZ] {
                 prop_assert_eq!(report.values[scalar], 0.0);

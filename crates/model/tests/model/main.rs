@@ -16,3 +16,4 @@ mod search;
 mod sections;
 mod sizing;
 mod strategies;
+mod strength;

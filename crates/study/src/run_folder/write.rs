@@ -212,11 +212,15 @@ impl RunWriter {
 
 /// Returns the verified front as a table.
 pub(super) fn front_table(study: &Study, summary: &RunSummary) -> io::Result<Vec<u8>> {
+    let sections = study.sections.cross_sections();
     let rows = summary.front.iter().zip(summary.marks(study)).map(|(member, mark)| {
         let entry = member.row();
-        let cell = |column| match column {
+        let cell = |column: Column| match column {
             Column::Mark => Cell::Text(mark.clone().into()),
-            column => column.cell(&entry),
+            column => match column.section_of(&sections, &entry.row.design) {
+                Some(name) => Cell::Text(name.to_owned().into()),
+                None => column.cell(&entry),
+            },
         };
         Column::of_front(study).map(cell).collect()
     });

@@ -4,8 +4,9 @@ use kinefront_model::mechanism::Architecture;
 
 use super::declare::{Check, Initial, Setting, settings};
 use super::{
-    ActuatorSection, AlgorithmName, Bounds, GeometrySection, HypervolumeSection, MaterialSection, ModelSection,
-    RailSection, RegionKind, RequirementSection, Variables, WHOLE_FRONT, WorkspaceSection,
+    ActuatorSection, AlgorithmName, Bounds, GeometrySection, HypervolumeSection, JointSection, MaterialSection,
+    ModelSection, RailSection, RegionKind, RequirementSection, StrengthSection, Variables, WHOLE_FRONT,
+    WorkspaceSection,
 };
 
 const MOST: i64 = 100_000_000;
@@ -13,7 +14,7 @@ const PROBABILITY: Check = Check::Within(0.0, 1.0, "");
 const LAYER: Check = Check::Within(-1e3, 1e3, " diameters of the thicker bar");
 const PHI_STEP: Check = Check::Within(0.01, 120.0, "");
 
-const SECTIONS: [&[Setting]; 25] = [
+const SECTIONS: [&[Setting]; 27] = [
     settings!("" {
         name: Check::Name, "Short name, which appears in run folders and recordings.";
         description: Check::Any, "Description of the study in one or two sentences.";
@@ -45,7 +46,9 @@ const SECTIONS: [&[Setting]; 25] = [
     }),
     RailSection::SETTINGS,
     ActuatorSection::SETTINGS,
+    JointSection::SETTINGS,
     RequirementSection::SETTINGS,
+    StrengthSection::SETTINGS,
     WorkspaceSection::SETTINGS,
     settings!("workspace.region" {
         kind: Check::Choice(RegionKind::NAMES), "Region of positions: the largest disc, or a prescribed one.";

@@ -3,11 +3,14 @@
 
 mod bars;
 mod declare;
+mod joints;
 mod list;
+mod material;
 mod optimizer;
 mod question;
 mod region;
 mod sections;
+mod strength;
 mod variables;
 
 pub use bars::{
@@ -16,14 +19,16 @@ pub use bars::{
 };
 pub(crate) use declare::wrong_name;
 pub use declare::{Check, Initial, Setting, is_shown};
+pub use joints::JointSection;
 pub use list::settings;
+pub use material::{BuiltinMaterial, MATERIALS, MaterialSection};
 pub use optimizer::{AlgorithmName, HypervolumeSection, OptimizerSection, Stagnation, WHOLE_FRONT};
 pub(crate) use question::unknown_quantity;
 pub use question::{LimitChoice, Limits, ObjectiveChoice};
 pub use region::{RegionKind, RegionSection};
 pub use sections::{
-    ActuatorSection, Bounds, GeometrySection, GridSection, Grids, LengthChoice, MaterialSection, ModelSection,
-    RailSection, RailSupportChoice, ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar,
-    WorkspaceSection,
+    ActuatorSection, Bounds, GeometrySection, GridSection, Grids, LengthChoice, ModelSection, RailSection,
+    RailSupportChoice, ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
 };
+pub use strength::{LoadShapeChoice, StrengthSection};
 pub use variables::{Tie, VariableChoice, Variables};

@@ -9,20 +9,8 @@ use kinefront_model::mechanism::{
     Arrangement, CrossSection, DESIGN_VARIABLES, Design, DesignVariable, FURTHER_VARIABLES, TextError, WorkingMode,
 };
 use kinefront_model::spatial::LEGS;
-use kinefront_model::stiffness::{Material, RailSettings, RailSupports};
+use kinefront_model::stiffness::{RailSettings, RailSupports};
 use kinefront_model::workspace::{Grid, GridError};
-
-section! {
-    /// Material of every bar.
-    pub struct MaterialSection in "material" {
-        /// Young's modulus `E`.
-        youngs_modulus_pa: f64 = Material::STEEL.youngs_modulus, Check::Positive;
-        /// Shear modulus `G`.
-        shear_modulus_pa: f64 = Material::STEEL.shear_modulus, Check::Positive;
-        /// Density `ν`.
-        density_kg_per_m3: f64 = Material::STEEL.density, Check::Positive;
-    }
-}
 
 /// Support of the rails of the base.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -6,7 +6,7 @@ use crate::settings::{
     settings, unknown_quantity, wrong_name,
 };
 use kinefront_model::evaluation::{PoseScalar, Quantity, Scope};
-use kinefront_model::mechanism::{Architecture, Arrangement, Design, DesignVariable, Geometry};
+use kinefront_model::mechanism::{Architecture, Arrangement, Design, DesignVariable, Geometry, JointKind};
 use kinefront_model::spatial::LEGS;
 use kinefront_model::workspace::{Grid, GridError};
 
@@ -29,7 +29,7 @@ impl Fault {
 }
 
 /// Rules about several settings at once, each of which adds what it finds.
-const RULES: [fn(&Study, &mut Vec<Fault>); 15] = [
+const RULES: [fn(&Study, &mut Vec<Fault>); 16] = [
     check_characteristic_length,
     check_slider,
     check_bounds,
@@ -45,6 +45,7 @@ const RULES: [fn(&Study, &mut Vec<Fault>); 15] = [
     check_region,
     check_objectives,
     check_constraints,
+    check_loads,
 ];
 
 impl Study {
@@ -284,6 +285,42 @@ fn check_rails(study: &Study, faults: &mut Vec<Fault>) {
         if is_stated {
             faults.push(Fault::new(key, without_radius));
         }
+    }
+}
+
+/// A limit that depends on the loads needs what it is computed from.
+fn check_loads(study: &Study, faults: &mut Vec<Fault>) {
+    let thresholds = study.thresholds();
+    let mut fault = |scalar: PoseScalar, message: &str| {
+        if thresholds.get(scalar).is_some() {
+            let key = scalar.entry().quantity.key;
+            faults.push(Fault::new(format!("constraints.{key}"), message));
+        }
+    };
+    if study.material.yield_strength_pa.is_none() {
+        fault(
+            PoseScalar::SafetyFactor,
+            "has no value without a yield strength; set material.yield_strength_pa, or material.name to a known material",
+        );
+    }
+    let all = |holds: fn(Architecture) -> bool| study.architectures.iter().copied().all(holds);
+    if all(|architecture| architecture.actuator() == JointKind::Revolute) {
+        fault(
+            PoseScalar::ActuatorForce,
+            "has no value, because all drives turn; limit actuator_torque_max_nm instead",
+        );
+    }
+    if all(|architecture| architecture.actuator() == JointKind::Prismatic) {
+        fault(
+            PoseScalar::ActuatorTorque,
+            "has no value, because all drives slide; limit actuator_force_max_n instead",
+        );
+    }
+    if study.rails.radius_m.is_some() && all(|architecture| architecture.chain().is_on_rails()) {
+        fault(
+            PoseScalar::BucklingFactor,
+            "has no value on rails that bend; omit rails.radius_m, or this limit",
+        );
     }
 }
 

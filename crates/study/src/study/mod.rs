@@ -7,6 +7,7 @@ mod compare;
 mod error;
 mod faults;
 mod model;
+mod open;
 mod question;
 mod read;
 mod region;
@@ -18,9 +19,9 @@ pub use faults::Fault;
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{
-    ActuatorSection, AlgorithmName, Bounds, GeometrySection, Grids, HypervolumeSection, Limits, MaterialSection,
-    ModelSection, ObjectiveChoice, OptimizerSection, RailSection, ReferenceDesign, RequirementSection, SectionsSection,
-    Variables, WorkspaceSection,
+    ActuatorSection, AlgorithmName, Bounds, GeometrySection, Grids, HypervolumeSection, JointSection, Limits,
+    MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, RailSection, ReferenceDesign, RequirementSection,
+    SectionsSection, StrengthSection, Variables, WorkspaceSection,
 };
 use kinefront_model::clearance::BodySettings;
 use kinefront_model::mechanism::{Architecture, WorkingMode};
@@ -53,8 +54,12 @@ pub struct Study {
     pub rails: RailSection,
     /// The section `[actuators]`.
     pub actuators: ActuatorSection,
+    /// The section `[joints]`.
+    pub joints: JointSection,
     /// The section `[requirements]`.
     pub requirements: RequirementSection,
+    /// The section `[strength]`.
+    pub strength: StrengthSection,
     /// The section `[workspace]`.
     pub workspace: WorkspaceSection,
     /// The section `[model]`.
@@ -92,7 +97,9 @@ impl Default for Study {
             sections: SectionsSection::default(),
             rails: RailSection::default(),
             actuators: ActuatorSection::default(),
+            joints: JointSection::default(),
             requirements: RequirementSection::default(),
+            strength: StrengthSection::default(),
             workspace: WorkspaceSection::default(),
             model: ModelSection::default(),
             bodies: BodySettings::default(),

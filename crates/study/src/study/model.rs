@@ -6,7 +6,7 @@ use super::Study;
 use crate::settings::{LengthChoice, StiffnessChoice, TelescopicBar};
 use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar, Thresholds};
 use kinefront_model::kinematics::CharacteristicLength;
-use kinefront_model::mechanism::{Arrangement, BarLength, LegSettings};
+use kinefront_model::mechanism::{Arrangement, BarLength, JointMasses, LegSettings};
 use kinefront_model::stiffness::{ActuatorStiffness, Material, StiffnessDefinition};
 use kinefront_model::workspace::{GridError, WorkspaceSpec};
 
@@ -19,11 +19,7 @@ impl Study {
     pub fn model(&self) -> Result<Model, GridError> {
         let model = &self.model;
         Model::new(ModelSettings {
-            material: Material {
-                youngs_modulus: self.material.youngs_modulus_pa,
-                shear_modulus: self.material.shear_modulus_pa,
-                density: self.material.density_kg_per_m3,
-            },
+            material: Material::from(&self.material),
             sections: self.sections.cross_sections(),
             rails: self
                 .rails
@@ -32,6 +28,7 @@ impl Study {
                 prismatic: self.actuators.prismatic_stiffness_n_per_m,
                 revolute: self.actuators.revolute_stiffness_nm_per_rad,
             },
+            joints: JointMasses::from(&self.joints),
             legs: LegSettings {
                 telescopic_bar: match model.telescopic_bar {
                     TelescopicBar::Current => BarLength::Current,
@@ -54,6 +51,7 @@ impl Study {
             },
             thresholds: self.thresholds(),
             in_plane_force: self.requirements.in_plane_force_n,
+            loads: self.strength.loads(&self.requirements),
             objectives: self.objectives(),
             limits: self.limits_of_designs(),
             quantities: self.asked_quantities(),

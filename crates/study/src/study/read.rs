@@ -109,6 +109,7 @@ impl Study {
             source_code: source_code(),
             span: error.span().map(SourceSpan::from),
         })?;
+        study.material.take_named_values(|key| states(text, "material", key));
         let load = |(key, catalogue): (&'static str, &mut CatalogueChoice)| {
             let message = catalogue.load(folder, scope).err()?.to_string();
             Some(Fault::new(key, message))
@@ -166,6 +167,14 @@ fn key_at(text: &str, position: usize) -> Option<String> {
         None
     }
     find(DeTable::parse(text).ok()?.get_ref(), position)
+}
+
+/// Returns whether a section of the text states a key.
+fn states(text: &str, section: &str, key: &str) -> bool {
+    let document = DeTable::parse(text).ok();
+    let section = document.as_ref().and_then(|document| document.get_ref().get(section));
+    let stated = section.and_then(|section| section.get_ref().as_table()?.get(key));
+    stated.is_some()
 }
 
 /// Returns the location of the value of a dotted key, or of the innermost enclosing table that the text contains.

@@ -61,7 +61,13 @@ impl Column {
                 Some(certified) => Cell::Text(certified.state().into()),
                 None => Cell::Missing,
             },
-            Self::Mark | Self::OnJointFront | Self::Verified | Self::Starred | Self::Note => Cell::Missing,
+            Self::Mark
+            | Self::LegSection
+            | Self::PlatformSection
+            | Self::OnJointFront
+            | Self::Verified
+            | Self::Starred
+            | Self::Note => Cell::Missing,
             _ => row.number(self).into(),
         }
     }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::Study;
 use kinefront_model::evaluation::{Better, Constraint, Quantity, QuantitySet, Scale};
-use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable, FURTHER_VARIABLES};
+use kinefront_model::mechanism::{CrossSections, DESIGN_VARIABLES, Design, DesignVariable, FURTHER_VARIABLES};
 
 /// A column of a table of designs.
 ///
@@ -51,6 +51,10 @@ pub enum Column {
     CertifiedUpper,
     /// State of the proof: `proved` or `open`.
     Certificate,
+    /// Name of the bars of the legs in the catalogue that they are selected from.
+    LegSection,
+    /// Name of the bars of the platform in the catalogue that they are selected from.
+    PlatformSection,
     /// Whether the design is on the front of all architectures together.
     OnJointFront,
     /// Whether the design was verified on the fine grid.
@@ -105,6 +109,15 @@ impl Column {
             .chain(Self::OF_FRONT)
             .chain(Self::further(study.named_quantities()))
             .chain(study.bounds.further_variables().map(Self::Dimension))
+            .chain(Self::sections(study))
+    }
+
+    /// The columns of those bars that are selected from a catalogue.
+    fn sections(study: &Study) -> impl Iterator<Item = Column> + use<> {
+        let sections = &study.sections;
+        let legs = sections.legs.catalogue.is_some().then_some(Self::LegSection);
+        let platform = sections.platform.catalogue.is_some().then_some(Self::PlatformSection);
+        legs.into_iter().chain(platform)
     }
 
     /// The columns that `front.csv` has besides those of `designs.csv`.
@@ -128,6 +141,7 @@ impl Column {
             .chain(Self::OF_FRONT)
             .chain(Self::further(QuantitySet::all()))
             .chain(FURTHER_VARIABLES.map(Self::Dimension))
+            .chain([Self::LegSection, Self::PlatformSection])
             .chain([Self::OnJointFront, Self::Verified, Self::Starred, Self::Note])
     }
 
@@ -179,6 +193,8 @@ impl Column {
             Self::CertifiedLower => "certified_lower_m",
             Self::CertifiedUpper => "certified_upper_m",
             Self::Certificate => "certificate",
+            Self::LegSection => "leg_section",
+            Self::PlatformSection => "platform_section",
             Self::OnJointFront => "on_joint_front",
             Self::Verified => "verified",
             Self::Starred => "starred",
@@ -186,13 +202,27 @@ impl Column {
         })
     }
 
+    /// Returns the name of the bars of a design that the column states, if it is one of those of catalogues.
+    pub fn section_of<'a>(self, sections: &'a CrossSections, design: &Design) -> Option<&'a str> {
+        match self {
+            Self::LegSection => sections.legs.catalogue_name(design.leg_bar_radius()),
+            Self::PlatformSection => sections.platform.catalogue_name(design.platform_bar_radius()),
+            _ => None,
+        }
+    }
+
     /// Type of the values.
     pub fn kind(self) -> ColumnType {
         match self {
             Self::Id | Self::Generation => ColumnType::Integer,
-            Self::Architecture | Self::WorkingMode | Self::Active | Self::Mark | Self::Certificate | Self::Note => {
-                ColumnType::Text
-            }
+            Self::Architecture
+            | Self::WorkingMode
+            | Self::Active
+            | Self::Mark
+            | Self::Certificate
+            | Self::LegSection
+            | Self::PlatformSection
+            | Self::Note => ColumnType::Text,
             Self::Feasible | Self::OnJointFront | Self::Verified | Self::Starred => ColumnType::Flag,
             Self::Dimension(_)
             | Self::HomePhi

@@ -3,10 +3,10 @@
 use kinefront_model::evaluation::{GridChoice, Model, PoseScalar};
 use kinefront_model::kinematics::CharacteristicLength;
 use kinefront_model::mechanism::{BarLength, Design};
-use kinefront_model::stiffness::StiffnessDefinition;
+use kinefront_model::stiffness::{Material, StiffnessDefinition};
 use kinefront_optimize::Variable;
 use kinefront_study::{
-    BUILTIN, Builtin, Check, DesignProblem, Initial, Setting, Stagnation, Study, StudyError, settings,
+    BUILTIN, Builtin, Check, DesignProblem, Initial, MATERIALS, Setting, Stagnation, Study, StudyError, settings,
 };
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
@@ -96,6 +96,14 @@ fn complete_study() -> Study {
         }
     }
     insert_text(&mut table, "model", "characteristic_length", "fixed");
+    for key in ["force_range_n", "moment_range_nm"] {
+        let setting = settings().find(|setting| setting.key == key).expect("a setting");
+        insert(
+            &mut table,
+            setting,
+            toml::Value::Array(vec![1.0.into(), 2.0.into(), 3.0.into()]),
+        );
+    }
     table.try_into().expect("a study")
 }
 
@@ -111,7 +119,7 @@ fn value_of(initial: Initial) -> Option<toml::Value> {
 fn is_alternative(setting: &Setting) -> bool {
     let of_sections = setting.section.starts_with("sections.") && setting.key != "kind";
     let of_region = setting.section == "workspace.region" && setting.key != "kind";
-    let paths = ["quantities", "constraints", "hypervolume.reference"];
+    let paths = ["quantities", "constraints", "hypervolume.reference", "material.name"];
     let of_some_chains = setting.section == "bounds" && setting.initial.is_some();
     of_sections
         || of_region
@@ -275,7 +283,7 @@ fn every_setting_has_an_effect() {
         match setting.section.split('.').next().expect("a section") {
             // The run proves the front or does not; the model is the same.
             _ if setting.key == "certify" => assert_ne!(changed, complete, "{path}"),
-            "material" | "rails" | "actuators" | "workspace" | "model" | "bodies" | "grid" => {
+            "material" | "rails" | "actuators" | "joints" | "strength" | "workspace" | "model" | "bodies" | "grid" => {
                 assert_ne!(found, model, "{path} does not reach the model");
             }
             "requirements" => {
@@ -359,6 +367,7 @@ fn every_alternative_has_an_effect() {
              workspace.region = { kind = \"polygon\", corners_m = [[0, 0], [0.2, 0], [0, 0.2]] }",
         ),
         ("quantities", "quantities = [\"dexterity_mean\"]"),
+        ("material.name", "[material]\nname = \"S235\""),
         ("constraints", "[constraints]\nmass_kg = { at_most = 10 }"),
         ("constraints", "[constraints]\nk_xy_n_per_m = { at_least = 2e6 }"),
         ("constraints", "[constraints]\ntransmission_min = { at_least = 0.3 }"),
@@ -643,4 +652,22 @@ fn all_faults_are_told_at_once() {
     };
     let keys: Vec<&str> = faults.iter().map(|fault| fault.key.as_str()).collect();
     assert_eq!(keys, ["material.density_kg_per_m3", "bounds.R_m", "bounds.rj_m"]);
+}
+
+/// A named material gives what the study does not state, and what it states stays.
+#[test]
+fn a_named_material_gives_what_is_not_stated() {
+    let of = |text: &str| Study::parse(text, "mine.toml").expect("a study").material;
+    for builtin in MATERIALS {
+        let name = builtin.name;
+        let plain = of(&format!("[material]\nname = \"{name}\""));
+        assert_eq!(Material::from(&plain), builtin.material, "{name}");
+        assert!(!builtin.source.is_empty() && builtin.material.yield_strength.is_some());
+        let stated = of(&format!("[material]\nname = \"{name}\"\ndensity_kg_per_m3 = 1234.0"));
+        assert_eq!(
+            (stated.density_kg_per_m3, stated.youngs_modulus_pa),
+            (1234.0, plain.youngs_modulus_pa)
+        );
+    }
+    assert_eq!(Material::from(&of("")), Material::STEEL);
 }

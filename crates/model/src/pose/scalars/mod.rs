@@ -5,13 +5,16 @@
 
 mod displacement;
 mod footprint;
+mod strength;
 mod transmission;
 
 use super::PoseChecker;
 use super::entry::{Better, QuantityEntry, Reference, Scope};
+use super::values::{PoseScalars, ScalarSet};
 use crate::lanes::{LaneJob, Planar, Real};
 use crate::mechanism::Leg;
 use crate::spatial::LEGS;
+use crate::strength::{StrengthSet, StrengthValue};
 
 /// What there is to know about a scalar of a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,6 +69,11 @@ impl PoseScalarEntry {
         self
     }
 
+    const fn shown_in(mut self, unit: &'static str, factor: f64) -> Self {
+        self.shown_in = (unit, factor);
+        self
+    }
+
     const fn of_bars(mut self) -> Self {
         self.is_of_bars = true;
         self
@@ -78,19 +86,39 @@ macro_rules! pose_scalars {
         on_demand {
             $($(#[$more_doc:meta])* $more:ident $([$bound:ident $bound_id:literal $bound_name:literal])? by $formula:path = $more_entry:expr;)*
         }
+        of_loads {
+            $($(#[$load_doc:meta])* $load:ident = $load_entry:expr;)*
+        }
     ) => {
         /// A number that describes the manipulator at one pose.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum PoseScalar {
             $($(#[$doc])* $scalar,)*
             $($(#[$more_doc])* $more,)*
+            $($(#[$load_doc])* $load,)*
         }
 
-        const TABLE: &[PoseScalarEntry] = &[$($entry,)* $($more_entry,)*];
+        const TABLE: &[PoseScalarEntry] = &[$($entry,)* $($more_entry,)* $($load_entry,)*];
 
         impl PoseScalar {
             /// All scalars, in the order of the table.
-            pub const ALL: &[PoseScalar; TABLE.len()] = &[$(PoseScalar::$scalar,)* $(PoseScalar::$more,)*];
+            pub const ALL: &[PoseScalar; TABLE.len()] = &[
+                $(PoseScalar::$scalar,)*
+                $(PoseScalar::$more,)*
+                $(PoseScalar::$load,)*
+            ];
+
+            /// Those that depend on the loads of the members.
+            pub const OF_LOADS: &[PoseScalar] = &[$(PoseScalar::$load),*];
+
+            /// Returns what of the strength at a pose the scalar is, if it depends on the loads of the members.
+            #[inline(always)]
+            pub(crate) fn of_strength(self) -> Option<StrengthValue> {
+                match self {
+                    $(PoseScalar::$load => Some(StrengthValue::$load),)*
+                    _ => None,
+                }
+            }
 
             /// Those that every evaluation determines; the others only where a study asks for them.
             pub const ALWAYS: &[PoseScalar] = &[$(PoseScalar::$scalar),*];
@@ -156,7 +184,36 @@ macro_rules! pose_scalars {
                             arms,
                         })
                     })*
-                    _ => position.x.splat(f64::NAN),
+                    _ => match scalar.of_strength() {
+                        Some(value) => {
+                            let set = StrengthSet::default().with(value);
+                            strength::lanes(self, position, arms, set)[value as usize]
+                        }
+                        None => position.x.splat(f64::NAN),
+                    },
+                }
+            }
+
+            /// Computes those scalars of a set that only some studies need, at several poses at once; meaningless where a leg does not
+            /// reach the pose.
+            #[inline(always)]
+            pub fn fill_on_demand<V: Real>(
+                &self,
+                set: ScalarSet,
+                position: Planar<V>,
+                arms: &[Planar<V>; LEGS],
+                scalars: &mut PoseScalars<V>,
+            ) {
+                $(if set.contains(PoseScalar::$more) {
+                    scalars[PoseScalar::$more] = self.on_demand_lanes(PoseScalar::$more, position, arms);
+                })*
+                let mut of_strength = StrengthSet::default();
+                $(if set.contains(PoseScalar::$load) {
+                    of_strength = of_strength.with(StrengthValue::$load);
+                })*
+                if !of_strength.is_empty() {
+                    let values = strength::lanes(self, position, arms, of_strength);
+                    $(scalars[PoseScalar::$load] = values[StrengthValue::$load as usize];)*
                 }
             }
         }
@@ -222,6 +279,50 @@ pose_scalars! {
                 .reference(Reference::BaseRadius(2.0)),
             "footprint");
     }
+    of_loads {
+        /// Largest equivalent stress of any bar \[Pa\].
+        Stress = PoseScalarEntry::new(
+            QuantityEntry::new("stress_max_pa", "Pa", "largest stress", Scope::Poses, Better::Lower,
+                "Largest equivalent stress of any bar of the legs or of the platform under the loads and the weight of the members.")
+                .above_zero().logarithmic().reference(Reference::Number(1e9)),
+            "stress").labelled("largest stress").shown_in("MPa", 1e-6).of_bars();
+        /// Yield strength divided by the largest stress.
+        SafetyFactor = PoseScalarEntry::new(
+            QuantityEntry::new("safety_factor_min", "", "safety factor", Scope::Poses, Better::Higher,
+                "Yield strength of the material divided by the largest stress.")
+                .above_zero().logarithmic().reference(Reference::Number(100.0)),
+            "safety_factor").labelled("safety factor against yielding").of_bars();
+        /// Factor by which the loads may grow until the manipulator buckles; a lower bound.
+        BucklingFactor = PoseScalarEntry::new(
+            QuantityEntry::new("buckling_factor_min", "", "buckling factor", Scope::Poses, Better::Higher,
+                "Factor by which the loads and the weight of the members may grow until the manipulator buckles; a lower bound.")
+                .above_zero().logarithmic().reference(Reference::Number(1000.0)),
+            "buckling_factor").labelled("factor against buckling").of_bars();
+        /// Largest force of any joint \[N\].
+        JointForce = PoseScalarEntry::new(
+            QuantityEntry::new("joint_force_max_n", "N", "largest joint force", Scope::Poses, Better::Lower,
+                "Largest force of any joint, without the one along its drive.")
+                .above_zero().logarithmic().reference(Reference::Number(1e5)),
+            "joint_force").labelled("largest force of a joint");
+        /// Largest moment of any joint \[N·m\].
+        JointMoment = PoseScalarEntry::new(
+            QuantityEntry::new("joint_moment_max_nm", "N·m", "largest joint moment", Scope::Poses, Better::Lower,
+                "Largest moment of any joint: the tilting moment of a revolute one, all of the moment of a prismatic one.")
+                .above_zero().logarithmic().reference(Reference::Number(1e5)),
+            "joint_moment").labelled("largest moment of a joint");
+        /// Largest force of a prismatic drive \[N\].
+        ActuatorForce = PoseScalarEntry::new(
+            QuantityEntry::new("actuator_force_max_n", "N", "largest drive force", Scope::Poses, Better::Lower,
+                "Largest force of a prismatic actuator; revolute ones have none.")
+                .above_zero().logarithmic().reference(Reference::Number(1e5)),
+            "actuator_force").labelled("largest force of an actuator");
+        /// Largest torque of a revolute drive \[N·m\].
+        ActuatorTorque = PoseScalarEntry::new(
+            QuantityEntry::new("actuator_torque_max_nm", "N·m", "largest drive torque", Scope::Poses, Better::Lower,
+                "Largest torque of a revolute actuator; prismatic ones have none.")
+                .above_zero().logarithmic().reference(Reference::Number(1e5)),
+            "actuator_torque").labelled("largest torque of an actuator");
+    }
 }
 
 impl PoseScalar {
@@ -241,6 +342,12 @@ impl PoseScalar {
     /// The id of the constraint that bounds the scalar; the key of the quantity for one that has no id of its own.
     pub fn limit_id(self) -> &'static str {
         Constraint::of_scalar(self).map_or(self.entry().quantity.key, Constraint::id)
+    }
+
+    /// Returns whether the value depends on the loads of the members. Such a value does not exist at a singularity; any other that is
+    /// not a number counts as the worst one.
+    pub fn is_of_loads(self) -> bool {
+        self.of_strength().is_some()
     }
 
     /// Whether a limit of the quantity bounds each pose.

@@ -1,0 +1,72 @@
+//! The parts of a design as a table: what has to be ordered and cut.
+
+use super::format::{AnyError, Format};
+use super::prepared::Prepared;
+use kinefront_model::evaluation::{CutBar, Part};
+
+pub(super) const FORMAT: Format = Format {
+    key: "csv-parts",
+    file: "parts.csv",
+    name: "CSV, parts",
+    title: "CSV, parts to order and cut",
+    lost: Some("the assembly; the file lists bars, joints and motors, with the lengths of bars between the joints"),
+    is_text: true,
+    needs_bars: false,
+    joints_from_zero: false,
+    write,
+};
+
+/// Millimetres per metre.
+const MM: f64 = 1e3;
+
+const HEADINGS: [&str; 10] = [
+    "part",
+    "section",
+    "shape",
+    "outer_mm",
+    "wall_mm",
+    "length_mm",
+    "pieces",
+    "mass_kg",
+    "total_kg",
+    "counts",
+];
+
+fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(HEADINGS)?;
+    for part in subject.model.parts(&subject.evaluation.design) {
+        writer.write_record(record(&part))?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+fn record(part: &Part) -> [String; HEADINGS.len()] {
+    let bar = part.bar.as_ref();
+    let text = |of: &dyn Fn(&CutBar) -> String| bar.map(of).unwrap_or_default();
+    let micrometres = |length: f64| format!("{:.3}", MM * length);
+    [
+        part.name.to_owned(),
+        text(&|bar| bar.catalogue_name().unwrap_or_default().to_owned()),
+        text(&|bar| shape(bar).to_owned()),
+        text(&|bar| micrometres(2.0 * bar.radius)),
+        text(&|bar| micrometres(wall(bar))),
+        text(&|bar| micrometres(bar.length)),
+        part.pieces.to_string(),
+        part.mass.to_string(),
+        part.total_mass().to_string(),
+        part.counts.to_string(),
+    ]
+}
+
+fn wall(bar: &CutBar) -> f64 {
+    bar.radius - bar.section.inner_radius(bar.radius)
+}
+
+fn shape(bar: &CutBar) -> &'static str {
+    match (bar.section.is_square(), wall(bar) < bar.radius) {
+        (true, _) => "square tube",
+        (false, true) => "tube",
+        (false, false) => "round",
+    }
+}

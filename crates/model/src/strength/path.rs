@@ -1,0 +1,383 @@
+//! How loads pass from the platform to the base: the bars of a leg, its joints between them, and where its mass lies (docs/model.md,
+//! sections 14.1 and 14.4).
+
+use crate::lanes::{Planar, Real};
+use crate::mechanism::{Architecture, Design, Geometry, JointKind, JointPoint, LegLanes, LegSettings, MemberKind};
+use crate::spatial::LEGS;
+use crate::stiffness::BarCompliance;
+
+/// Number of bars of a leg, from the base: `AB`, `BC` (or `AC` of a telescopic leg), `CP`.
+pub(super) const BARS: usize = 3;
+
+/// `BC`, or `AC` of a telescopic leg.
+pub(super) const DISTAL: usize = 1;
+
+/// `CP`.
+pub(super) const PLATFORM: usize = 2;
+
+/// What the strength of a bar depends on besides its load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct BarSection {
+    /// Compliances per length.
+    pub compliance: BarCompliance,
+    /// `1/A_s` \[1/m²\].
+    pub per_area: f64,
+    /// `ρ/I` \[1/m³\].
+    pub bending: f64,
+    /// `ρ_t/I_x` \[1/m³\].
+    pub torsion: f64,
+    /// Whether the stress is largest at a corner, where both bending moments add up.
+    pub is_square: bool,
+    /// Mass per length \[kg/m\].
+    pub mass_per_length: f64,
+}
+
+/// End of a bar from which a position is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    /// The end at the base, along the bar.
+    Base,
+    /// The end at the platform, against the bar.
+    Platform,
+}
+
+/// A part of uniform mass on the line of a bar.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Piece {
+    end: End,
+    /// Where it begins and ends \[m\].
+    from: f64,
+    to: f64,
+    /// Mass per length \[kg/m\].
+    density: f64,
+}
+
+/// A joint of a leg.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PathJoint {
+    pub kind: JointKind,
+    /// Where the joint is.
+    pub point: JointPoint,
+    /// The bar that follows it towards the platform.
+    pub before: usize,
+    /// Whether it is the bush in which the rod of a telescopic leg slides.
+    pub is_bush: bool,
+    pub is_driven: bool,
+}
+
+/// A leg as its loads see it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LegPath {
+    /// The first bar: 0, or 1 in a chain without a bar `AB`.
+    pub first: usize,
+    /// The joints from the base.
+    pub joints: [PathJoint; 3],
+    /// Kinds of the members that the bars are.
+    pub members: [MemberKind; BARS],
+    pieces: [[Option<Piece>; 2]; BARS],
+    /// Length of the tube of a telescopic leg \[m\].
+    tube: f64,
+    /// `L_a` \[m\].
+    proximal_length: f64,
+}
+
+impl LegPath {
+    /// Describes leg `index` of a design, whose bars have the given masses per length.
+    pub fn new(design: &Design, settings: &LegSettings, index: usize, [of_leg, of_platform]: [f64; 2]) -> Self {
+        let architecture: Architecture = design.architecture();
+        let chain = architecture.chain();
+        let geometry: &Geometry = &settings.geometry;
+        let bar = |length: f64, density: f64| {
+            [
+                Some(Piece {
+                    end: End::Base,
+                    from: 0.0,
+                    to: length,
+                    density,
+                }),
+                None,
+            ]
+        };
+        // The mass of a guide is that of its full length, spread over its travel.
+        let guide = |end: End, length: f64| {
+            let [from, to] = geometry.travel(length);
+            let piece = Piece {
+                end,
+                from,
+                to,
+                density: of_leg * length / (to - from),
+            };
+            [Some(piece), None]
+        };
+        let (proximal_length, link_length) = (design.proximal_length(), design.link_length());
+        let tube = settings.tube_length(link_length);
+        let proximal = match chain.proximal {
+            Some(MemberKind::TurningGuide) => guide(End::Base, proximal_length),
+            _ if chain.has_proximal_bar => bar(proximal_length, of_leg),
+            _ => [None; 2],
+        };
+        let distal = match chain.distal {
+            MemberKind::TelescopicLeg => {
+                let piece = |end: End, to: f64| {
+                    Some(Piece {
+                        end,
+                        from: 0.0,
+                        to,
+                        density: of_leg,
+                    })
+                };
+                [piece(End::Base, tube), piece(End::Platform, link_length - tube)]
+            }
+            // The guide belongs to the platform if the last joint slides, otherwise to the slider.
+            MemberKind::Guide if chain.joints[2] == JointKind::Prismatic => guide(End::Platform, link_length),
+            MemberKind::Guide => guide(End::Base, link_length),
+            _ => bar(link_length, of_leg),
+        };
+        let arm = geometry.platform_joint(index, design.platform_radius()).length();
+        Self {
+            first: if chain.has_proximal_bar { 0 } else { DISTAL },
+            joints: [0, 1, 2].map(|place| PathJoint {
+                kind: chain.joints[place],
+                point: chain.points[place],
+                before: match chain.points[place] {
+                    JointPoint::A => 0,
+                    JointPoint::B => DISTAL,
+                    JointPoint::C => PLATFORM,
+                },
+                is_bush: chain.distal == MemberKind::TelescopicLeg && chain.joints[place] == JointKind::Prismatic,
+                is_driven: architecture.driven() == place,
+            }),
+            members: [
+                chain.proximal.unwrap_or(MemberKind::Crank),
+                chain.distal,
+                MemberKind::PlatformBar,
+            ],
+            pieces: [proximal, distal, bar(arm, of_platform)],
+            tube,
+            proximal_length,
+        }
+    }
+
+    /// Returns the bars and joints at several poses at once, relative to `P`.
+    #[inline(always)]
+    pub fn at<V: Real>(&self, leg: &LegLanes<V>, arm: Planar<V>) -> PathLanes<V> {
+        let like = leg.moment;
+        let chain = &leg.chain;
+        let tangent = chain.tangent;
+        let c = arm;
+        let b = c.minus(tangent.scaled(chain.offset));
+        let nothing = like.splat(0.0);
+        let (a, proximal) = match &chain.proximal {
+            Some(bar) => {
+                let direction = into_base(tangent, bar.direction);
+                let offset = bar.share * like.splat(self.proximal_length);
+                let a = b.minus(direction.scaled(offset));
+                (a, self.bar(0, a, direction, offset))
+            }
+            None => (b, self.bar(0, b, tangent, nothing)),
+        };
+        let length = arm.dot(arm).sqrt();
+        let to_p = arm.scaled(like.splat(-1.0) / length);
+        let bars = [
+            proximal,
+            self.bar(DISTAL, b, tangent, chain.offset),
+            self.bar(PLATFORM, c, to_p, length),
+        ];
+        let bush = b.plus(tangent.scaled(like.splat(self.tube).smaller(chain.offset)));
+        let mut joints = [bush; LEGS];
+        let mut slides = [Planar::new(nothing, nothing); LEGS];
+        for place in 0..LEGS {
+            joints[place] = match self.joints[place].point {
+                _ if self.joints[place].is_bush => bush,
+                JointPoint::A => a,
+                JointPoint::B => b,
+                JointPoint::C => c,
+            };
+            if let Some(guide) = chain.guides[place] {
+                slides[place] = into_base(tangent, guide);
+            }
+        }
+        PathLanes { bars, joints, slides }
+    }
+
+    /// Returns whether a joint is revolute.
+    pub fn is_revolute(&self, joint: usize) -> bool {
+        self.joints[joint].kind == JointKind::Revolute
+    }
+
+    /// Returns a bar from `base` along `direction` to `offset`, which may be negative: its axis leads to the platform.
+    #[inline(always)]
+    fn bar<V: Real>(&self, place: usize, base: Planar<V>, direction: Planar<V>, offset: V) -> BarLanes<V> {
+        let (zero, one) = (offset.splat(0.0), offset.splat(1.0));
+        let sign = one.select(offset.at_least(zero), -one);
+        let length = offset.abs();
+        let [first, second] = &self.pieces[place];
+        BarLanes {
+            base,
+            axis: direction.scaled(sign),
+            length,
+            pieces: [span(first, sign, length), span(second, sign, length)],
+            is_uniform: matches!(
+                self.members[place],
+                MemberKind::Crank | MemberKind::Link | MemberKind::PlatformBar
+            ),
+        }
+    }
+}
+
+/// Returns a vector of the distal axes in base axes.
+#[inline(always)]
+fn into_base<V: Real>(tangent: Planar<V>, vector: Planar<V>) -> Planar<V> {
+    tangent.scaled(vector.x).plus(tangent.perp().scaled(vector.y))
+}
+
+/// Returns where a piece begins and ends along a bar of the given length.
+#[inline(always)]
+fn span<V: Real>(piece: &Option<Piece>, sign: V, length: V) -> Span<V> {
+    let zero = sign.splat(0.0);
+    let Some(piece) = piece else {
+        return Span {
+            from: zero,
+            to: zero,
+            density: 0.0,
+        };
+    };
+    let (from, to) = (sign * sign.splat(piece.from), sign * sign.splat(piece.to));
+    let (from, to) = match piece.end {
+        End::Base => (from, to),
+        End::Platform => (length - from, length - to),
+    };
+    Span {
+        from: from.smaller(to),
+        to: from.larger(to),
+        density: piece.density,
+    }
+}
+
+/// Part of uniform mass along a bar at several poses at once.
+#[derive(Clone, Copy)]
+pub(super) struct Span<V> {
+    /// Distances from the end of the bar at the base \[m\].
+    pub from: V,
+    pub to: V,
+    /// Mass per length \[kg/m\].
+    pub density: f64,
+}
+
+/// A bar at several poses at once, relative to `P`.
+#[derive(Clone, Copy)]
+pub(super) struct BarLanes<V> {
+    /// End at the base \[m\].
+    pub base: Planar<V>,
+    /// Unit vector towards the platform.
+    pub axis: Planar<V>,
+    /// Length \[m\].
+    pub length: V,
+    pub pieces: [Span<V>; 2],
+    /// Whether one piece covers the bar.
+    pub is_uniform: bool,
+}
+
+/// A leg at several poses at once, relative to `P`.
+#[derive(Clone, Copy)]
+pub(super) struct PathLanes<V> {
+    pub bars: [BarLanes<V>; BARS],
+    /// Where the joints are \[m\].
+    pub joints: [Planar<V>; LEGS],
+    /// Directions of the prismatic joints.
+    pub slides: [Planar<V>; LEGS],
+}
+
+/// Mass beyond a place, towards the platform, and its first moment about `P`.
+#[derive(Clone, Copy)]
+pub(super) struct Beyond<V> {
+    pub mass: V,
+    pub moment: Planar<V>,
+}
+
+impl<V: Real> Beyond<V> {
+    #[inline(always)]
+    pub fn nothing(like: V) -> Self {
+        let zero = like.splat(0.0);
+        Self {
+            mass: zero,
+            moment: Planar::new(zero, zero),
+        }
+    }
+
+    #[inline(always)]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            mass: self.mass + other.mass,
+            moment: self.moment.plus(other.moment),
+        }
+    }
+}
+
+impl<V: Real> BarLanes<V> {
+    /// Returns the place at a distance from the end at the base.
+    #[inline(always)]
+    pub fn place(&self, distance: V) -> Planar<V> {
+        self.base.plus(self.axis.scaled(distance))
+    }
+
+    /// Returns the mass of a piece from a distance on.
+    #[inline(always)]
+    fn of_piece(&self, piece: &Span<V>, from: V) -> Beyond<V> {
+        let zero = from.splat(0.0);
+        let length = (piece.to - from).larger(zero);
+        let mass = length * from.splat(piece.density);
+        let middle = from + length * from.splat(0.5);
+        Beyond {
+            mass,
+            moment: self.place(middle).scaled(mass),
+        }
+    }
+
+    /// Returns the mass of a piece.
+    #[inline(always)]
+    pub fn mass_of_piece(&self, piece: usize) -> Beyond<V> {
+        let piece = &self.pieces[piece];
+        self.of_piece(piece, piece.from)
+    }
+
+    /// Returns the mass on the line of the bar.
+    #[inline(always)]
+    pub fn mass(&self) -> Beyond<V> {
+        self.mass_of_piece(0).and(self.mass_of_piece(1))
+    }
+
+    /// Returns the mass on the line of the bar from a distance on, and its first moment about that place along the bar.
+    #[inline(always)]
+    pub fn mass_on(&self, distance: V) -> (V, V) {
+        let [first, second] = &self.pieces;
+        let (mass, moment) = part(first, distance);
+        if second.density == 0.0 {
+            return (mass, moment);
+        }
+        let (more, further) = part(second, distance);
+        (mass + more, moment + further)
+    }
+
+    /// Returns the mass on the line of the bar from a distance on.
+    #[inline(always)]
+    pub fn mass_from(&self, distance: V) -> Beyond<V> {
+        let [first, second] = &self.pieces;
+        let first = self.of_piece(first, first.from.larger(distance));
+        if second.density == 0.0 {
+            return first;
+        }
+        first.and(self.of_piece(second, second.from.larger(distance)))
+    }
+}
+
+/// Returns the mass of a piece from a distance on, and its first moment about that place.
+#[inline(always)]
+fn part<V: Real>(piece: &Span<V>, distance: V) -> (V, V) {
+    let zero = distance.splat(0.0);
+    let from = piece.from.larger(distance);
+    let length = (piece.to - from).larger(zero);
+    let mass = length * distance.splat(piece.density);
+    let middle = from + length * distance.splat(0.5);
+    (mass, mass * (middle - distance))
+}

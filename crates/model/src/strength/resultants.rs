@@ -1,0 +1,425 @@
+//! Forces and moments in the legs at several poses at once (docs/model.md, sections 14.1, 14.4 and 14.6).
+
+use super::path::{BARS, Beyond, PathLanes};
+use super::{Loads, StrengthInputs, StrengthModel};
+use crate::lanes::{Planar, Real};
+use crate::spatial::LEGS;
+use crate::stiffness::inverse;
+
+/// A force or moment: its value under the given wrench and the weight, and by how much the set of wrenches changes it at most.
+#[derive(Clone, Copy)]
+pub(super) struct Ranged<V> {
+    pub value: V,
+    pub range: V,
+}
+
+impl<V: Real> Ranged<V> {
+    /// Returns the largest magnitude.
+    #[inline(always)]
+    pub fn most(self) -> V {
+        self.value.abs() + self.range
+    }
+}
+
+/// What the part towards the platform exerts at a place of a leg on the part towards the base.
+#[derive(Clone, Copy)]
+pub(super) struct Resultants<V> {
+    /// Force in the plane under the given wrench and the weight \[N\].
+    pub force: Planar<V>,
+    /// Force along z \[N\].
+    pub lift: Ranged<V>,
+    /// Moments in the plane's axes under the given wrench and the weight \[N·m\].
+    pub moment: Planar<V>,
+    /// Moment about z \[N·m\].
+    pub turn: Ranged<V>,
+}
+
+/// What the loads on a leg at several poses at once follow from.
+pub(super) struct LegBasis<V: Real> {
+    pub path: PathLanes<V>,
+    /// What lies from each bar on.
+    pub from: [Beyond<V>; BARS + 1],
+    /// `u_i`, and the moment of the line about `P`.
+    pub u: Planar<V>,
+    pub moment: V,
+    pub transmission: V,
+    /// `S_i⁻¹` as an upper triangle.
+    pub stiffness: [V; 6],
+    /// The inverse of the twists of the joints, as the force and moment at `P` for a unit power of each.
+    pub reactions: [[V; 3]; 3],
+    /// `g_i⁰`: what the leg transmits at `P` because of its weight in the plane.
+    pub own: [V; 3],
+}
+
+/// A leg at several poses at once, with what it transmits.
+pub(super) struct LoadedLeg<'a, V: Real> {
+    basis: &'a LegBasis<V>,
+    /// `λ_i`.
+    pub line: Ranged<V>,
+    /// `g_i` under the given wrench and the weight.
+    pub out: [V; 3],
+    /// `S_i⁻¹ C_out`.
+    pub share: [[V; 3]; 3],
+}
+
+impl<V: Real> std::ops::Deref for LoadedLeg<'_, V> {
+    type Target = LegBasis<V>;
+
+    #[inline(always)]
+    fn deref(&self) -> &LegBasis<V> {
+        self.basis
+    }
+}
+
+/// The three legs at several poses at once, with what they transmit.
+pub(super) struct LoadedLegs<'a, V: Real> {
+    pub legs: [LoadedLeg<'a, V>; LEGS],
+    /// `C_out`.
+    pub bending: [V; 6],
+    /// `K_in⁻¹`, of which only buckling makes use.
+    pub in_plane: [V; 6],
+}
+
+/// Returns the product of a symmetric matrix, given as an upper triangle, and a vector.
+#[inline(always)]
+pub(super) fn times<V: Real>(s: &[V; 6], v: &[V; 3]) -> [V; 3] {
+    [
+        s[0] * v[0] + s[1] * v[1] + s[2] * v[2],
+        s[1] * v[0] + s[3] * v[1] + s[4] * v[2],
+        s[2] * v[0] + s[4] * v[1] + s[5] * v[2],
+    ]
+}
+
+#[inline(always)]
+pub(super) fn dot<V: Real>(a: &[V; 3], b: &[V; 3]) -> V {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+#[inline(always)]
+fn scaled<V: Real>(a: &[V; 3], by: V) -> [V; 3] {
+    [a[0] * by, a[1] * by, a[2] * by]
+}
+
+#[inline(always)]
+fn sum<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+#[inline(always)]
+fn less<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// Returns the rows of the inverse of the transpose of a matrix, given by its rows.
+#[inline(always)]
+fn inverse_transpose<V: Real>(rows: &[[V; 3]; 3]) -> [[V; 3]; 3] {
+    let first = cross(&rows[1], &rows[2]);
+    let one = rows[0][0].splat(1.0) / dot(&rows[0], &first);
+    [
+        scaled(&first, one),
+        scaled(&cross(&rows[2], &rows[0]), one),
+        scaled(&cross(&rows[0], &rows[1]), one),
+    ]
+}
+
+/// Returns the in-plane wrench about `P` of a mass beyond a place.
+#[inline(always)]
+fn weight_in_plane<V: Real>(loads: &Loads, beyond: &Beyond<V>) -> [V; 3] {
+    let like = beyond.mass;
+    let [x, y] = [like.splat(loads.gravity[0]), like.splat(loads.gravity[1])];
+    [
+        beyond.mass * x,
+        beyond.mass * y,
+        beyond.moment.x * y - beyond.moment.y * x,
+    ]
+}
+
+/// Returns the moment about a place, relative to `P`, of the weight along z of a mass.
+#[inline(always)]
+fn weight_moment<V: Real>(loads: &Loads, beyond: &Beyond<V>, about: Planar<V>) -> Planar<V> {
+    let arm = beyond.moment.minus(about.scaled(beyond.mass));
+    let z = arm.x.splat(loads.gravity[2]);
+    Planar::new(arm.y * z, -(arm.x * z))
+}
+
+impl StrengthModel {
+    /// Returns what the legs transmit at several poses at once.
+    #[inline(always)]
+    pub(super) fn loaded<'a, V: Real>(
+        &self,
+        inputs: &StrengthInputs<V>,
+        legs: &'a [LegBasis<V>; LEGS],
+    ) -> LoadedLegs<'a, V> {
+        let like = inputs.legs[0].moment;
+        let [fx, fy, fz, mx, my, mz] = self.loads.wrench;
+        let mut left = [like.splat(fx), like.splat(fy), like.splat(mz)];
+        let mut wrench = [like.splat(fz), like.splat(mx), like.splat(my)];
+        let mut stiffness = [like.splat(0.0); 6];
+        let mut sags = [[like.splat(0.0); 3]; LEGS];
+        let [_, sags_down] = self.loads.weighs();
+        for (leg, sag) in legs.iter().zip(&mut sags) {
+            left = less(&left, &leg.own);
+            for entry in 0..stiffness.len() {
+                stiffness[entry] = stiffness[entry] + leg.stiffness[entry];
+            }
+            if sags_down {
+                *sag = self.sag(leg);
+                wrench = sum(&wrench, &times(&leg.stiffness, sag));
+            }
+        }
+        let bending = inverse(&stiffness);
+        let displacement = times(&bending, &wrench);
+        let by = inverse_transpose(&[row(&legs[0]), row(&legs[1]), row(&legs[2])]);
+        LoadedLegs {
+            legs: [
+                self.loaded_leg(&legs[0], &by[0], &left, &less(&displacement, &sags[0]), &bending),
+                self.loaded_leg(&legs[1], &by[1], &left, &less(&displacement, &sags[1]), &bending),
+                self.loaded_leg(&legs[2], &by[2], &left, &less(&displacement, &sags[2]), &bending),
+            ],
+            bending,
+            in_plane: inverse(&inputs.in_plane()),
+        }
+    }
+
+    /// Returns a leg whose line takes the part `by` of the wrench `left`, and whose free end is displaced as stated.
+    #[inline(always)]
+    fn loaded_leg<'a, V: Real>(
+        &self,
+        leg: &'a LegBasis<V>,
+        by: &[V; 3],
+        left: &[V; 3],
+        displacement: &[V; 3],
+        bending: &[V; 6],
+    ) -> LoadedLeg<'a, V> {
+        let [a, b, c, d, e, f] = *bending;
+        let columns = [
+            times(&leg.stiffness, &[a, b, c]),
+            times(&leg.stiffness, &[b, d, e]),
+            times(&leg.stiffness, &[c, e, f]),
+        ];
+        LoadedLeg {
+            basis: leg,
+            line: Ranged {
+                value: dot(by, left),
+                range: self.loads.in_plane_range(by),
+            },
+            out: times(&leg.stiffness, displacement),
+            share: [
+                [columns[0][0], columns[1][0], columns[2][0]],
+                [columns[0][1], columns[1][1], columns[2][1]],
+                [columns[0][2], columns[1][2], columns[2][2]],
+            ],
+        }
+    }
+
+    /// Returns the legs, before the loads are shared.
+    #[inline(always)]
+    pub(super) fn legs<V: Real>(&self, inputs: &StrengthInputs<V>) -> [LegBasis<V>; LEGS] {
+        [self.leg(inputs, 0), self.leg(inputs, 1), self.leg(inputs, 2)]
+    }
+
+    #[inline(always)]
+    fn leg<V: Real>(&self, inputs: &StrengthInputs<V>, index: usize) -> LegBasis<V> {
+        let leg = &inputs.legs[index];
+        let like = leg.moment;
+        let path = self.paths[index].at(leg, inputs.arms[index]);
+        let platform = path.bars[2].mass();
+        let distal = path.bars[1].mass().and(platform);
+        let proximal = path.bars[0].mass().and(distal);
+        let from = [proximal, distal, platform, Beyond::nothing(like)];
+        let twists = [
+            self.twist(&path, index, 0),
+            self.twist(&path, index, 1),
+            self.twist(&path, index, 2),
+        ];
+        let reactions = inverse_transpose(&twists);
+        let mut own = [like.splat(0.0); 3];
+        let [is_loaded, _] = self.loads.weighs();
+        if is_loaded {
+            for joint in 0..LEGS {
+                let beyond = self.beyond_joint(&path, &from, index, joint);
+                let power = dot(&twists[joint], &weight_in_plane(&self.loads, &beyond));
+                own = less(&own, &scaled(&reactions[joint], power));
+            }
+        }
+        LegBasis {
+            path,
+            from,
+            u: leg.u,
+            moment: leg.moment,
+            transmission: leg.transmission,
+            stiffness: inverse(&inputs.bending[index]),
+            reactions,
+            own,
+        }
+    }
+
+    /// Returns the twist of the platform at `P` for a unit rate of a joint: both components of the velocity, and the rotation.
+    #[inline(always)]
+    fn twist<V: Real>(&self, path: &PathLanes<V>, index: usize, joint: usize) -> [V; 3] {
+        let like = path.joints[joint].x;
+        if self.paths[index].is_revolute(joint) {
+            let turned = path.joints[joint].perp();
+            [-turned.x, -turned.y, like.splat(1.0)]
+        } else {
+            let slide = path.slides[joint];
+            [slide.x, slide.y, like.splat(0.0)]
+        }
+    }
+
+    /// Returns what lies beyond a joint, given what lies from each bar on.
+    #[inline(always)]
+    pub(super) fn beyond_joint<V: Real>(
+        &self,
+        path: &PathLanes<V>,
+        from: &[Beyond<V>; BARS + 1],
+        index: usize,
+        joint: usize,
+    ) -> Beyond<V> {
+        let joint = &self.paths[index].joints[joint];
+        if joint.is_bush {
+            // The rod, and what it carries.
+            path.bars[1].mass_of_piece(1).and(from[2])
+        } else {
+            from[joint.before]
+        }
+    }
+
+    /// Returns the resultants at a place, relative to `P`, beyond which there is a mass.
+    #[inline(always)]
+    pub(super) fn resultants<V: Real>(
+        &self,
+        leg: &LoadedLeg<'_, V>,
+        place: Planar<V>,
+        beyond: &Beyond<V>,
+    ) -> Resultants<V> {
+        let [fx, fy, turn] = leg.own;
+        let line = leg.line.value;
+        let lever = leg.moment - place.cross(leg.u);
+        let mut force = leg.u.scaled(line).plus(Planar::new(fx, fy));
+        let mut about = line * lever + turn - (place.x * fy - place.y * fx);
+        // The arm from the place to `P`, turned as a force along z turns it.
+        let arm = place.perp();
+        let [lift, tilt_x, tilt_y] = leg.out;
+        let mut lift = lift;
+        let mut moment = Planar::new(tilt_x, tilt_y).plus(arm.scaled(lift));
+        if self.weighs {
+            let [x, y, turn] = weight_in_plane(&self.loads, beyond);
+            force = force.plus(Planar::new(x, y));
+            about = about + turn - (place.x * y - place.y * x);
+            lift = lift + beyond.mass * beyond.mass.splat(self.loads.gravity[2]);
+            moment = moment.plus(weight_moment(&self.loads, beyond, place));
+        }
+        Resultants {
+            force,
+            lift: Ranged {
+                value: lift,
+                range: self.loads.out_of_plane_range(&leg.share[0]),
+            },
+            moment,
+            turn: Ranged {
+                value: about,
+                range: lever.abs() * leg.line.range,
+            },
+        }
+    }
+
+    /// Returns `δ_i`: the displacement of `P` along z and the rotations of the free end of a leg under its own weight.
+    #[inline(always)]
+    fn sag<V: Real>(&self, leg: &LegBasis<V>) -> [V; 3] {
+        let zero = leg.moment.splat(0.0);
+        let mut sag = [zero; 3];
+        for bar in self.paths[0].first..BARS {
+            let lanes = &leg.path.bars[bar];
+            if lanes.is_uniform {
+                self.add_sag(&mut sag, leg, bar, [zero, lanes.length]);
+            } else {
+                // Between the ends of the pieces the load is uniform.
+                let [first, second] = &lanes.pieces;
+                let (a, b) = match second.density == 0.0 {
+                    true => (first.from, first.to),
+                    false => (first.to, second.from),
+                };
+                let a = a.larger(zero).smaller(lanes.length);
+                let b = b.larger(zero).smaller(lanes.length);
+                let (a, b) = (a.smaller(b), a.larger(b));
+                self.add_sag(&mut sag, leg, bar, [zero, a]);
+                self.add_sag(&mut sag, leg, bar, [a, b]);
+                self.add_sag(&mut sag, leg, bar, [b, lanes.length]);
+            }
+        }
+        sag
+    }
+
+    /// Adds what a stretch of a bar contributes, by two Gauss points, which are exact there.
+    #[inline(always)]
+    fn add_sag<V: Real>(&self, sag: &mut [V; 3], leg: &LegBasis<V>, bar: usize, [from, to]: [V; 2]) {
+        let half = (to - from) * from.splat(0.5);
+        let middle = (to + from) * from.splat(0.5);
+        let apart = half * from.splat(GAUSS);
+        self.add_sag_at(sag, leg, bar, middle - apart, half);
+        self.add_sag_at(sag, leg, bar, middle + apart, half);
+    }
+
+    #[inline(always)]
+    fn add_sag_at<V: Real>(&self, sag: &mut [V; 3], leg: &LegBasis<V>, bar: usize, distance: V, weight: V) {
+        let lanes = &leg.path.bars[bar];
+        let compliance = &self.section(bar).compliance;
+        let place = lanes.place(distance);
+        let beyond = lanes.mass_from(distance).and(leg.from[bar + 1]);
+        let moment = weight_moment(&self.loads, &beyond, place);
+        let (axis, normal) = (lanes.axis, lanes.axis.perp());
+        let twist = weight * weight.splat(compliance.torsion) * axis.dot(moment);
+        let bend = weight * weight.splat(compliance.bending) * normal.dot(moment);
+        let turn = axis.scaled(twist).plus(normal.scaled(bend));
+        let lift = place.perp().dot(turn);
+        *sag = sum(sag, &[lift, turn.x, turn.y]);
+    }
+}
+
+/// Distance of a Gauss point from the middle of a stretch, as a share of half its length: `1/√3`.
+const GAUSS: f64 = 0.577_350_269_189_625_8;
+
+/// Returns the row of `A` of a leg.
+#[inline(always)]
+fn row<V: Real>(leg: &LegBasis<V>) -> [V; 3] {
+    [leg.u.x, leg.u.y, leg.moment]
+}
+
+impl<V: Real> LoadedLeg<'_, V> {
+    /// Returns the derivatives of the moment about an axis in the plane through a place by `f_z`, `m_x` and `m_y`.
+    #[inline(always)]
+    pub(super) fn moment_by(&self, place: Planar<V>, axis: Planar<V>) -> [V; 3] {
+        let lever = axis.dot(place.perp());
+        let [lift, x, y] = &self.share;
+        [
+            axis.x * x[0] + axis.y * y[0] + lever * lift[0],
+            axis.x * x[1] + axis.y * y[1] + lever * lift[1],
+            axis.x * x[2] + axis.y * y[2] + lever * lift[2],
+        ]
+    }
+}
+
+impl<V: Real> LoadedLegs<'_, V> {
+    /// Returns 0 where all loads are finite numbers, and what is not a number elsewhere.
+    #[inline(always)]
+    pub(super) fn check(&self) -> V {
+        let zero = self.bending[0].splat(0.0);
+        let mut total = zero;
+        for leg in &self.legs {
+            let [fx, fy, turn] = leg.own;
+            let [lift, x, y] = leg.out;
+            total = total + leg.line.value + leg.line.range + fx + fy + turn + lift + x + y;
+        }
+        total * zero
+    }
+}

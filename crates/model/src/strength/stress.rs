@@ -1,0 +1,203 @@
+//! Stress in the bars at several poses at once (docs/model.md, sections 14.2 and 14.6).
+
+use super::path::{BARS, BarSection};
+use super::resultants::{LoadedLeg, Ranged};
+use super::{LoadShape, StrengthModel};
+use crate::lanes::{Planar, Real};
+
+/// Number of stretches between the sections of a bar whose weight counts; without weight both ends suffice.
+const STRETCHES: usize = 8;
+
+/// What a section of a bar carries.
+#[derive(Clone, Copy)]
+pub(super) struct SectionLoads<V> {
+    /// Force along the bar, positive in tension \[N\].
+    pub axial: Ranged<V>,
+    /// Bending moment about z \[N·m\].
+    pub in_plane: Ranged<V>,
+    /// Bending moment about the normal of the bar in the plane \[N·m\].
+    pub out_of_plane: Ranged<V>,
+    /// Torsion \[N·m\].
+    pub torsion: Ranged<V>,
+}
+
+/// What a bar carries at its end at the platform, without its own weight. Towards the base, the moments change in proportion to the
+/// distance.
+#[derive(Clone, Copy)]
+pub(super) struct BarLoads<V> {
+    axial: Ranged<V>,
+    shear: V,
+    in_plane: V,
+    /// Moment of the leg's line about the end, and by how much it grows per length \[m, –\].
+    lever: V,
+    lever_slope: V,
+    /// By how much the set of wrenches changes the force along the line \[N\].
+    line_range: V,
+    lift: V,
+    /// Derivatives by `f_z`, `m_x` and `m_y`.
+    lift_by: [V; 3],
+    out_of_plane: V,
+    out_of_plane_by: [V; 3],
+    torsion: Ranged<V>,
+}
+
+impl StrengthModel {
+    /// Returns the number of sections of a bar.
+    #[inline(always)]
+    pub(super) fn sections(&self) -> usize {
+        if self.weighs { STRETCHES + 1 } else { 2 }
+    }
+
+    /// Returns what a bar carries.
+    #[inline(always)]
+    pub(super) fn bar_loads<V: Real>(&self, leg: &LoadedLeg<'_, V>, bar: usize) -> BarLoads<V> {
+        let lanes = &leg.path.bars[bar];
+        let end = lanes.place(lanes.length);
+        let carried = self.resultants(leg, end, &leg.from[bar + 1]);
+        let (axis, normal) = (lanes.axis, lanes.axis.perp());
+        BarLoads {
+            axial: Ranged {
+                value: carried.force.dot(axis),
+                range: leg.u.dot(axis).abs() * leg.line.range,
+            },
+            shear: carried.force.dot(normal),
+            in_plane: carried.turn.value,
+            lever: leg.moment - end.cross(leg.u),
+            lever_slope: leg.u.dot(normal),
+            line_range: leg.line.range,
+            lift: carried.lift.value,
+            lift_by: leg.share[0],
+            out_of_plane: carried.moment.dot(normal),
+            out_of_plane_by: leg.moment_by(end, normal),
+            torsion: Ranged {
+                value: carried.moment.dot(axis),
+                range: self.loads.out_of_plane_range(&leg.moment_by(end, axis)),
+            },
+        }
+    }
+
+    /// Returns what a section of a bar carries; the sections are counted from the base.
+    #[inline(always)]
+    pub(super) fn section_loads<V: Real>(
+        &self,
+        leg: &LoadedLeg<'_, V>,
+        bar: usize,
+        loads: &BarLoads<V>,
+        section: usize,
+    ) -> SectionLoads<V> {
+        let lanes = &leg.path.bars[bar];
+        let like = lanes.length;
+        let share = section as f64 / (self.sections() - 1) as f64;
+        let distance = like * like.splat(share);
+        let left = like - distance;
+        let [a, b, c] = loads.out_of_plane_by;
+        let [da, db, dc] = loads.lift_by;
+        let range = self
+            .loads
+            .out_of_plane_range(&[a - left * da, b - left * db, c - left * dc]);
+        let mut axial = loads.axial;
+        let mut in_plane = loads.in_plane + left * loads.shear;
+        let mut out_of_plane = loads.out_of_plane - left * loads.lift;
+        if self.weighs {
+            let (mass, lever) = lanes.mass_on(distance);
+            let [x, y, z] = self.loads.gravity.map(|part| like.splat(part));
+            let gravity = Planar::new(x, y);
+            axial.value = axial.value + mass * gravity.dot(lanes.axis);
+            in_plane = in_plane + lever * gravity.dot(lanes.axis.perp());
+            out_of_plane = out_of_plane - lever * z;
+        }
+        SectionLoads {
+            axial,
+            in_plane: Ranged {
+                value: in_plane,
+                range: (loads.lever + left * loads.lever_slope).abs() * loads.line_range,
+            },
+            out_of_plane: Ranged {
+                value: out_of_plane,
+                range,
+            },
+            torsion: loads.torsion,
+        }
+    }
+
+    /// Returns the component of a moment about an axis in the plane.
+    #[inline(always)]
+    pub(super) fn about<V: Real>(
+        &self,
+        leg: &LoadedLeg<'_, V>,
+        place: Planar<V>,
+        moment: Planar<V>,
+        axis: Planar<V>,
+    ) -> Ranged<V> {
+        Ranged {
+            value: moment.dot(axis),
+            range: self.loads.out_of_plane_range(&leg.moment_by(place, axis)),
+        }
+    }
+
+    /// Returns the squared stress of a section \[Pa²\].
+    #[inline(always)]
+    pub(super) fn squared_stress<V: Real>(&self, bar: usize, carried: &SectionLoads<V>) -> V {
+        let section = self.section(bar);
+        match self.loads.shape {
+            LoadShape::Box | LoadShape::Cylinder => squared_stress(
+                section,
+                carried.axial.most(),
+                carried.in_plane.most(),
+                carried.out_of_plane.most(),
+                carried.torsion.most(),
+            ),
+            LoadShape::Ellipsoid => {
+                let given = squared_stress(
+                    section,
+                    carried.axial.value.abs(),
+                    carried.in_plane.value.abs(),
+                    carried.out_of_plane.value.abs(),
+                    carried.torsion.value.abs(),
+                );
+                let like = given;
+                let axial = carried.axial.range * like.splat(section.per_area)
+                    + carried.in_plane.range * like.splat(section.bending);
+                let bending = carried.out_of_plane.range * like.splat(section.bending);
+                let shear = carried.torsion.range * like.splat(section.torsion);
+                let varied = axial * axial + bending * bending + like.splat(3.0) * shear * shear;
+                let stress = given.sqrt() + varied.sqrt();
+                stress * stress
+            }
+        }
+    }
+
+    /// Returns the largest stress of any bar \[Pa\]; a guide whose carriage is at its joint has none.
+    #[inline(always)]
+    pub(super) fn largest_stress<V: Real>(&self, legs: &[LoadedLeg<'_, V>]) -> V {
+        let zero = legs[0].moment.splat(0.0);
+        let mut most = zero;
+        for leg in legs {
+            for bar in self.first()..BARS {
+                let loads = self.bar_loads(leg, bar);
+                let mut of_bar = zero;
+                for section in 0..self.sections() {
+                    let carried = self.section_loads(leg, bar, &loads, section);
+                    of_bar = of_bar.larger(self.squared_stress(bar, &carried));
+                }
+                let length = leg.path.bars[bar].length;
+                most = most.larger(of_bar.select(length.exceeds(zero), zero));
+            }
+        }
+        most.sqrt()
+    }
+}
+
+/// Returns the squared equivalent stress of a section under magnitudes of the force along it, of both bending moments and of the
+/// torsion.
+#[inline(always)]
+fn squared_stress<V: Real>(section: &BarSection, axial: V, in_plane: V, out_of_plane: V, torsion: V) -> V {
+    let bending = if section.is_square {
+        in_plane + out_of_plane
+    } else {
+        (in_plane * in_plane + out_of_plane * out_of_plane).sqrt()
+    };
+    let normal = axial * axial.splat(section.per_area) + bending * axial.splat(section.bending);
+    let shear = torsion * axial.splat(section.torsion);
+    normal * normal + axial.splat(3.0) * shear * shear
+}

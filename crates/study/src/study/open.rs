@@ -1,0 +1,76 @@
+//! What a question leaves open: what a machine needs and the study does not ask for.
+
+use super::Study;
+use kinefront_model::certify::uncovered;
+use kinefront_model::evaluation::PoseScalar;
+
+impl Study {
+    /// Returns what the study does not require of a machine that is to be built, each as a sentence with the key that requires it.
+    pub fn open_points(&self) -> Vec<String> {
+        let thresholds = self.thresholds();
+        let limits = |scalar: PoseScalar| thresholds.get(scalar).is_some();
+        let mut points = Vec::new();
+        let mut add = |is_open: bool, point: String| {
+            if is_open {
+                points.push(point);
+            }
+        };
+        add(
+            !limits(PoseScalar::Clearance),
+            "members may collide; requirements.clearance_min_m requires a clearance".to_owned(),
+        );
+        add(
+            !limits(PoseScalar::Stress) && !limits(PoseScalar::SafetyFactor),
+            "nothing limits the stress; constraints.safety_factor_min does, with material.yield_strength_pa".to_owned(),
+        );
+        add(
+            !limits(PoseScalar::BucklingFactor),
+            "nothing limits buckling; constraints.buckling_factor_min does".to_owned(),
+        );
+        let joints = &self.joints;
+        add(
+            [joints.revolute_kg, joints.carriage_kg, joints.motor_kg] == [0.0; 3],
+            "joints and motors have no mass; [joints] gives them one".to_owned(),
+        );
+        add(
+            !self.workspace.certify,
+            "nothing is proved; workspace.certify = true proves the reported designs".to_owned(),
+        );
+        if let Some(scalar) = uncovered(&thresholds).filter(|_| self.workspace.certify) {
+            let key = scalar.entry().quantity.key;
+            add(
+                true,
+                format!("nothing is proved, because the limit of {key} has no form; it holds on the fine grid"),
+            );
+        }
+        points
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Study;
+
+    #[test]
+    fn a_study_says_what_it_leaves_open() {
+        let of = |text: &str| Study::parse(text, "mine.toml").expect("a study").open_points();
+        let paper = of("");
+        for words in ["may collide", "the stress", "buckling", "no mass"] {
+            assert_eq!(
+                paper.iter().filter(|point| point.contains(words)).count(),
+                1,
+                "{words}: {paper:?}"
+            );
+        }
+        let complete = of(
+            "[requirements]\nclearance_min_m = 0.005\n[material]\nname = \"S235\"\n[joints]\nrevolute_kg = 1.0\n\
+                           [constraints]\nsafety_factor_min = { at_least = 2.0 }\nbuckling_factor_min = { at_least = 3.0 }",
+        );
+        assert!(complete.iter().all(|point| point.contains("fine grid")), "{complete:?}");
+        assert!(
+            of("[workspace]\ncertify = false")
+                .iter()
+                .any(|point| point.contains("nothing is proved"))
+        );
+    }
+}
