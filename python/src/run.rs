@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use pyo3::prelude::*;
 
-use kinefront_study::{Cell, Column, RunFolder, RunReport, RunSummary, Study, TableRow, front_marks};
+use kinefront_study::{Column, RunFolder, RunReport, RunSummary, Study, TableRow, front_marks};
 
 use crate::convert::from_serializable;
 use crate::errors::of_run;
@@ -94,13 +94,8 @@ impl PyRun {
         let objectives: Vec<_> = front.iter().map(|entry| entry.row.objectives).collect();
         let marks = front_marks(&self.study, &objectives);
         let sections = self.study.sections.cross_sections();
-        let cell = |place: usize, column: Column, entry: &TableRow| match column {
-            Column::Mark => Cell::Text(marks[place].clone().into()),
-            column => match column.section_of(&sections, &entry.row.design) {
-                Some(name) => Cell::Text(name.to_owned().into()),
-                None => column.cell(entry),
-            },
-        };
+        let cell =
+            |place: usize, column: Column, entry: &TableRow| column.cell_of_front(entry, &marks[place], &sections);
         let made = Py::new(py, PyTable::with(py, &columns, front, cell)?)?;
         Ok(self.front_table.get_or_init(|| made).clone_ref(py))
     }

@@ -10,7 +10,7 @@ use super::support::{DESIGN, check, folder, json, kinefront, optimize};
 
 const POSE: &str = "x=0.1 y=0.2 phi_deg=30";
 
-/// The stress of a crank under a force at its end follows from its length: what the program reports is that of the theory of beams.
+/// `pose` reports every member, joint and drive, as JSON and as a table, under the loads of the study and under a wrench of its own.
 #[test]
 fn a_pose_is_reported_with_its_strength() {
     let of = |more: &[&str]| {
@@ -55,7 +55,7 @@ fn a_pose_is_reported_with_its_strength() {
     }
 }
 
-/// A cell whose members hold, do not buckle and do not collide: the front keeps the limits, names the tubes, and sums up to its parts.
+/// A question whose members hold and do not buckle: the front keeps the limits, names the tubes, and sums up to its parts.
 #[test]
 fn a_machine_that_holds_is_found_and_can_be_ordered() {
     let folder = folder();

@@ -7,7 +7,7 @@ use kinefront_model::evaluation::{CutBar, Part};
 pub(super) const FORMAT: Format = Format {
     key: "csv-parts",
     file: "parts.csv",
-    name: "CSV, parts",
+    name: "the list of parts",
     title: "CSV, parts to order and cut",
     lost: Some("the assembly; the file lists bars, joints and motors, with the lengths of bars between the joints"),
     is_text: true,

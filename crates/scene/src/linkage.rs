@@ -273,30 +273,27 @@ fn leg_body(
 /// last one if that is the platform; a motor belongs to the body before its joint.
 fn add_joints(model: &Model, design: &Design, bodies: &mut [Body], chain: &ChainPosture) {
     let architecture = design.architecture();
-    let masses = &model.settings().joints;
     let description = architecture.chain();
+    let tube = model.settings().legs.tube_length(design.link_length());
     let last = bodies.len() - 1;
-    for (place, kind) in description.joints.into_iter().enumerate() {
-        let is_bush = kind == JointKind::Prismatic && description.distal == MemberKind::TelescopicLeg;
-        let tube = model.settings().legs.tube_length(design.link_length());
-        let at = match description.points[place] {
+    let parts = model.settings().joints.of_leg(architecture);
+    for part in parts.filter(|part| part.moves && part.mass > 0.0) {
+        let is_bush = part.kind == JointKind::Prismatic && description.distal == MemberKind::TelescopicLeg;
+        let at = match description.points[part.place] {
             _ if is_bush => chain.a + chain.distal.direction * tube,
             JointPoint::A => chain.a,
             JointPoint::B => chain.b,
             JointPoint::C => chain.c,
         };
         // The bush belongs to the tube, and a carriage on a guide of the platform to what it connects the guide with.
-        let carrier = match kind {
-            JointKind::Prismatic if is_bush || place == 2 => place - 1,
-            _ => place,
+        let carries_next = part.kind == JointKind::Prismatic && (is_bush || part.place == 2);
+        let carrier = match part.is_motor || carries_next {
+            true => part.place - 1,
+            false => part.place,
         };
-        let motor = (architecture.driven() == place && place > 0).then(|| (place - 1, masses.motor));
-        let joint = kind.moves(place).then(|| (carrier, masses.of(kind)));
-        for (body, mass) in joint.into_iter().chain(motor).filter(|(_, mass)| *mass > 0.0) {
-            let body = &mut bodies[body.min(last)];
-            let at = Rotation::new(-body.frame.angle).apply(at - body.frame.origin);
-            body.joints.push((at, mass));
-        }
+        let body = &mut bodies[carrier.min(last)];
+        let at = Rotation::new(-body.frame.angle).apply(at - body.frame.origin);
+        body.joints.push((at, part.mass));
     }
 }
 

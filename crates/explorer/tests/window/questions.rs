@@ -156,35 +156,29 @@ fn numbers_are_typed_into_the_fields_of_the_study() {
             .requirements
             .inverse_condition_min
     };
-    let field = |window: &mut Window| {
+    let retype = |window: &mut Window, text: &str| {
         window
             .get_by_role_and_label(Role::SpinButton, "inverse condition min")
             .focus();
         window.run_steps(2);
+        window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+        window.step();
+        type_keys(window, text);
     };
     // As it is typed, nothing is taken; "0." and "1" would both be refused.
-    field(&mut window);
-    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
-    window.step();
-    type_keys(&mut window, "0.25");
+    retype(&mut window, "0.25");
     assert_eq!(dexterity(&window), 0.1);
     window.key_press(egui::Key::Enter);
     window.run_steps(3);
     assert_eq!(dexterity(&window), 0.25);
     assert!(window.state().session().editor().faults().next().is_none());
     // Escape restores.
-    field(&mut window);
-    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
-    window.step();
-    type_keys(&mut window, "0.7");
+    retype(&mut window, "0.7");
     window.key_press(egui::Key::Escape);
     window.run_steps(3);
     assert_eq!(dexterity(&window), 0.25);
     // A number out of range is refused when it is complete, and the field shows what the study holds.
-    field(&mut window);
-    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
-    window.step();
-    type_keys(&mut window, "7");
+    retype(&mut window, "7");
     window.key_press(egui::Key::Enter);
     window.run_steps(3);
     assert_eq!(dexterity(&window), 0.25);

@@ -96,10 +96,7 @@ impl Bodies {
             kinds,
             radii,
             heights,
-            platform_radii: geometry
-                .arrangement()
-                .platform_radii
-                .map(|multiple| multiple * design.platform_radius()),
+            platform_radii: [0, 1, 2].map(|leg| geometry.platform_length(leg, design.platform_radius())),
             slider: [half_length, (half_length - radii[PROXIMAL]).max(0.0)],
             pairs: [none; MAX_PAIRS],
             count: 0,

@@ -199,11 +199,8 @@ impl Model {
 
     /// Returns the mass of the joints and the motor of a leg that move \[kg\].
     fn leg_joints_mass(&self, architecture: Architecture) -> f64 {
-        let (joints, driven) = (&self.settings.joints, architecture.driven());
-        let kinds = architecture.chain().joints.into_iter().enumerate();
-        let moving = kinds.filter(|(place, kind)| kind.moves(*place));
-        let bare = moving.fold(0.0, |sum, (_, kind)| sum + joints.of(kind));
-        if driven > 0 { bare + joints.motor } else { bare }
+        let parts = self.settings.joints.of_leg(architecture);
+        parts.filter(|part| part.moves).fold(0.0, |sum, part| sum + part.mass)
     }
 
     /// Returns the mass of the bars of all legs \[kg\].
@@ -249,10 +246,7 @@ impl Model {
         let stiffness = self.stiffness(design);
         PoseChecker {
             manipulator,
-            strength: stiffness
-                .as_ref()
-                .filter(|_| self.depends_on_loads())
-                .map(|stiffness| self.strength_of_stiffness(design, stiffness)),
+            strength: self.strength_if_asked(design, stiffness.as_ref()),
             stiffness,
             definition: self.settings.stiffness_definition,
             length: self.length(design, &manipulator),
@@ -278,7 +272,7 @@ impl Model {
     pub(super) fn complete_checker<L: Leg>(&self, design: &Design) -> PoseChecker<L> {
         let mut checker = self.checker(design);
         let stiffness = checker.stiffness.as_ref();
-        checker.strength = stiffness.map(|stiffness| self.strength_of_stiffness(design, stiffness));
+        checker.strength = stiffness.map(|stiffness| self.strength(design, stiffness));
         checker
     }
 
@@ -304,8 +298,18 @@ impl Model {
         )
     }
 
-    /// Returns the strength of a design whose stiffness is known.
-    pub(crate) fn strength_of_stiffness(&self, design: &Design, stiffness: &StiffnessModel) -> StrengthModel {
+    /// Returns the strength of a design whose stiffness is known, if an evaluation computes anything of it.
+    pub(super) fn strength_if_asked(
+        &self,
+        design: &Design,
+        stiffness: Option<&StiffnessModel>,
+    ) -> Option<StrengthModel> {
+        stiffness
+            .filter(|_| self.depends_on_loads())
+            .map(|stiffness| self.strength(design, stiffness))
+    }
+
+    fn strength(&self, design: &Design, stiffness: &StiffnessModel) -> StrengthModel {
         let ModelSettings {
             legs,
             material,
@@ -418,7 +422,7 @@ impl Model {
     }
 
     /// Returns whether an evaluation computes scalars that depend on the loads.
-    pub(super) fn depends_on_loads(&self) -> bool {
+    fn depends_on_loads(&self) -> bool {
         let ModelSettings {
             thresholds, quantities, ..
         } = &self.settings;

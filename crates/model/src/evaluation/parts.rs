@@ -99,30 +99,23 @@ impl Model {
     }
 
     fn add_joints(&self, parts: &mut Vec<Part>, architecture: Architecture) {
-        let masses = &self.settings().joints;
-        for (place, kind) in architecture.chain().joints.into_iter().enumerate() {
-            let moves = kind.moves(place);
-            let joint = match (kind, moves) {
-                (JointKind::Prismatic, _) => "carriage",
-                (JointKind::Revolute, true) => "revolute joint",
-                (JointKind::Revolute, false) => "revolute joint on the base",
+        let of_leg = self.settings().joints.of_leg(architecture);
+        for part in of_leg.filter(|part| part.mass > 0.0) {
+            let name = match (part.is_motor, part.kind, part.moves) {
+                (true, _, true) => "motor",
+                (true, _, false) => "motor on the base",
+                (false, JointKind::Prismatic, _) => "carriage",
+                (false, JointKind::Revolute, true) => "revolute joint",
+                (false, JointKind::Revolute, false) => "revolute joint on the base",
             };
-            let motor = match place {
-                0 => "motor on the base",
-                _ => "motor",
+            let pieces = Part {
+                name,
+                bar: None,
+                pieces: LEGS,
+                mass: part.mass,
+                counts: part.moves,
             };
-            let with_motor = if architecture.driven() == place { 2 } else { 1 };
-            let both = [(joint, masses.of(kind), moves), (motor, masses.motor, place > 0)];
-            for (name, mass, counts) in both.into_iter().take(with_motor).filter(|(_, mass, _)| *mass > 0.0) {
-                let part = Part {
-                    name,
-                    bar: None,
-                    pieces: LEGS,
-                    mass,
-                    counts,
-                };
-                add(parts, part);
-            }
+            add(parts, pieces);
         }
     }
 

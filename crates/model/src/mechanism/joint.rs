@@ -1,4 +1,6 @@
-//! Joints of a leg: their kinds, and where they are.
+//! Joints of a leg: their kinds, where they are, and what moves of them.
+
+use super::Architecture;
 
 /// Kind of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,21 +48,43 @@ pub struct JointMasses {
     pub motor: f64,
 }
 
-impl JointMasses {
-    /// Returns the mass of a joint of a kind without its motor \[kg\].
-    pub fn of(&self, kind: JointKind) -> f64 {
-        match kind {
-            JointKind::Prismatic => self.carriage,
-            JointKind::Revolute => self.revolute,
-        }
-    }
+/// A joint of a leg without its motor, or the motor of the driven joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointPart {
+    /// Place of the joint in its leg, from 0 at the base.
+    pub place: usize,
+    /// Kind of the joint.
+    pub kind: JointKind,
+    /// Whether it is the motor.
+    pub is_motor: bool,
+    /// Whether it moves: a revolute joint and a motor on the base do not, the carriage of a rail does.
+    pub moves: bool,
+    /// Mass \[kg\].
+    pub mass: f64,
 }
 
-impl JointKind {
-    /// Returns whether a joint of the kind moves at a place in its leg, from 0 at the base: a revolute joint on the base does not, the
-    /// carriage of a rail does.
-    pub fn moves(self, place: usize) -> bool {
-        place > 0 || self == JointKind::Prismatic
+impl JointMasses {
+    /// Returns the joints of a leg from the base, and then the motor.
+    pub fn of_leg(self, architecture: Architecture) -> impl Iterator<Item = JointPart> {
+        let joints = architecture.chain().joints;
+        let joint = move |place: usize| JointPart {
+            place,
+            kind: joints[place],
+            is_motor: false,
+            moves: place > 0 || joints[place] == JointKind::Prismatic,
+            mass: match joints[place] {
+                JointKind::Prismatic => self.carriage,
+                JointKind::Revolute => self.revolute,
+            },
+        };
+        let driven = architecture.driven();
+        let motor = JointPart {
+            is_motor: true,
+            moves: driven > 0,
+            mass: self.motor,
+            ..joint(driven)
+        };
+        (0..joints.len()).map(joint).chain([motor])
     }
 }
 

@@ -7,6 +7,7 @@ use super::resultants::{LoadedLeg, LoadedLegs, dot, times};
 use super::{LARGEST_FACTOR, StrengthInputs, StrengthModel};
 use crate::lanes::{Planar, Real};
 use crate::spatial::LEGS;
+use crate::stiffness::inverse;
 
 /// A compression below this part of the largest force is a rounding error.
 const NEGLIGIBLE: f64 = 1e-12;
@@ -65,13 +66,14 @@ impl StrengthModel {
         };
         let mut columns = [[nothing; BARS]; LEGS];
         let mut largest = zero;
+        let compliance = inverse(&inputs.in_plane());
         for (index, leg) in loaded.legs.iter().enumerate() {
             largest = largest.larger(leg.line.most());
             for bar in self.first()..BARS {
                 let [compression, most] = self.compression(leg, bar);
                 let length = leg.path.bars[bar].length;
                 let bending = self.section(bar).compliance.bending;
-                let inside = self.give_in_plane(loaded, inputs, index, bar);
+                let inside = self.give_in_plane(leg, index, bar, inputs.along[index], &compliance);
                 let outside = self.give_out_of_plane(loaded, index, bar);
                 largest = largest.larger(most);
                 columns[index][bar] = Column {
@@ -116,16 +118,17 @@ impl StrengthModel {
         [compression, most]
     }
 
-    /// Returns `c_in`: by how much the chord of a bar turns in the plane per unit couple of two forces at its ends \[rad/(N·m)\].
+    /// Returns `c_in`: by how much the chord of a bar turns in the plane per unit couple of two forces at its ends \[rad/(N·m)\]; `along` is
+    /// `c_i`, and `compliance` is `K_in⁻¹`.
     #[inline(always)]
     fn give_in_plane<V: Real>(
         &self,
-        loaded: &LoadedLegs<'_, V>,
-        inputs: &StrengthInputs<V>,
+        leg: &LoadedLeg<'_, V>,
         index: usize,
         column: usize,
+        along: V,
+        compliance: &[V; 6],
     ) -> V {
-        let leg = &loaded.legs[index];
         let like = leg.moment;
         let (zero, one) = (like.splat(0.0), like.splat(1.0));
         // The wrench at `P` that keeps the drives and joints of the leg in balance with the couple.
@@ -142,7 +145,7 @@ impl StrengthModel {
         let (mut of_couple, mut of_both) = (zero, zero);
         for bar in self.first()..BARS {
             let lanes = &leg.path.bars[bar];
-            let compliance = &self.section(bar).compliance;
+            let section = &self.section(bar).compliance;
             let [from, to] = [lanes.base, lanes.place(lanes.length)];
             // The couple bends what is inboard of the bar, and dies out along it.
             let (at_from, at_to) = match bar.cmp(&column) {
@@ -155,21 +158,20 @@ impl StrengthModel {
             let w1 = leg.moment - from.cross(leg.u);
             let w2 = leg.moment - to.cross(leg.u);
             let (n, nw) = (force.dot(lanes.axis), leg.u.dot(lanes.axis));
-            let axial = lanes.length * like.splat(compliance.axial);
-            let bending = lanes.length * like.splat(compliance.bending);
+            let axial = lanes.length * like.splat(section.axial);
+            let bending = lanes.length * like.splat(section.bending);
             let third = bending * like.splat(1.0 / 3.0);
             let sixth = bending * like.splat(1.0 / 6.0);
             of_couple = of_couple + axial * n * n + third * (m1 * m1 + m1 * m2 + m2 * m2);
             of_both = of_both + axial * n * nw + sixth * (m1 * w1 + m1 * w1 + m1 * w2 + m2 * w1 + m2 * w2 + m2 * w2);
         }
-        let along = inputs.along[index];
         let taken = of_both / along;
         let left = [
             own[0] - taken * leg.u.x,
             own[1] - taken * leg.u.y,
             own[2] - taken * leg.moment,
         ];
-        of_couple - of_both * taken + dot(&left, &times(&loaded.in_plane, &left))
+        of_couple - of_both * taken + dot(&left, &times(compliance, &left))
     }
 
     /// Returns `c_out`, the same about the normal of the bar \[rad/(N·m)\].

@@ -21,6 +21,7 @@ use crate::mechanism::{CrossSection, CrossSections, Design, JointKind, LegLanes,
 use crate::spatial::LEGS;
 use crate::stiffness::{BarCompliance, Material, StiffnessModel, in_plane_block};
 use path::{BarSection, LegPath, PLATFORM};
+use resultants::LoadedLegs;
 
 /// Largest factor against buckling, and against yielding, that is reported: it stands for members without load.
 pub const LARGEST_FACTOR: f64 = 1e6;
@@ -33,8 +34,6 @@ pub(crate) struct StrengthModel {
     yield_strength: Option<f64>,
     sections: [BarSection; 2],
     paths: [LegPath; LEGS],
-    /// Whether the members weigh something.
-    weighs: bool,
     /// Kind of the driven joints.
     actuator: JointKind,
     /// Whether the rails bend, whose share in buckling is unknown.
@@ -158,7 +157,9 @@ impl<V: Real> LaneJob for StrengthJob<'_, V> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        self.model.values(self.inputs, self.set)
+        let legs = self.model.legs(self.inputs);
+        let loaded = self.model.loaded(&legs);
+        self.model.values(&loaded, self.inputs, self.set)
     }
 }
 
@@ -189,7 +190,6 @@ impl StrengthModel {
             yield_strength: material.yield_strength,
             sections: [legs, platform],
             paths: [0, 1, 2].map(|index| LegPath::new(design, settings, index, masses)),
-            weighs: loads.weighs() != [false; 2],
             actuator: design.architecture().actuator(),
             is_on_bending_rails: stiffness.is_on_bending_rails(),
         }
@@ -201,6 +201,12 @@ impl StrengthModel {
             loads: self.loads.with_wrench(wrench),
             ..self
         }
+    }
+
+    /// Returns whether the members weigh something.
+    #[inline(always)]
+    fn weighs(&self) -> bool {
+        self.loads.weighs() != [false; 2]
     }
 
     /// Returns the first bar of a leg.
@@ -218,9 +224,12 @@ impl StrengthModel {
     /// Returns the values of a set at several poses at once, in the order of [`StrengthValue`]; where there is none, and for all
     /// others, the worst number, which is infinite.
     #[inline(always)]
-    fn values<V: Real>(&self, inputs: &StrengthInputs<V>, set: StrengthSet) -> [V; StrengthValue::COUNT] {
-        let legs = self.legs(inputs);
-        let loaded = self.loaded(inputs, &legs);
+    fn values<V: Real>(
+        &self,
+        loaded: &LoadedLegs<'_, V>,
+        inputs: &StrengthInputs<V>,
+        set: StrengthSet,
+    ) -> [V; StrengthValue::COUNT] {
         let like = inputs.legs[0].moment;
         let mut found = StrengthValue::none(like);
         if set.contains_any([StrengthValue::Stress, StrengthValue::SafetyFactor]) {
@@ -229,7 +238,7 @@ impl StrengthModel {
             found[StrengthValue::SafetyFactor as usize] = self.safety_factor(stress);
         }
         if set.contains_any([StrengthValue::BucklingFactor]) {
-            let columns = self.columns(&loaded, inputs);
+            let columns = self.columns(loaded, inputs);
             found[StrengthValue::BucklingFactor as usize] = self.buckling_factor(&columns);
         }
         if set.contains_any([StrengthValue::JointForce, StrengthValue::JointMoment]) {

@@ -264,6 +264,17 @@ pub(super) struct Span<V> {
     pub density: f64,
 }
 
+impl<V: Real> Span<V> {
+    /// Returns the mass from a distance on, and the distance of its middle.
+    #[inline(always)]
+    fn mass_from(&self, distance: V) -> (V, V) {
+        let from = self.from.larger(distance);
+        let length = (self.to - from).larger(from.splat(0.0));
+        let mass = length * from.splat(self.density);
+        (mass, from + length * from.splat(0.5))
+    }
+}
+
 /// A bar at several poses at once, relative to `P`.
 #[derive(Clone, Copy)]
 pub(super) struct BarLanes<V> {
@@ -321,13 +332,9 @@ impl<V: Real> BarLanes<V> {
         self.base.plus(self.axis.scaled(distance))
     }
 
-    /// Returns the mass of a piece from a distance on.
+    /// Returns a mass whose middle is at a distance from the end at the base.
     #[inline(always)]
-    fn of_piece(&self, piece: &Span<V>, from: V) -> Beyond<V> {
-        let zero = from.splat(0.0);
-        let length = (piece.to - from).larger(zero);
-        let mass = length * from.splat(piece.density);
-        let middle = from + length * from.splat(0.5);
+    fn at(&self, (mass, middle): (V, V)) -> Beyond<V> {
         Beyond {
             mass,
             moment: self.place(middle).scaled(mass),
@@ -338,7 +345,7 @@ impl<V: Real> BarLanes<V> {
     #[inline(always)]
     pub fn mass_of_piece(&self, piece: usize) -> Beyond<V> {
         let piece = &self.pieces[piece];
-        self.of_piece(piece, piece.from)
+        self.at(piece.mass_from(piece.from))
     }
 
     /// Returns the mass on the line of the bar.
@@ -351,33 +358,23 @@ impl<V: Real> BarLanes<V> {
     #[inline(always)]
     pub fn mass_on(&self, distance: V) -> (V, V) {
         let [first, second] = &self.pieces;
-        let (mass, moment) = part(first, distance);
+        let (mass, middle) = first.mass_from(distance);
+        let moment = mass * (middle - distance);
         if second.density == 0.0 {
             return (mass, moment);
         }
-        let (more, further) = part(second, distance);
-        (mass + more, moment + further)
+        let (more, middle) = second.mass_from(distance);
+        (mass + more, moment + more * (middle - distance))
     }
 
     /// Returns the mass on the line of the bar from a distance on.
     #[inline(always)]
     pub fn mass_from(&self, distance: V) -> Beyond<V> {
         let [first, second] = &self.pieces;
-        let first = self.of_piece(first, first.from.larger(distance));
+        let mass = self.at(first.mass_from(distance));
         if second.density == 0.0 {
-            return first;
+            return mass;
         }
-        first.and(self.of_piece(second, second.from.larger(distance)))
+        mass.and(self.at(second.mass_from(distance)))
     }
-}
-
-/// Returns the mass of a piece from a distance on, and its first moment about that place.
-#[inline(always)]
-fn part<V: Real>(piece: &Span<V>, distance: V) -> (V, V) {
-    let zero = distance.splat(0.0);
-    let from = piece.from.larger(distance);
-    let length = (piece.to - from).larger(zero);
-    let mass = length * distance.splat(piece.density);
-    let middle = from + length * distance.splat(0.5);
-    (mass, mass * (middle - distance))
 }

@@ -93,7 +93,7 @@ impl StrengthModel {
     /// Returns the strength at a pose; `None` at a singular one.
     pub fn report(&self, inputs: &StrengthInputs<f64>) -> Option<StrengthReport> {
         let legs = self.legs(inputs);
-        let loaded = self.loaded(inputs, &legs);
+        let loaded = self.loaded(&legs);
         let buckles = !self.is_on_bending_rails;
         let columns = self.columns(&loaded, inputs);
         let mut members = Vec::new();
@@ -149,12 +149,10 @@ impl StrengthModel {
                 });
             }
         }
-        let values = self.values(
-            inputs,
-            StrengthValue::ALL
-                .into_iter()
-                .fold(StrengthSet::default(), StrengthSet::with),
-        );
+        let all = StrengthValue::ALL
+            .into_iter()
+            .fold(StrengthSet::default(), StrengthSet::with);
+        let values = self.values(&loaded, inputs, all);
         let value = |value: StrengthValue| Some(values[value as usize]).filter(|value| value.is_finite());
         let is_single = self.loads.range == [0.0; 6];
         Some(StrengthReport {

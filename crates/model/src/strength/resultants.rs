@@ -76,8 +76,6 @@ pub(super) struct LoadedLegs<'a, V: Real> {
     pub legs: [LoadedLeg<'a, V>; LEGS],
     /// `C_out`.
     pub bending: [V; 6],
-    /// `K_in⁻¹`, of which only buckling makes use.
-    pub in_plane: [V; 6],
 }
 
 /// Returns the product of a symmetric matrix, given as an upper triangle, and a vector.
@@ -154,12 +152,8 @@ fn weight_moment<V: Real>(loads: &Loads, beyond: &Beyond<V>, about: Planar<V>) -
 impl StrengthModel {
     /// Returns what the legs transmit at several poses at once.
     #[inline(always)]
-    pub(super) fn loaded<'a, V: Real>(
-        &self,
-        inputs: &StrengthInputs<V>,
-        legs: &'a [LegBasis<V>; LEGS],
-    ) -> LoadedLegs<'a, V> {
-        let like = inputs.legs[0].moment;
+    pub(super) fn loaded<'a, V: Real>(&self, legs: &'a [LegBasis<V>; LEGS]) -> LoadedLegs<'a, V> {
+        let like = legs[0].moment;
         let [fx, fy, fz, mx, my, mz] = self.loads.wrench;
         let mut left = [like.splat(fx), like.splat(fy), like.splat(mz)];
         let mut wrench = [like.splat(fz), like.splat(mx), like.splat(my)];
@@ -186,7 +180,6 @@ impl StrengthModel {
                 self.loaded_leg(&legs[2], &by[2], &left, &less(&displacement, &sags[2]), &bending),
             ],
             bending,
-            in_plane: inverse(&inputs.in_plane()),
         }
     }
 
@@ -312,7 +305,7 @@ impl StrengthModel {
         let [lift, tilt_x, tilt_y] = leg.out;
         let mut lift = lift;
         let mut moment = Planar::new(tilt_x, tilt_y).plus(arm.scaled(lift));
-        if self.weighs {
+        if self.weighs() {
             let [x, y, turn] = weight_in_plane(&self.loads, beyond);
             force = force.plus(Planar::new(x, y));
             about = about + turn - (place.x * y - place.y * x);
@@ -338,7 +331,7 @@ impl StrengthModel {
     fn sag<V: Real>(&self, leg: &LegBasis<V>) -> [V; 3] {
         let zero = leg.moment.splat(0.0);
         let mut sag = [zero; 3];
-        for bar in self.paths[0].first..BARS {
+        for bar in self.first()..BARS {
             let lanes = &leg.path.bars[bar];
             if lanes.is_uniform {
                 self.add_sag(&mut sag, leg, bar, [zero, lanes.length]);

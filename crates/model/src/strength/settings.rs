@@ -80,35 +80,32 @@ impl Loads {
     #[inline(always)]
     pub(super) fn in_plane_range<V: Real>(&self, by: &[V; 3]) -> V {
         let like = by[0];
-        let [x, y, turn] = [
-            by[0] * like.splat(self.range[0]),
-            by[1] * like.splat(self.range[1]),
-            by[2] * like.splat(self.range[5]),
-        ];
-        match self.shape {
-            LoadShape::Box => x.abs() + y.abs() + turn.abs(),
-            LoadShape::Cylinder => (x * x + y * y).sqrt() + turn.abs(),
-            LoadShape::Ellipsoid => (x * x + y * y + turn * turn).sqrt(),
-        }
+        let pair = [by[0] * like.splat(self.range[0]), by[1] * like.splat(self.range[1])];
+        self.shape.largest(pair, by[2] * like.splat(self.range[5]))
     }
 
     /// Returns the largest value over the set of a resultant of the other components, given its derivatives by `f_z`, `m_x`, `m_y`.
     #[inline(always)]
     pub(super) fn out_of_plane_range<V: Real>(&self, by: &[V; 3]) -> V {
         let like = by[0];
+        let lift = by[0] * like.splat(self.range[2]);
         // Most studies have no tilting moment, and all shapes are one then.
         if self.range[3] == 0.0 && self.range[4] == 0.0 {
-            return (by[0] * like.splat(self.range[2])).abs();
+            return lift.abs();
         }
-        let [z, x, y] = [
-            by[0] * like.splat(self.range[2]),
-            by[1] * like.splat(self.range[3]),
-            by[2] * like.splat(self.range[4]),
-        ];
-        match self.shape {
-            LoadShape::Box => z.abs() + x.abs() + y.abs(),
-            LoadShape::Cylinder => z.abs() + (x * x + y * y).sqrt(),
-            LoadShape::Ellipsoid => (z * z + x * x + y * y).sqrt(),
+        let pair = [by[1] * like.splat(self.range[3]), by[2] * like.splat(self.range[4])];
+        self.shape.largest(pair, lift)
+    }
+}
+
+impl LoadShape {
+    /// Returns the largest sum of contributions: of two components in directions of the plane, and of one by itself.
+    #[inline(always)]
+    fn largest<V: Real>(self, [x, y]: [V; 2], single: V) -> V {
+        match self {
+            LoadShape::Box => x.abs() + y.abs() + single.abs(),
+            LoadShape::Cylinder => (x * x + y * y).sqrt() + single.abs(),
+            LoadShape::Ellipsoid => (x * x + y * y + single * single).sqrt(),
         }
     }
 }

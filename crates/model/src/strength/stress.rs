@@ -31,12 +31,9 @@ pub(super) struct BarLoads<V> {
     /// Moment of the leg's line about the end, and by how much it grows per length \[m, –\].
     lever: V,
     lever_slope: V,
-    /// By how much the set of wrenches changes the force along the line \[N\].
-    line_range: V,
     lift: V,
-    /// Derivatives by `f_z`, `m_x` and `m_y`.
-    lift_by: [V; 3],
     out_of_plane: V,
+    /// Derivatives by `f_z`, `m_x` and `m_y`.
     out_of_plane_by: [V; 3],
     torsion: Ranged<V>,
 }
@@ -45,7 +42,7 @@ impl StrengthModel {
     /// Returns the number of sections of a bar.
     #[inline(always)]
     pub(super) fn sections(&self) -> usize {
-        if self.weighs { STRETCHES + 1 } else { 2 }
+        if self.weighs() { STRETCHES + 1 } else { 2 }
     }
 
     /// Returns what a bar carries.
@@ -64,15 +61,10 @@ impl StrengthModel {
             in_plane: carried.turn.value,
             lever: leg.moment - end.cross(leg.u),
             lever_slope: leg.u.dot(normal),
-            line_range: leg.line.range,
             lift: carried.lift.value,
-            lift_by: leg.share[0],
             out_of_plane: carried.moment.dot(normal),
             out_of_plane_by: leg.moment_by(end, normal),
-            torsion: Ranged {
-                value: carried.moment.dot(axis),
-                range: self.loads.out_of_plane_range(&leg.moment_by(end, axis)),
-            },
+            torsion: self.about(leg, end, carried.moment, axis),
         }
     }
 
@@ -91,14 +83,14 @@ impl StrengthModel {
         let distance = like * like.splat(share);
         let left = like - distance;
         let [a, b, c] = loads.out_of_plane_by;
-        let [da, db, dc] = loads.lift_by;
+        let [da, db, dc] = leg.share[0];
         let range = self
             .loads
             .out_of_plane_range(&[a - left * da, b - left * db, c - left * dc]);
         let mut axial = loads.axial;
         let mut in_plane = loads.in_plane + left * loads.shear;
         let mut out_of_plane = loads.out_of_plane - left * loads.lift;
-        if self.weighs {
+        if self.weighs() {
             let (mass, lever) = lanes.mass_on(distance);
             let [x, y, z] = self.loads.gravity.map(|part| like.splat(part));
             let gravity = Planar::new(x, y);
@@ -110,7 +102,7 @@ impl StrengthModel {
             axial,
             in_plane: Ranged {
                 value: in_plane,
-                range: (loads.lever + left * loads.lever_slope).abs() * loads.line_range,
+                range: (loads.lever + left * loads.lever_slope).abs() * leg.line.range,
             },
             out_of_plane: Ranged {
                 value: out_of_plane,

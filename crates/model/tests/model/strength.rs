@@ -67,10 +67,7 @@ fn loads(case: &Value, with_range: bool) -> Loads {
 }
 
 fn report(case: &Value, with_range: bool) -> StrengthReport {
-    let (design, pose) = (design(case), pose(case));
-    let model = model(case, loads(case, with_range));
-    let found = model.posed(&design).strength_at(&pose, None).expect("reachable");
-    found.expect("no singularity")
+    under(case, loads(case, with_range))
 }
 
 /// Asserts that a value agrees, relative to the largest value of its kind.
@@ -83,10 +80,22 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |most, value| most.max(value.abs()))
 }
 
+/// Asserts that the worst values of a report agree with the expected ones.
+fn worst_values_agree(found: &StrengthReport, wanted: &Value, name: &str) {
+    for (value, key, tolerance) in [
+        (found.stress, "stress_max_pa", 1e-9),
+        (found.buckling_factor.expect("rigid rails"), "buckling_factor_min", 1e-8),
+        (found.joint_force, "joint_force_max_n", 1e-9),
+        (found.joint_moment, "joint_moment_max_nm", 1e-9),
+    ] {
+        let wanted = number(&wanted[key]);
+        agree(value, wanted, wanted, tolerance, &format!("{name}: {key}"));
+    }
+}
+
 #[test]
 fn stresses_forces_and_factors_agree() {
-    let cases = fixture("strength_cases.json");
-    for case in cases["cases"].as_array().expect("cases") {
+    for case in &cases() {
         let wanted = &case["expected"];
         let found = report(case, false);
         let name = design(case).to_string();
@@ -181,22 +190,13 @@ fn stresses_forces_and_factors_agree() {
         for (value, wanted) in found.actuators.into_iter().zip(efforts) {
             agree(value, wanted, most, 1e-9, &format!("{name}: drive"));
         }
-        for (value, key, tolerance) in [
-            (found.stress, "stress_max_pa", 1e-9),
-            (found.buckling_factor.expect("rigid rails"), "buckling_factor_min", 1e-8),
-            (found.joint_force, "joint_force_max_n", 1e-9),
-            (found.joint_moment, "joint_moment_max_nm", 1e-9),
-        ] {
-            let wanted = number(&wanted[key]);
-            agree(value, wanted, wanted, tolerance, &format!("{name}: {key}"));
-        }
+        worst_values_agree(&found, wanted, &name);
     }
 }
 
 #[test]
 fn the_worst_of_a_set_agrees() {
-    let cases = fixture("strength_cases.json");
-    let cases = cases["cases"].as_array().expect("cases");
+    let cases = cases();
     let with_sets = cases.iter().filter(|case| case.get("shape").is_some());
     assert!(with_sets.clone().count() >= 9);
     for case in with_sets {
@@ -224,15 +224,7 @@ fn the_worst_of_a_set_agrees() {
                 &format!("{name}: drive"),
             );
         }
-        for (value, key, tolerance) in [
-            (found.stress, "stress_max_pa", 1e-9),
-            (found.buckling_factor.expect("rigid rails"), "buckling_factor_min", 1e-8),
-            (found.joint_force, "joint_force_max_n", 1e-9),
-            (found.joint_moment, "joint_moment_max_nm", 1e-9),
-        ] {
-            let wanted = number(&wanted[key]);
-            agree(value, wanted, wanted, tolerance, &format!("{name}: {key}"));
-        }
+        worst_values_agree(&found, wanted, &name);
     }
 }
 

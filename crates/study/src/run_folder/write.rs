@@ -9,7 +9,7 @@ use super::design_table::{DesignTable, open_locked};
 use super::{Checkpoint, DESIGNS, FRONT, FileSums, MergedRun, PROGRESS, RECORDING, REPORT, RunReport, STUDY};
 use crate::FileSum;
 use crate::durable::{remove, sweep, sync_folder};
-use crate::table::{Cell, Column, table_bytes};
+use crate::table::{Column, table_bytes};
 use crate::{Event, RunSummary, Study};
 use crate::{WriteError, write_whole};
 
@@ -215,13 +215,7 @@ pub(super) fn front_table(study: &Study, summary: &RunSummary) -> io::Result<Vec
     let sections = study.sections.cross_sections();
     let rows = summary.front.iter().zip(summary.marks(study)).map(|(member, mark)| {
         let entry = member.row();
-        let cell = |column: Column| match column {
-            Column::Mark => Cell::Text(mark.clone().into()),
-            column => match column.section_of(&sections, &entry.row.design) {
-                Some(name) => Cell::Text(name.to_owned().into()),
-                None => column.cell(&entry),
-            },
-        };
+        let cell = |column: Column| column.cell_of_front(&entry, &mark, &sections);
         Column::of_front(study).map(cell).collect()
     });
     table_bytes(Column::of_front(study), rows)

@@ -40,7 +40,7 @@ impl Study {
             let key = scalar.entry().quantity.key;
             add(
                 true,
-                format!("nothing is proved, because the limit of {key} has no form; it holds on the fine grid"),
+                format!("nothing is proved, because proofs do not cover the limit of {key}; it holds on the fine grid"),
             );
         }
         points

@@ -5,6 +5,7 @@ use std::fmt;
 
 use super::{Column, TableRow};
 use kinefront_model::evaluation::Constraint;
+use kinefront_model::mechanism::CrossSections;
 
 /// One value of a row.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +41,15 @@ impl fmt::Display for Cell {
 }
 
 impl Column {
+    /// The value of an entry of a front, whose design is marked with `mark` and has bars of the given sections.
+    pub fn cell_of_front(self, entry: &TableRow, mark: &str, sections: &CrossSections) -> Cell {
+        let name = match self {
+            Self::Mark => Some(mark),
+            column => column.section_of(sections, &entry.row.design),
+        };
+        name.map_or_else(|| self.cell(entry), |name| Cell::Text(name.to_owned().into()))
+    }
+
     /// The value of an entry. Missing for the columns that only some tables have: whoever writes such a table adds the
     /// cells itself.
     pub fn cell(self, entry: &TableRow) -> Cell {

@@ -203,7 +203,7 @@ impl Column {
     }
 
     /// Returns the name of the bars of a design that the column states, if it is one of those of catalogues.
-    pub fn section_of<'a>(self, sections: &'a CrossSections, design: &Design) -> Option<&'a str> {
+    pub(super) fn section_of<'a>(self, sections: &'a CrossSections, design: &Design) -> Option<&'a str> {
         match self {
             Self::LegSection => sections.legs.catalogue_name(design.leg_bar_radius()),
             Self::PlatformSection => sections.platform.catalogue_name(design.platform_bar_radius()),

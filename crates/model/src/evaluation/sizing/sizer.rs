@@ -112,10 +112,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
     pub fn set_bars(&mut self, bars: [f64; 2]) {
         let design = self.with_bars(bars);
         self.checker.stiffness = self.model.stiffness(&design);
-        if self.model.depends_on_loads() {
-            let stiffness = self.checker.stiffness.as_ref();
-            self.checker.strength = stiffness.map(|stiffness| self.model.strength_of_stiffness(&design, stiffness));
-        }
+        self.checker.strength = self.model.strength_if_asked(&design, self.checker.stiffness.as_ref());
     }
 
     pub fn position(&self, radius: f64, angle: f64) -> DVec2 {

@@ -18,15 +18,9 @@ pub struct RprChain {
     frame: LegFrame,
     shortest: f64,
     longest: f64,
+    /// Length of the tube \[m\].
+    tube: f64,
     bar: BarLength,
-}
-
-impl RprChain {
-    /// Returns the length of the tube \[m\]: half of the largest leg length, so that the leg can retract to half of it.
-    /// If the smallest leg length is shorter than that, the tube has this length and the rod can protrude behind it.
-    fn tube(&self) -> f64 {
-        (0.5 * self.longest).min(self.shortest)
-    }
 }
 
 impl Chain for RprChain {
@@ -46,6 +40,7 @@ impl Chain for RprChain {
             frame,
             shortest: settings.telescopic_shortest * design.link_length(),
             longest: design.link_length(),
+            tube: settings.tube_length(design.link_length()),
             bar: settings.telescopic_bar,
         }
     }
@@ -192,7 +187,7 @@ impl Chain for RprChain {
         let u = distal.tangent;
         let anchor = Planar::splat(like, self.frame.anchor);
         let length = c.minus(anchor).dot(u);
-        let rod = self.longest - self.tube();
+        let rod = self.longest - self.tube;
         let distal = if rod > self.shortest {
             // Length by which the rod protrudes behind the joint at the base.
             let behind = (like.splat(rod) - length).larger(like.splat(0.0));
@@ -228,7 +223,7 @@ impl Chain for RprChain {
         let [swing, length, _] = self.joint_values(posture, arm);
         let (a, u) = (posture.a, posture.distal.direction);
         let along = |length: f64| a + u * length;
-        let tube = self.tube();
+        let tube = self.tube;
         let (mouth, c) = (along(tube), posture.c);
         let of_leg = [MemberKind::TelescopicLeg; 2];
         vec![

@@ -166,34 +166,6 @@ macro_rules! pose_scalars {
         }
 
         impl<L: Leg> PoseChecker<L> {
-            /// Computes a scalar that only some studies need, at several poses at once; meaningless where a leg does not reach the
-            /// pose, and NaN for a scalar that every evaluation determines.
-            #[inline(always)]
-            pub(super) fn on_demand_lanes<V: Real>(
-                &self,
-                scalar: PoseScalar,
-                position: Planar<V>,
-                arms: &[Planar<V>; LEGS],
-            ) -> V {
-                let checker = self;
-                match scalar {
-                    $(PoseScalar::$more => {
-                        position.x.call_apart(OnDemand::<L, V, { PoseScalar::$more as usize }> {
-                            checker,
-                            position,
-                            arms,
-                        })
-                    })*
-                    _ => match scalar.of_strength() {
-                        Some(value) => {
-                            let set = StrengthSet::default().with(value);
-                            strength::lanes(self, position, arms, set)[value as usize]
-                        }
-                        None => position.x.splat(f64::NAN),
-                    },
-                }
-            }
-
             /// Computes those scalars of a set that only some studies need, at several poses at once; meaningless where a leg does not
             /// reach the pose.
             #[inline(always)]
@@ -204,8 +176,14 @@ macro_rules! pose_scalars {
                 arms: &[Planar<V>; LEGS],
                 scalars: &mut PoseScalars<V>,
             ) {
+                let checker = self;
                 $(if set.contains(PoseScalar::$more) {
-                    scalars[PoseScalar::$more] = self.on_demand_lanes(PoseScalar::$more, position, arms);
+                    let job = OnDemand::<L, V, { PoseScalar::$more as usize }> {
+                        checker,
+                        position,
+                        arms,
+                    };
+                    scalars[PoseScalar::$more] = position.x.call_apart(job);
                 })*
                 let mut of_strength = StrengthSet::default();
                 $(if set.contains(PoseScalar::$load) {
