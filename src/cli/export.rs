@@ -14,7 +14,7 @@ use super::{Ending, Failure, exists_already, say};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Formats of a design: gltf (.glb), mjcf (.xml), sdf, urdf, dxf, json, csv-parts (.csv: what has to be ordered and cut).
+Formats of a design: gltf (.glb), mjcf (.xml), sdf, urdf, dxf, json, csv-parts (.csv: what has to be ordered and cut), step (an assembly for CAD).
 Formats of a front: csv, parquet; specify the run folder instead of a design.
 
 Examples:

@@ -49,10 +49,13 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
     ]);
     match (&evaluation.home, evaluation.home_phi_deg) {
         (Some(home), Some(phi_deg)) => {
-            facts.add_row([
-                "regular workspace".to_owned(),
-                format!("R_w = {:.5} m", evaluation.workspace_radius()),
-            ]);
+            let region = &model.settings().workspace.region;
+            facts.add_row(if region.is_prescribed() {
+                ["region".to_owned(), format!("{}, all of it", text::region(region))]
+            } else {
+                let radius = evaluation.workspace_radius();
+                ["regular workspace".to_owned(), format!("R_w = {radius:.5} m")]
+            });
             let centre = home.position;
             facts.add_row([
                 "home pose".to_owned(),
@@ -61,6 +64,15 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         }
         _ => {
             facts.add_row(["regular workspace", "none: the design is infeasible"]);
+        }
+    }
+    let sections = &model.settings().sections;
+    for (name, section, radius) in [
+        ("legs", &sections.legs, design.leg_bar_radius()),
+        ("platform", &sections.platform, design.platform_bar_radius()),
+    ] {
+        if let Some(bar) = text::catalogue_bar(section, radius) {
+            facts.add_row([format!("bars of the {name}"), bar]);
         }
     }
     let told_elsewhere = [
@@ -86,17 +98,17 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             Bound::AtMost(_) => "≤",
         };
         let value = result.value.map_or_else(|| "none".to_owned(), text::number);
+        let limit = text::number(result.limit.threshold());
         let kept = if result.margin >= 0.0 { "kept" } else { "missed" };
         facts.add_row([
             format!("limit of {}", entry.label),
             format!(
-                "{value} {sign} {} {}: {kept}",
-                text::number(result.limit.threshold()),
-                entry.unit
+                "{}: {kept}",
+                format!("{value} {sign} {limit} {}", entry.unit).trim_end()
             ),
         ]);
     }
-    if let Some(nearest) = evaluation.nearest {
+    if let Some(nearest) = &evaluation.nearest {
         let where_least = if evaluation.is_feasible() {
             "the smallest over the workspace"
         } else {
@@ -104,7 +116,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         };
         facts.add_row([
             "clearance".to_owned(),
-            format!("{}, {where_least}", text::clearance(&nearest)),
+            format!("{}, {where_least}", text::clearance(nearest)),
         ]);
     }
     let mut constraints = table(

@@ -320,8 +320,8 @@ fn exports_say_what_is_wrong() {
     );
     fails(&["--design", &DESIGN.replace("rj=0.036", "rj=0")], "radius 0");
     fails(
-        &["--design", DESIGN, "--format", "step"],
-        "expected one of gltf, mjcf, sdf, urdf, dxf, json, csv-parts, csv, parquet",
+        &["--design", DESIGN, "--format", "iges"],
+        "expected one of gltf, mjcf, sdf, urdf, dxf, json, csv-parts, step, csv, parquet",
     );
     fails(&["--design", DESIGN, "--format", "parquet"], "specify the run folder");
     fails(&["run/front.csv#1", "--format", "csv"], "specify the run folder");

@@ -1,6 +1,7 @@
 //! Strength, materials, joints and parts, as a user of the program meets them.
 
 use std::fs;
+use std::path::Path;
 
 use predicates::prelude::*;
 use predicates::str::contains;
@@ -53,6 +54,54 @@ fn a_pose_is_reported_with_its_strength() {
         let arguments = ["pose", "--design", DESIGN, "--pose", POSE, "--wrench", wrench];
         kinefront().args(arguments).assert().code(2).stderr(contains(words));
     }
+}
+
+/// The question of a builder: tubes that can be ordered, joints with mass, a column and limits of the strength. Every design of the
+/// front is proved, and keeps what it promises at poses that no grid holds.
+#[test]
+fn the_cell_of_a_builder_is_proved() {
+    let folder = folder();
+    let run = folder.path().join("run");
+    optimize(
+        Path::new("builders-cell"),
+        &run,
+        &["--evaluations", "600", "--no-recording", "--threads", "2"],
+    );
+    let front = fs::read_to_string(run.join("front.csv")).expect("a front");
+    let mut rows = front.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = rows.next().expect("a header");
+    let rows: Vec<Vec<&str>> = rows.collect();
+    assert!(rows.len() > 5, "{front}");
+    let of = |row: &[&str], name: &str| {
+        let place = header.iter().position(|found| *found == name).expect(name);
+        row[place].to_owned()
+    };
+    let number = |row: &[&str], name: &str| of(row, name).parse::<f64>().expect(name);
+    for row in &rows {
+        assert_eq!(of(row, "certificate"), "proved", "{row:?}");
+        assert!(number(row, "safety_factor_min") >= 2.0 && number(row, "buckling_factor_min") >= 3.0);
+        assert!(number(row, "value_g7") >= 0.005, "{row:?}");
+    }
+    // The column is what a design without it would touch: its clearance is told with its name.
+    let study = fs::read_to_string(run.join("study.toml")).expect("a study");
+    let nearer = folder.path().join("nearer.toml");
+    let moved = study.replace("centre_m = [0.5, 0.4]", "centre_m = [0.36, 0.27]");
+    assert_ne!(moved, study);
+    fs::write(&nearer, moved).expect("written");
+    let row = &rows[0];
+    let design = format!(
+        "{} R={} r={} Lb={} rj={} rp={}",
+        of(row, "architecture"),
+        of(row, "R"),
+        of(row, "r"),
+        of(row, "Lb"),
+        of(row, "rj"),
+        of(row, "rp")
+    );
+    let nearer = nearer.to_str().expect("a path");
+    let found = json(["evaluate", "--design", &design, "--study", nearer, "--json"]);
+    assert_eq!(found["feasible"], false);
+    assert_eq!(found["clearance_pair"][1], "column", "{found}");
 }
 
 /// A question whose members hold and do not buckle: the front keeps the limits, names the tubes, and sums up to its parts.

@@ -28,9 +28,10 @@ pub(super) const FORMAT: Format = Format {
 const MM: f64 = 1e3;
 
 /// Layers with their colours from the AutoCAD Color Index.
-const LAYERS: [(&str, u8); 8] = [
+const LAYERS: [(&str, u8); 9] = [
     ("BASE", 8),
     ("RAILS", 9),
+    ("SURROUNDINGS", 1),
     ("LEGS", 7),
     ("PLATFORM", 5),
     ("JOINTS", 30),
@@ -134,6 +135,7 @@ impl Sheet {
             let layer = match line.part {
                 Part::Base => "BASE",
                 Part::Rail | Part::Stroke => "RAILS",
+                Part::Obstacle | Part::Room => "SURROUNDINGS",
                 _ => "CENTRE_LINES",
             };
             for ends in line.points.windows(2) {

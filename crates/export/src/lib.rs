@@ -6,6 +6,7 @@
 //! | `mjcf` | bodies with masses, loops closed by constraints, actuators with the study's stiffness |
 //! | `sdf` | bodies with masses and every joint, with closed loops |
 //! | `urdf` | bodies with masses; a tree, so the loops are cut |
+//! | `step` | an assembly of exact solids in millimetres, for CAD |
 //! | `dxf` | the plan view in layers, in millimetres |
 //! | `json` | evaluation, bodies, joints, and a tour with its actuator values |
 //!
@@ -19,6 +20,7 @@ mod mjcf;
 mod parts;
 mod prepared;
 mod sdf;
+mod step;
 mod strength;
 #[cfg(feature = "parquet")]
 mod table;
@@ -47,6 +49,7 @@ impl Format {
         dxf::FORMAT,
         json::FORMAT,
         parts::FORMAT,
+        step::FORMAT,
     ];
 }
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::strength::StrengthJson;
+use kinefront_model::clearance::Clearance;
 use kinefront_model::evaluation::{Bound, Evaluation, LimitResult, PoseEvaluation, PoseScalar, Quantity, Unreachable};
 use kinefront_model::mechanism::{Design, DesignVariable};
 use kinefront_model::spatial::Pose;
@@ -153,7 +154,7 @@ impl EvaluationJson {
             feasible: evaluation.is_feasible(),
             violation: evaluation.violation,
             clearance_m: evaluation.clearance(),
-            clearance_pair: evaluation.nearest.map(|nearest| nearest.pair()),
+            clearance_pair: evaluation.nearest.as_ref().map(Clearance::pair),
             constraints: evaluation
                 .constraints
                 .iter()

@@ -62,6 +62,41 @@ pub trait Real:
         job.run()
     }
 
+    /// Returns the inverse of a symmetric matrix, both given as upper triangles, row by row.
+    #[inline(always)]
+    fn symmetric_inverse(matrix: &[Self; 6]) -> [Self; 6] {
+        let [a, b, c, d, e, f] = *matrix;
+        let cofactors = [
+            d * f - e * e,
+            c * e - b * f,
+            b * e - c * d,
+            a * f - c * c,
+            b * c - a * e,
+            a * d - b * b,
+        ];
+        let one = a.splat(1.0) / (a * cofactors[0] + b * cofactors[1] + c * cofactors[2]);
+        [
+            cofactors[0] * one,
+            cofactors[1] * one,
+            cofactors[2] * one,
+            cofactors[3] * one,
+            cofactors[4] * one,
+            cofactors[5] * one,
+        ]
+    }
+
+    /// Returns the rows of the inverse of the transpose of a matrix, which is given by its rows.
+    #[inline(always)]
+    fn inverse_transpose([a, b, c]: &[[Self; 3]; 3]) -> [[Self; 3]; 3] {
+        let first = cross(b, c);
+        let one = a[0].splat(1.0) / (a[0] * first[0] + a[1] * first[1] + a[2] * first[2]);
+        [
+            scaled(&first, one),
+            scaled(&cross(c, a), one),
+            scaled(&cross(a, b), one),
+        ]
+    }
+
     /// Returns the smaller of two numbers, or `other` if either is NaN.
     #[inline(always)]
     fn smaller(self, other: Self) -> Self {
@@ -73,6 +108,20 @@ pub trait Real:
     fn larger(self, other: Self) -> Self {
         self.select(self.exceeds(other), other)
     }
+}
+
+#[inline(always)]
+fn cross<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+#[inline(always)]
+fn scaled<V: Real>(a: &[V; 3], by: V) -> [V; 3] {
+    [a[0] * by, a[1] * by, a[2] * by]
 }
 
 impl Real for f64 {

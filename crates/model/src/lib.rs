@@ -69,6 +69,7 @@
 //! |---|---|
 //! | [`lanes`] | arithmetic on one number or on several at once |
 //! | [`spatial`] | poses, planar vectors, notation and frames |
+//! | [`polygon`] | simple polygons |
 //! | [`mechanism`] | architectures, designs, inverse kinematics |
 //! | [`kinematics`] | Jacobian, dexterity, forward kinematics |
 //! | [`stiffness`] | stiffness of bars, legs and platform: closed form, and the 6×6 form as its reference |
@@ -87,6 +88,7 @@ pub mod enclosure;
 pub mod evaluation;
 pub mod kinematics;
 pub mod lanes;
+pub mod polygon;
 mod pose;
 pub mod spatial;
 pub mod stiffness;

@@ -61,8 +61,8 @@ pub(super) fn card(
         );
     }
     card.push('\n');
-    if let Some(nearest) = evaluation.nearest {
-        card += &format!("- smallest clearance between members: {}\n", text::clearance(&nearest));
+    if let Some(nearest) = &evaluation.nearest {
+        card += &format!("- smallest clearance between members: {}\n", text::clearance(nearest));
     }
     for set in ellipsoids {
         card += &format!("- {}\n", set.scale_text());

@@ -60,7 +60,8 @@ fn draw_design(
     let (study, model) = (study.study(), study.model());
     let writer = RecordingWriter::create(path, heading)?;
     let proof = study
-        .certifies()
+        .workspace
+        .certify
         .then(|| workspace_proof(model, evaluation, &|| true))
         .flatten();
     let certified = proof

@@ -139,6 +139,7 @@ impl<'a> Canvas<'a> {
         for (name, parts, width) in [
             ("base", &[Part::Base, Part::Rail][..], 1.6),
             ("strokes", &[Part::Stroke], 0.8),
+            ("surroundings", &[Part::Obstacle, Part::Room], 1.4),
             ("frames", &[Part::AxisX, Part::AxisY], 2.0),
         ] {
             let lines: Vec<_> = scene.lines.iter().filter(|line| parts.contains(&line.part)).collect();

@@ -220,7 +220,7 @@ impl Report {
             _ => Some(SearchFronts::new(moga2, &study, &problem)),
         };
         let model = problem.model().clone();
-        if study.certifies() {
+        if study.workspace.certify {
             tell("proving the workspaces");
             fronts.certify(&study, &problem);
         }

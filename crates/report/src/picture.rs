@@ -9,8 +9,9 @@ use parry3d_f64::shape::{Cuboid, Cylinder, SharedShape};
 use rayon::prelude::*;
 
 use kinefront_model::evaluation::{Evaluation, Model};
+use kinefront_model::polygon::Polygon;
 use kinefront_model::spatial::unit;
-use kinefront_model::workspace::{Polygon, Region};
+use kinefront_model::workspace::Region;
 use kinefront_scene::palette;
 use kinefront_scene::{SolidShape, manipulator, region_corners, regular_workspace};
 

@@ -28,6 +28,7 @@ mod modes;
 pub mod palette;
 mod proof;
 mod shape;
+mod surroundings;
 pub mod text;
 mod tour;
 mod workspace;

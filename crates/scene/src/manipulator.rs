@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Label, Line, Nearest, Part, Scene, Solid, SolidShape};
+use super::{Label, Line, Nearest, Part, Scene, Solid, SolidShape, surroundings};
 use crate::text::number;
 use kinefront_model::clearance::{BodySettings, Clearance, Neighbour};
 use kinefront_model::evaluation::{Model, PoseScalar, Unreachable};
@@ -57,6 +57,7 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
                 .leg_bar_radius()
                 .max(design.platform_bar_radius())
                 .max(LEAST * design.base_radius());
+    surroundings::add(&mut scene, &model.settings().surroundings, [-lift, lift]);
     for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
         let c = pose.position + posture.arms[index];
         let number = index + 1;
@@ -249,7 +250,7 @@ fn nearest(model: &Model, design: &Design, clearance: &Clearance) -> Nearest {
     let [from, to] = clearance.between;
     let way = to - from;
     let member = model.settings().bodies.radius(clearance.member.kind, design);
-    let line = match clearance.neighbour {
+    let line = match &clearance.neighbour {
         _ if clearance.distance <= 0.0 || way == DVec3::ZERO => {
             let out = DVec3::Z * (4.0 * thickest).max(5.0 * LEAST * design.base_radius());
             let middle = 0.5 * (from + to);
@@ -262,6 +263,7 @@ fn nearest(model: &Model, design: &Design, clearance: &Clearance) -> Nearest {
                 to - along * model.settings().bodies.radius(other.kind, design),
             ]
         }
+        Neighbour::Obstacle(_) | Neighbour::Room => [from + way.normalize_or_zero() * member, to],
         Neighbour::RailEnd { .. } => [from, to],
     };
     Nearest {

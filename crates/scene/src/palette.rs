@@ -60,6 +60,8 @@ pub fn part(part: Part) -> [u8; 3] {
         Part::AxisX => [230, 70, 70],
         Part::AxisY => [80, 200, 90],
         Part::Workspace => [255, 255, 255],
+        Part::Obstacle => [214, 106, 96],
+        Part::Room => [120, 126, 138],
     }
 }
 

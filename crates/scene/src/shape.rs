@@ -37,6 +37,10 @@ pub enum Part {
     AxisY,
     /// The regular workspace.
     Workspace,
+    /// Edges of an obstacle.
+    Obstacle,
+    /// Edges of the room.
+    Room,
 }
 
 /// Shape of a solid.
@@ -125,13 +129,13 @@ impl Scene {
         self.solids.iter().filter(move |solid| solid.part == part)
     }
 
-    /// Returns the base triangle and the rails as thin bars for a manipulator of base radius `R` \[m\], for formats and
+    /// Returns the base triangle, the rails and the edges of obstacles as thin bars for a manipulator of base radius `R` \[m\], for formats and
     /// renderers that show no lines.
     pub fn base_bars(&self, base_radius: f64) -> Vec<Solid> {
         let bars = self.lines.iter().flat_map(|line| {
             let thickness = match line.part {
                 Part::Rail => 0.006,
-                Part::Base => 0.003,
+                Part::Base | Part::Obstacle => 0.003,
                 _ => 0.0,
             };
             line.points.windows(2).map(move |ends| Solid {

@@ -2,7 +2,8 @@
 
 use kinefront_model::clearance::Clearance;
 use kinefront_model::evaluation::{Quantity, QuantityValues};
-use kinefront_model::mechanism::{Architecture, DesignVariable};
+use kinefront_model::mechanism::{Architecture, CrossSection, DesignVariable};
+use kinefront_model::workspace::Region;
 
 /// Formats a number with four significant digits: in decimal notation from 0.001 up to 100 000, otherwise in scientific
 /// notation. A number that is not finite becomes a dash.
@@ -33,6 +34,29 @@ pub fn short(value: f64) -> String {
         let text = format!("{value:.2e}");
         text.replace(".00e", "e").replace("0e", "e")
     }
+}
+
+/// Writes a region, for example `rectangle of 0.6 × 0.4 m`.
+pub fn region(region: &Region) -> String {
+    match region {
+        Region::Largest => "largest disc".to_owned(),
+        Region::Disc(radius) => format!("disc of radius {} m", short(*radius)),
+        Region::Polygon(polygon) => match polygon.as_rectangle() {
+            Some([low, high]) => {
+                let [width, height] = (high - low).to_array().map(short);
+                format!("rectangle of {width} × {height} m")
+            }
+            None => format!("polygon with {} corners", polygon.corners().len()),
+        },
+    }
+}
+
+/// Writes the bar that a design selects from a catalogue, for example `DN 25 M, 33.7 × 3.2 mm`; `None` for one that is not from a
+/// catalogue.
+pub fn catalogue_bar(section: &CrossSection, radius: f64) -> Option<String> {
+    let name = section.catalogue_name(radius)?;
+    let [outer, wall] = [2.0 * radius, section.wall_ratio(radius) * radius].map(|size| short(1e3 * size));
+    Some(format!("{name}, {outer} × {wall} mm"))
 }
 
 /// Writes a quantity with its name and unit, for example `mass 12.34 kg`.

@@ -10,7 +10,7 @@ pub struct Builtin {
 }
 
 /// All built-in studies; the first is the default.
-pub const BUILTIN: [Builtin; 9] = [
+pub const BUILTIN: [Builtin; 10] = [
     Builtin {
         name: "paper",
         text: include_str!("../assets/studies/paper.toml"),
@@ -46,6 +46,10 @@ pub const BUILTIN: [Builtin; 9] = [
     Builtin {
         name: "all-planar-architectures",
         text: include_str!("../assets/studies/all-planar-architectures.toml"),
+    },
+    Builtin {
+        name: "builders-cell",
+        text: include_str!("../assets/studies/builders-cell.toml"),
     },
 ];
 

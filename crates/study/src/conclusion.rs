@@ -183,7 +183,7 @@ impl<'a> Settling<'a> {
             times.verification_s += verifying.elapsed().as_secs_f64();
             let proving = Instant::now();
             let (places, members): (Vec<usize>, Vec<FrontMember>) = members.into_iter().unzip();
-            let proved = if self.search.study().certifies() {
+            let proved = if self.search.study().workspace.certify {
                 pool.install(|| prover.prove(&members))
             } else {
                 members.into_iter().map(ProvedMember::unproved).collect()
@@ -275,7 +275,7 @@ impl<'a> Settling<'a> {
             dropped: self.tried - verified,
             hypervolume: whole,
             front,
-            proofs: self.search.study().certifies().then_some(proofs),
+            proofs: self.search.study().workspace.certify.then_some(proofs),
         }
     }
 }

@@ -4,9 +4,36 @@
 use kinefront_model::evaluation::{Model, PoseEvaluation};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
-use parry3d_f64::math::Vector;
+use parry3d_f64::math::{Pose as Placement, Vector};
+use parry3d_f64::query;
 use parry3d_f64::query::details::closest_points_segment_segment_with_locations_nD;
-use parry3d_f64::shape::Segment;
+use parry3d_f64::shape::{ConvexPolyhedron, Cylinder, Segment};
+
+/// Returns the distance in space of an axis from the upright prism over a convex outline \[m\]; 0 where they meet.
+pub fn distance_to_prism(ends: [[f64; 3]; 2], corners: &[[f64; 2]], heights: [f64; 2]) -> f64 {
+    let points: Vec<Vector> = corners
+        .iter()
+        .flat_map(|&[x, y]| heights.map(|z| Vector::new(x, y, z)))
+        .collect();
+    let prism = ConvexPolyhedron::from_convex_hull(&points).expect("a prism");
+    let [from, to] = ends.map(|[x, y, z]| Vector::new(x, y, z));
+    let here = Placement::IDENTITY;
+    query::distance(&here, &Segment::new(from, to), &here, &prism)
+        .expect("both shapes are known")
+        .distance
+}
+
+/// Returns the distance in space of an axis from an upright cylinder \[m\]; 0 where they meet.
+pub fn distance_to_cylinder(ends: [[f64; 3]; 2], centre: [f64; 2], radius: f64, [low, high]: [f64; 2]) -> f64 {
+    // The axis of a cylinder of this library is y: z takes its place.
+    let turned = |[x, y, z]: [f64; 3]| Vector::new(y - centre[1], z - 0.5 * (low + high), x - centre[0]);
+    let [from, to] = ends.map(turned);
+    let here = Placement::IDENTITY;
+    let cylinder = Cylinder::new(0.5 * (high - low), radius);
+    query::distance(&here, &Segment::new(from, to), &here, &cylinder)
+        .expect("both shapes are known")
+        .distance
+}
 
 /// A member as the oracle models it: its joints and its capsule.
 #[derive(Clone)]

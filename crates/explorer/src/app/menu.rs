@@ -168,6 +168,9 @@ impl Explorer {
                         .desired_width(460.0),
                 );
                 ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("Path"));
+                if std::mem::take(&mut self.asks_anew) {
+                    field.request_focus();
+                }
                 let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
                 ui.horizontal(|ui| {
                     done = (ui.button("OK").clicked() || entered) && !path.trim().is_empty();

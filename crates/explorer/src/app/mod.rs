@@ -89,6 +89,8 @@ pub struct Explorer {
     title: String,
     /// Purpose of the requested file, and its path as typed so far. The system's dialog may be open as well.
     requested: Option<(Purpose, String)>,
+    /// Whether the field of that path has not had the focus yet.
+    asks_anew: bool,
     dialog: Option<Dialog>,
     /// Channel for the results of file jobs.
     ended: (Sender<Ended>, Receiver<Ended>),
@@ -165,6 +167,7 @@ impl Explorer {
             pointer: VecDeque::new(),
             title: String::new(),
             requested: None,
+            asks_anew: false,
             dialog: None,
             ended: channel(),
             jobs: 0,
@@ -243,6 +246,7 @@ impl Explorer {
     fn ask(&mut self, ctx: &Context, purpose: Purpose) {
         let ctx = ctx.clone();
         self.requested = Some((purpose, purpose.name().to_owned()));
+        self.asks_anew = true;
         self.dialog = Some(Dialog::open(purpose, move || ctx.request_repaint()));
     }
 }

@@ -34,7 +34,8 @@ pub(super) const SHORTCUTS: [(&str, &str); 14] = [
 impl Explorer {
     /// Handles the keys that no text field has taken.
     pub(super) fn shortcuts(&mut self, ctx: &Context) {
-        if ctx.text_edit_focused() {
+        // A dialog has the keyboard as long as it asks.
+        if ctx.text_edit_focused() || self.requested.is_some() {
             return;
         }
         self.menu_shortcuts(ctx);

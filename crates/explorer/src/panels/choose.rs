@@ -40,9 +40,12 @@ impl ChoosePanel {
             }
             ui.strong("Knee and extreme designs");
             ui.horizontal_wrapped(|ui| {
-                let hover = "the design beyond which more of one objective costs much of the others (K)";
-                if ui.button("Knee").on_hover_text(hover).clicked() {
-                    session.select_knee();
+                // A front of one objective is a single design.
+                if session.study().objectives.len() > 1 {
+                    let hover = "the design beyond which more of one objective costs much of the others (K)";
+                    if ui.button("Knee").on_hover_text(hover).clicked() {
+                        session.select_knee();
+                    }
                 }
                 for (objective, id) in bests(session) {
                     let more = match objective.goal {

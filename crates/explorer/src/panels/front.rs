@@ -133,8 +133,13 @@ impl FrontPanel {
                 ui.ctx().copy_text(tab_separated(session, self.order.ids(), columns));
             }
             let count = |holds: fn(&FrontEntry) -> bool| session.front().iter().filter(|entry| holds(entry)).count();
+            let noun = if session.front().len() == 1 {
+                "design"
+            } else {
+                "designs"
+            };
             ui.weak(format!(
-                "{} designs on the front, {} verified on the fine grid, {} proved",
+                "{} {noun} on the front, {} verified on the fine grid, {} proved",
                 session.front().len(),
                 count(|entry| entry.verified),
                 count(|entry| entry.certified.is_some_and(|certified| certified.is_proved)),

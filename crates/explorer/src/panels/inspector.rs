@@ -167,10 +167,13 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
         ui.label("mass in motion");
         ui.strong(format!("{} kg", theme::number(evaluation.mass())));
         ui.end_row();
-        ui.label("R_w");
+        let region = &model.settings().workspace.region;
+        ui.label(if region.is_prescribed() { "region" } else { "R_w" });
         ui.horizontal(|ui| {
             let certified = session.certified().filter(|_| known.verified);
-            if evaluation.home.is_some() {
+            if evaluation.home.is_some() && region.is_prescribed() {
+                ui.strong(text::region(region));
+            } else if evaluation.home.is_some() {
                 let proved = certified.filter(|certified| !certified.is_of_region);
                 let radius = proved.map_or(evaluation.workspace_radius(), |certified| certified.lower);
                 ui.strong(format!("{} m", theme::number(radius)));
@@ -188,6 +191,17 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
             });
         });
         ui.end_row();
+        let (sections, design) = (&model.settings().sections, &evaluation.design);
+        for (name, section, radius) in [
+            ("legs", &sections.legs, design.leg_bar_radius()),
+            ("platform", &sections.platform, design.platform_bar_radius()),
+        ] {
+            if let Some(bar) = text::catalogue_bar(section, radius) {
+                ui.label(format!("bars of the {name}"));
+                ui.label(bar);
+                ui.end_row();
+            }
+        }
         for quantity in Quantity::all().filter(|quantity| !HAVE_ROWS.contains(quantity)) {
             let entry = quantity.entry();
             let known = evaluation
@@ -225,7 +239,7 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
 
 /// Shows what is proved about the workspace, and leads to the infeasible pose that ends it.
 fn proof(ui: &mut Ui, session: &mut Session) {
-    if !session.study().certifies() {
+    if !session.study().workspace.certify {
         return;
     }
     let Some(proof) = session.proof().cloned() else {
@@ -257,7 +271,12 @@ fn proof(ui: &mut Ui, session: &mut Session) {
         }
         if let Some(violation) = proof.certificate.violation {
             let hover = "moves the platform to the infeasible pose, and shows the boxes of the proof";
-            let words = format!("pose that violates {}", violation.scalar.limit_id());
+            // Beyond a region that is proved, nothing is violated that was asked for.
+            let id = violation.scalar.limit_id();
+            let words = match certificate.verdict {
+                Verdict::Proved => format!("weakest pose for {id}"),
+                _ => format!("pose that violates {id}"),
+            };
             has_asked = ui.small_button(words).on_hover_text(hover).clicked();
         }
     });
@@ -293,8 +312,8 @@ fn constraints(ui: &mut Ui, session: &mut Session, known: &Known) {
                 ui.end_row();
             }
         });
-    if let Some(nearest) = known.evaluation.nearest {
-        let words = format!("nearest pair of members: {}", text::clearance(&nearest));
+    if let Some(nearest) = &known.evaluation.nearest {
+        let words = format!("nearest pair of members: {}", text::clearance(nearest));
         if nearest.distance < 0.0 {
             ui.colored_label(theme::bad(ui), words);
         } else {

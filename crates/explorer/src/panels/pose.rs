@@ -33,11 +33,18 @@ struct Playing {
     at: f64,
 }
 
+/// What stopped the platform, as long as it stays there.
+struct Stopped {
+    design: Design,
+    at: Pose,
+    reason: String,
+}
+
 /// The pose panel.
 #[derive(Default)]
 pub struct PosePanel {
     grip: Option<Grip>,
-    stopped: Option<String>,
+    stopped: Option<Stopped>,
     playing: Option<Playing>,
     modes: ModesView,
 }
@@ -55,11 +62,16 @@ impl PosePanel {
             self.modes.ui(ui, session, &evaluation.design, pose);
         });
         self.sliders(ui, session, pose, home, evaluation.design.base_radius());
+        let pose = session.pose().unwrap_or(pose);
+        // The message ends with what it speaks of.
+        let is_there = |stopped: &Stopped| stopped.design == evaluation.design && stopped.at == pose;
+        if !self.stopped.as_ref().is_some_and(is_there) {
+            self.stopped = None;
+        }
         match &self.stopped {
-            Some(reason) => ui.colored_label(theme::bad(ui), format!("stopped: {reason}")),
+            Some(stopped) => ui.colored_label(theme::bad(ui), format!("stopped: {}", stopped.reason)),
             None => ui.weak("drag the platform to move it, its rim to turn it; point at a member to see its data"),
         };
-        let pose = session.pose().unwrap_or(pose);
         numbers(ui, session, &evaluation.design, &pose);
         self.top_view(ui, session, &evaluation.design, pose);
     }
@@ -141,8 +153,17 @@ impl PosePanel {
         if changed {
             self.playing = None;
             target.phi += whole_turns;
-            self.stopped = session.move_platform(target);
+            self.move_platform(session, target);
         }
+    }
+
+    fn move_platform(&mut self, session: &mut Session, target: Pose) {
+        let reason = session.move_platform(target);
+        let design = session.document().selected.as_ref().map(|selected| selected.design);
+        self.stopped = match (reason, design, session.pose()) {
+            (Some(reason), Some(design), Some(at)) => Some(Stopped { design, at, reason }),
+            _ => None,
+        };
     }
 
     fn top_view(&mut self, ui: &mut Ui, session: &mut Session, design: &Design, pose: Pose) {
@@ -224,6 +245,9 @@ impl PosePanel {
             });
             self.playing = None;
         }
+        if response.drag_stopped() {
+            self.stopped = None;
+        }
         if !response.dragged() {
             return;
         }
@@ -242,7 +266,7 @@ impl PosePanel {
             }
             None => return,
         };
-        self.stopped = session.move_platform(target);
+        self.move_platform(session, target);
     }
 }
 

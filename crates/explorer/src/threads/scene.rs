@@ -260,7 +260,7 @@ fn verify_requests(shared: &Shared) {
                 *known = Known::verified(Arc::clone(&evaluation));
             }
         });
-        if !study.study().certifies() {
+        if !study.study().workspace.certify {
             continue;
         }
         // A newer design ends a proof that takes long.

@@ -220,6 +220,18 @@ fn the_platform_stops_at_its_limits_and_says_which() {
     window.get_by_label("Home").click();
     window.run_steps(3);
     assert_eq!(window.state().session().pose(), window.state().session().home());
+    // The message ends with the design and the pose that it speaks of.
+    set_slider(&mut window, "pose x", 3.9);
+    assert!(window.query_by_label_contains("stopped: leg").is_some());
+    window.key_press(Key::ArrowRight);
+    until(&mut window, "another design is shown", |explorer| {
+        explorer
+            .session()
+            .known()
+            .is_some_and(|known| known.evaluation.design != design)
+    });
+    window.run_steps(2);
+    assert!(window.query_by_label_contains("stopped: leg").is_none());
 }
 
 /// Pointing at a bar in the top view shows what it is, with the values of the model.

@@ -30,16 +30,36 @@ fn finished() -> super::support::Window {
 
 /// Types a path into the field for paths.
 fn give_path(window: &mut super::support::Window, path: &std::path::Path) {
+    // The field has the focus without a click.
     window.run_steps(3);
-    let field = window.get_by_label("Path");
-    field.focus();
-    window.run_steps(2);
     window.key_press_modifiers(Modifiers::COMMAND, Key::A);
     window.get_by_label("Path").type_text(&path.display().to_string());
     window.run_steps(2);
     window.get_by_label("OK").click();
     window.run_steps(2);
     until(window, "the file is written", |explorer| !explorer.is_busy());
+}
+
+/// As long as a dialog asks, no key acts on what is behind it.
+#[test]
+fn a_dialog_has_the_keyboard() {
+    let mut window = finished();
+    window.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    window.run_steps(3);
+    let before = window.state().session().document().selected.clone();
+    // Neither in its field nor beside it.
+    for key in [Key::ArrowRight, Key::Tab, Key::ArrowRight, Key::K] {
+        window.key_press(key);
+        window.run_steps(2);
+    }
+    assert_eq!(window.state().session().document().selected, before);
+    assert!(window.query_by_label("Path").is_some());
+    window.key_press(Key::Escape);
+    window.run_steps(2);
+    assert!(window.query_by_label("Path").is_none());
+    window.key_press(Key::ArrowRight);
+    window.run_steps(2);
+    assert_ne!(window.state().session().document().selected, before);
 }
 
 #[test]
@@ -191,6 +211,7 @@ fn the_design_is_exported_for_other_programs() {
         "dxf" => "  0",
         "json" => "{",
         "csv-parts" => "part,section,",
+        "step" => "ISO-10303-21;",
         other => panic!("how does {other} begin?"),
     };
     for &format in Format::ALL {

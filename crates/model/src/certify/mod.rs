@@ -15,14 +15,9 @@ use forms::ProvedForms;
 pub use patch::Patch;
 
 use crate::enclosure::{PoseEnclosure, TaylorModel, VARIABLES};
-use crate::evaluation::{Evaluation, Model, PoseScalar, Thresholds};
+use crate::evaluation::{Evaluation, Model, PoseScalar};
 use crate::mechanism::Design;
 use crate::spatial::Pose;
-
-/// Returns a scalar that a study limits at every pose and that proofs do not cover.
-pub fn uncovered(thresholds: &Thresholds) -> Option<PoseScalar> {
-    forms::uncovered(thresholds)
-}
 
 /// What to prove.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -163,8 +158,8 @@ pub enum CertifyError {
     /// A bar is so thin or so thick that its compliance has no usable value.
     #[error("a bar of the design is so thin or so thick that its stiffness has no usable value")]
     Degenerate,
-    /// The study limits a scalar at every pose that proofs do not cover.
-    #[error("the study limits `{}` at every pose, which proofs do not cover", .0.entry().quantity.key)]
+    /// A scalar is limited at every pose for which there is no form; no study states such a limit.
+    #[error("`{}` is limited at every pose, which proofs do not cover", .0.entry().quantity.key)]
     Uncovered(PoseScalar),
     /// An option is out of range.
     #[error("{name} is {value}; it must be {expected}")]
@@ -238,7 +233,7 @@ impl Model {
         options: &CertifyOptions,
         observer: &mut dyn ProofObserver,
     ) -> Result<Certificate, CertifyError> {
-        if let Some(scalar) = uncovered(&self.settings().thresholds) {
+        if let Some(scalar) = forms::uncovered(&self.settings().thresholds) {
             return Err(CertifyError::Uncovered(scalar));
         }
         let check = |name, value: f64, valid: bool, expected| {

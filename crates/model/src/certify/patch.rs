@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use crate::enclosure::{Interval, PlanarModel, TaylorModel};
-use crate::workspace::{Polygon, Region};
+use crate::polygon::Polygon;
+use crate::workspace::Region;
 
 /// A part of a region, whose positions have two coordinates, relative to the centre of the region.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -404,7 +404,7 @@ impl<'a> Proof<'a> {
                 self.report(&part, BoxOutcome::Beyond, || worst);
                 return;
             }
-            if !found.is_complete {
+            if !found.is_complete || !found.may_contract {
                 break;
             }
             let before = part;

@@ -1,10 +1,13 @@
 //! The members of one design, prepared for clearance computations at many poses.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use super::capsule::{Capsule, Clearance, MemberId, Neighbour};
 use super::distance::{may_be_nearer, squared};
 use super::layers::BodySettings;
+use super::surroundings::Barrier;
 use crate::lanes::{Planar, Real};
 use crate::mechanism::{
     Architecture, CrossSections, Design, DistalLanes, Geometry, Leg, Manipulator, MemberAxis, MemberKind, Members,
@@ -58,7 +61,7 @@ struct Pair {
 }
 
 /// The members of a design, with the pairs of them that are not joined.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Bodies {
     kinds: [Option<MemberKind>; ROWS],
     radii: [f64; ROWS],
@@ -67,6 +70,10 @@ pub struct Bodies {
     platform_radii: [f64; LEGS],
     /// Half the length of a slider, and half the length of its axis \[m\].
     slider: [f64; 2],
+    /// Rows that consist of square tubes.
+    are_square: [bool; ROWS],
+    /// Outlines that no member may cross.
+    barriers: Arc<[Barrier]>,
     /// Pairs that are not joined, in increasing order of the lower bound of their clearance.
     pairs: [Pair; MAX_PAIRS],
     count: usize,
@@ -77,7 +84,13 @@ type Axes<V> = [MemberAxis<V>; ROWS * LEGS];
 
 impl Bodies {
     /// Prepares the members of `design`.
-    pub fn new(design: &Design, geometry: &Geometry, settings: &BodySettings, sections: &CrossSections) -> Self {
+    pub(crate) fn new(
+        design: &Design,
+        geometry: &Geometry,
+        settings: &BodySettings,
+        sections: &CrossSections,
+        barriers: &Arc<[Barrier]>,
+    ) -> Self {
         let kinds = kinds(design.architecture());
         let (legs, platform) = (sections.legs.is_square(), sections.platform.is_square());
         // The limit keeps squares and sums finite, whatever radii a design has.
@@ -98,15 +111,17 @@ impl Bodies {
             heights,
             platform_radii: [0, 1, 2].map(|leg| geometry.platform_length(leg, design.platform_radius())),
             slider: [half_length, (half_length - radii[PROXIMAL]).max(0.0)],
+            are_square: [legs, legs, platform],
+            barriers: Arc::clone(barriers),
             pairs: [none; MAX_PAIRS],
             count: 0,
         };
-        bodies.pair_up([legs, legs, platform]);
+        bodies.pair_up();
         bodies
     }
 
-    /// Fills in the pairs of members that are not joined; `are_square` tells which rows consist of square tubes.
-    fn pair_up(&mut self, are_square: [bool; ROWS]) {
+    /// Fills in the pairs of members that are not joined.
+    fn pair_up(&mut self) {
         for places in pairs_not_joined(self.kinds) {
             let rows = places.map(|place| place / LEGS);
             let gap = (self.heights[rows[0]] - self.heights[rows[1]]).abs();
@@ -115,7 +130,7 @@ impl Bodies {
                 places,
                 radii,
                 layers_squared: gap * gap,
-                is_prism: rows.iter().any(|&row| are_square[row]),
+                is_prism: rows.iter().any(|&row| self.are_square[row]),
                 least: gap - radii,
             };
             self.count += 1;
@@ -200,10 +215,11 @@ impl Bodies {
             let upper = first[1].smaller(second[1].smaller(third[1]));
             least = (lower.smaller(upper) - limit.splat(self.slider[0])).smaller(least);
         }
-        if !V::any(least.exceeds(limit.splat(self.pairs[0].least))) {
+        if self.barriers.is_empty() && !V::any(least.exceeds(limit.splat(self.pairs[0].least))) {
             return least;
         }
         let axes = self.axes(&members, position, arms);
+        least = self.clearance_beside(&axes, least);
         for pair in &self.pairs[..self.count] {
             if !V::any(least.exceeds(limit.splat(pair.least))) {
                 break;
@@ -214,6 +230,31 @@ impl Bodies {
             if V::any(near) {
                 let found = Self::gap(pair, &axes).smaller(least);
                 least = found.select(near, least);
+            }
+        }
+        least
+    }
+
+    /// Returns the smallest clearance from what stands beside the manipulator, where it is below `limit` \[m\].
+    #[inline(always)]
+    fn clearance_beside<V: Real>(&self, axes: &Axes<V>, limit: V) -> V {
+        let mut least = limit;
+        for barrier in self.barriers.iter() {
+            for (place, axis) in axes.iter().enumerate() {
+                let row = place / LEGS;
+                let (height, radius) = (self.heights[row], self.radii[row]);
+                if self.kinds[row].is_none()
+                    || !V::any(least.exceeds(limit.splat(barrier.gap_to_height(height) - radius)))
+                {
+                    continue;
+                }
+                let near = barrier.may_be_nearer(axis, least + limit.splat(radius));
+                if V::any(near) {
+                    let found = barrier
+                        .clearance(axis, height, radius, self.are_square[row])
+                        .smaller(least);
+                    least = found.select(near, least);
+                }
             }
         }
         least
@@ -259,6 +300,7 @@ impl Bodies {
         enum Found<'a> {
             RailEnd { leg: usize, end: usize, distance: f64 },
             Pair(&'a Pair),
+            Barrier { place: usize, barrier: &'a Barrier },
         }
         let (members, axes) = self.laid_out(manipulator, position, posture);
         let ends = members.iter().enumerate().flat_map(|(leg, members)| {
@@ -266,8 +308,16 @@ impl Bodies {
             of_rail.map(move |(end, &distance)| (distance - self.slider[0], Found::RailEnd { leg, end, distance }))
         });
         let pairs = self.pairs[..self.count].iter();
+        let members_beside = (0..ROWS * LEGS).filter(|place| self.kinds[place / LEGS].is_some());
+        let beside = members_beside.flat_map(|place| self.barriers.iter().map(move |barrier| (place, barrier)));
         let (distance, found) = ends
             .chain(pairs.map(|pair| (Self::gap(pair, &axes), Found::Pair(pair))))
+            .chain(beside.map(|(place, barrier)| {
+                let row = place / LEGS;
+                let (height, radius) = (self.heights[row], self.radii[row]);
+                let distance = barrier.clearance(&axes[place], height, radius, self.are_square[row]);
+                (distance, Found::Barrier { place, barrier })
+            }))
             .map(|(distance, found)| (distance.clamp(-NUMBER_LIMIT, NUMBER_LIMIT), found))
             .reduce(|least, next| if next.0 < least.0 { next } else { least })
             .expect("a manipulator has pairs of members");
@@ -289,6 +339,20 @@ impl Bodies {
                         anchor: (leg + end) % LEGS,
                     },
                     between: [at(self.slider[0]), at(way)],
+                }
+            }
+            Found::Barrier { place, barrier } => {
+                let row = place / LEGS;
+                let [on_axis, on_outline] = barrier.nearest_points(&axes[place]);
+                let [low, high] = barrier.heights;
+                Clearance {
+                    distance,
+                    member: self.member(place),
+                    neighbour: barrier.neighbour.clone(),
+                    between: [
+                        on_axis.extend(self.heights[row]),
+                        on_outline.extend(self.heights[row].max(low).min(high)),
+                    ],
                 }
             }
             Found::Pair(pair) => {

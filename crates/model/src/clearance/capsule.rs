@@ -1,6 +1,7 @@
 //! Named members at one pose, as capsules, and the clearance of a pair of them.
 
 use std::fmt;
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -27,7 +28,7 @@ impl fmt::Display for MemberId {
 }
 
 /// Object to which the clearance of a member is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Neighbour {
     /// Another member.
     Member(MemberId),
@@ -38,6 +39,10 @@ pub enum Neighbour {
         /// Index of the base joint at this end of the rail.
         anchor: usize,
     },
+    /// An obstacle, by its name.
+    Obstacle(Arc<str>),
+    /// The outline of the room.
+    Room,
 }
 
 impl fmt::Display for Neighbour {
@@ -45,6 +50,8 @@ impl fmt::Display for Neighbour {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Neighbour::Member(member) => member.fmt(f),
+            Neighbour::Obstacle(name) => f.write_str(name),
+            Neighbour::Room => f.write_str("room"),
             Neighbour::RailEnd { leg, anchor } => write!(f, "rail{}_end_A{}", leg + 1, anchor + 1),
         }
     }
@@ -63,16 +70,18 @@ pub struct Capsule {
     pub radius: f64,
 }
 
-/// Clearance of the nearest pair that is not joined: two members, or a slider and an end of its rail.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Clearance of the nearest pair that is not joined: two members, a slider and an end of its rail, or a member and what stands beside
+/// the manipulator.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Clearance {
     /// Distance between the two surfaces \[m\]; where they overlap, the negative depth of penetration.
     pub distance: f64,
     /// First member of the pair.
     pub member: MemberId,
-    /// Second member of the pair, or the end of the rail.
+    /// What it is nearest to.
     pub neighbour: Neighbour,
-    /// Points of the two axes that are nearest to each other, or the end of a slider and the end of its rail.
+    /// Points of the two axes that are nearest to each other, the end of a slider and the end of its rail, or points of an axis and of
+    /// an outline.
     pub between: [DVec3; 2],
 }
 

@@ -15,8 +15,11 @@ mod bodies;
 mod capsule;
 mod distance;
 mod layers;
+mod surroundings;
 
 pub use bodies::Bodies;
 pub(crate) use bodies::{DISTAL, PLATFORM, PROXIMAL, ROWS, kinds, pairs_not_joined};
 pub use capsule::{Capsule, Clearance, MemberId, Neighbour};
 pub use layers::{BodySettings, Layers};
+pub(crate) use surroundings::Barrier;
+pub use surroundings::{Obstacle, ObstacleShape, Surroundings};

@@ -1,11 +1,13 @@
 //! Physical model of a study: material, actuators, thresholds, definitions, workspace and grids.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use super::{
     Better, Bound, Constraint, Evaluation, Objective, PoseScalar, Quantity, QuantityLimit, QuantitySet, Thresholds,
 };
-use crate::clearance::{Bodies, BodySettings};
+use crate::clearance::{Barrier, Bodies, BodySettings, Surroundings};
 use crate::kinematics::{CharacteristicLength, Jacobian};
 use crate::lanes::{InstructionSet, Planar, Real};
 use crate::mechanism::{
@@ -37,6 +39,8 @@ pub struct ModelSettings {
     pub legs: LegSettings,
     /// Sizes of sliders and layers of members.
     pub bodies: BodySettings,
+    /// Obstacles, and the room that the members must not leave.
+    pub surroundings: Surroundings,
     /// Number of bars of length `r` that count towards the mass of the platform (docs/model.md, section 11).
     pub platform_bars: u32,
     /// Definition of `k_xy`, `k_z`, `k_φz`.
@@ -93,6 +97,7 @@ pub struct Model {
     settings: ModelSettings,
     reference: WorkspaceSampling,
     fine: WorkspaceSampling,
+    barriers: Arc<[Barrier]>,
 }
 
 impl Default for Model {
@@ -115,6 +120,7 @@ impl Default for ModelSettings {
             rails: None,
             legs: LegSettings::default(),
             bodies: BodySettings::default(),
+            surroundings: Surroundings::default(),
             platform_bars: 3,
             stiffness_definition: StiffnessDefinition::Stiffness,
             characteristic_length: CharacteristicLength::PlatformRadius,
@@ -164,6 +170,7 @@ impl Model {
         Ok(Self {
             reference: on(settings.reference_grid)?,
             fine: on(settings.fine_grid)?,
+            barriers: settings.surroundings.barriers().into(),
             settings,
         })
     }
@@ -309,6 +316,11 @@ impl Model {
             .map(|stiffness| self.strength(design, stiffness))
     }
 
+    /// Returns the strength of a design, if an evaluation computes anything of it; `None` also if a bar is infinitely compliant.
+    pub(crate) fn strength_of(&self, design: &Design) -> Option<StrengthModel> {
+        self.strength_if_asked(design, self.stiffness(design).as_ref())
+    }
+
     fn strength(&self, design: &Design, stiffness: &StiffnessModel) -> StrengthModel {
         let ModelSettings {
             legs,
@@ -327,7 +339,13 @@ impl Model {
             &self.settings.legs.geometry,
             &self.settings.bodies,
             &self.settings.sections,
+            &self.barriers,
         )
+    }
+
+    /// Returns what no member may cross.
+    pub(crate) fn barriers(&self) -> &[Barrier] {
+        &self.barriers
     }
 
     /// Returns what g1 compares, for the leg that is worst off.
@@ -396,6 +414,7 @@ impl Model {
         self.settings.workspace.centre == DVec2::ZERO
             && design.working_mode().is_uniform()
             && self.settings.legs.geometry.is_three_fold()
+            && self.settings.surroundings.is_empty()
             && (self.settings.loads.are_three_fold() || !self.depends_on_loads())
     }
 

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::{Better, Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues};
 use crate::mechanism::{Design, Leg};
-use crate::pose::PoseChecker;
+use crate::pose::{PoseChecker, ScalarSet};
 use crate::workspace::{Grid, Positions, RegularWorkspace, ValueColumns};
 
 /// Returns the quantities of a design that its constraints and dimensions determine, as far as the study asks for them.
@@ -51,22 +51,36 @@ pub(super) fn add_of_region<L: Leg>(
         let mean = dexterity_mean(model, checker, found, home, grid);
         values.set(Quantity::DexterityMean, Some(mean));
     }
+    let on_demand = PoseScalar::on_demand().iter().copied();
+    let set: ScalarSet = on_demand.filter(|scalar| asked(Quantity::Worst(*scalar))).collect();
+    if set == ScalarSet::default() {
+        return;
+    }
+    // The search of a prescribed region knows the limited ones that depend on loads, which cost most.
+    let searched = if found.of_loads.is_empty() {
+        ScalarSet::default()
+    } else {
+        checker.limited_of_loads()
+    };
+    let left: ScalarSet = set.iter().filter(|scalar| !searched.contains(*scalar)).collect();
     let indices = positions.indices();
-    for &scalar in PoseScalar::on_demand() {
-        if !asked(Quantity::Worst(scalar)) {
+    let mut least = [f64::INFINITY; PoseScalar::COUNT];
+    for index in found.orientation_grid.window(home) {
+        let arms = &found.orientations[index].arms;
+        for scalar in set.iter().filter(|scalar| searched.contains(*scalar)) {
+            let least = &mut least[scalar as usize];
+            *least = least.min(found.of_loads[index][scalar]);
+        }
+        if left == ScalarSet::default() {
             continue;
         }
-        let of_orientation = |index: usize| {
-            let arms = &found.orientations[index].arms;
-            checker
-                .worst(scalar, arms, &positions.xs, &positions.ys, &indices)
-                .value
-        };
-        let least = found
-            .orientation_grid
-            .window(home)
-            .map(of_orientation)
-            .fold(f64::INFINITY, f64::min);
+        let minima = checker.worst(left, arms, &positions.xs, &positions.ys, &indices);
+        for (least, minimum) in least.iter_mut().zip(minima) {
+            *least = least.min(minimum.value);
+        }
+    }
+    for scalar in set.iter() {
+        let least = least[scalar as usize];
         let value = match scalar.entry().quantity.better {
             Better::Higher => least,
             Better::Lower => -least,

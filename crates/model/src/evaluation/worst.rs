@@ -6,7 +6,7 @@ use glam::DVec2;
 use super::{Better, Constraint, ConstraintResult, Model, PoseScalar, PoseValues};
 use crate::clearance::Clearance;
 use crate::mechanism::{Design, Leg};
-use crate::pose::PoseChecker;
+use crate::pose::{PoseChecker, ScalarSet};
 use crate::spatial::Pose;
 use crate::workspace::{Grid, OrientationLanes, Positions, RegularWorkspace, ValueColumns};
 
@@ -172,6 +172,9 @@ impl<L: Leg> ConstraintSearch<'_, L> {
         let sign = found.home_sign;
         let mut reports = self.blank();
         let indices = disc.indices();
+        let of_reports = reports.iter().filter(|report| report.required);
+        let scalars = of_reports.filter_map(|report| report.constraint.scalar());
+        let further: ScalarSet = scalars.filter(|scalar| !PoseScalar::ALWAYS.contains(scalar)).collect();
         for index in found.orientation_grid.window(home) {
             let orientation = &found.orientations[index];
             let oriented = OrientationLanes {
@@ -180,6 +183,9 @@ impl<L: Leg> ConstraintSearch<'_, L> {
             };
             let clearance = reports[Constraint::Clearance as usize].value.unwrap_or(f64::INFINITY);
             let minima = self.checker.smallest(oriented, &disc.xs, &disc.ys, &indices, clearance);
+            let further = self
+                .checker
+                .worst(further, &orientation.arms, &disc.xs, &disc.ys, &indices);
             for report in &mut reports {
                 let Some(scalar) = report.constraint.scalar() else {
                     continue;
@@ -187,14 +193,11 @@ impl<L: Leg> ConstraintSearch<'_, L> {
                 let (minimum, sign) = match minima.get(scalar as usize) {
                     Some(minimum) => (*minimum, 1.0),
                     None if report.required => {
-                        let worst = self
-                            .checker
-                            .worst(scalar, &orientation.arms, &disc.xs, &disc.ys, &indices);
                         let sign = match scalar.entry().quantity.better {
                             Better::Higher => 1.0,
                             Better::Lower => -1.0,
                         };
-                        (worst, sign)
+                        (further[scalar as usize], sign)
                     }
                     None => continue,
                 };

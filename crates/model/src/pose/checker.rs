@@ -13,7 +13,7 @@ use crate::stiffness::{PlanarStiffness, StiffnessDefinition, StiffnessModel};
 use crate::strength::StrengthModel;
 
 /// One design, prepared for evaluation at many poses.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct PoseChecker<L> {
     /// Legs and platform.
     pub manipulator: Manipulator<L>,
@@ -68,6 +68,27 @@ impl<L: Leg> PoseChecker<L> {
     pub fn ask_for(&mut self, scalar: PoseScalar) {
         self.asked = self.asked.with(scalar);
         self.computed = self.computed.with(scalar);
+    }
+
+    /// Returns the design without the limits that depend on loads; `None` if there are none.
+    pub fn without_loads(&self) -> Option<Self> {
+        let limited = self.limited_of_loads();
+        if limited == ScalarSet::default() {
+            return None;
+        }
+        let mut checker = self.clone();
+        for scalar in limited.iter() {
+            checker.set_threshold(scalar, None);
+        }
+        Some(checker)
+    }
+
+    /// Returns the limited scalars that depend on loads.
+    pub fn limited_of_loads(&self) -> ScalarSet {
+        let of_loads = PoseScalar::OF_LOADS.iter().copied();
+        of_loads
+            .filter(|scalar| self.thresholds.get(*scalar).is_some())
+            .collect()
     }
 
     /// Solves the inverse kinematics of all legs at several poses at once.

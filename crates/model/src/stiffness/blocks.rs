@@ -72,24 +72,7 @@ pub(super) fn first_of_inverse(s: &[f64; 6]) -> f64 {
 /// Computes the inverse of a symmetric positive definite 3×3 matrix; both are given as upper triangles.
 #[inline(always)]
 pub(crate) fn inverse<V: Real>(s: &[V; 6]) -> [V; 6] {
-    let [a, b, c, d, e, f] = *s;
-    let cofactors = [
-        d * f - e * e,
-        c * e - b * f,
-        b * e - c * d,
-        a * f - c * c,
-        b * c - a * e,
-        a * d - b * b,
-    ];
-    let one = a.splat(1.0) / (a * cofactors[0] + b * cofactors[1] + c * cofactors[2]);
-    [
-        cofactors[0] * one,
-        cofactors[1] * one,
-        cofactors[2] * one,
-        cofactors[3] * one,
-        cofactors[4] * one,
-        cofactors[5] * one,
-    ]
+    V::symmetric_inverse(s)
 }
 
 /// Computes the stiffness along z with free rotations, `1/(K⁻¹)_zz`; it is at least 0, and 0 if the block of the

@@ -44,7 +44,7 @@ impl<V: Real> Column<V> {
 
 /// Returns the reciprocal of a factor, at most [`LARGEST_FACTOR`].
 #[inline(always)]
-fn factor<V: Real>(reciprocal: V) -> V {
+pub(super) fn factor<V: Real>(reciprocal: V) -> V {
     let least = reciprocal.splat(1.0 / LARGEST_FACTOR);
     // The order keeps what is not a number.
     reciprocal.splat(1.0) / least.larger(reciprocal)
@@ -91,9 +91,9 @@ impl StrengthModel {
         columns
     }
 
-    /// Returns the factor by which the loads have to grow until the manipulator buckles, a lower bound.
+    /// Returns the reciprocal of the factor by which the loads have to grow until the manipulator buckles; the factor is a lower bound.
     #[inline(always)]
-    pub(super) fn buckling_factor<V: Real>(&self, columns: &[[Column<V>; BARS]; LEGS]) -> V {
+    pub(super) fn buckling_demand<V: Real>(&self, columns: &[[Column<V>; BARS]; LEGS]) -> V {
         let zero = columns[0][BARS - 1].compression.splat(0.0);
         let (mut shape, mut inside, mut outside) = (zero, zero, zero);
         for column in columns.as_flattened() {
@@ -101,7 +101,7 @@ impl StrengthModel {
             inside = inside + column.compression * column.give[0];
             outside = outside + column.compression * column.give[1];
         }
-        factor(shape + inside.larger(outside))
+        shape + inside.larger(outside)
     }
 
     /// Returns the largest compression of a bar, and the largest magnitude of the force along it \[N\].
@@ -110,7 +110,10 @@ impl StrengthModel {
         let zero = leg.moment.splat(0.0);
         let (mut compression, mut most) = (zero, zero);
         let loads = self.bar_loads(leg, bar);
-        for section in 0..self.sections() {
+        // Without weight along the plane, the force is the same in every section.
+        let [changes, _] = self.loads.weighs();
+        let sections = if changes { self.sections() } else { 1 };
+        for section in 0..sections {
             let axial = self.section_loads(leg, bar, &loads, section).axial;
             compression = compression.larger(axial.range - axial.value);
             most = most.larger(axial.most());
@@ -206,7 +209,7 @@ impl StrengthModel {
             ];
             turn = turn + like.splat(part) * normal.dot(curvature);
         }
-        let held = times(&leg.stiffness, &displacement);
+        let held = times(&leg.stiffness.at_platform, &displacement);
         turn - dot(&displacement, &held) + dot(&held, &times(&loaded.bending, &held))
     }
 }

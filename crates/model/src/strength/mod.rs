@@ -15,6 +15,7 @@ mod stress;
 pub use report::{JointStrength, MemberStrength, StrengthReport};
 pub use settings::{LoadShape, Loads};
 
+use crate::enclosure::{EnclosedNumber, Interval, TaylorModel};
 use crate::kinematics::Jacobian;
 use crate::lanes::{LaneJob, Planar, Real};
 use crate::mechanism::{CrossSection, CrossSections, Design, JointKind, LegLanes, LegSettings};
@@ -52,16 +53,70 @@ pub(crate) enum StrengthValue {
     ActuatorTorque,
 }
 
+/// What the loads of a leg follow from at several poses at once.
+#[derive(Clone, Copy)]
+pub(crate) struct LegLoadPath<V> {
+    /// Unit vector from `B_i` to `C_i`, and the distance between them along it \[m\].
+    pub tangent: Planar<V>,
+    pub offset: V,
+    /// Unit vector along the bar from `A_i` to `B_i` in the distal axes, and the distance between them as a multiple of `L_a`, for
+    /// chains that have one.
+    pub proximal: Option<(Planar<V>, V)>,
+    /// Unit vectors along which the prismatic joints move the platform, in the distal axes.
+    pub guides: [Option<Planar<V>>; 3],
+    /// `u_i`.
+    pub u: Planar<V>,
+    /// Moment of the leg's line about `P` \[m\].
+    pub moment: V,
+    /// Transmission `B_ii`, whose sign is of no importance to the largest loads.
+    pub transmission: V,
+}
+
+impl<V: Real> LegLoadPath<V> {
+    /// Takes what the loads follow from out of all that is known of a leg.
+    #[inline(always)]
+    #[allow(
+        clippy::manual_map,
+        reason = "a closure that is not inlined is compiled for the baseline processor"
+    )]
+    pub fn of(leg: &LegLanes<V>) -> Self {
+        let chain = &leg.chain;
+        let proximal = match &chain.proximal {
+            Some(bar) => Some((bar.direction, bar.share)),
+            None => None,
+        };
+        Self {
+            tangent: chain.tangent,
+            offset: chain.offset,
+            proximal,
+            guides: chain.guides,
+            u: leg.u,
+            moment: leg.moment,
+            transmission: leg.transmission,
+        }
+    }
+}
+
+/// Stiffness of a leg out of the plane at several poses at once, in base axes: force along z, and moments, per displacement along z and
+/// rotations, as an upper triangle.
+#[derive(Clone, Copy)]
+pub(crate) struct LegStiffness<V> {
+    /// `S_out,i⁻¹`, that at `P`.
+    pub at_platform: [V; 6],
+    /// That at another point, relative to `P` \[m\], at which force and moments are almost decoupled: enclosures stay narrow there.
+    pub at_centre: Option<(Planar<V>, [V; 6])>,
+}
+
 /// What the strength at several poses follows from.
 #[derive(Clone, Copy)]
 pub(crate) struct StrengthInputs<V: Real> {
-    pub legs: [LegLanes<V>; LEGS],
+    pub legs: [LegLoadPath<V>; LEGS],
     /// `C_i − P` \[m\].
     pub arms: [Planar<V>; LEGS],
     /// `c_i`: compliances along the lines of the legs \[m/N\].
     pub along: [V; LEGS],
-    /// `S_out,i`: compliances of the legs out of the plane, as upper triangles.
-    pub bending: [[V; 6]; LEGS],
+    /// Stiffness of the legs out of the plane.
+    pub stiffness: [LegStiffness<V>; LEGS],
 }
 
 impl StrengthValue {
@@ -117,7 +172,14 @@ impl<V: Real> StrengthInputs<V> {
     fn in_plane(&self) -> [V; 6] {
         let one = self.along[0].splat(1.0);
         let stiffness = [one / self.along[0], one / self.along[1], one / self.along[2]];
-        in_plane_block(&Jacobian::of_lanes(&self.legs), &stiffness)
+        let legs = &self.legs;
+        let jacobian = Jacobian {
+            ux: [legs[0].u.x, legs[1].u.x, legs[2].u.x],
+            uy: [legs[0].u.y, legs[1].u.y, legs[2].u.y],
+            moment: [legs[0].moment, legs[1].moment, legs[2].moment],
+            transmission: [legs[0].transmission, legs[1].transmission, legs[2].transmission],
+        };
+        in_plane_block(&jacobian, &stiffness)
     }
 }
 
@@ -221,25 +283,24 @@ impl StrengthModel {
         &self.sections[usize::from(bar == PLATFORM)]
     }
 
-    /// Returns the values of a set at several poses at once, in the order of [`StrengthValue`]; where there is none, and for all
-    /// others, the worst number, which is infinite.
+    /// Returns what the limits of a set bound from above at several poses at once, in the order of [`StrengthValue`]: the stress for the
+    /// safety factor, and the reciprocal of the factor against buckling; for all others, the worst number, which is infinite.
     #[inline(always)]
-    fn values<V: Real>(
+    fn demands<V: Real>(
         &self,
         loaded: &LoadedLegs<'_, V>,
         inputs: &StrengthInputs<V>,
         set: StrengthSet,
     ) -> [V; StrengthValue::COUNT] {
-        let like = inputs.legs[0].moment;
-        let mut found = StrengthValue::none(like);
+        let mut found = StrengthValue::none(inputs.legs[0].moment);
         if set.contains_any([StrengthValue::Stress, StrengthValue::SafetyFactor]) {
             let stress = self.largest_stress(&loaded.legs);
             found[StrengthValue::Stress as usize] = stress;
-            found[StrengthValue::SafetyFactor as usize] = self.safety_factor(stress);
+            found[StrengthValue::SafetyFactor as usize] = stress;
         }
         if set.contains_any([StrengthValue::BucklingFactor]) {
             let columns = self.columns(loaded, inputs);
-            found[StrengthValue::BucklingFactor as usize] = self.buckling_factor(&columns);
+            found[StrengthValue::BucklingFactor as usize] = self.buckling_demand(&columns);
         }
         if set.contains_any([StrengthValue::JointForce, StrengthValue::JointMoment]) {
             let [force, moment] = self.largest_joint_loads(&loaded.legs);
@@ -250,6 +311,54 @@ impl StrengthModel {
             let effort = self.largest_effort(&loaded.legs);
             found[StrengthValue::ActuatorForce as usize] = effort;
             found[StrengthValue::ActuatorTorque as usize] = effort;
+        }
+        found
+    }
+
+    /// Encloses what the limits of a set bound from above over a box of poses, as [`StrengthModel::demands`].
+    pub fn enclose(
+        &self,
+        inputs: &StrengthInputs<EnclosedNumber>,
+        set: StrengthSet,
+    ) -> [TaylorModel; StrengthValue::COUNT] {
+        let legs = self.legs(inputs);
+        self.demands(&self.loaded(&legs), inputs, set).map(|number| number.0)
+    }
+
+    /// Returns the largest demand with which a value keeps its limit; `None` if the design has no such value, or none as good.
+    pub fn demand_limit(&self, value: StrengthValue, limit: f64) -> Option<Interval> {
+        let limit =
+            Some(limit).filter(|_| value.exists(self.yield_strength, self.actuator, self.is_on_bending_rails))?;
+        let is_factor = matches!(value, StrengthValue::SafetyFactor | StrengthValue::BucklingFactor);
+        if is_factor && limit > LARGEST_FACTOR {
+            return None;
+        }
+        let bound = Interval::exactly(limit);
+        Some(match value {
+            StrengthValue::SafetyFactor => Interval::exactly(self.yield_strength?) / bound,
+            StrengthValue::BucklingFactor => Interval::exactly(1.0) / bound,
+            _ => bound,
+        })
+    }
+
+    /// Returns the values of a set at several poses at once, in the order of [`StrengthValue`]; where there is none, and for all
+    /// others, the worst number, which is infinite.
+    #[inline(always)]
+    fn values<V: Real>(
+        &self,
+        loaded: &LoadedLegs<'_, V>,
+        inputs: &StrengthInputs<V>,
+        set: StrengthSet,
+    ) -> [V; StrengthValue::COUNT] {
+        let like = inputs.legs[0].moment;
+        let mut found = self.demands(loaded, inputs, set);
+        if set.contains_any([StrengthValue::Stress, StrengthValue::SafetyFactor]) {
+            let stress = &mut found[StrengthValue::SafetyFactor as usize];
+            *stress = self.safety_factor(*stress);
+        }
+        if set.contains_any([StrengthValue::BucklingFactor]) {
+            let reciprocal = &mut found[StrengthValue::BucklingFactor as usize];
+            *reciprocal = buckling::factor(*reciprocal);
         }
         // A comparison loses what is not a number; a sum keeps it.
         let check = loaded.check();

@@ -1,8 +1,9 @@
 //! How loads pass from the platform to the base: the bars of a leg, its joints between them, and where its mass lies (docs/model.md,
 //! sections 14.1 and 14.4).
 
+use super::LegLoadPath;
 use crate::lanes::{Planar, Real};
-use crate::mechanism::{Architecture, Design, Geometry, JointKind, JointPoint, LegLanes, LegSettings, MemberKind};
+use crate::mechanism::{Architecture, Design, Geometry, JointKind, JointPoint, LegSettings, MemberKind};
 use crate::spatial::LEGS;
 use crate::stiffness::BarCompliance;
 
@@ -160,17 +161,16 @@ impl LegPath {
 
     /// Returns the bars and joints at several poses at once, relative to `P`.
     #[inline(always)]
-    pub fn at<V: Real>(&self, leg: &LegLanes<V>, arm: Planar<V>) -> PathLanes<V> {
+    pub fn at<V: Real>(&self, leg: &LegLoadPath<V>, arm: Planar<V>) -> PathLanes<V> {
         let like = leg.moment;
-        let chain = &leg.chain;
-        let tangent = chain.tangent;
+        let tangent = leg.tangent;
         let c = arm;
-        let b = c.minus(tangent.scaled(chain.offset));
+        let b = c.minus(tangent.scaled(leg.offset));
         let nothing = like.splat(0.0);
-        let (a, proximal) = match &chain.proximal {
-            Some(bar) => {
-                let direction = into_base(tangent, bar.direction);
-                let offset = bar.share * like.splat(self.proximal_length);
+        let (a, proximal) = match &leg.proximal {
+            Some((direction, share)) => {
+                let direction = into_base(tangent, *direction);
+                let offset = *share * like.splat(self.proximal_length);
                 let a = b.minus(direction.scaled(offset));
                 (a, self.bar(0, a, direction, offset))
             }
@@ -180,10 +180,10 @@ impl LegPath {
         let to_p = arm.scaled(like.splat(-1.0) / length);
         let bars = [
             proximal,
-            self.bar(DISTAL, b, tangent, chain.offset),
+            self.bar(DISTAL, b, tangent, leg.offset),
             self.bar(PLATFORM, c, to_p, length),
         ];
-        let bush = b.plus(tangent.scaled(like.splat(self.tube).smaller(chain.offset)));
+        let bush = b.plus(tangent.scaled(like.splat(self.tube).smaller(leg.offset)));
         let mut joints = [bush; LEGS];
         let mut slides = [Planar::new(nothing, nothing); LEGS];
         for place in 0..LEGS {
@@ -193,7 +193,7 @@ impl LegPath {
                 JointPoint::B => b,
                 JointPoint::C => c,
             };
-            if let Some(guide) = chain.guides[place] {
+            if let Some(guide) = leg.guides[place] {
                 slides[place] = into_base(tangent, guide);
             }
         }

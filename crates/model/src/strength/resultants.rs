@@ -1,7 +1,7 @@
 //! Forces and moments in the legs at several poses at once (docs/model.md, sections 14.1, 14.4 and 14.6).
 
 use super::path::{BARS, Beyond, PathLanes};
-use super::{Loads, StrengthInputs, StrengthModel};
+use super::{LegStiffness, Loads, StrengthInputs, StrengthModel};
 use crate::lanes::{Planar, Real};
 use crate::spatial::LEGS;
 use crate::stiffness::inverse;
@@ -14,6 +14,15 @@ pub(super) struct Ranged<V> {
 }
 
 impl<V: Real> Ranged<V> {
+    /// Returns the largest magnitude and the largest range of two.
+    #[inline(always)]
+    pub fn hull(self, other: Self) -> Self {
+        Self {
+            value: self.value.abs().larger(other.value.abs()),
+            range: self.range.larger(other.range),
+        }
+    }
+
     /// Returns the largest magnitude.
     #[inline(always)]
     pub fn most(self) -> V {
@@ -43,8 +52,7 @@ pub(super) struct LegBasis<V: Real> {
     pub u: Planar<V>,
     pub moment: V,
     pub transmission: V,
-    /// `S_i⁻¹` as an upper triangle.
-    pub stiffness: [V; 6],
+    pub stiffness: LegStiffness<V>,
     /// The inverse of the twists of the joints, as the force and moment at `P` for a unit power of each.
     pub reactions: [[V; 3]; 3],
     /// `g_i⁰`: what the leg transmits at `P` because of its weight in the plane.
@@ -94,15 +102,6 @@ pub(super) fn dot<V: Real>(a: &[V; 3], b: &[V; 3]) -> V {
 }
 
 #[inline(always)]
-fn cross<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-#[inline(always)]
 fn scaled<V: Real>(a: &[V; 3], by: V) -> [V; 3] {
     [a[0] * by, a[1] * by, a[2] * by]
 }
@@ -120,13 +119,7 @@ fn less<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
 /// Returns the rows of the inverse of the transpose of a matrix, given by its rows.
 #[inline(always)]
 fn inverse_transpose<V: Real>(rows: &[[V; 3]; 3]) -> [[V; 3]; 3] {
-    let first = cross(&rows[1], &rows[2]);
-    let one = rows[0][0].splat(1.0) / dot(&rows[0], &first);
-    [
-        scaled(&first, one),
-        scaled(&cross(&rows[2], &rows[0]), one),
-        scaled(&cross(&rows[0], &rows[1]), one),
-    ]
+    V::inverse_transpose(rows)
 }
 
 /// Returns the in-plane wrench about `P` of a mass beyond a place.
@@ -158,59 +151,61 @@ impl StrengthModel {
         let mut left = [like.splat(fx), like.splat(fy), like.splat(mz)];
         let mut wrench = [like.splat(fz), like.splat(mx), like.splat(my)];
         let mut stiffness = [like.splat(0.0); 6];
-        let mut sags = [[like.splat(0.0); 3]; LEGS];
+        // What keeps the free ends of the legs where they are without weight.
+        let mut held = [[like.splat(0.0); 3]; LEGS];
         let [_, sags_down] = self.loads.weighs();
-        for (leg, sag) in legs.iter().zip(&mut sags) {
+        for (leg, held) in legs.iter().zip(&mut held) {
             left = less(&left, &leg.own);
             for entry in 0..stiffness.len() {
-                stiffness[entry] = stiffness[entry] + leg.stiffness[entry];
+                stiffness[entry] = stiffness[entry] + leg.stiffness.at_platform[entry];
             }
             if sags_down {
-                *sag = self.sag(leg);
-                wrench = sum(&wrench, &times(&leg.stiffness, sag));
+                *held = self.held(leg);
+                wrench = sum(&wrench, held);
             }
         }
         let bending = inverse(&stiffness);
-        let displacement = times(&bending, &wrench);
         let by = inverse_transpose(&[row(&legs[0]), row(&legs[1]), row(&legs[2])]);
         LoadedLegs {
             legs: [
-                self.loaded_leg(&legs[0], &by[0], &left, &less(&displacement, &sags[0]), &bending),
-                self.loaded_leg(&legs[1], &by[1], &left, &less(&displacement, &sags[1]), &bending),
-                self.loaded_leg(&legs[2], &by[2], &left, &less(&displacement, &sags[2]), &bending),
+                self.loaded_leg(&legs[0], (&by[0], &left), (&wrench, &held[0]), &bending),
+                self.loaded_leg(&legs[1], (&by[1], &left), (&wrench, &held[1]), &bending),
+                self.loaded_leg(&legs[2], (&by[2], &left), (&wrench, &held[2]), &bending),
             ],
             bending,
         }
     }
 
-    /// Returns a leg whose line takes the part `by` of the wrench `left`, and whose free end is displaced as stated.
+    /// Returns a leg whose line takes the part `by` of the wrench `left`, and which takes its share of the wrench out of the plane less
+    /// what is `held` of its own weight.
     #[inline(always)]
     fn loaded_leg<'a, V: Real>(
         &self,
         leg: &'a LegBasis<V>,
-        by: &[V; 3],
-        left: &[V; 3],
-        displacement: &[V; 3],
+        (by, left): (&[V; 3], &[V; 3]),
+        (wrench, held): (&[V; 3], &[V; 3]),
         bending: &[V; 6],
     ) -> LoadedLeg<'a, V> {
         let [a, b, c, d, e, f] = *bending;
         let columns = [
-            times(&leg.stiffness, &[a, b, c]),
-            times(&leg.stiffness, &[b, d, e]),
-            times(&leg.stiffness, &[c, e, f]),
+            times(&leg.stiffness.at_platform, &[a, b, c]),
+            times(&leg.stiffness.at_platform, &[b, d, e]),
+            times(&leg.stiffness.at_platform, &[c, e, f]),
         ];
+        let share = [
+            [columns[0][0], columns[1][0], columns[2][0]],
+            [columns[0][1], columns[1][1], columns[2][1]],
+            [columns[0][2], columns[1][2], columns[2][2]],
+        ];
+        let taken = [dot(&share[0], wrench), dot(&share[1], wrench), dot(&share[2], wrench)];
         LoadedLeg {
             basis: leg,
             line: Ranged {
                 value: dot(by, left),
                 range: self.loads.in_plane_range(by),
             },
-            out: times(&leg.stiffness, displacement),
-            share: [
-                [columns[0][0], columns[1][0], columns[2][0]],
-                [columns[0][1], columns[1][1], columns[2][1]],
-                [columns[0][2], columns[1][2], columns[2][2]],
-            ],
+            out: less(&taken, held),
+            share,
         }
     }
 
@@ -250,7 +245,7 @@ impl StrengthModel {
             u: leg.u,
             moment: leg.moment,
             transmission: leg.transmission,
-            stiffness: inverse(&inputs.bending[index]),
+            stiffness: inputs.stiffness[index],
             reactions,
             own,
         }
@@ -326,15 +321,31 @@ impl StrengthModel {
         }
     }
 
-    /// Returns `δ_i`: the displacement of `P` along z and the rotations of the free end of a leg under its own weight.
+    /// Returns `S_i⁻¹ δ_i`: what at `P` keeps the free end of a leg where it is without weight.
     #[inline(always)]
-    fn sag<V: Real>(&self, leg: &LegBasis<V>) -> [V; 3] {
+    fn held<V: Real>(&self, leg: &LegBasis<V>) -> [V; 3] {
+        match &leg.stiffness.at_centre {
+            None => {
+                let nowhere = Planar::new(leg.moment.splat(0.0), leg.moment.splat(0.0));
+                times(&leg.stiffness.at_platform, &self.sag(leg, nowhere))
+            }
+            Some((centre, stiffness)) => {
+                let [lift, x, y] = times(stiffness, &self.sag(leg, *centre));
+                [lift, x + lift * centre.y, y - lift * centre.x]
+            }
+        }
+    }
+
+    /// Returns `δ_i`: the displacement along z and the rotations of the free end of a leg under its own weight, where it is fixed to a
+    /// point relative to `P`.
+    #[inline(always)]
+    fn sag<V: Real>(&self, leg: &LegBasis<V>, of: Planar<V>) -> [V; 3] {
         let zero = leg.moment.splat(0.0);
         let mut sag = [zero; 3];
         for bar in self.first()..BARS {
             let lanes = &leg.path.bars[bar];
             if lanes.is_uniform {
-                self.add_sag(&mut sag, leg, bar, [zero, lanes.length]);
+                self.add_sag(&mut sag, (leg, of), bar, [zero, lanes.length]);
             } else {
                 // Between the ends of the pieces the load is uniform.
                 let [first, second] = &lanes.pieces;
@@ -345,9 +356,9 @@ impl StrengthModel {
                 let a = a.larger(zero).smaller(lanes.length);
                 let b = b.larger(zero).smaller(lanes.length);
                 let (a, b) = (a.smaller(b), a.larger(b));
-                self.add_sag(&mut sag, leg, bar, [zero, a]);
-                self.add_sag(&mut sag, leg, bar, [a, b]);
-                self.add_sag(&mut sag, leg, bar, [b, lanes.length]);
+                self.add_sag(&mut sag, (leg, of), bar, [zero, a]);
+                self.add_sag(&mut sag, (leg, of), bar, [a, b]);
+                self.add_sag(&mut sag, (leg, of), bar, [b, lanes.length]);
             }
         }
         sag
@@ -355,7 +366,7 @@ impl StrengthModel {
 
     /// Adds what a stretch of a bar contributes, by two Gauss points, which are exact there.
     #[inline(always)]
-    fn add_sag<V: Real>(&self, sag: &mut [V; 3], leg: &LegBasis<V>, bar: usize, [from, to]: [V; 2]) {
+    fn add_sag<V: Real>(&self, sag: &mut [V; 3], leg: (&LegBasis<V>, Planar<V>), bar: usize, [from, to]: [V; 2]) {
         let half = (to - from) * from.splat(0.5);
         let middle = (to + from) * from.splat(0.5);
         let apart = half * from.splat(GAUSS);
@@ -364,7 +375,14 @@ impl StrengthModel {
     }
 
     #[inline(always)]
-    fn add_sag_at<V: Real>(&self, sag: &mut [V; 3], leg: &LegBasis<V>, bar: usize, distance: V, weight: V) {
+    fn add_sag_at<V: Real>(
+        &self,
+        sag: &mut [V; 3],
+        (leg, of): (&LegBasis<V>, Planar<V>),
+        bar: usize,
+        distance: V,
+        weight: V,
+    ) {
         let lanes = &leg.path.bars[bar];
         let compliance = &self.section(bar).compliance;
         let place = lanes.place(distance);
@@ -374,7 +392,7 @@ impl StrengthModel {
         let twist = weight * weight.splat(compliance.torsion) * axis.dot(moment);
         let bend = weight * weight.splat(compliance.bending) * normal.dot(moment);
         let turn = axis.scaled(twist).plus(normal.scaled(bend));
-        let lift = place.perp().dot(turn);
+        let lift = place.minus(of).perp().dot(turn);
         *sag = sum(sag, &[lift, turn.x, turn.y]);
     }
 }

@@ -159,6 +159,29 @@ impl StrengthModel {
         }
     }
 
+    /// Returns an upper bound of the squared stress between the ends of a bar \[Pa²\]: between them, a moment differs from a line by
+    /// at most `q L²/8`, where `q` is the largest weight per length.
+    #[inline(always)]
+    fn bound_between<V: Real>(&self, leg: &LoadedLeg<'_, V>, bar: usize, ends: &[SectionLoads<V>; 2]) -> V {
+        let lanes = &leg.path.bars[bar];
+        let [x, y, z] = self.loads.gravity;
+        let gravity = Planar::new(lanes.length.splat(x), lanes.length.splat(y));
+        let [first, second] = &lanes.pieces;
+        let eighth = lanes.length * lanes.length * lanes.length.splat((first.density + second.density) / 8.0);
+        let across = gravity.dot(lanes.axis.perp()).abs();
+        let [a, b] = ends;
+        let mut bound = SectionLoads {
+            axial: a.axial.hull(b.axial),
+            in_plane: a.in_plane.hull(b.in_plane),
+            out_of_plane: a.out_of_plane.hull(b.out_of_plane),
+            torsion: a.torsion,
+        };
+        bound.in_plane.value = bound.in_plane.value + eighth * across;
+        bound.out_of_plane.value = bound.out_of_plane.value + eighth * lanes.length.splat(z.abs());
+        // The factor covers rounding.
+        self.squared_stress(bar, &bound) * lanes.length.splat(1.0 + 1e-9)
+    }
+
     /// Returns the largest stress of any bar \[Pa\]; a guide whose carriage is at its joint has none.
     #[inline(always)]
     pub(super) fn largest_stress<V: Real>(&self, legs: &[LoadedLeg<'_, V>]) -> V {
@@ -167,10 +190,19 @@ impl StrengthModel {
         for leg in legs {
             for bar in self.first()..BARS {
                 let loads = self.bar_loads(leg, bar);
-                let mut of_bar = zero;
-                for section in 0..self.sections() {
-                    let carried = self.section_loads(leg, bar, &loads, section);
-                    of_bar = of_bar.larger(self.squared_stress(bar, &carried));
+                let last = self.sections() - 1;
+                let ends = [
+                    self.section_loads(leg, bar, &loads, 0),
+                    self.section_loads(leg, bar, &loads, last),
+                ];
+                let mut of_bar = zero.larger(self.squared_stress(bar, &ends[0]));
+                of_bar = of_bar.larger(self.squared_stress(bar, &ends[1]));
+                // Most bars are loaded most at an end, or less than another bar wherever they are loaded most.
+                if last > 1 && V::any(self.bound_between(leg, bar, &ends).exceeds(most.larger(of_bar))) {
+                    for section in 1..last {
+                        let carried = self.section_loads(leg, bar, &loads, section);
+                        of_bar = of_bar.larger(self.squared_stress(bar, &carried));
+                    }
                 }
                 let length = leg.path.bars[bar].length;
                 most = most.larger(of_bar.select(length.exceeds(zero), zero));

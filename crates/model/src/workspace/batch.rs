@@ -144,44 +144,51 @@ impl<L: Leg> WithSimd for Smallest<'_, L> {
     }
 }
 
-/// Determines the worst value of a scalar that is computed on demand.
+/// Determines the worst values of scalars that are computed on demand.
 struct Worst<'a, L> {
     checker: &'a PoseChecker<L>,
     arms: &'a [DVec2; LEGS],
-    scalar: PoseScalar,
+    set: ScalarSet,
     xs: &'a [f64],
     ys: &'a [f64],
     indices: &'a [f64],
 }
 
 impl<L: Leg> WithSimd for Worst<'_, L> {
-    type Output = Minimum;
+    type Output = [Minimum; PoseScalar::COUNT];
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Minimum {
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let zero = Lanes::all(simd, 0.0);
         let arms = [
             Planar::splat(zero, self.arms[0]),
             Planar::splat(zero, self.arms[1]),
             Planar::splat(zero, self.arms[2]),
         ];
-        let sign = zero.splat(match self.scalar.entry().quantity.better {
-            Better::Higher => 1.0,
-            Better::Lower => -1.0,
-        });
-        let set = ScalarSet::default().with(self.scalar);
-        let (mut least, mut least_index) = (zero.splat(f64::INFINITY), zero);
+        let mut least = [zero.splat(f64::INFINITY); PoseScalar::COUNT];
+        let mut least_index = [zero; PoseScalar::COUNT];
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         for ((x, y), index) in xs.iter().zip(ys).zip(Lanes::<S>::column(self.indices)) {
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
             let mut scalars = PoseScalars::splat(zero);
-            self.checker.fill_on_demand(set, position, &arms, &mut scalars);
-            let value = scalars[self.scalar] * sign;
-            let smaller = least.exceeds(value);
-            least = value.select(smaller, least);
-            least_index = Lanes::load(simd, index).select(smaller, least_index);
+            self.checker.fill_on_demand(self.set, position, &arms, &mut scalars);
+            for scalar in self.set.iter() {
+                let sign = zero.splat(match scalar.entry().quantity.better {
+                    Better::Higher => 1.0,
+                    Better::Lower => -1.0,
+                });
+                let (k, value) = (scalar as usize, scalars[scalar] * sign);
+                let smaller = least[k].exceeds(value);
+                least[k] = value.select(smaller, least[k]);
+                least_index[k] = Lanes::load(simd, index).select(smaller, least_index[k]);
+            }
         }
-        Minimum::over_lanes(least, least_index)
+        let mut minima = [Minimum::NONE; PoseScalar::COUNT];
+        for scalar in self.set.iter() {
+            let k = scalar as usize;
+            minima[k] = Minimum::over_lanes(least[k], least_index[k]);
+        }
+        minima
     }
 }
 
@@ -282,21 +289,21 @@ impl<L: Leg> PoseChecker<L> {
         })
     }
 
-    /// Returns the worst value of a scalar that is computed on demand over many positions in one orientation, as [`Self::smallest`]
-    /// does for the others, and with its sign reversed where smaller values are better.
+    /// Returns the worst values of scalars that are computed on demand over many positions in one orientation, as [`Self::smallest`]
+    /// does for the others, and with their signs reversed where smaller values are better. Those that are not in `set` are infinite.
     pub(crate) fn worst(
         &self,
-        scalar: PoseScalar,
+        set: ScalarSet,
         arms: &[DVec2; LEGS],
         xs: &[f64],
         ys: &[f64],
         indices: &[f64],
-    ) -> Minimum {
+    ) -> [Minimum; PoseScalar::COUNT] {
         assert!(xs.len() == ys.len() && xs.len() == indices.len() && xs.len().is_multiple_of(MAX_LANES));
         self.instructions.run(Worst {
             checker: self,
             arms,
-            scalar,
+            set,
             xs,
             ys,
             indices,

@@ -25,7 +25,7 @@ pub use grid::{Grid, GridError};
 pub use orientations::OrientationGrid;
 pub(crate) use prescribed::RegionMargins;
 pub(crate) use prescribed::search_prescribed;
-pub use region::{Polygon, PolygonError, Region};
+pub use region::Region;
 pub(crate) use region::{RegionPositions, directions};
 pub(crate) use regular::{RegularWorkspace, search};
 pub use sampling::WorkspaceSampling;

@@ -13,15 +13,43 @@ use super::regular::{Orientation, RegularWorkspace, orientations};
 use super::{Grid, Region, ValueColumns, WorkspaceSampling, WorkspaceSpec};
 use crate::lanes::{Lanes, MAX_LANES, Planar, Real};
 use crate::mechanism::Leg;
-use crate::pose::{Better, EXAMINED_ALWAYS, MarginUnit, PoseChecker, PoseScalar, ScalarSet};
+use crate::pose::{Better, EXAMINED_ALWAYS, MarginUnit, PoseChecker, PoseScalar, PoseScalars, ScalarSet};
 use crate::spatial::LEGS;
 
 /// Margin of a window that a singularity cuts: as if a constraint were missed entirely.
 const CUT: f64 = -1.0;
 
+/// What many positions in one orientation have shown.
+#[derive(Clone, Copy)]
+pub(crate) struct Examined {
+    /// The worst margin of the limits.
+    pub margin: f64,
+    /// The worst values of the limited scalars that depend on loads, with their signs reversed where smaller values are better; infinite for
+    /// all others.
+    pub of_loads: PoseScalars<f64>,
+}
+
+impl Examined {
+    fn nothing() -> Self {
+        Self {
+            margin: f64::INFINITY,
+            of_loads: PoseScalars::splat(f64::INFINITY),
+        }
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self {
+            margin: self.margin.min(other.margin),
+            of_loads: PoseScalars::from_fn(|scalar| self.of_loads[scalar].min(other.of_loads[scalar])),
+        }
+    }
+}
+
 /// Worst margins of a design over a region that is prescribed, one orientation at a time.
 pub(crate) struct RegionMargins<'a, L> {
     checker: PoseChecker<L>,
+    /// The same without the limits that depend on loads, which cost most; `None` without such limits.
+    without_loads: Option<PoseChecker<L>>,
     sampling: &'a WorkspaceSampling,
     step_base: f64,
     /// Orientations of the grid.
@@ -48,6 +76,7 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         let symmetric = symmetric && matches!(spec.region, Region::Disc(_));
         let (orientations, centres) = orientations(&checker, spec.centre, sampling.orientation_grid());
         let mut margins = Self {
+            without_loads: checker.without_loads(),
             checker,
             sampling,
             step_base,
@@ -124,12 +153,29 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
 
     /// Returns the worst margin in one orientation over the positions that are examined first.
     pub fn at_first(&self, orientation: usize) -> f64 {
-        self.at(orientation, &self.parts[0])
+        self.at(orientation, &self.parts[0]).margin
     }
 
-    /// Returns the worst margin in one orientation over the positions that are not examined first; infinite if there are none.
-    pub fn at_others(&self, orientation: usize) -> f64 {
-        self.at(orientation, &self.parts[1])
+    /// Returns an upper bound of it, which costs less where limits depend on loads, and whether it is the worst margin itself.
+    fn bound_at_first(&self, orientation: usize) -> (f64, bool) {
+        let checker = self.without_loads.as_ref().unwrap_or(&self.checker);
+        let Positions { xs, ys, .. } = &self.parts[0];
+        let found = checker.worst_margin(self.oriented(orientation), xs, ys, self.step_base);
+        (found.margin, self.without_loads.is_none())
+    }
+
+    /// Returns what all positions show in one orientation, given what is known of those that are examined first: the worst margin, or
+    /// an upper bound of it.
+    fn at_all(&self, orientation: usize, (bound, is_exact): (f64, bool)) -> Examined {
+        let first = if is_exact {
+            Examined {
+                margin: bound,
+                ..Examined::nothing()
+            }
+        } else {
+            self.at(orientation, &self.parts[0])
+        };
+        first.and(self.at(orientation, &self.parts[1]))
     }
 
     /// Returns whether no position that is not examined first has a negative margin in one orientation.
@@ -141,7 +187,7 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         let parts = others.xs.chunks(PART).zip(others.ys.chunks(PART));
         parts
             .map(|(xs, ys)| self.checker.worst_margin(oriented, xs, ys, self.step_base))
-            .all(|margin| margin >= 0.0)
+            .all(|found| found.margin >= 0.0)
     }
 
     fn oriented(&self, orientation: usize) -> OrientationLanes<'_> {
@@ -151,7 +197,7 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         }
     }
 
-    fn at(&self, orientation: usize, positions: &Positions) -> f64 {
+    fn at(&self, orientation: usize, positions: &Positions) -> Examined {
         self.checker
             .worst_margin(self.oriented(orientation), &positions.xs, &positions.ys, self.step_base)
     }
@@ -168,10 +214,19 @@ pub fn search_prescribed<L: Leg>(
     symmetric: bool,
 ) -> (RegularWorkspace, f64) {
     let (spec, orientation_grid) = (sampling.spec(), *sampling.orientation_grid());
-    let margins = RegionMargins::new(*checker, sampling, step_base, symmetric);
+    let margins = RegionMargins::new(checker.clone(), sampling, step_base, symmetric);
     let signs = &margins.signs;
-    let mut worst: Vec<f64> = (0..signs.len()).map(|k| margins.at_first(k)).collect();
-    let mut is_known = vec![margins.samples.first == margins.samples.all.len(); worst.len()];
+    let bounds_at_first: Vec<(f64, bool)> = (0..signs.len()).map(|k| margins.bound_at_first(k)).collect();
+    let mut worst: Vec<f64> = bounds_at_first.iter().map(|(bound, _)| *bound).collect();
+    let is_all = margins.samples.first == margins.samples.all.len();
+    let mut is_known: Vec<bool> = bounds_at_first
+        .iter()
+        .map(|(_, is_exact)| is_all && *is_exact)
+        .collect();
+    let mut of_loads = Vec::new();
+    if margins.without_loads.is_some() {
+        of_loads = vec![PoseScalars::splat(f64::INFINITY); signs.len()];
+    }
     let of_window = |home: usize, worst: &[f64]| {
         let mut least = f64::INFINITY;
         for k in orientation_grid.window(home) {
@@ -194,7 +249,11 @@ pub fn search_prescribed<L: Leg>(
         let Some(k) = unknown else {
             break (home, bounds[leader]);
         };
-        worst[k] = worst[k].min(margins.at_others(k));
+        let found = margins.at_all(k, bounds_at_first[k]);
+        worst[k] = worst[k].min(found.margin);
+        if let Some(of_loads) = of_loads.get_mut(k) {
+            *of_loads = found.of_loads;
+        }
         is_known[k] = true;
         // An orientation belongs to the windows of exactly those home orientations that lie in the window about it.
         for (place, bound) in bounds.iter_mut().enumerate() {
@@ -217,6 +276,7 @@ pub fn search_prescribed<L: Leg>(
         centres: margins.centres,
         directions: margins.directions,
         samples: margins.samples.all,
+        of_loads,
     };
     (found, margin)
 }
@@ -242,34 +302,56 @@ struct WorstMargin<'a, L> {
     xs: &'a [f64],
     ys: &'a [f64],
     base_radius: f64,
+    /// Limited scalars that depend on loads.
+    of_loads: ScalarSet,
 }
 
 impl<L: Leg> WithSimd for WorstMargin<'_, L> {
-    type Output = f64;
+    type Output = Examined;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+    fn with_simd<S: Simd>(self, simd: S) -> Examined {
         let (arms, sign) = self.oriented.lanes(simd);
         let mut least = sign.splat(f64::INFINITY);
+        let mut least_of_loads = PoseScalars::splat(least);
         let limited = self.checker.computed;
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         for (x, y) in xs.iter().zip(ys) {
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            let margin = self
+            let (margin, scalars) = self
                 .checker
                 .margin_lanes(position, &arms, sign, self.base_radius, limited);
             least = margin.smaller(least);
+            for scalar in self.of_loads.iter() {
+                let reversed = sign.splat(match scalar.entry().quantity.better {
+                    Better::Higher => 1.0,
+                    Better::Lower => -1.0,
+                });
+                least_of_loads[scalar] = (scalars[scalar] * reversed).smaller(least_of_loads[scalar]);
+            }
         }
-        let mut lanes = [0.0; MAX_LANES];
-        least.store(&mut Lanes::<S>::column_mut(&mut lanes)[0]);
-        lanes[..Lanes::<S>::COUNT].iter().copied().fold(f64::INFINITY, f64::min)
+        let mut of_loads = PoseScalars::splat(f64::INFINITY);
+        for scalar in self.of_loads.iter() {
+            of_loads[scalar] = least_lane(least_of_loads[scalar]);
+        }
+        Examined {
+            margin: least_lane(least),
+            of_loads,
+        }
     }
 }
 
+/// Returns the least number of all lanes.
+#[inline(always)]
+fn least_lane<S: Simd>(numbers: Lanes<S>) -> f64 {
+    let mut lanes = [0.0; MAX_LANES];
+    numbers.store(&mut Lanes::<S>::column_mut(&mut lanes)[0]);
+    lanes[..Lanes::<S>::COUNT].iter().copied().fold(f64::INFINITY, f64::min)
+}
+
 impl<L: Leg> PoseChecker<L> {
-    /// Returns the worst margin over many positions in one orientation, in the columns of equal lengths, a multiple of
-    /// [`MAX_LANES`].
-    fn worst_margin(&self, oriented: OrientationLanes<'_>, xs: &[f64], ys: &[f64], base_radius: f64) -> f64 {
+    /// Returns what many positions in one orientation show, in the columns of equal lengths, a multiple of [`MAX_LANES`].
+    fn worst_margin(&self, oriented: OrientationLanes<'_>, xs: &[f64], ys: &[f64], base_radius: f64) -> Examined {
         assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MAX_LANES));
         self.instructions.run(WorstMargin {
             checker: self,
@@ -277,11 +359,12 @@ impl<L: Leg> PoseChecker<L> {
             xs,
             ys,
             base_radius,
+            of_loads: self.limited_of_loads(),
         })
     }
 
     /// Returns the worst margin of the limits at several poses at once, no less than −1, and less than −1 where a leg does not reach
-    /// the pose. Margins of lengths are divided by `base_radius`. `set` are the scalars that are limited.
+    /// the pose, and the scalars. Margins of lengths are divided by `base_radius`. `set` are the scalars that are limited.
     #[inline(always)]
     fn margin_lanes<V: Real>(
         &self,
@@ -290,7 +373,7 @@ impl<L: Leg> PoseChecker<L> {
         sign: V,
         base_radius: f64,
         set: ScalarSet,
-    ) -> V {
+    ) -> (V, PoseScalars<V>) {
         let (mut values, distals) = self.core_lanes(position, arms);
         let scalars = &mut values.scalars;
         let none = sign.splat(-1.0);
@@ -330,7 +413,7 @@ impl<L: Leg> PoseChecker<L> {
             let clearance = self.compute_clearance_apart(position, arms, &distals, limit);
             worst = worst.smaller(((clearance - sign.splat(threshold)) * per_length).larger(none));
         }
-        worst.select(values.reachable, unreached)
+        (worst.select(values.reachable, unreached), values.scalars)
     }
 }
 

@@ -15,7 +15,7 @@ use super::region::directions;
 use super::rings::{Reach, Rings};
 use super::{ArmColumns, Grid, OrientationGrid, ValueColumns, WorkspaceSampling};
 use crate::mechanism::Leg;
-use crate::pose::{PoseChecker, PoseScalar};
+use crate::pose::{PoseChecker, PoseScalar, PoseScalars};
 use crate::spatial::{LEGS, Rotation};
 
 /// An orientation of the grid.
@@ -52,6 +52,9 @@ pub struct RegularWorkspace {
     pub home_sign: f64,
     /// Positions at which a prescribed region was examined; empty for the largest disc.
     pub samples: Vec<DVec2>,
+    /// The worst values over the samples of the limited scalars that depend on loads, for the orientations of the home window and some
+    /// others, with their signs reversed where smaller values are better; empty for the largest disc, and without such limits.
+    pub of_loads: Vec<PoseScalars<f64>>,
 }
 
 /// Returns the orientations that the search examines, and the values at their centre poses.
@@ -104,6 +107,7 @@ pub fn search<L: Leg>(
         directions: Vec::new(),
         home_sign: 1.0,
         samples: Vec::new(),
+        of_loads: Vec::new(),
     };
     let step = step_base / grid.ray_steps() as f64;
     let mut search = Search {

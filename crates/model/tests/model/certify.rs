@@ -1,13 +1,16 @@
 //! Certificates: published intervals, enclosures against doubles, and proofs that must fail.
 
-use kinefront_model::certify::{Certificate, CertifyOptions, Verdict};
-use kinefront_model::clearance::Layers;
+use glam::DVec2;
+use kinefront_model::certify::{Certificate, CertifyError, CertifyOptions, Verdict};
+use kinefront_model::clearance::{Layers, Obstacle, ObstacleShape, Surroundings};
 use kinefront_model::enclosure::{Interval, PoseEnclosure, TaylorModel};
-use kinefront_model::evaluation::{GridChoice, Model, PoseScalar};
+use kinefront_model::evaluation::{GridChoice, Model, ModelSettings, PoseScalar};
 use kinefront_model::kinematics::CharacteristicLength;
-use kinefront_model::mechanism::{CrossSection, Design, WorkingMode};
+use kinefront_model::mechanism::{CrossSection, Design, Wall, WorkingMode};
+use kinefront_model::polygon::Polygon;
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::{RailSettings, RailSupports, StiffnessDefinition};
+use kinefront_model::strength::{LoadShape, Loads};
 use proptest::prelude::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -179,7 +182,7 @@ fn is_required(model: &Model, scalar: PoseScalar) -> bool {
     !is_optional || model.settings().thresholds.get(scalar).is_some()
 }
 
-const AT_POSES: [PoseScalar; 8] = [
+const AT_POSES: [PoseScalar; 15] = [
     PoseScalar::Reach,
     PoseScalar::Dexterity,
     PoseScalar::StiffnessXy,
@@ -188,6 +191,13 @@ const AT_POSES: [PoseScalar; 8] = [
     PoseScalar::Clearance,
     PoseScalar::Displacement,
     PoseScalar::Transmission,
+    PoseScalar::Stress,
+    PoseScalar::SafetyFactor,
+    PoseScalar::BucklingFactor,
+    PoseScalar::JointForce,
+    PoseScalar::JointMoment,
+    PoseScalar::ActuatorForce,
+    PoseScalar::ActuatorTorque,
 ];
 
 /// The model whose characteristic length depends on which orientations are reached.
@@ -238,7 +248,67 @@ fn other_models() -> Vec<(&'static str, Model)> {
                 settings.rails = on_rails(RailSupports::Pinned).settings().rails.clone();
             }),
         ),
+        (
+            "limits of the strength under a cylinder of wrenches",
+            model(limit_strength),
+        ),
+        (
+            "limits of the strength of square tubes in an upright plane, under an ellipsoid of wrenches",
+            model(|settings| {
+                limit_strength(settings);
+                settings.sections.legs = CrossSection::SquareTube(Wall::Ratio(0.2));
+                settings.loads = Loads {
+                    wrench: [20.0, -30.0, 10.0, 2.0, -3.0, 4.0],
+                    range: [80.0, 60.0, 100.0, 5.0, 4.0, 10.0],
+                    shape: LoadShape::Ellipsoid,
+                    gravity: [1.0, -9.0, 3.0],
+                };
+            }),
+        ),
+        (
+            "a clearance beside obstacles in a room",
+            model(|settings| {
+                settings.thresholds.set(PoseScalar::Clearance, Some(0.005));
+                let corners = |half: [f64; 2], at: [f64; 2]| {
+                    let [x, y] = half;
+                    let rectangle = Polygon::rectangle(2.0 * x, 2.0 * y).expect("a rectangle");
+                    rectangle.mapped(|corner| corner + DVec2::from_array(at))
+                };
+                settings.surroundings = Surroundings {
+                    obstacles: vec![
+                        Obstacle {
+                            name: "post".into(),
+                            shape: ObstacleShape::Disc {
+                                centre: DVec2::new(1.0, 0.7),
+                                radius: 0.08,
+                            },
+                            heights: [f64::NEG_INFINITY, f64::INFINITY],
+                        },
+                        Obstacle {
+                            name: "beam".into(),
+                            shape: ObstacleShape::Polygon(corners([0.05, 0.4], [-1.1, 0.6])),
+                            heights: [0.03, 1.0],
+                        },
+                    ],
+                    room: Some(corners([3.6, 3.8], [0.0, 0.0])),
+                };
+            }),
+        ),
     ]
+}
+
+/// Limits everything that depends on loads that both kinds of drives have.
+fn limit_strength(settings: &mut ModelSettings) {
+    settings.material.yield_strength = Some(2.35e8);
+    for (scalar, limit) in [
+        (PoseScalar::Stress, 1e8),
+        (PoseScalar::SafetyFactor, 2.0),
+        (PoseScalar::BucklingFactor, 3.0),
+        (PoseScalar::JointForce, 1500.0),
+        (PoseScalar::JointMoment, 800.0),
+    ] {
+        settings.thresholds.set(scalar, Some(limit));
+    }
 }
 
 /// The paper's model with rails that bend.
@@ -277,7 +347,7 @@ proptest! {
         x in -1.0..1.0f64,
         y in -1.0..1.0f64,
         phi in -3.0..3.0f64,
-        place in 0..7usize,
+        place in prop::sample::select(vec![0, 1, 2, 3, 4, 5, 6, 9, 10, 11]),
     ) {
         let (name, model) = other_models().swap_remove(place);
         let scale = 0.4 * design.base_radius();
@@ -320,9 +390,9 @@ proptest! {
         middle in (0.0..0.3f64, -3.0..3.0f64, -3.0..3.0f64),
         width in 0.001..0.1f64,
         places in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64), 20),
-        in_one_plane in any::<bool>(),
+        place in prop::sample::select(vec![3, 4, 11]),
     ) {
-        let (_, model) = other_models().swap_remove(if in_one_plane { 4 } else { 3 });
+        let (_, model) = other_models().swap_remove(place);
         let (pose, widths) = polar_box(&design, middle, width);
         let enclosed = model.enclose(&design, &pose).expect("values");
         let is_open = |(scalar, value): &(PoseScalar, TaylorModel)| {
@@ -350,7 +420,7 @@ proptest! {
         middle in (0.0..0.3f64, -3.0..3.0f64, -3.0..3.0f64),
         width in 0.001..0.2f64,
         places in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64), 20),
-        place in prop::sample::select(vec![0, 1, 2, 5, 6]),
+        place in prop::sample::select(vec![0, 1, 2, 5, 6, 9, 10]),
     ) {
         let (_, model) = other_models().swap_remove(place);
         let radius = middle.0 * design.base_radius();
@@ -365,9 +435,15 @@ proptest! {
             let values = model
                 .enclose(&design, &point(&Pose::new(at * theta.cos(), at * theta.sin(), phi)))
                 .expect("values");
-            // The last one, g5, is left out where one leg alone is stiff enough.
+            // Only g5 is left out, where one leg alone is stiff enough.
             prop_assert!(values.len() + 1 >= enclosed.len());
-            for ((constraint, value), (_, whole)) in values.iter().zip(&enclosed) {
+            let of_box = |place: usize| {
+                let (scalar, _) = values[place];
+                let before = values[..place].iter().filter(|(other, _)| *other == scalar).count();
+                enclosed.iter().filter(|(other, _)| *other == scalar).nth(before)
+            };
+            for (place, (constraint, value)) in values.iter().enumerate() {
+                let Some((_, whole)) = of_box(place) else { continue };
                 let [lower, upper] = value.range();
                 // Within the remainder of the polynomial, not only within its range.
                 let polynomial = whole.value([a, b, c]);
@@ -378,6 +454,49 @@ proptest! {
             }
         }
     }
+}
+
+/// A layer that keeps exactly the required clearance, above an obstacle or well above it, refutes no pose over the obstacle; one that
+/// keeps less does.
+#[test]
+fn a_member_may_pass_over_an_obstacle() {
+    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.05"
+        .parse()
+        .expect("a design");
+    let verdict = |top: f64, is_square: bool| {
+        let model = model(|settings| {
+            settings.thresholds.set(PoseScalar::Clearance, Some(0.0));
+            if is_square {
+                settings.sections.platform = CrossSection::SquareTube(Wall::Ratio(0.5));
+                settings.sections.legs = CrossSection::SquareTube(Wall::Ratio(0.5));
+            }
+            settings.surroundings.obstacles = vec![Obstacle {
+                name: "table".into(),
+                shape: ObstacleShape::Polygon(Polygon::rectangle(12.0, 12.0).expect("a rectangle")),
+                heights: [-1.0, top],
+            }];
+        });
+        let options = CertifyOptions {
+            phi_deg: 29.5,
+            claimed_radius: 0.2,
+            max_boxes: 300,
+            ..CertifyOptions::default()
+        };
+        model.certify(&design, &options).expect("a certificate").verdict
+    };
+    for is_square in [false, true] {
+        assert_eq!(verdict(-0.2, is_square), Verdict::Proved);
+        assert_ne!(verdict(-0.05, is_square), Verdict::Refuted);
+        assert_eq!(verdict(-0.04, is_square), Verdict::Refuted);
+    }
+}
+
+/// A limit for which there is no form is refused: a proof that left it out would prove too much.
+#[test]
+fn a_limit_without_a_form_is_refused() {
+    let model = model(|settings| settings.thresholds.set(PoseScalar::Footprint, Some(1.0)));
+    let found = model.certify(&cases()[0].design, &CertifyOptions::default());
+    assert_eq!(found, Err(CertifyError::Uncovered(PoseScalar::Footprint)));
 }
 
 /// Mixed working modes and a centre away from O are certified.

@@ -1,14 +1,16 @@
 //! Compares clearances with those of the oracle.
 
-use kinefront_model::clearance::{BodySettings, Layers};
+use glam::DVec2;
+use kinefront_model::clearance::{BodySettings, Layers, Obstacle, ObstacleShape};
 use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar};
-use kinefront_model::mechanism::{Architecture, Arrangement, Design, DesignVariable, WorkingMode};
+use kinefront_model::mechanism::{AnyLeg, Architecture, Arrangement, Design, DesignVariable, Manipulator, WorkingMode};
+use kinefront_model::polygon::Polygon;
 use kinefront_model::spatial::{Pose, Rotation};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::strategies;
-use kinefront_testkit::oracle::{Fault, Found, oracle};
+use kinefront_testkit::oracle::{Fault, Found, distance_to_cylinder, distance_to_prism, oracle};
 
 /// Number of poses of each architecture.
 const POSES: usize = 100_000;
@@ -111,7 +113,7 @@ fn compare(architecture: Architecture, poses: usize, faults: &[Fault]) -> (usize
                 pair,
                 second,
             } = oracle(&model, &design, &pose, &report, Fault::None);
-            let told = report.nearest;
+            let told = &report.nearest;
             assert!(
                 (told.distance - wanted).abs() < 1e-9,
                 "{design} at {pose:?}: {} between {:?} instead of {wanted} between {pair:?}",
@@ -195,6 +197,136 @@ fn a_planted_fault_shows() {
             );
         }
     }
+}
+
+/// Accuracy of the distances of the library, which iterates \[m\].
+const TOLERANCE: f64 = 1e-5;
+
+/// Obstacles keep the distance that a library measures in space, and the name of the nearest one is told.
+#[test]
+fn obstacles_are_as_far_as_a_library_measures() {
+    let mut random = Random(ChaCha8Rng::seed_from_u64(13));
+    let (mut nearest, mut overlapping) = ([0; 3], 0);
+    for round in 0..6000 {
+        let architecture = Architecture::ALL[round % Architecture::ALL.len()];
+        let (settings, design) = random.subject(architecture);
+        let free = Model::new(settings.clone()).expect("the grids fit the rotation range");
+        let pose = random.pose();
+        let Ok(alone) = free.pose(&design, &pose) else { continue };
+        if alone.values[PoseScalar::Reach] < 1e-9 {
+            continue;
+        }
+        let centre = DVec2::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0));
+        let low = random.between(-0.5, 0.3);
+        let heights = [low, low + random.between(0.01, 0.5)];
+        let kind = round % 3;
+        let size = random.between(0.05, 0.6);
+        let corners = match kind {
+            1 => [[-1.0, -0.4], [1.0, -0.4], [1.0, 0.4], [-1.0, 0.4]].to_vec(),
+            _ => [[-1.0, -0.5], [0.8, -0.7], [0.1, 0.9]].to_vec(),
+        };
+        let corners: Vec<[f64; 2]> = corners
+            .into_iter()
+            .map(|[x, y]| [centre.x + size * x, centre.y + size * y])
+            .collect();
+        let shape = match kind {
+            0 => ObstacleShape::Disc { centre, radius: size },
+            _ => {
+                let corners = corners.iter().map(|&corner| DVec2::from_array(corner));
+                ObstacleShape::Polygon(Polygon::new(corners.collect()).expect("a polygon"))
+            }
+        };
+        let mut settings = settings;
+        settings.surroundings.obstacles = vec![Obstacle {
+            name: "post".into(),
+            shape,
+            heights,
+        }];
+        let model = Model::new(settings).expect("the grids fit the rotation range");
+        let members = model.members(&design, &pose).expect("reachable");
+        let manipulator = Manipulator::<AnyLeg>::new(&design, &model.settings().legs);
+        let posture = manipulator.posture(&pose).expect("reachable");
+        let capsules = model.bodies_of(&design).capsules(&manipulator, pose.position, &posture);
+        assert_eq!(members.len(), capsules.len());
+        let wanted = capsules.iter().map(|capsule| {
+            let ends = [capsule.from, capsule.to].map(|end| end.to_array());
+            let distance = match kind {
+                0 => distance_to_cylinder(ends, centre.to_array(), size, heights),
+                _ => distance_to_prism(ends, &corners, heights),
+            };
+            // Where the axis meets the obstacle, only the sign is known.
+            (distance, distance - capsule.radius)
+        });
+        let wanted: Vec<(f64, f64)> = wanted.collect();
+        let least = wanted
+            .iter()
+            .map(|(_, clearance)| *clearance)
+            .fold(alone.nearest.distance, f64::min);
+        let meets = wanted.iter().any(|(distance, _)| *distance == 0.0);
+        let found = model.pose(&design, &pose).expect("reachable").nearest;
+        let lanes = in_lanes(&model, &design, &pose).expect("a reachable pose");
+        assert!(
+            (lanes - found.distance).abs() < 1e-9,
+            "{design} at {pose:?}: {lanes} and {found:?}"
+        );
+        if meets {
+            overlapping += 1;
+            assert!(
+                found.distance <= least + TOLERANCE,
+                "{design} at {pose:?}: {found:?}, not {least}"
+            );
+        } else {
+            assert!(
+                (found.distance - least).abs() < TOLERANCE,
+                "{design} at {pose:?}: {found:?}, not {least}"
+            );
+        }
+        if found.distance < alone.nearest.distance {
+            assert_eq!(found.pair()[1], "post");
+            nearest[kind] += 1;
+            // The points between which it is measured are as far apart.
+            let apart = found.between[0].distance(found.between[1]);
+            let radius = capsules
+                .iter()
+                .find(|capsule| capsule.member == found.member)
+                .map_or(0.0, |capsule| capsule.radius);
+            assert!(
+                meets || (apart - radius - found.distance).abs() < 1e-6,
+                "{design}: {found:?}"
+            );
+        }
+    }
+    assert!(
+        nearest.iter().all(|count| *count > 30) && overlapping > 40,
+        "{nearest:?}, {overlapping}"
+    );
+}
+
+/// A member that leaves the room has a clearance below 0, and one within it the distance from the walls.
+#[test]
+fn the_room_is_not_left() {
+    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
+        .parse()
+        .expect("a design");
+    // An L without its upper right quarter.
+    let corners = [
+        [-4.0, -4.0],
+        [4.0, -4.0],
+        [4.0, 0.6],
+        [1.9, 0.6],
+        [1.9, 4.0],
+        [-4.0, 4.0],
+    ];
+    let model = strategies::model(|settings| {
+        let corners = corners.iter().map(|&corner| DVec2::from_array(corner));
+        settings.surroundings.room = Some(Polygon::new(corners.collect()).expect("a polygon"));
+    });
+    let at = |x: f64, y: f64| model.pose(&design, &Pose::new(x, y, 0.5)).expect("reachable").nearest;
+    let inside = at(-0.6, -0.6);
+    assert!(inside.distance > 0.0, "{inside:?}");
+    let beyond = at(0.7, 0.9);
+    assert!(beyond.distance < 0.0 && beyond.pair()[1] == "room", "{beyond:?}");
+    assert!(!model.is_symmetric(&design));
 }
 
 /// Bars thickened until they touch have zero clearance, and bars thickened further overlap by the excess.

@@ -1,6 +1,7 @@
 //! Taylor models against the functions that they enclose, and their rounding against fused operations.
 
-use kinefront_model::enclosure::{Interval, TaylorModel};
+use kinefront_model::enclosure::{Comparison, EnclosedNumber, Interval, TaylorModel};
+use kinefront_model::lanes::Real;
 
 /// Numbers between −1 and 1 that look random, from a linear congruential generator.
 struct Numbers(u64);
@@ -57,6 +58,79 @@ fn operations_enclose_what_their_operands_enclose() {
             assert!(lower <= expected + 1e-14 && expected <= upper + 1e-14);
         }
     }
+}
+
+/// The same of the numbers of the shared formulas, also where the box decides no comparison and where a root begins at 0.
+#[test]
+fn numbers_of_formulas_enclose_what_their_operands_enclose() {
+    let mut numbers = Numbers(3);
+    let mut undecided = 0;
+    for _ in 0..20_000 {
+        let mut model = |middle: f64, size: f64| {
+            let mut model = numbers.model();
+            model.constant = middle + 0.3 * (model.constant - 2.0);
+            for terms in [&mut model.linear, &mut model.square, &mut model.mixed] {
+                *terms = terms.map(|term| size * term);
+            }
+            EnclosedNumber(model)
+        };
+        // Numbers about 0, and one that is well above it.
+        let (a, b, c) = (model(0.0, 1.0), model(0.0, 1.0), model(2.2, 2.0));
+        let at = [numbers.next(), numbers.next(), numbers.next()];
+        let mut within =
+            |number: &EnclosedNumber| number.0.value(at) + number.0.remainder * (3.0 * numbers.next()).clamp(-1.0, 1.0);
+        let (x, y, z) = (within(&a), within(&b), within(&c));
+        undecided += usize::from(a.exceeds(b) == Comparison::Unknown);
+        for (result, expected) in [
+            (a.larger(b), x.max(y)),
+            (a.smaller(b), x.min(y)),
+            (a.abs(), x.abs()),
+            ((a * a).sqrt(), x.abs()),
+            ((c * c).sqrt(), z.abs()),
+            ((a * a + b * b).sqrt(), (x * x + y * y).sqrt()),
+            (a / c, x / z),
+            (b / -c, -y / z),
+            (c.select(a.at_least(b), -c), if x >= y { z } else { -z }),
+            (a * a.splat(0.1) + a.splat(0.0), 0.1 * x),
+        ] {
+            if result.0.constant.is_nan() {
+                continue;
+            }
+            let error = (result.0.value(at) - expected).abs();
+            assert!(error <= result.0.remainder + 1e-14, "{error} of {}", result.0.remainder);
+        }
+        // The slope is kept: the root of the square of a narrow number is narrow.
+        let narrow = EnclosedNumber(TaylorModel {
+            linear: c.0.linear.map(|term| 0.1 * term),
+            square: [0.0; 3],
+            mixed: [0.0; 3],
+            ..c.0
+        });
+        assert!((narrow * narrow).sqrt().0.remainder < 0.05);
+    }
+    assert!((1000..20_000).contains(&undecided), "{undecided} comparisons");
+}
+
+/// What is not known stays so.
+#[test]
+fn nothing_follows_from_no_number() {
+    let none = EnclosedNumber(TaylorModel::exactly(f64::NAN));
+    let one = EnclosedNumber(TaylorModel::exactly(1.0));
+    for found in [
+        none.larger(one),
+        one.larger(none),
+        one.smaller(none),
+        none.abs(),
+        none.sqrt(),
+        one / none,
+        one / (one - one),
+        one.select(none.exceeds(one), one - one),
+    ] {
+        assert!(!found.0.is_positive() && !found.0.is_negative(), "{found:?}");
+    }
+    assert_eq!(none.exceeds(one), Comparison::Unknown);
+    assert_eq!(one.at_least(none) & one.exceeds(one + one), Comparison::Never);
+    assert_eq!(one.at_least(none) & (one + one).exceeds(one), Comparison::Unknown);
 }
 
 /// The remainder of a result without width covers its rounding, which fused operations tell exactly.

@@ -296,29 +296,26 @@ fn limits_of_poses_bound_the_workspace() {
     assert!(driven.workspace_radius() > 0.0 && driven.workspace_radius() < free.workspace_radius());
     let inside = bounded(|settings| settings.thresholds.set(PoseScalar::Reach, Some(0.3)));
     assert!(inside.constraint(Constraint::Reach).value.expect("a value") >= 0.3);
-    // The proof counts the limit, and one that it does not cover is refused: a proof that left it out would prove too much.
-    let model = strategies::model(|settings| {
-        settings.thresholds.set(PoseScalar::Transmission, Some(0.5));
-    });
-    let claim = model.claim(&driven).expect("a workspace");
-    let found = model.certify(&design, &claim).expect("a certificate");
-    let upper = found.upper.expect("an infeasible pose");
-    assert!(
-        found.is_closed(1e-4) && (upper / driven.workspace_radius() - 1.0).abs() < 0.01,
-        "{found:?}"
-    );
-    assert!(
-        found
-            .violation
-            .is_some_and(|violation| violation.scalar == PoseScalar::Transmission)
-    );
-    let model = strategies::model(|settings| {
-        settings.thresholds.set(PoseScalar::Reach, Some(0.3));
-    });
-    assert_eq!(
-        model.certify(&design, &claim),
-        Err(kinefront_model::certify::CertifyError::Uncovered(PoseScalar::Reach))
-    );
+    // The proof counts the limits: one that left them out would prove too much.
+    for (scalar, limit, evaluation) in [
+        (PoseScalar::Transmission, 0.5, &driven),
+        (PoseScalar::Reach, 0.3, &inside),
+    ] {
+        let model = strategies::model(|settings| {
+            settings.thresholds.set(scalar, Some(limit));
+        });
+        let claim = model.claim(evaluation).expect("a workspace");
+        let found = model.certify(&design, &claim).expect("a certificate");
+        let upper = found.upper.expect("an infeasible pose");
+        assert!(
+            found.is_closed(1e-4) && (upper / evaluation.workspace_radius() - 1.0).abs() < 0.01,
+            "{found:?}"
+        );
+        assert!(
+            found.violation.is_some_and(|violation| violation.scalar == scalar),
+            "{found:?}"
+        );
+    }
     // The same limits of a prescribed disc.
     let radius = driven.workspace_radius();
     for (share, holds) in [(0.999, true), (1.001, false)] {

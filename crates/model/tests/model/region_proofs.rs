@@ -4,8 +4,9 @@ use glam::DVec2;
 use kinefront_model::certify::{Certificate, CertifyOptions, Patch, Verdict};
 use kinefront_model::evaluation::{GridChoice, Model, PoseScalar, WorkspaceTarget};
 use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
+use kinefront_model::polygon::Polygon;
 use kinefront_model::spatial::Pose;
-use kinefront_model::workspace::{Polygon, Region};
+use kinefront_model::workspace::Region;
 use kinefront_testkit::poses_of_region;
 use rayon::prelude::*;
 

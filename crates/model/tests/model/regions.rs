@@ -3,8 +3,9 @@
 use glam::DVec2;
 use kinefront_model::evaluation::{Constraint, GridChoice, Model, SizingRanges, WorkspaceTarget};
 use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
+use kinefront_model::polygon::{Polygon, PolygonError};
 use kinefront_model::spatial::{Pose, unit};
-use kinefront_model::workspace::{Polygon, PolygonError, Region};
+use kinefront_model::workspace::Region;
 use proptest::prelude::*;
 use rayon::prelude::*;
 

@@ -225,7 +225,7 @@ proptest! {
         // The reported clearance is that of the nearest pair over the workspace.
         let told = found.constraint(Constraint::Clearance);
         prop_assert_eq!(told.required, clearance.is_some());
-        let nearest = found.nearest.map(|nearest| nearest.distance);
+        let nearest = found.nearest.as_ref().map(|nearest| nearest.distance);
         let close = |nearest: f64| told.value.is_some_and(|value| (nearest - value).abs() < 1e-7);
         prop_assert!(nearest.map_or(told.value.is_none(), close), "{:?} for {:?}", nearest, told);
     }

@@ -12,7 +12,7 @@ pub(super) fn clearance(report: &Report) -> Markup {
     let worst = |front: &Front| -> Option<String> {
         let found = front.shown().filter_map(|member| Some((member.clearance()?, member)));
         let (_, member) = found.reduce(|worst, next| if next.0 < worst.0 { next } else { worst })?;
-        Some(text::clearance(&member.nearest?))
+        Some(text::clearance(member.nearest.as_ref()?))
     };
     html! {
         p {

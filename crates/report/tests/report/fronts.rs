@@ -134,7 +134,7 @@ fn a_front_with_clearance_has_no_overlap_on_a_million_poses() {
         colliding.len()
     );
     for member in found {
-        let nearest = member.nearest.expect("a pose");
+        let nearest = member.nearest.as_ref().expect("a pose");
         let report = member.constraint(Constraint::Clearance);
         assert!(nearest.distance < 0.0 && !report.required && !report.active);
         // The same study with g7 has no use for that workspace.

@@ -11,6 +11,7 @@ mod question;
 mod region;
 mod sections;
 mod strength;
+mod surroundings;
 mod variables;
 
 pub use bars::{
@@ -31,4 +32,5 @@ pub use sections::{
     RailSupportChoice, ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
 };
 pub use strength::{LoadShapeChoice, StrengthSection};
+pub use surroundings::{ObstacleSection, RoomSection};
 pub use variables::{Tie, VariableChoice, Variables};

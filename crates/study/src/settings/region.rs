@@ -3,7 +3,8 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use kinefront_model::workspace::{Polygon, Region};
+use kinefront_model::polygon::Polygon;
+use kinefront_model::workspace::Region;
 
 /// Kind of a region.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]

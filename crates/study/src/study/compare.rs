@@ -47,6 +47,8 @@ impl Study {
             .filter(|setting| setting.value(&ours) != setting.value(&theirs))
             .map(|setting| setting.path())
             .find(|path| !may_differ(path))
+            .or_else(|| (self.obstacles != other.obstacles).then(|| "obstacles".to_owned()))
+            .or_else(|| (self.room != other.room).then(|| "room".to_owned()))
             .or_else(|| (self.references != other.references).then(|| "references".to_owned()))
     }
 }

@@ -1,6 +1,6 @@
 //! Invalid values of a study.
 
-use super::{Study, variables};
+use super::{Study, surroundings, variables};
 use crate::settings::{
     AlgorithmName, Bounds, LengthChoice, LimitChoice, ObjectiveChoice, RailSection, RailSupportChoice, SectionChoice,
     settings, unknown_quantity, wrong_name,
@@ -29,7 +29,7 @@ impl Fault {
 }
 
 /// Rules about several settings at once, each of which adds what it finds.
-const RULES: [fn(&Study, &mut Vec<Fault>); 16] = [
+const RULES: [fn(&Study, &mut Vec<Fault>); 17] = [
     check_characteristic_length,
     check_slider,
     check_bounds,
@@ -46,6 +46,7 @@ const RULES: [fn(&Study, &mut Vec<Fault>); 16] = [
     check_objectives,
     check_constraints,
     check_loads,
+    check_surroundings,
 ];
 
 impl Study {
@@ -332,6 +333,11 @@ fn check_variables(study: &Study, faults: &mut Vec<Fault>) {
         return;
     }
     let found = variables::faults(study).into_iter();
+    faults.extend(found.map(|(key, message)| Fault::new(key, message)));
+}
+
+fn check_surroundings(study: &Study, faults: &mut Vec<Fault>) {
+    let found = surroundings::faults(study).into_iter();
     faults.extend(found.map(|(key, message)| Fault::new(key, message)));
 }
 

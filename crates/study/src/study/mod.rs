@@ -11,6 +11,7 @@ mod open;
 mod question;
 mod read;
 mod region;
+mod surroundings;
 mod variables;
 
 pub use error::StudyError;
@@ -20,8 +21,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::settings::{
     ActuatorSection, AlgorithmName, Bounds, GeometrySection, Grids, HypervolumeSection, JointSection, Limits,
-    MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, RailSection, ReferenceDesign, RequirementSection,
-    SectionsSection, StrengthSection, Variables, WorkspaceSection,
+    MaterialSection, ModelSection, ObjectiveChoice, ObstacleSection, OptimizerSection, RailSection, ReferenceDesign,
+    RequirementSection, RoomSection, SectionsSection, StrengthSection, Variables, WorkspaceSection,
 };
 use kinefront_model::clearance::BodySettings;
 use kinefront_model::mechanism::{Architecture, WorkingMode};
@@ -66,6 +67,12 @@ pub struct Study {
     pub model: ModelSection,
     /// The section `[bodies]`.
     pub bodies: BodySettings,
+    /// The sections `[[obstacles]]`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub obstacles: Vec<ObstacleSection>,
+    /// The section `[room]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub room: Option<RoomSection>,
     /// The section `[geometry]`.
     pub geometry: GeometrySection,
     /// The section `[bounds]`.
@@ -103,6 +110,8 @@ impl Default for Study {
             workspace: WorkspaceSection::default(),
             model: ModelSection::default(),
             bodies: BodySettings::default(),
+            obstacles: Vec::new(),
+            room: None,
             geometry: GeometrySection::default(),
             bounds: Bounds::default(),
             variables: Variables::default(),

@@ -38,6 +38,7 @@ impl Study {
                 geometry: Arrangement::from(&self.geometry).into(),
             },
             bodies: self.bodies,
+            surroundings: self.surroundings(),
             platform_bars: model.platform_bars,
             stiffness_definition: match model.stiffness_definition {
                 StiffnessChoice::Stiffness => StiffnessDefinition::Stiffness,

@@ -2,7 +2,6 @@
 
 use super::Study;
 use crate::settings::ObjectiveChoice;
-use kinefront_model::certify;
 use kinefront_model::evaluation::{
     Better, Bound, Objective, PoseScalar, Quantity, QuantityLimit, QuantitySet, Reference, Thresholds,
 };
@@ -13,11 +12,6 @@ impl Study {
     /// Returns the objectives of the study; a study without faults has one to three.
     pub fn objectives(&self) -> Vec<Objective> {
         self.objectives.iter().filter_map(ObjectiveChoice::objective).collect()
-    }
-
-    /// Whether the workspaces of the front are proved, unless the study limits at every pose what proofs do not cover.
-    pub fn certifies(&self) -> bool {
-        self.workspace.certify && certify::uncovered(&self.thresholds()).is_none()
     }
 
     /// Iterates over the limits of the study.

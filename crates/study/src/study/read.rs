@@ -183,7 +183,18 @@ fn span_of(text: &str, key: &str) -> Option<SourceSpan> {
     let mut table = document.get_ref();
     let mut span = None;
     for part in key.split('.') {
-        let Some(value) = table.get(part) else { break };
+        // `obstacles[2]` is the second of a list of tables.
+        let (name, place) = match part.strip_suffix(']').and_then(|part| part.split_once('[')) {
+            Some((name, place)) => (name, place.parse().ok()),
+            None => (part, None::<usize>),
+        };
+        let Some(mut value) = table.get(name) else { break };
+        if let (Some(place), DeValue::Array(list)) = (place, value.get_ref()) {
+            let Some(found) = list.get(place.wrapping_sub(1)) else {
+                break;
+            };
+            value = found;
+        }
         span = Some(SourceSpan::from(value.span()));
         match value.get_ref() {
             DeValue::Table(inner) => table = inner,

@@ -654,6 +654,92 @@ fn all_faults_are_told_at_once() {
     assert_eq!(keys, ["material.density_kg_per_m3", "bounds.R_m", "bounds.rj_m"]);
 }
 
+/// Obstacles and a room are read, written and compared, and each fault names the section and the key at fault.
+#[test]
+fn obstacles_and_a_room_are_checked() {
+    let clearance = "[requirements]\nclearance_min_m = 0.005\n";
+    let post = "[[obstacles]]\nname = \"post\"\nkind = \"disc\"\nradius_m = 0.1\n";
+    let sound = format!(
+        "{clearance}{post}centre_m = [0.9, 0.8]\nheights_m = [-0.1, 0.4]\n[[obstacles]]\nname = \"wall\"\n\
+         kind = \"polygon\"\ncentre_m = [1.0, 0.0]\ncorners_m = [[0.5, -1.0], [0.6, -1.0], [0.6, 1.0], [0.5, 1.0]]\n\
+         [room]\nkind = \"rectangle\"\nwidth_m = 6.0\nheight_m = 5.0\n"
+    );
+    let study = Study::parse(&sound, "mine.toml").expect("a study");
+    let model = study.model().expect("a model");
+    let surroundings = &model.settings().surroundings;
+    assert_eq!(surroundings.obstacles.len(), 2);
+    assert_eq!(surroundings.obstacles[0].heights, [-0.1, 0.4]);
+    assert_eq!(surroundings.obstacles[1].heights, [f64::NEG_INFINITY, f64::INFINITY]);
+    let room = surroundings.room.as_ref().expect("a room");
+    assert_eq!(
+        room.bounds().map(|corner| corner.to_array()),
+        [[-3.0, -2.5], [3.0, 2.5]]
+    );
+    let text = toml::to_string(&study).expect("TOML");
+    assert_eq!(Study::parse(&text, "again").expect("a study"), study);
+    let paper = Study::parse(clearance, "paper").expect("a study");
+    assert_eq!(study.differing_key(&paper).as_deref(), Some("obstacles"));
+    for (text, key, words) in [
+        (
+            post.to_owned() + "centre_m = [1.0, 1.0]",
+            "obstacles[1]",
+            "without a clearance",
+        ),
+        (
+            format!("{clearance}{post}"),
+            "obstacles[1]",
+            "covers the centre of the workspace",
+        ),
+        (
+            format!("{clearance}{post}centre_m = [1.0, 1.0]\n{post}centre_m = [-1.0, 1.0]"),
+            "obstacles[2].name",
+            "another obstacle has",
+        ),
+        (
+            format!("{clearance}{post}centre_m = [1.0, 1.0]\nheights_m = [0.2, 0.1]"),
+            "obstacles[1].heights_m",
+            "above the first",
+        ),
+        (
+            format!("{clearance}{post}centre_m = [1.0, inf]"),
+            "obstacles[1].centre_m",
+            "within ±1e6 m",
+        ),
+        (
+            format!("{clearance}[[obstacles]]\nname = \"post\""),
+            "obstacles[1].kind",
+            "is missing",
+        ),
+        (
+            format!("{clearance}[[obstacles]]\nkind = \"disc\"\nradius_m = 0.1"),
+            "obstacles[1].name",
+            "is missing",
+        ),
+        (
+            format!("{clearance}[room]\nkind = \"rectangle\"\nwidth_m = 0.5\nheight_m = 0.5"),
+            "room",
+            "smaller than the base: A1",
+        ),
+        (
+            format!("{clearance}[room]\nkind = \"disc\""),
+            "room.kind",
+            "is \"disc\"",
+        ),
+    ] {
+        let StudyError::Values { faults, .. } = error(&text) else {
+            panic!("the error is not about values: {text}");
+        };
+        let [fault] = &faults[..] else {
+            panic!("{faults:?}");
+        };
+        assert_eq!(fault.key, key, "{text}");
+        assert!(fault.message.contains(words), "{}", fault.message);
+    }
+    // The place in the file is that of the second obstacle.
+    let second = format!("{clearance}{post}centre_m = [1.0, 1.0]\n{post}centre_m = [-1.0, nan]");
+    assert!(printed(&second).contains("mine.toml:12:12"), "{}", printed(&second));
+}
+
 /// A named material gives what the study does not state, and what it states stays.
 #[test]
 fn a_named_material_gives_what_is_not_stated() {

@@ -150,6 +150,10 @@ impl Scatter {
     }
 
     fn knee<'a>(&self, session: &Session, colors: Colors) -> Option<LabelledPoints<'a>> {
+        // A front of one objective has no knee.
+        if session.study().objectives.len() < 2 {
+            return None;
+        }
         let front = session.front();
         let objectives: Vec<Objectives> = front.iter().map(|entry| entry.objectives()).collect();
         let at = self.place(&front[knee(&objectives)?].row);

@@ -5,8 +5,10 @@
 //! between the axes in the middle of the box, and it turns with the members. The forms are therefore positive only where the
 //! constraint holds, and for small boxes almost everywhere there.
 
+use glam::DVec2;
+
 use super::Enclosures;
-use crate::clearance::{DISTAL, PLATFORM, PROXIMAL, ROWS, kinds, pairs_not_joined};
+use crate::clearance::{Barrier, BodySettings, DISTAL, PLATFORM, PROXIMAL, ROWS, kinds, pairs_not_joined};
 use crate::enclosure::{
     AxisEnclosure, Interval, MembersEnclosure, PlanarModel, PoseEnclosure, TaylorModel, difference, dot, sum,
 };
@@ -24,6 +26,7 @@ pub(super) struct Separations {
     /// Distance that the centre of a slider must keep from the ends of its rail \[m\].
     from_rail_end: Interval,
     pairs: Vec<SeparatedPair>,
+    barriers: Vec<SeparatedBarrier>,
 }
 
 /// Two members that must keep a distance.
@@ -37,8 +40,28 @@ struct SeparatedPair {
     distance: f64,
 }
 
+/// An outline that members must not cross.
+struct SeparatedBarrier {
+    barrier: Barrier,
+    /// What the axes of the members of each row must keep from its edges; `None` where their layer alone does.
+    rows: [Option<Distance>; ROWS],
+}
+
+/// A distance that two axes must keep in the plane.
+#[derive(Clone, Copy)]
+struct Distance {
+    /// Its square.
+    square: Interval,
+    /// Upper bound of it.
+    upper: f64,
+    /// Whether it is certain that the layers alone do not keep the clearance.
+    is_certain: bool,
+}
+
 /// The members over a box of poses.
 pub(super) struct MemberBoxes {
+    /// Position of `P` \[m\].
+    position: PlanarModel,
     /// The axes, indexed by `LEGS · row + leg`.
     axes: [Option<AxisEnclosure>; ROWS * LEGS],
     rails: [Option<[TaylorModel; 2]>; LEGS],
@@ -60,6 +83,7 @@ impl Separations {
             slider: Interval::new(half_axis.lower().max(0.0), half_axis.upper().max(0.0)) * to_unit,
             from_rail_end: half_length + clearance,
             pairs: pairs(model, design, clearance),
+            barriers: barriers(model, design, clearance),
         })
     }
 
@@ -72,6 +96,7 @@ impl Separations {
         legs: &[LegEnclosure; LEGS],
     ) -> MemberBoxes {
         let mut boxes = MemberBoxes {
+            position: pose.position,
             axes: [None; ROWS * LEGS],
             rails: [None; LEGS],
         };
@@ -102,9 +127,18 @@ impl Separations {
     }
 
     /// Encloses g7 over a box: a form per rail end, and those of the pairs that are not proved.
+    ///
+    /// On which side of an outline a member is follows from the forms of its edges on the whole box alone, so that no part of the box may
+    /// be cut off by these forms.
     pub fn enclose(&self, boxes: &MemberBoxes, found: &mut Enclosures) {
         self.enclose_rail_ends(boxes, found);
         self.for_near_pairs(boxes, |pair, a, b| separate(a, b, pair.distance, found));
+        let before = found.count();
+        self.for_near_edges(boxes, |seen| match seen {
+            Seen::Edge { axis, edge, distance } => separate(axis, edge, distance.upper, found),
+            Seen::WrongSide(distance) => found.push(PoseScalar::Clearance, wrong_side(distance)),
+        });
+        found.may_contract &= found.count() == before;
     }
 
     /// Encloses g7 at a pose: the square of the distance between two points of the axes, less that which they must keep.
@@ -113,6 +147,15 @@ impl Separations {
         self.for_near_pairs(boxes, |pair, a, b| {
             let way = difference(nearest(b, a), nearest(a, b));
             found.push(PoseScalar::Clearance, dot(way, way).plus(-pair.square));
+        });
+        self.for_near_edges(boxes, |seen| match seen {
+            Seen::Edge { axis, edge, distance } => {
+                let way = difference(nearest(edge, axis), nearest(axis, edge));
+                let form = dot(way, way).plus(-distance.square);
+                let is_refuted = form.is_negative() && !distance.is_certain;
+                found.push(PoseScalar::Clearance, if is_refuted { undecided() } else { form });
+            }
+            Seen::WrongSide(distance) => found.push(PoseScalar::Clearance, wrong_side(distance)),
         });
     }
 
@@ -141,35 +184,188 @@ impl Separations {
     }
 }
 
+/// What is to be proved of a member and an outline.
+enum Seen<'a> {
+    /// That its axis keeps a distance from an edge.
+    Edge {
+        axis: &'a AxisEnclosure,
+        edge: &'a AxisEnclosure,
+        distance: Distance,
+    },
+    /// Nothing: it is on the wrong side in the middle of the box.
+    WrongSide(Distance),
+}
+
+/// A form of which nothing is known.
+fn undecided() -> TaylorModel {
+    TaylorModel::constant(Interval::new(-1.0, 1.0))
+}
+
+/// The form of a member that is on the wrong side of an outline.
+fn wrong_side(distance: Distance) -> TaylorModel {
+    if distance.is_certain {
+        TaylorModel::exactly(-1.0)
+    } else {
+        undecided()
+    }
+}
+
+impl Separations {
+    /// Calls `examine` with the edges of outlines that are not far enough from a member, and with the members that are on the wrong side.
+    ///
+    /// A member that keeps a distance from every edge over a box does not change its side there.
+    fn for_near_edges(&self, boxes: &MemberBoxes, mut examine: impl FnMut(Seen<'_>)) {
+        let position = boxes.position.map(|part| part.scaled(self.to_unit));
+        for separated in &self.barriers {
+            let barrier = &separated.barrier;
+            let edges: Vec<(AxisEnclosure, Bounds)> = barrier
+                .edges
+                .iter()
+                .map(|[from, to]| {
+                    let place = |end: &DVec2| {
+                        let fixed = end.to_array().map(|part| Interval::exactly(part) * self.to_unit);
+                        difference(fixed.map(TaylorModel::constant), position)
+                    };
+                    let axis = AxisEnclosure::between(place(from), place(to), along(*from, *to));
+                    let bounds = Bounds::of(&axis);
+                    (axis, bounds)
+                })
+                .collect();
+            for (place, axis) in boxes.axes.iter().enumerate() {
+                let (Some(axis), Some(distance)) = (axis, separated.rows[place / LEGS]) else {
+                    continue;
+                };
+                let middle = [0, 1].map(|k| {
+                    let of_member = axis.points[0][k].constant;
+                    (of_member + position[k].constant) / self.to_unit.lower()
+                });
+                // Of a disc, only the distance from its centre counts.
+                if barrier.edges.len() > 1 && !barrier.is_on_right_side(DVec2::from_array(middle)) {
+                    examine(Seen::WrongSide(distance));
+                    continue;
+                }
+                let bounds = Bounds::of(axis);
+                for (edge, of_edge) in &edges {
+                    if !bounds.is_farther(of_edge, distance.upper) {
+                        examine(Seen::Edge { axis, edge, distance });
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Encloses the unit vector along an edge; any vector for one without length.
+fn along(from: DVec2, to: DVec2) -> PlanarModel {
+    let exactly = Interval::exactly;
+    let way = [exactly(to.x) - exactly(from.x), exactly(to.y) - exactly(from.y)];
+    if from == to {
+        return [TaylorModel::exactly(1.0), TaylorModel::exactly(0.0)];
+    }
+    let length = (way[0].square() + way[1].square()).sqrt();
+    way.map(|part| TaylorModel::constant(part / length))
+}
+
+/// The outlines, with what members of each row must keep from them.
+fn barriers(model: &Model, design: &Design, clearance: Interval) -> Vec<SeparatedBarrier> {
+    let exactly = Interval::exactly;
+    let members = Members::new(model, design);
+    let kinds = kinds(design.architecture());
+    let of_row = |barrier: &Barrier, row: usize| {
+        let kind = kinds[row]?;
+        let radius = members.radius(kind);
+        let height = members.height(kind);
+        let [low, high] = barrier.heights.map(exactly);
+        let [below, above] = [low - height, height - high];
+        // By how much the layer lies above or below, if it does.
+        let gap = Interval::new(
+            below.lower().max(above.lower()).max(0.0),
+            below.upper().max(above.upper()).max(0.0),
+        );
+        let distance = radius + clearance;
+        let (keep, is_certain) = if members.are_square[row] {
+            let apart = gap - radius;
+            (
+                between_prisms(radius, gap, clearance)?,
+                apart.upper() < clearance.lower(),
+            )
+        } else {
+            let keep = distance.square() - gap.square();
+            (keep, keep.lower() > 0.0)
+        };
+        if distance.upper() <= 0.0 || keep.upper() <= 0.0 {
+            return None;
+        }
+        let keep = Interval::new(keep.lower().max(0.0), keep.upper());
+        let square = (keep.sqrt() + exactly(barrier.rounding)).square() * members.to_unit.square();
+        Some(Distance {
+            square,
+            upper: exactly(square.upper()).sqrt().upper(),
+            is_certain,
+        })
+    };
+    let all = model.barriers().iter().map(|barrier| SeparatedBarrier {
+        barrier: barrier.clone(),
+        rows: [0, 1, 2].map(|row| of_row(barrier, row)),
+    });
+    all.collect()
+}
+
+/// Sizes and heights of the members of a design as intervals \[m\].
+struct Members<'a> {
+    bodies: &'a BodySettings,
+    design: &'a Design,
+    /// Rows that consist of square tubes.
+    are_square: [bool; ROWS],
+    /// `1/L_b`.
+    to_unit: Interval,
+}
+
+impl<'a> Members<'a> {
+    fn new(model: &'a Model, design: &'a Design) -> Self {
+        let sections = &model.settings().sections;
+        let (legs, platform) = (sections.legs.is_square(), sections.platform.is_square());
+        Self {
+            bodies: &model.settings().bodies,
+            design,
+            are_square: [legs, legs, platform],
+            to_unit: Interval::exactly(1.0) / Interval::exactly(design.link_length()),
+        }
+    }
+
+    fn radius(&self, kind: MemberKind) -> Interval {
+        let exactly = Interval::exactly;
+        match kind {
+            MemberKind::Slider => exactly(self.bodies.slider_half_width) * exactly(self.design.leg_bar_radius()),
+            kind => exactly(self.bodies.radius(kind, self.design)),
+        }
+    }
+
+    fn height(&self, kind: MemberKind) -> Interval {
+        let exactly = Interval::exactly;
+        let thicker = self.design.leg_bar_radius().max(self.design.platform_bar_radius());
+        exactly(self.bodies.layers.of(kind)) * exactly(2.0) * exactly(thicker)
+    }
+}
+
 /// The pairs that their layers alone do not keep apart.
 fn pairs(model: &Model, design: &Design, clearance: Interval) -> Vec<SeparatedPair> {
-    let bodies = &model.settings().bodies;
-    let (legs, platform) = (
-        model.settings().sections.legs.is_square(),
-        model.settings().sections.platform.is_square(),
-    );
-    let are_square = [legs, legs, platform];
+    let members = Members::new(model, design);
     let exactly = Interval::exactly;
-    let to_unit = exactly(1.0) / exactly(design.link_length());
-    let thicker = exactly(2.0) * exactly(design.leg_bar_radius().max(design.platform_bar_radius()));
     let kinds = kinds(design.architecture());
-    let radius = |kind| match kind {
-        MemberKind::Slider => exactly(bodies.slider_half_width) * exactly(design.leg_bar_radius()),
-        kind => exactly(bodies.radius(kind, design)),
-    };
     let keep = |places: [usize; 2]| {
         let [Some(first), Some(second)] = places.map(|place| kinds[place / LEGS]) else {
             return None;
         };
-        let radii = radius(first) + radius(second);
+        let radii = members.radius(first) + members.radius(second);
         let distance = radii + clearance;
-        let layers = (exactly(bodies.layers.of(first)) - exactly(bodies.layers.of(second))) * thicker;
-        let square = if places.iter().any(|place| are_square[place / LEGS]) {
+        let layers = members.height(first) - members.height(second);
+        let square = if places.iter().any(|place| members.are_square[place / LEGS]) {
             between_prisms(radii, layers, clearance)?
         } else {
             distance.square() - layers.square()
         };
-        let square = square * to_unit.square();
+        let square = square * members.to_unit.square();
         (distance.upper() > 0.0 && square.upper() > 0.0).then(|| SeparatedPair {
             places,
             square,

@@ -10,6 +10,9 @@ use crate::spatial::LEGS;
 
 /// Compliances of a design, as multiples of two units.
 pub(super) struct Compliances {
+    /// The units: of compliances along a line \[m/N\], and of bending \[rad/(N·m)\].
+    pub unit: Interval,
+    pub bending_unit: Interval,
     pub actuator: Interval,
     /// Axial compliance of a leg bar of length `L_b`.
     pub leg_axial: Interval,
@@ -78,6 +81,8 @@ impl Compliances {
         }
         let limit = |scalar: PoseScalar| exactly(model.settings().thresholds.get(scalar).unwrap_or(0.0));
         Ok(Self {
+            unit,
+            bending_unit: bend,
             actuator: actuator / unit,
             leg_axial: link * leg[0] / unit,
             leg_bending: link * link.square() * leg[1] / exactly(3.0) / unit,

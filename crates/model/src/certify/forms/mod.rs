@@ -7,10 +7,14 @@ mod bars;
 mod clearance;
 mod compliances;
 mod rails;
+mod reach;
 mod stiffness;
+mod strength;
 
 use clearance::{MemberBoxes, Separations};
 use compliances::Compliances;
+use reach::ReachForms;
+use strength::StrengthForms;
 
 use super::CertifyError;
 use crate::enclosure::{Interval, PoseEnclosure, TaylorModel, VARIABLES, cross, dot};
@@ -20,21 +24,10 @@ use crate::mechanism::{AnyLeg, Design, JointKind, LegEnclosure, LegFrameEnclosur
 use crate::pose::ScalarSet;
 use crate::spatial::{LEGS, Pose};
 
-/// The scalars whose limits have forms. The reach and the sign of `det A` have forms of their own.
-const COVERED: [PoseScalar; 7] = [
-    PoseScalar::Dexterity,
-    PoseScalar::StiffnessXy,
-    PoseScalar::StiffnessZ,
-    PoseScalar::StiffnessPhiZ,
-    PoseScalar::Clearance,
-    PoseScalar::Displacement,
-    PoseScalar::Transmission,
-];
-
-/// Returns a limited scalar that has no form.
+/// Returns a limited scalar that has no form: one of the region as a whole, or the determinant, of which the sign alone counts.
 pub(super) fn uncovered(thresholds: &Thresholds) -> Option<PoseScalar> {
     let mut limited = thresholds.iter().map(|(scalar, _)| scalar);
-    limited.find(|scalar| !COVERED.contains(scalar))
+    limited.find(|scalar| matches!(scalar, PoseScalar::Footprint | PoseScalar::Determinant))
 }
 
 /// The scalars whose limits are proved on a box, and therefore on every part of it.
@@ -89,6 +82,8 @@ pub(super) struct Enclosures {
     values: Vec<(PoseScalar, TaylorModel)>,
     /// Whether every constraint could be evaluated: where a leg may not reach, the others have no value.
     pub is_complete: bool,
+    /// Whether the forms tell of every part of the box by themselves, so that parts on which they are positive may be cut off.
+    pub may_contract: bool,
     /// Constraints that need no form.
     proved: ProvedForms,
 }
@@ -98,12 +93,17 @@ impl Enclosures {
         Self {
             values: Vec::with_capacity(3 * LEGS + 8),
             is_complete: true,
+            may_contract: true,
             proved,
         }
     }
 
     fn push(&mut self, scalar: PoseScalar, value: TaylorModel) {
         self.values.push((scalar, value));
+    }
+
+    fn count(&self) -> usize {
+        self.values.len()
     }
 
     fn needs(&self, scalar: PoseScalar) -> bool {
@@ -139,6 +139,10 @@ pub(super) struct Forms<'a> {
     to_length: Interval,
     /// What g7 needs, if the study requires a clearance.
     separations: Option<Separations>,
+    /// What a limit of the distance to the joint limits needs, if there is one.
+    reach: Option<ReachForms>,
+    /// What the limits of the strength need, if there are any.
+    strength: Option<StrengthForms>,
 }
 
 impl<'a> Forms<'a> {
@@ -152,6 +156,8 @@ impl<'a> Forms<'a> {
             compliance: Compliances::new(model, design)?,
             to_length: Interval::exactly(design.platform_radius()) / characteristic_length(model, design, &frames),
             separations: Separations::new(model, design),
+            reach: ReachForms::new(model, design),
+            strength: StrengthForms::new(model, design),
             frames,
         })
     }
@@ -207,6 +213,10 @@ impl<'a> Forms<'a> {
             }
             let has_values = found.iter().all(|(_, value)| !value.range()[0].is_nan());
             found.is_complete = has_values;
+            if has_values {
+                self.enclose_reach(pose, &legs, &mut found);
+                self.enclose_strength(&legs, &mut found);
+            }
         }
         found
     }

@@ -64,6 +64,18 @@ impl RailCompliances {
     }
 }
 
+impl RailForms {
+    /// Multiplies the effects of bending and of torsion by their compliances.
+    pub fn scaled(&self, [bending, torsion]: [Interval; 2]) -> Self {
+        Self {
+            force: self.force.scaled(bending),
+            coupling: self.coupling.scaled(bending),
+            moment: self.moment.scaled(bending),
+            torsion: self.torsion.scaled(torsion),
+        }
+    }
+}
+
 /// A span whose ends hold position and slope.
 fn clamped([a, b]: [TaylorModel; 2], span: Interval) -> RailForms {
     let [one, two, three] = [1.0, 2.0, 3.0].map(Interval::exactly);

@@ -2,7 +2,7 @@
 
 use super::rails::{RailCompliances, RailForms};
 use super::{Enclosures, Forms, others, turn};
-use crate::enclosure::{Interval, PlanarModel, TaylorModel, dot};
+use crate::enclosure::{Interval, PlanarModel, TaylorModel, dot, sum as sum_of};
 use crate::evaluation::PoseScalar;
 use crate::mechanism::LegEnclosure;
 use crate::spatial::LEGS;
@@ -220,23 +220,64 @@ impl Forms<'_> {
         }
         if let Some((rail, forms)) = self.rail(leg, index) {
             let axis = self.frames[index].rail.axis().map(TaylorModel::constant);
-            add_rail(
+            let tip = from_leg(along - chain.offset, across);
+            add_rail(&mut sum, &forms.scaled(rail.vertical), axis, tip);
+        }
+        sum
+    }
+
+    /// Encloses the same compliance in the axes of the distal bar at a point that is fixed in them, relative to `C_i`.
+    pub(super) fn bending_in_distal_axes(&self, leg: &LegEnclosure, index: usize, at: [f64; 2]) -> Symmetric {
+        let compliance = &self.compliance;
+        let platform = &compliance.platform[index];
+        let (zero, one) = (TaylorModel::exactly(0.0), TaylorModel::exactly(1.0));
+        let chain = &leg.chain;
+        let mut sum = [zero; 6];
+        let [along, across] = [leg.along, leg.across].map(|part| part.scaled(platform.per_multiple));
+        let to_platform = [-along, across];
+        let c = at.map(|part| TaylorModel::exactly(-part));
+        let to_p = to_platform.map(|part| part.scaled(platform.radius));
+        add_bar(
+            &mut sum,
+            &BentBar {
+                section: platform.vertical.map(TaylorModel::constant),
+                direction: to_platform,
+                length: TaylorModel::constant(platform.radius),
+                tip: sum_of(c, to_p),
+            },
+        );
+        add_bar(
+            &mut sum,
+            &BentBar {
+                section: compliance.leg.map(|part| chain.beam.scaled(part)),
+                direction: [one, zero],
+                length: chain.signed_beam,
+                tip: c,
+            },
+        );
+        let elbow = [c[0] - chain.offset, c[1]];
+        if let Some(bar) = &chain.proximal {
+            add_bar(
                 &mut sum,
-                &RailForms {
-                    moment: forms.moment.scaled(rail.vertical[0]),
-                    coupling: forms.coupling.scaled(rail.vertical[0]),
-                    force: forms.force.scaled(rail.vertical[0]),
-                    torsion: forms.torsion.scaled(rail.vertical[1]),
+                &BentBar {
+                    section: compliance.leg.map(|part| bar.length.scaled(part)),
+                    direction: bar.direction,
+                    length: bar.offset,
+                    tip: elbow,
                 },
-                axis,
-                from_leg(along - chain.offset, across),
             );
+        }
+        if let Some((rail, forms)) = self.rail(leg, index) {
+            let axis = self.frames[index].rail.axis().map(TaylorModel::constant);
+            let [x, y] = chain.tangent;
+            let in_distal_axes = [dot(axis, [x, y]), dot(axis, [-y, x])];
+            add_rail(&mut sum, &forms.scaled(rail.vertical), in_distal_axes, elbow);
         }
         sum
     }
 
     /// Encloses the compliance along the line of a leg.
-    fn along_line(&self, leg: &LegEnclosure, index: usize) -> TaylorModel {
+    pub(super) fn along_line(&self, leg: &LegEnclosure, index: usize) -> TaylorModel {
         let of_bars = self.along_bars(leg, index);
         let Some((rail, forms)) = self.rail(leg, index) else {
             return of_bars;

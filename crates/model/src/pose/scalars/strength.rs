@@ -4,8 +4,8 @@ use crate::lanes::{LaneJob, Planar, Real};
 use crate::mechanism::Leg;
 use crate::pose::PoseChecker;
 use crate::spatial::LEGS;
-use crate::stiffness::{NoSliders, StiffnessModel};
-use crate::strength::{StrengthInputs, StrengthJob, StrengthSet, StrengthValue};
+use crate::stiffness::{NoSliders, StiffnessModel, inverse};
+use crate::strength::{LegLoadPath, LegStiffness, StrengthInputs, StrengthJob, StrengthSet, StrengthValue};
 
 /// What the strength follows from, as a function of its own: it is the only part that depends on the type of the legs.
 struct Inputs<'a, L, V> {
@@ -40,11 +40,28 @@ impl<L: Leg> PoseChecker<L> {
             stiffness.leg_compliance_lanes(&legs, arms, &NoSliders)
         };
         StrengthInputs {
-            legs,
+            legs: [
+                LegLoadPath::of(&legs[0]),
+                LegLoadPath::of(&legs[1]),
+                LegLoadPath::of(&legs[2]),
+            ],
             arms: *arms,
             along,
-            bending,
+            stiffness: [
+                at_platform(&bending[0]),
+                at_platform(&bending[1]),
+                at_platform(&bending[2]),
+            ],
         }
+    }
+}
+
+/// Returns the stiffness of a leg of which the compliance at `P` is given.
+#[inline(always)]
+fn at_platform<V: Real>(bending: &[V; 6]) -> LegStiffness<V> {
+    LegStiffness {
+        at_platform: inverse(bending),
+        at_centre: None,
     }
 }
 
