@@ -66,14 +66,8 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             facts.add_row(["regular workspace", "none: the design is infeasible"]);
         }
     }
-    let sections = &model.settings().sections;
-    for (name, section, radius) in [
-        ("legs", &sections.legs, design.leg_bar_radius()),
-        ("platform", &sections.platform, design.platform_bar_radius()),
-    ] {
-        if let Some(bar) = text::catalogue_bar(section, radius) {
-            facts.add_row([format!("bars of the {name}"), bar]);
-        }
+    for bar in text::catalogue_bars(&model.settings().sections, design) {
+        facts.add_row(bar);
     }
     let told_elsewhere = [
         Quantity::Mass,

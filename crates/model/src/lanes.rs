@@ -119,8 +119,9 @@ fn cross<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
     ]
 }
 
+/// Returns the multiple of a vector.
 #[inline(always)]
-fn scaled<V: Real>(a: &[V; 3], by: V) -> [V; 3] {
+pub(crate) fn scaled<V: Real>(a: &[V; 3], by: V) -> [V; 3] {
     [a[0] * by, a[1] * by, a[2] * by]
 }
 

@@ -2,7 +2,7 @@
 
 use kinefront_model::clearance::Clearance;
 use kinefront_model::evaluation::{Quantity, QuantityValues};
-use kinefront_model::mechanism::{Architecture, CrossSection, DesignVariable};
+use kinefront_model::mechanism::{Architecture, CrossSections, Design, DesignVariable};
 use kinefront_model::workspace::Region;
 
 /// Formats a number with four significant digits: in decimal notation from 0.001 up to 100 000, otherwise in scientific
@@ -51,12 +51,18 @@ pub fn region(region: &Region) -> String {
     }
 }
 
-/// Writes the bar that a design selects from a catalogue, for example `DN 25 M, 33.7 × 3.2 mm`; `None` for one that is not from a
-/// catalogue.
-pub fn catalogue_bar(section: &CrossSection, radius: f64) -> Option<String> {
-    let name = section.catalogue_name(radius)?;
-    let [outer, wall] = [2.0 * radius, section.wall_ratio(radius) * radius].map(|size| short(1e3 * size));
-    Some(format!("{name}, {outer} × {wall} mm"))
+/// Writes the bars that a design selects from catalogues, each with what it is for, for example `bars of the legs` and
+/// `DN 25 M, 33.7 × 3.2 mm`.
+pub fn catalogue_bars(sections: &CrossSections, design: &Design) -> impl Iterator<Item = [String; 2]> {
+    let bars = [
+        ("legs", &sections.legs, design.leg_bar_radius()),
+        ("platform", &sections.platform, design.platform_bar_radius()),
+    ];
+    bars.into_iter().filter_map(|(part, section, radius)| {
+        let name = section.catalogue_name(radius)?;
+        let [outer, wall] = [2.0 * radius, section.wall_ratio(radius) * radius].map(|size| short(1e3 * size));
+        Some([format!("bars of the {part}"), format!("{name}, {outer} × {wall} mm")])
+    })
 }
 
 /// Writes a quantity with its name and unit, for example `mass 12.34 kg`.

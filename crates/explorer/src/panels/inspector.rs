@@ -191,16 +191,10 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
             });
         });
         ui.end_row();
-        let (sections, design) = (&model.settings().sections, &evaluation.design);
-        for (name, section, radius) in [
-            ("legs", &sections.legs, design.leg_bar_radius()),
-            ("platform", &sections.platform, design.platform_bar_radius()),
-        ] {
-            if let Some(bar) = text::catalogue_bar(section, radius) {
-                ui.label(format!("bars of the {name}"));
-                ui.label(bar);
-                ui.end_row();
-            }
+        for [part, bar] in text::catalogue_bars(&model.settings().sections, &evaluation.design) {
+            ui.label(part);
+            ui.label(bar);
+            ui.end_row();
         }
         for quantity in Quantity::all().filter(|quantity| !HAVE_ROWS.contains(quantity)) {
             let entry = quantity.entry();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::capsule::{Capsule, Clearance, MemberId, Neighbour};
-use super::distance::{may_be_nearer, squared};
+use super::distance::{may_be_nearer, nearest_points, squared};
 use super::layers::BodySettings;
 use super::surroundings::Barrier;
 use crate::lanes::{Planar, Real};
@@ -13,7 +13,7 @@ use crate::mechanism::{
     Architecture, CrossSections, Design, DistalLanes, Geometry, Leg, Manipulator, MemberAxis, MemberKind, Members,
     Posture,
 };
-use crate::spatial::{LEGS, NUMBER_LIMIT, nearest_on_segment};
+use crate::spatial::{LEGS, NUMBER_LIMIT};
 
 /// Number of rows of members: the proximal members of the legs, the distal members of the legs, and the platform bars.
 pub(crate) const ROWS: usize = 3;
@@ -361,7 +361,10 @@ impl Bodies {
                     distance,
                     member: a.member,
                     neighbour: Neighbour::Member(b.member),
-                    between: nearest_points(&a, &b),
+                    between: {
+                        let [on_a, on_b] = nearest_points(a.ends().map(DVec3::truncate), b.ends().map(DVec3::truncate));
+                        [on_a.extend(a.from.z), on_b.extend(b.from.z)]
+                    },
                 }
             }
         }
@@ -427,34 +430,4 @@ fn members<V: Real, L: Leg>(
         legs[1].members(position.plus(arms[1]), &distals[1]),
         legs[2].members(position.plus(arms[2]), &distals[2]),
     ]
-}
-
-/// Returns the points of two axes that are nearest to each other.
-fn nearest_points(a: &Capsule, b: &Capsule) -> [DVec3; 2] {
-    let flat = |at: DVec3| at.truncate();
-    let (way_a, way_b) = (flat(a.to - a.from), flat(b.to - b.from));
-    let between = flat(b.from - a.from);
-    let turn = way_a.perp_dot(way_b);
-    if turn != 0.0 {
-        let (on_a, on_b) = (between.perp_dot(way_b) / turn, between.perp_dot(way_a) / turn);
-        if (0.0..=1.0).contains(&on_a) && (0.0..=1.0).contains(&on_b) {
-            return [a.from.lerp(a.to, on_a), b.from.lerp(b.to, on_b)];
-        }
-    }
-    let foot = |at: DVec3, of: &Capsule| {
-        let fraction = nearest_on_segment(flat(at), flat(of.from), flat(of.to));
-        of.from.lerp(of.to, fraction)
-    };
-    [
-        [a.from, foot(a.from, b)],
-        [a.to, foot(a.to, b)],
-        [foot(b.from, a), b.from],
-        [foot(b.to, a), b.to],
-    ]
-    .into_iter()
-    .reduce(|best, next| {
-        let length = |[from, to]: [DVec3; 2]| flat(to - from).length_squared();
-        if length(next) < length(best) { next } else { best }
-    })
-    .expect("the array has four entries")
 }

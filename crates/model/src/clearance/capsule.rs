@@ -70,6 +70,13 @@ pub struct Capsule {
     pub radius: f64,
 }
 
+impl Capsule {
+    /// Returns the centres of both ends.
+    pub(super) fn ends(&self) -> [DVec3; 2] {
+        [self.from, self.to]
+    }
+}
+
 /// Clearance of the nearest pair that is not joined: two members, a slider and an end of its rail, or a member and what stands beside
 /// the manipulator.
 #[derive(Debug, Clone, PartialEq)]

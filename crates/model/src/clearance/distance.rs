@@ -3,8 +3,11 @@
 //! This is an implementation of its own because the loops over poses need one that is generic over [`Real`], which
 //! gives the same bits on every instruction set. The tests compare it with the result of a library (`parry3d-f64`).
 
+use glam::DVec2;
+
 use crate::lanes::Real;
 use crate::mechanism::MemberAxis;
+use crate::spatial::nearest_on_segment;
 
 /// Returns the squared distance between two axes \[m²\]; 0 where they cross.
 ///
@@ -44,4 +47,32 @@ pub(super) fn may_be_nearer<V: Real>(a: &MemberAxis<V>, b: &MemberAxis<V>, dista
     let way = way.plus(b.direction.scaled(half_b)).minus(a.direction.scaled(half_a));
     let reach = half_a + half_b + distance;
     reach.exceeds(distance.splat(0.0)) & (reach * reach).exceeds(way.dot(way))
+}
+
+/// Returns the point of each of two segments that is nearest to the other segment; both are the same point where they cross.
+pub(super) fn nearest_points([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> [DVec2; 2] {
+    let (way, other) = (b - a, d - c);
+    let turn = way.perp_dot(other);
+    if turn != 0.0 {
+        let [on_first, on_second] = [other, way].map(|along| (c - a).perp_dot(along) / turn);
+        if (0.0..=1.0).contains(&on_first) && (0.0..=1.0).contains(&on_second) {
+            return [a.lerp(b, on_first); 2];
+        }
+    }
+    let foot = |point: DVec2, [from, to]: [DVec2; 2]| from.lerp(to, nearest_on_segment(point, from, to));
+    [
+        [a, foot(a, [c, d])],
+        [b, foot(b, [c, d])],
+        [foot(c, [a, b]), c],
+        [foot(d, [a, b]), d],
+    ]
+    .into_iter()
+    .reduce(nearer)
+    .expect("the array has four entries")
+}
+
+/// Returns the pair of points that are nearer to each other, the first one among equals.
+pub(super) fn nearer(first: [DVec2; 2], second: [DVec2; 2]) -> [DVec2; 2] {
+    let length = |[from, to]: [DVec2; 2]| from.distance_squared(to);
+    if length(second) < length(first) { second } else { first }
 }

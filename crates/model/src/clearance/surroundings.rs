@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::capsule::Neighbour;
-use super::distance::squared;
+use super::distance::{nearer, nearest_points, squared};
 use crate::lanes::{Planar, Real};
 use crate::mechanism::MemberAxis;
 use crate::polygon::Polygon;
@@ -145,8 +145,7 @@ impl Barrier {
     /// Returns whether a member with an axis is on the right side of the outline, of which it is known that the axis does not cross
     /// it.
     pub fn is_on_right_side(&self, point: DVec2) -> bool {
-        let like = point.x;
-        self.is_on_right_side_lanes(Planar::new(like, point.y))
+        self.is_on_right_side_lanes(point.into())
     }
 
     /// Does the same at several poses at once.
@@ -180,11 +179,9 @@ impl Barrier {
             nearest = squared(axis, &edge(like, *from, *to)).smaller(nearest);
         }
         let distance = nearest.sqrt();
-        let across = match self.side {
-            // A disc has no edges about which a point could be wound.
-            Side::Outside if self.edges.len() == 1 => distance - like.splat(self.rounding),
-            _ => distance.select(self.is_on_right_side_lanes(axis.from), -distance),
-        };
+        // The only edge of a disc, its centre, winds about no point.
+        let is_right = self.is_on_right_side_lanes(axis.from);
+        let across = distance.select(is_right, -distance) - like.splat(self.rounding);
         // A bar keeps its radius in every direction, a square tube both widths.
         let (of_prism, of_bar) = if is_prism { (radius, 0.0) } else { (0.0, radius) };
         let across = across - like.splat(of_prism);
@@ -213,50 +210,17 @@ impl Barrier {
     /// Returns the point of an axis that is nearest to the outline in the plane, and the point of the outline that is nearest to it \[m\];
     /// a point of the axis that is on the wrong side, twice, if there is one.
     pub fn nearest_points(&self, axis: &MemberAxis<f64>) -> [DVec2; 2] {
-        let (start, end) = (to_vec(axis.from), to_vec(axis.to()));
-        let crossing = |[from, to]: &[DVec2; 2]| {
-            let (way, edge) = (end - start, *to - *from);
-            let turn = way.perp_dot(edge);
-            let [on_axis, on_edge] = [edge, way].map(|other| (*from - start).perp_dot(other) / turn);
-            let crosses = turn != 0.0 && (0.0..=1.0).contains(&on_axis) && (0.0..=1.0).contains(&on_edge);
-            crosses.then(|| start.lerp(end, on_axis))
-        };
-        let wrong = match self.edges[..] {
-            [[centre, _]] => {
-                let at = start.lerp(end, crate::spatial::nearest_on_segment(centre, start, end));
-                Some(at).filter(|at| at.distance(centre) <= self.rounding)
-            }
-            _ if !self.is_on_right_side(start) => Some(start),
-            _ => self.edges.iter().find_map(crossing),
-        };
-        if let Some(at) = wrong {
+        let ends = [axis.from, axis.to()].map(|end| DVec2::new(end.x, end.y));
+        if !self.is_on_right_side(ends[0]) {
+            return [ends[0]; 2];
+        }
+        let all = self.edges.iter().map(|edge| nearest_points(ends, *edge));
+        let [at, on] = all.reduce(nearer).expect("an outline has edges");
+        if at.distance(on) <= self.rounding {
             return [at; 2];
         }
-        let foot =
-            |point: DVec2, [from, to]: [DVec2; 2]| from.lerp(to, crate::spatial::nearest_on_segment(point, from, to));
-        let of_edge = |edge: &[DVec2; 2]| {
-            let [from, to] = *edge;
-            [
-                [start, foot(start, *edge)],
-                [end, foot(end, *edge)],
-                [foot(from, [start, end]), from],
-                [foot(to, [start, end]), to],
-            ]
-        };
-        let all = self.edges.iter().flat_map(of_edge);
-        let [at, on] = all
-            .reduce(|best, next| {
-                let length = |[a, b]: [DVec2; 2]| a.distance_squared(b);
-                if length(next) < length(best) { next } else { best }
-            })
-            .expect("an outline has edges");
-        let towards = (at - on).normalize_or_zero();
-        [at, on + towards * self.rounding]
+        [at, on + (at - on).normalize_or_zero() * self.rounding]
     }
-}
-
-fn to_vec(point: Planar<f64>) -> DVec2 {
-    DVec2::new(point.x, point.y)
 }
 
 /// Returns an edge as an axis at several poses at once.

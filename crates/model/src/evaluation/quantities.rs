@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Better, Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues};
+use super::{Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues};
 use crate::mechanism::{Design, Leg};
 use crate::pose::{PoseChecker, ScalarSet};
 use crate::workspace::{Grid, Positions, RegularWorkspace, ValueColumns};
@@ -80,11 +80,7 @@ pub(super) fn add_of_region<L: Leg>(
         }
     }
     for scalar in set.iter() {
-        let least = least[scalar as usize];
-        let value = match scalar.entry().quantity.better {
-            Better::Higher => least,
-            Better::Lower => -least,
-        };
+        let value = scalar.entry().quantity.better.sign() * least[scalar as usize];
         values.set(Quantity::Worst(scalar), Some(value));
     }
 }

@@ -192,13 +192,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
                 };
                 let (minimum, sign) = match minima.get(scalar as usize) {
                     Some(minimum) => (*minimum, 1.0),
-                    None if report.required => {
-                        let sign = match scalar.entry().quantity.better {
-                            Better::Higher => 1.0,
-                            Better::Lower => -1.0,
-                        };
-                        (further[scalar as usize], sign)
-                    }
+                    None if report.required => (further[scalar as usize], scalar.entry().quantity.better.sign()),
                     None => continue,
                 };
                 if minimum.value.is_finite() {

@@ -21,6 +21,16 @@ pub enum Better {
     Higher,
 }
 
+impl Better {
+    /// Returns the factor with which smaller values are worse.
+    pub(crate) const fn sign(self) -> f64 {
+        match self {
+            Better::Higher => 1.0,
+            Better::Lower => -1.0,
+        }
+    }
+}
+
 /// How a range of values is divided evenly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {

@@ -69,12 +69,6 @@ pub(super) fn first_of_inverse(s: &[f64; 6]) -> f64 {
     minor / determinant
 }
 
-/// Computes the inverse of a symmetric positive definite 3×3 matrix; both are given as upper triangles.
-#[inline(always)]
-pub(crate) fn inverse<V: Real>(s: &[V; 6]) -> [V; 6] {
-    V::symmetric_inverse(s)
-}
-
 /// Computes the stiffness along z with free rotations, `1/(K⁻¹)_zz`; it is at least 0, and 0 if the block of the
 /// rotations is singular.
 #[inline(always)]

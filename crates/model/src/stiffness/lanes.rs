@@ -1,6 +1,6 @@
 //! The closed form reduced to `k_xy`, `k_z` and `k_φz`, at several poses at once (docs/model.md, sections 4.3 to 4.5).
 
-use super::blocks::{add_bar, in_plane_block, inverse, vertical_schur};
+use super::blocks::{add_bar, in_plane_block, vertical_schur};
 use super::{BarCompliance, StiffnessDefinition, StiffnessModel};
 use crate::kinematics::Jacobian;
 use crate::lanes::{Planar, Real};
@@ -94,9 +94,9 @@ impl StiffnessModel {
             StiffnessDefinition::Compliance => {
                 // The legs are written out, because an array indexed in a loop would be kept in memory.
                 let in_plane = in_plane_block(jacobian, &stiffness);
-                let k0 = inverse(&self.bending_lanes(&legs[0], arms[0], sliders, 0));
-                let k1 = inverse(&self.bending_lanes(&legs[1], arms[1], sliders, 1));
-                let k2 = inverse(&self.bending_lanes(&legs[2], arms[2], sliders, 2));
+                let k0 = V::symmetric_inverse(&self.bending_lanes(&legs[0], arms[0], sliders, 0));
+                let k1 = V::symmetric_inverse(&self.bending_lanes(&legs[1], arms[1], sliders, 1));
+                let k2 = V::symmetric_inverse(&self.bending_lanes(&legs[2], arms[2], sliders, 2));
                 let mut k = k0;
                 for entry in 0..k.len() {
                     k[entry] = k0[entry] + k1[entry] + k2[entry];

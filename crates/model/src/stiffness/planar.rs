@@ -8,7 +8,7 @@
 use glam::DVec2;
 use nalgebra::Matrix6;
 
-use super::blocks::{add_bar, first_of_inverse, in_plane_block, inverse, symmetric, vertical_schur};
+use super::blocks::{add_bar, first_of_inverse, in_plane_block, symmetric, vertical_schur};
 use super::rail::{LoadedRail, RailBeam};
 use super::reduced::Reduced;
 use super::{BarCompliance, Material, RailSettings, StiffnessDefinition, StiffnessValues};
@@ -224,7 +224,7 @@ impl StiffnessModel {
         let mut out_of_plane = [0.0; 6];
         for leg in &posture.legs {
             let s = self.bending_compliance(leg);
-            for (sum, entry) in out_of_plane.iter_mut().zip(inverse(&s)) {
+            for (sum, entry) in out_of_plane.iter_mut().zip(f64::symmetric_inverse(&s)) {
                 *sum += entry;
             }
         }

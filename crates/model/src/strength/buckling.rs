@@ -7,7 +7,6 @@ use super::resultants::{LoadedLeg, LoadedLegs, dot, times};
 use super::{LARGEST_FACTOR, StrengthInputs, StrengthModel};
 use crate::lanes::{Planar, Real};
 use crate::spatial::LEGS;
-use crate::stiffness::inverse;
 
 /// A compression below this part of the largest force is a rounding error.
 const NEGLIGIBLE: f64 = 1e-12;
@@ -66,7 +65,7 @@ impl StrengthModel {
         };
         let mut columns = [[nothing; BARS]; LEGS];
         let mut largest = zero;
-        let compliance = inverse(&inputs.in_plane());
+        let compliance = V::symmetric_inverse(&inputs.in_plane());
         for (index, leg) in loaded.legs.iter().enumerate() {
             largest = largest.larger(leg.line.most());
             for bar in self.first()..BARS {

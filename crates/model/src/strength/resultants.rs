@@ -2,9 +2,8 @@
 
 use super::path::{BARS, Beyond, PathLanes};
 use super::{LegStiffness, Loads, StrengthInputs, StrengthModel};
-use crate::lanes::{Planar, Real};
+use crate::lanes::{Planar, Real, scaled};
 use crate::spatial::LEGS;
-use crate::stiffness::inverse;
 
 /// A force or moment: its value under the given wrench and the weight, and by how much the set of wrenches changes it at most.
 #[derive(Clone, Copy)]
@@ -102,11 +101,6 @@ pub(super) fn dot<V: Real>(a: &[V; 3], b: &[V; 3]) -> V {
 }
 
 #[inline(always)]
-fn scaled<V: Real>(a: &[V; 3], by: V) -> [V; 3] {
-    [a[0] * by, a[1] * by, a[2] * by]
-}
-
-#[inline(always)]
 fn sum<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
@@ -114,12 +108,6 @@ fn sum<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
 #[inline(always)]
 fn less<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-/// Returns the rows of the inverse of the transpose of a matrix, given by its rows.
-#[inline(always)]
-fn inverse_transpose<V: Real>(rows: &[[V; 3]; 3]) -> [[V; 3]; 3] {
-    V::inverse_transpose(rows)
 }
 
 /// Returns the in-plane wrench about `P` of a mass beyond a place.
@@ -164,8 +152,8 @@ impl StrengthModel {
                 wrench = sum(&wrench, held);
             }
         }
-        let bending = inverse(&stiffness);
-        let by = inverse_transpose(&[row(&legs[0]), row(&legs[1]), row(&legs[2])]);
+        let bending = V::symmetric_inverse(&stiffness);
+        let by = V::inverse_transpose(&[row(&legs[0]), row(&legs[1]), row(&legs[2])]);
         LoadedLegs {
             legs: [
                 self.loaded_leg(&legs[0], (&by[0], &left), (&wrench, &held[0]), &bending),
@@ -229,7 +217,7 @@ impl StrengthModel {
             self.twist(&path, index, 1),
             self.twist(&path, index, 2),
         ];
-        let reactions = inverse_transpose(&twists);
+        let reactions = V::inverse_transpose(&twists);
         let mut own = [like.splat(0.0); 3];
         let [is_loaded, _] = self.loads.weighs();
         if is_loaded {

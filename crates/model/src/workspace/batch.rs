@@ -9,7 +9,7 @@ use pulp::{Simd, WithSimd};
 
 use crate::lanes::{Lanes, MAX_LANES, Planar, Real, padded_length};
 use crate::mechanism::Leg;
-use crate::pose::{Better, EXAMINED_ALWAYS, PoseChecker, PoseScalar, PoseScalars, ScalarSet};
+use crate::pose::{EXAMINED_ALWAYS, PoseChecker, PoseScalar, PoseScalars, ScalarSet};
 use crate::spatial::LEGS;
 
 /// Orientation in which poses are evaluated.
@@ -173,10 +173,7 @@ impl<L: Leg> WithSimd for Worst<'_, L> {
             let mut scalars = PoseScalars::splat(zero);
             self.checker.fill_on_demand(self.set, position, &arms, &mut scalars);
             for scalar in self.set.iter() {
-                let sign = zero.splat(match scalar.entry().quantity.better {
-                    Better::Higher => 1.0,
-                    Better::Lower => -1.0,
-                });
+                let sign = zero.splat(scalar.entry().quantity.better.sign());
                 let (k, value) = (scalar as usize, scalars[scalar] * sign);
                 let smaller = least[k].exceeds(value);
                 least[k] = value.select(smaller, least[k]);

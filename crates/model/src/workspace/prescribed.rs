@@ -30,13 +30,6 @@ pub(crate) struct Examined {
 }
 
 impl Examined {
-    fn nothing() -> Self {
-        Self {
-            margin: f64::INFINITY,
-            of_loads: PoseScalars::splat(f64::INFINITY),
-        }
-    }
-
     fn and(self, other: Self) -> Self {
         Self {
             margin: self.margin.min(other.margin),
@@ -156,26 +149,22 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         self.at(orientation, &self.parts[0]).margin
     }
 
-    /// Returns an upper bound of it, which costs less where limits depend on loads, and whether it is the worst margin itself.
-    fn bound_at_first(&self, orientation: usize) -> (f64, bool) {
+    /// Returns an upper bound of it, which costs less where limits depend on loads; without such limits it is the worst margin itself.
+    fn bound_at_first(&self, orientation: usize) -> f64 {
         let checker = self.without_loads.as_ref().unwrap_or(&self.checker);
         let Positions { xs, ys, .. } = &self.parts[0];
-        let found = checker.worst_margin(self.oriented(orientation), xs, ys, self.step_base);
-        (found.margin, self.without_loads.is_none())
+        checker
+            .worst_margin(self.oriented(orientation), xs, ys, self.step_base)
+            .margin
     }
 
-    /// Returns what all positions show in one orientation, given what is known of those that are examined first: the worst margin, or
-    /// an upper bound of it.
-    fn at_all(&self, orientation: usize, (bound, is_exact): (f64, bool)) -> Examined {
-        let first = if is_exact {
-            Examined {
-                margin: bound,
-                ..Examined::nothing()
-            }
-        } else {
-            self.at(orientation, &self.parts[0])
-        };
-        first.and(self.at(orientation, &self.parts[1]))
+    /// Returns what all positions show in one orientation, but for what their bound has shown of those that are examined first.
+    fn beyond_bound(&self, orientation: usize) -> Examined {
+        let others = self.at(orientation, &self.parts[1]);
+        match self.without_loads {
+            None => others,
+            Some(_) => self.at(orientation, &self.parts[0]).and(others),
+        }
     }
 
     /// Returns whether no position that is not examined first has a negative margin in one orientation.
@@ -216,16 +205,13 @@ pub fn search_prescribed<L: Leg>(
     let (spec, orientation_grid) = (sampling.spec(), *sampling.orientation_grid());
     let margins = RegionMargins::new(checker.clone(), sampling, step_base, symmetric);
     let signs = &margins.signs;
-    let bounds_at_first: Vec<(f64, bool)> = (0..signs.len()).map(|k| margins.bound_at_first(k)).collect();
-    let mut worst: Vec<f64> = bounds_at_first.iter().map(|(bound, _)| *bound).collect();
-    let is_all = margins.samples.first == margins.samples.all.len();
-    let mut is_known: Vec<bool> = bounds_at_first
-        .iter()
-        .map(|(_, is_exact)| is_all && *is_exact)
-        .collect();
+    let mut worst: Vec<f64> = (0..signs.len()).map(|k| margins.bound_at_first(k)).collect();
+    let has_loads = margins.without_loads.is_some();
+    let are_known = !has_loads && margins.samples.first == margins.samples.all.len();
+    let mut is_known = vec![are_known; worst.len()];
     let mut of_loads = Vec::new();
-    if margins.without_loads.is_some() {
-        of_loads = vec![PoseScalars::splat(f64::INFINITY); signs.len()];
+    if has_loads {
+        of_loads = vec![PoseScalars::splat(f64::INFINITY); worst.len()];
     }
     let of_window = |home: usize, worst: &[f64]| {
         let mut least = f64::INFINITY;
@@ -249,7 +235,7 @@ pub fn search_prescribed<L: Leg>(
         let Some(k) = unknown else {
             break (home, bounds[leader]);
         };
-        let found = margins.at_all(k, bounds_at_first[k]);
+        let found = margins.beyond_bound(k);
         worst[k] = worst[k].min(found.margin);
         if let Some(of_loads) = of_loads.get_mut(k) {
             *of_loads = found.of_loads;
@@ -323,10 +309,7 @@ impl<L: Leg> WithSimd for WorstMargin<'_, L> {
                 .margin_lanes(position, &arms, sign, self.base_radius, limited);
             least = margin.smaller(least);
             for scalar in self.of_loads.iter() {
-                let reversed = sign.splat(match scalar.entry().quantity.better {
-                    Better::Higher => 1.0,
-                    Better::Lower => -1.0,
-                });
+                let reversed = sign.splat(scalar.entry().quantity.better.sign());
                 least_of_loads[scalar] = (scalars[scalar] * reversed).smaller(least_of_loads[scalar]);
             }
         }

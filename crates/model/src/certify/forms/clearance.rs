@@ -239,8 +239,7 @@ impl Separations {
                     let of_member = axis.points[0][k].constant;
                     (of_member + position[k].constant) / self.to_unit.lower()
                 });
-                // Of a disc, only the distance from its centre counts.
-                if barrier.edges.len() > 1 && !barrier.is_on_right_side(DVec2::from_array(middle)) {
+                if !barrier.is_on_right_side(DVec2::from_array(middle)) {
                     examine(Seen::WrongSide(distance));
                     continue;
                 }

@@ -1,7 +1,7 @@
 //! The constraints as functions that are positive, all those of one together, where it holds strictly (docs/model.md, section 13.3).
 //!
-//! They are cleared of roots and quotients where this keeps the enclosures narrow, and are written apart from those that the
-//! evaluation uses.
+//! They are cleared of roots and quotients where this keeps the enclosures narrow, and most are written apart from those that the
+//! evaluation uses. Where the evaluation has many formulas (`strength`, `reach`), these run on enclosed numbers.
 
 mod bars;
 mod clearance;

@@ -15,8 +15,9 @@ use crate::strength::{LegLoadPath, LegStiffness, StrengthInputs, StrengthModel, 
 pub(super) struct StrengthForms {
     model: StrengthModel,
     limits: Vec<StrengthLimit>,
-    /// `L_b` \[m\], and its square for transmissions that are levers.
+    /// `L_b` \[m\].
     link: Interval,
+    /// Unit of the transmissions: `L_b` where they are levers.
     lever: Interval,
     platform_radius: Interval,
 }
@@ -157,7 +158,7 @@ fn in_other_axes(stiffness: &[TaylorModel; 6], columns: [[TaylorModel; 3]; 3]) -
     })
 }
 
-/// Returns the point at which, in the middle of a box, a moment moves nothing along z; the given point if there is none.
+/// Returns the point at which, in the middle of a box, a moment moves nothing along z; `C_i` if there is none.
 fn decoupled(compliance: &[TaylorModel; 6]) -> [f64; 2] {
     let [_, b, c, d, e, f] = compliance.map(|entry| entry.constant);
     let determinant = d * f - e * e;

@@ -4,7 +4,7 @@ use crate::lanes::{LaneJob, Planar, Real};
 use crate::mechanism::Leg;
 use crate::pose::PoseChecker;
 use crate::spatial::LEGS;
-use crate::stiffness::{NoSliders, StiffnessModel, inverse};
+use crate::stiffness::{NoSliders, StiffnessModel};
 use crate::strength::{LegLoadPath, LegStiffness, StrengthInputs, StrengthJob, StrengthSet, StrengthValue};
 
 /// What the strength follows from, as a function of its own: it is the only part that depends on the type of the legs.
@@ -60,7 +60,7 @@ impl<L: Leg> PoseChecker<L> {
 #[inline(always)]
 fn at_platform<V: Real>(bending: &[V; 6]) -> LegStiffness<V> {
     LegStiffness {
-        at_platform: inverse(bending),
+        at_platform: V::symmetric_inverse(bending),
         at_centre: None,
     }
 }
