@@ -19,6 +19,7 @@ mod stream;
 mod study;
 mod subject;
 mod tables;
+mod task;
 mod wire;
 
 pub use signals::keep_going_at_limits;
@@ -63,6 +64,8 @@ enum Command {
     Certify(certify::CertifyArguments),
     /// Compute joint values, dexterity and stiffness of a design at one pose.
     Pose(pose::PoseArguments),
+    /// Move a design along the motion of a study: speeds, forces, power and energy of its drives over time.
+    Task(task::TaskArguments),
     /// Write a recording of one design with its overlays and a tour of its workspace.
     Show(show::ShowArguments),
     /// Export a design for CAD, viewers and simulators, or the front of a run as a table.
@@ -91,6 +94,7 @@ impl Command {
             Command::Evaluate(_)
                 | Command::Certify(_)
                 | Command::Pose(_)
+                | Command::Task(_)
                 | Command::Study(_)
                 | Command::UnpackRecording(_)
         )
@@ -199,6 +203,7 @@ fn run_command(command: Option<Command>) -> Result<Ending, Failure> {
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
         Some(Command::Certify(arguments)) => certify::run(&arguments),
         Some(Command::Pose(arguments)) => pose::run(&arguments),
+        Some(Command::Task(arguments)) => task::run(&arguments),
         Some(Command::Show(arguments)) => show::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),
         Some(Command::Optimize(arguments)) => optimize::run(&arguments),

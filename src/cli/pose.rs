@@ -4,10 +4,11 @@ use std::ffi::OsString;
 use std::io::Write;
 
 use super::wire::AssemblyModesJson;
-use kinefront_export::PoseReportJson;
+use kinefront_export::{DynamicsJson, PoseReportJson};
+use kinefront_model::dynamics::Motion;
 use kinefront_model::kinematics::assembly_modes;
 use kinefront_model::mechanism::Design;
-use kinefront_model::spatial::{JointValues, Pose, Wrench};
+use kinefront_model::spatial::{Acceleration, JointValues, Pose, Twist, Wrench};
 
 use super::{Ending, Failure, load_study, tables, to_json};
 
@@ -28,6 +29,12 @@ pub struct PoseArguments {
     /// Wrench on the platform in place of the loads of the study, as in "fx=100 fy=0 mz=-5" (N and N·m; absent parts are 0).
     #[arg(long, conflicts_with = "actuators")]
     wrench: Option<String>,
+    /// Twist of the platform at P, as in "vx=1 vy=0 omega=0.5" (m/s and rad/s; absent parts are 0): prints the speeds of the actuators.
+    #[arg(long, conflicts_with = "actuators")]
+    twist: Option<String>,
+    /// Acceleration of the platform at P, as in "ax=10 ay=0 alpha=5" (m/s² and rad/s²): prints the forces of the actuators.
+    #[arg(long, conflicts_with = "actuators")]
+    acceleration: Option<String>,
     /// Print the result as one JSON object.
     #[arg(long)]
     json: bool,
@@ -56,11 +63,31 @@ pub fn run(arguments: &PoseArguments) -> Result<Ending, Failure> {
     let posed = model.posed(&design);
     let outcome = posed.at(&pose);
     let strength = posed.strength_at(&pose, wrench).ok().flatten();
+    let motion = arguments.motion()?;
+    let dynamics = posed.dynamics_at(&pose).ok().flatten();
     if arguments.json {
-        let json = PoseReportJson::new(&outcome, strength.as_ref());
+        let dynamics = dynamics.and_then(|dynamics| DynamicsJson::new(&dynamics, motion.as_ref()));
+        let json = PoseReportJson::new(&outcome, strength.as_ref(), dynamics);
         writeln!(out, "{}", to_json(&json).map_err(Failure::Runtime)?)?;
     } else {
-        writeln!(out, "{}", tables::pose(&design, &pose, &outcome, strength.as_ref()))?;
+        let motion = motion.as_ref();
+        let dynamics = dynamics.map(|dynamics| tables::dynamics(&design, &dynamics, motion));
+        let report = tables::pose(&design, &pose, &outcome, strength.as_ref());
+        writeln!(out, "{report}{}", dynamics.unwrap_or_default())?;
     }
     Ok(Ending::Done)
+}
+
+impl PoseArguments {
+    /// Returns the motion that is asked for, if one is.
+    fn motion(&self) -> Result<Option<Motion>, Failure> {
+        let twist = self.twist.as_deref().map(str::parse::<Twist>).transpose();
+        let acceleration = self.acceleration.as_deref().map(str::parse::<Acceleration>).transpose();
+        let (twist, acceleration) = (twist.map_err(Failure::input)?, acceleration.map_err(Failure::input)?);
+        let is_asked = twist.is_some() || acceleration.is_some();
+        Ok(is_asked.then(|| Motion {
+            twist: twist.map_or([0.0; 3], |Twist(twist)| twist),
+            acceleration: acceleration.map_or([0.0; 3], |Acceleration(acceleration)| acceleration),
+        }))
+    }
 }

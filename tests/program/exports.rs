@@ -8,14 +8,14 @@ use serde_json::Value;
 use super::support::{DESIGN, folder, json, kinefront, node, optimize, python, sample, script, small_study};
 
 /// A design of each of the paper's architectures, with the stiffness of its actuators.
-const DESIGNS: [(&str, f64); 3] = [
+pub const DESIGNS: [(&str, f64); 3] = [
     (DESIGN, 1e7),
     ("3-RPR R=2.0 r=0.5 Lb=3.0 rj=0.03 rp=0.03", 1e7),
     ("3-RRR R=2.0 r=0.6 Lb=1.6 rj=0.05 rp=0.04", 1e7),
 ];
 
 /// A design of each other architecture.
-const OTHERS: [&str; 15] = [
+pub const OTHERS: [&str; 15] = [
     "3-R_RR R=2.25 r=0.74 Lb=1.52 rj=0.040 rp=0.060",
     "3-_RRP R=1.03 r=0.87 Lb=1.59 rj=0.048 rp=0.069",
     "3-R_RP R=1.35 r=0.87 Lb=1.50 rj=0.054 rp=0.068",

@@ -7,6 +7,7 @@ mod faults;
 mod handed_over;
 mod injected;
 mod merging;
+mod motion;
 mod outside;
 mod recordings;
 mod regions;

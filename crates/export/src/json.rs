@@ -2,9 +2,11 @@
 
 use serde::Serialize;
 
+use super::dynamics::DynamicsJson;
 use super::format::{AnyError, Format};
+use super::pose::PoseJson;
 use super::prepared::Prepared;
-use super::wire::{EvaluationJson, PoseJson, PoseReportJson};
+use super::wire::{EvaluationJson, PoseReportJson};
 use kinefront_model::mechanism::JointKind;
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::Material;
@@ -200,6 +202,8 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let posed = model.posed(design);
     let at = |pose: &Pose| posed.at(pose);
     let strength = posed.strength_at(pose, None).ok().flatten();
+    let dynamics = posed.dynamics_at(pose).ok().flatten();
+    let dynamics = dynamics.and_then(|dynamics| DynamicsJson::new(&dynamics, None));
     let actuator = design.architecture().actuator();
     let tour = subject.tour.iter().flat_map(|tour| &tour.poses);
     let document = ExportJson {
@@ -208,7 +212,7 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         design: subject.title(),
         evaluation: EvaluationJson::new(evaluation),
         pose: PoseJson::new(pose, pose.phi.to_degrees()),
-        at_pose: PoseReportJson::new(&at(pose), strength.as_ref()),
+        at_pose: PoseReportJson::new(&at(pose), strength.as_ref(), dynamics),
         material: (&model.settings().material).into(),
         actuator: ActuatorJson {
             kind: kind(actuator),

@@ -13,11 +13,13 @@
 //! Every format except the plan view takes its bodies from [`kinefront_scene::linkage()`], so the formats agree.
 
 mod dxf;
+mod dynamics;
 mod format;
 mod gltf;
 mod json;
 mod mjcf;
 mod parts;
+mod pose;
 mod prepared;
 mod sdf;
 mod step;
@@ -32,10 +34,12 @@ use kinefront_model::evaluation::{Evaluation, Unreachable};
 use kinefront_model::spatial::Pose;
 use kinefront_study::PreparedStudy;
 
+pub use dynamics::{DynamicsJson, TaskJson, TaskRow};
 pub use format::Format;
+pub use pose::PoseJson;
 #[cfg(feature = "parquet")]
 pub use table::{ConversionError, front_to_parquet};
-pub use wire::{DesignJson, EvaluationJson, PoseJson, PoseReportJson};
+pub use wire::{DesignJson, EvaluationJson, PoseReportJson};
 
 use prepared::Prepared;
 

@@ -97,13 +97,15 @@ pub(super) const MASSLESS: f64 = 1e-3;
 
 /// Returns the mass, centre of mass and moments of inertia `[xx, yy, zz, xy]` of a body for a simulator.
 pub(super) fn inertial(body: &Body) -> (f64, DVec3, [f64; 4]) {
-    let mass = body.mass();
-    if mass > 0.0 {
-        return (mass, body.centre_of_mass().extend(body.height), body.inertia());
+    let mass = body.mass().max(MASSLESS);
+    let centre = body.centre_of_mass().extend(body.height);
+    let [xx, yy, zz, xy] = body.inertia();
+    if !body.bars.is_empty() {
+        return (mass, centre, [xx, yy, zz, xy]);
     }
-    // The moment of inertia of a solid sphere with a radius of 1 cm.
-    let moment = 0.4 * MASSLESS * 1e-4;
-    (MASSLESS, DVec3::Z * body.height, [moment, moment, moment, 0.0])
+    // Joints are points, whose moments of inertia simulators refuse: they become a solid sphere with a radius of 1 cm.
+    let sphere = 0.4 * mass * 1e-4;
+    (mass, centre, [xx + sphere, yy + sphere, zz + sphere, xy])
 }
 
 /// Formats a length, angle or direction with the fewest digits that read back to the same value. Values below 1e-14,

@@ -4,11 +4,14 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::dynamics::{DynamicsJson, OverWorkspaceJson, TaskJson};
+use super::pose::PoseJson;
 use super::strength::StrengthJson;
 use kinefront_model::clearance::Clearance;
-use kinefront_model::evaluation::{Bound, Evaluation, LimitResult, PoseEvaluation, PoseScalar, Quantity, Unreachable};
+use kinefront_model::evaluation::{
+    Bound, Evaluation, GridChoice, LimitResult, Model, PoseEvaluation, PoseScalar, Quantity, Unreachable,
+};
 use kinefront_model::mechanism::{Design, DesignVariable};
-use kinefront_model::spatial::Pose;
 use kinefront_model::strength::StrengthReport;
 
 /// The variables of a design \[m, and deg where the key says so\].
@@ -55,28 +58,6 @@ impl From<&Design> for DesignJson {
     }
 }
 
-/// A pose of the platform.
-#[derive(Debug, Serialize)]
-pub struct PoseJson {
-    /// Abscissa of the platform's centre \[m\].
-    pub x_m: f64,
-    /// Ordinate of the platform's centre \[m\].
-    pub y_m: f64,
-    /// Orientation \[deg\].
-    pub phi_deg: f64,
-}
-
-impl PoseJson {
-    /// Creates the output for a pose whose orientation is known in degrees.
-    pub fn new(pose: &Pose, phi_deg: f64) -> Self {
-        Self {
-            x_m: pose.position.x,
-            y_m: pose.position.y,
-            phi_deg,
-        }
-    }
-}
-
 #[derive(Debug, Serialize)]
 struct ConstraintJson {
     id: &'static str,
@@ -109,6 +90,12 @@ pub struct EvaluationJson {
     quantities: BTreeMap<&'static str, f64>,
     /// The limits of quantities over the whole region.
     limits: Vec<LimitJson>,
+    /// What the motion of the study asks of the drives, if it states one and it was determined.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    task: Option<TaskJson>,
+    /// The largest rates, forces and errors over the workspace, and the lowest frequencies, if they were determined.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    over_workspace: Option<OverWorkspaceJson>,
 }
 
 /// A limit of a quantity.
@@ -173,7 +160,18 @@ impl EvaluationJson {
                 .filter_map(|quantity| Some((quantity.entry().key, evaluation.quantities.get(quantity)?)))
                 .collect(),
             limits: evaluation.limits.iter().map(LimitJson::from).collect(),
+            task: None,
+            over_workspace: None,
         }
+    }
+
+    /// Adds what the motion of the study asks of the drives, and the worst figures of the motion over the workspace.
+    pub fn with_dynamics(mut self, model: &Model, evaluation: &Evaluation, grid: GridChoice) -> Self {
+        let followed = model.follow_task(evaluation);
+        self.task = followed.map(|(outcome, _)| TaskJson::from(&outcome));
+        let over_workspace = model.over_workspace(evaluation, grid);
+        self.over_workspace = over_workspace.as_ref().map(OverWorkspaceJson::from);
+        self
     }
 }
 
@@ -196,11 +194,18 @@ pub struct PoseReportJson {
     stiffness: Option<[[f64; 6]; 6]>,
     /// Strength under the loads of the study or a given wrench; nothing at a singularity.
     strength: Option<StrengthJson>,
+    /// Frequencies, masses, gains and errors; nothing at a singularity.
+    #[serde(flatten)]
+    dynamics: Option<DynamicsJson>,
 }
 
 impl PoseReportJson {
-    /// Creates the output for a pose, with the strength there.
-    pub fn new(outcome: &Result<PoseEvaluation, Unreachable>, strength: Option<&StrengthReport>) -> Self {
+    /// Creates the output for a pose, with the strength and the motion there.
+    pub fn new(
+        outcome: &Result<PoseEvaluation, Unreachable>,
+        strength: Option<&StrengthReport>,
+        dynamics: Option<DynamicsJson>,
+    ) -> Self {
         let report = outcome.as_ref().ok();
         let value = |scalar: PoseScalar| report.map(|report| report.values[scalar]);
         Self {
@@ -217,6 +222,7 @@ impl PoseReportJson {
             clearance_pair: report.map(|report| report.nearest.pair()),
             stiffness: report.map(|report| std::array::from_fn(|i| std::array::from_fn(|j| report.stiffness[(i, j)]))),
             strength: strength.map(StrengthJson::from),
+            dynamics,
         }
     }
 }

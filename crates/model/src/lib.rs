@@ -73,6 +73,8 @@
 //! | [`mechanism`] | architectures, designs, inverse kinematics |
 //! | [`kinematics`] | Jacobian, dexterity, forward kinematics |
 //! | [`stiffness`] | stiffness of bars, legs and platform: closed form, and the 6×6 form as its reference |
+//! | [`strength`] | stress, buckling, and the forces of joints and drives |
+//! | [`dynamics`] | payload and motion: forces of the actuators, natural frequencies, error of the pose |
 //! | [`clearance`] | clearance between the members |
 //! | [`workspace`] | regular workspace of a design |
 //! | [`evaluation`] | evaluation of a design: objectives, constraints, margins |
@@ -84,6 +86,7 @@ pub mod mechanism;
 
 pub mod certify;
 pub mod clearance;
+pub mod dynamics;
 pub mod enclosure;
 pub mod evaluation;
 pub mod kinematics;

@@ -268,6 +268,34 @@ impl std::str::FromStr for Wrench {
     }
 }
 
+/// A twist of the platform at `P`, in base axes: `v_x`, `v_y` \[m/s\], `ω` \[rad/s\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Twist(pub [f64; 3]);
+
+impl std::str::FromStr for Twist {
+    type Err = PoseTextError;
+
+    /// Parses a twist from text such as `vx=1 omega=0.5`; what is absent is 0.
+    fn from_str(text: &str) -> Result<Self, PoseTextError> {
+        let values = numbers(text, ["vx", "vy", "omega"], "vx, vy (m/s) and omega (rad/s)")?;
+        Ok(Self(values.map(Option::unwrap_or_default)))
+    }
+}
+
+/// An acceleration of the platform at `P`, in base axes: `a_x`, `a_y` \[m/s²\], `α` \[rad/s²\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Acceleration(pub [f64; 3]);
+
+impl std::str::FromStr for Acceleration {
+    type Err = PoseTextError;
+
+    /// Parses an acceleration from text such as `ax=1 alpha=0.5`; what is absent is 0.
+    fn from_str(text: &str) -> Result<Self, PoseTextError> {
+        let values = numbers(text, ["ax", "ay", "alpha"], "ax, ay (m/s²) and alpha (rad/s²)")?;
+        Ok(Self(values.map(Option::unwrap_or_default)))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

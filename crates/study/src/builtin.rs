@@ -10,7 +10,7 @@ pub struct Builtin {
 }
 
 /// All built-in studies; the first is the default.
-pub const BUILTIN: [Builtin; 10] = [
+pub const BUILTIN: [Builtin; 12] = [
     Builtin {
         name: "paper",
         text: include_str!("../assets/studies/paper.toml"),
@@ -50,6 +50,14 @@ pub const BUILTIN: [Builtin; 10] = [
     Builtin {
         name: "builders-cell",
         text: include_str!("../assets/studies/builders-cell.toml"),
+    },
+    Builtin {
+        name: "machine-builder",
+        text: include_str!("../assets/studies/machine-builder.toml"),
+    },
+    Builtin {
+        name: "pick-and-place-cycle",
+        text: include_str!("../assets/studies/pick-and-place-cycle.toml"),
     },
 ];
 

@@ -1,4 +1,4 @@
-//! All evaluated designs of a run, stored in columns: about 400 bytes per design, so that a million fit in memory.
+//! All evaluated designs of a run, stored in columns: about 500 bytes per design, so that a million fit in memory.
 
 use kinefront_model::evaluation::{Constraint, ConstraintSet, Quantity};
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, FURTHER_VARIABLES, WorkingMode};
@@ -24,7 +24,17 @@ pub struct Store {
     /// The objectives of the study, as they are minimised.
     objectives: Vec<Objectives>,
     /// The quantities, by [`Quantity::index`]; NaN where a design has none.
-    quantities: [Vec<f64>; Quantity::COUNT],
+    quantities: QuantityColumns,
+}
+
+/// A column for each quantity, by [`Quantity::index`].
+#[derive(Debug, Clone)]
+struct QuantityColumns([Vec<f64>; Quantity::COUNT]);
+
+impl Default for QuantityColumns {
+    fn default() -> Self {
+        Self([const { Vec::new() }; Quantity::COUNT])
+    }
 }
 
 impl Store {
@@ -62,7 +72,7 @@ impl Store {
         self.objectives.push(row.objectives);
         for quantity in Quantity::all() {
             let value = row.quantities.get(quantity);
-            self.quantities[quantity.index()].push(value.unwrap_or(f64::NAN));
+            self.quantities.0[quantity.index()].push(value.unwrap_or(f64::NAN));
         }
     }
 
@@ -89,7 +99,7 @@ impl Store {
         }
         self.active.append(&mut other.active);
         self.objectives.append(&mut other.objectives);
-        for (column, more) in self.quantities.iter_mut().zip(&mut other.quantities) {
+        for (column, more) in self.quantities.0.iter_mut().zip(&mut other.quantities.0) {
             column.append(more);
         }
     }
@@ -105,7 +115,7 @@ impl Store {
             margins: std::array::from_fn(|k| Some(self.margins[k][id]).filter(|margin| margin.is_finite())),
             active: self.active[id],
             quantities: Quantity::all()
-                .map(|quantity| (quantity, Some(self.quantities[quantity.index()][id])))
+                .map(|quantity| (quantity, Some(self.quantities.0[quantity.index()][id])))
                 .collect(),
             objectives: self.objectives[id],
         })
@@ -146,7 +156,7 @@ impl Store {
             Column::HomePhi => &self.phi,
             Column::Violation => &self.violation,
             Column::Margin(constraint) => &self.margins[constraint as usize],
-            Column::Quantity(quantity) => &self.quantities[quantity.index()],
+            Column::Quantity(quantity) => &self.quantities.0[quantity.index()],
             _ => &[],
         }
     }
@@ -158,7 +168,7 @@ impl Store {
             .iter()
             .chain(&self.further)
             .chain(&self.margins)
-            .chain(&self.quantities);
+            .chain(&self.quantities.0);
         let numbers = numbers.chain([&self.phi, &self.violation]).map(bytes_of).sum::<usize>();
         let others = bytes_of(&self.architecture) + bytes_of(&self.mode) + bytes_of(&self.generation);
         numbers + others + bytes_of(&self.active) + bytes_of(&self.objectives)

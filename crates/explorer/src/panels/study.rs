@@ -106,10 +106,17 @@ impl StudyPanel {
 }
 
 /// The sections of a study in the order in which a designer thinks of them: heading, and names of the sections.
-const GROUPS: [(&str, &[&str]); 6] = [
+const GROUPS: [(&str, &[&str]); 7] = [
     ("Mechanism", &["", "geometry", "rails", "bodies", "bodies.layers"]),
-    ("Task", &["workspace", "workspace.region"]),
-    ("Loads and accuracy", &["requirements", "strength", "model"]),
+    ("Workspace", &["workspace", "workspace.region"]),
+    (
+        "Loads and accuracy",
+        &["requirements", "strength", "tolerances", "model"],
+    ),
+    (
+        "Payload and motion",
+        &["payload", "drives", "loads", "task", "anywhere"],
+    ),
     (
         "Material, bars and drives",
         &[

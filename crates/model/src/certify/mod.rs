@@ -233,7 +233,7 @@ impl Model {
         options: &CertifyOptions,
         observer: &mut dyn ProofObserver,
     ) -> Result<Certificate, CertifyError> {
-        if let Some(scalar) = forms::uncovered(&self.settings().thresholds) {
+        if let Some(scalar) = forms::uncovered(&self.thresholds_of(design)) {
             return Err(CertifyError::Uncovered(scalar));
         }
         let check = |name, value: f64, valid: bool, expected| {

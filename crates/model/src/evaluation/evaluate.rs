@@ -64,16 +64,20 @@ fn evaluate<L: Leg>(
     if let Some(home) = home {
         let positions = reporter.positions(grid);
         quantities::add_of_region(&mut quantities, model, checker, &found, home, &positions, grid);
+        let home_phi_deg = found.orientations[home].phi_deg;
+        let frame = model.task_frame(design, workspace_radius, home_phi_deg);
+        quantities::add_of_task(&mut quantities, model, design, &frame);
     }
     let mut limits: Vec<LimitResult> = model
         .settings()
         .limits
         .iter()
+        .filter(|limit| limit.quantity.is_of(design))
         .map(|limit| limit.result(quantities.get(limit.quantity)))
         .collect();
     violation += limits.iter().map(|limit| (-limit.margin).max(0.0)).sum::<f64>();
     // The search of the region has counted what these are violated by.
-    let of_poses = model.limits_of_poses();
+    let of_poses = model.limits_of_poses(design);
     limits.extend(of_poses.map(|limit| limit.result(quantities.get(limit.quantity))));
     let home_phi_deg = home.map(|home| found.orientations[home].phi_deg);
     let centre = model.settings().workspace.centre;

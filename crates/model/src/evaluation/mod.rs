@@ -13,11 +13,13 @@
 mod evaluate;
 mod members;
 mod model;
+mod over_workspace;
 mod parts;
 mod pose;
 mod quantities;
 mod quantity;
 mod sizing;
+mod task;
 mod worst;
 
 pub use crate::pose::{
@@ -27,10 +29,12 @@ pub use crate::pose::{
 pub use crate::stiffness::Contribution;
 pub use members::MemberReport;
 pub use model::{GridChoice, Model, ModelSettings};
+pub use over_workspace::{At, OverWorkspace};
 pub use parts::{CutBar, Part};
-pub use pose::{PoseEvaluation, PosedDesign, Unreachable};
+pub use pose::{PoseEvaluation, PosedDesign, PosedDynamics, Unreachable};
 pub use quantity::{Bound, LimitResult, Objective, Quantity, QuantityLimit, QuantitySet, QuantityValues};
 pub use sizing::{SizingRanges, WorkspaceTarget};
+pub use task::{TaskFailure, TaskFault, TaskFigures, TaskOutcome, TaskSample};
 
 use crate::clearance::Clearance;
 use crate::mechanism::Design;

@@ -8,6 +8,7 @@ use super::{
     Better, Bound, Constraint, Evaluation, Objective, PoseScalar, Quantity, QuantityLimit, QuantitySet, Thresholds,
 };
 use crate::clearance::{Barrier, Bodies, BodySettings, Surroundings};
+use crate::dynamics::{DynamicsBasis, DynamicsModel, DynamicsSettings, MotionValue, Task};
 use crate::kinematics::{CharacteristicLength, Jacobian};
 use crate::lanes::{InstructionSet, Planar, Real};
 use crate::mechanism::{
@@ -53,6 +54,10 @@ pub struct ModelSettings {
     pub in_plane_force: f64,
     /// Loads under which strength, buckling and the forces of joints and drives are computed.
     pub loads: Loads,
+    /// Payload, drives, motion and tolerances.
+    pub dynamics: DynamicsSettings,
+    /// Motion that the platform makes again and again, if one is asked for.
+    pub task: Option<Task>,
     /// Region, centre, home orientation and rotation range of the workspace.
     pub workspace: WorkspaceSpec,
     /// Objectives of the study.
@@ -131,6 +136,8 @@ impl Default for ModelSettings {
                 .with(PoseScalar::StiffnessPhiZ, 10.0 / 1f64.to_radians()),
             in_plane_force: 100.0,
             loads: Loads::default(),
+            dynamics: DynamicsSettings::default(),
+            task: None,
             workspace: WorkspaceSpec {
                 region: Region::Largest,
                 rotation_range_deg: 20.0,
@@ -251,9 +258,14 @@ impl Model {
     pub(crate) fn checker<L: Leg>(&self, design: &Design) -> PoseChecker<L> {
         let manipulator = Manipulator::new(design, &self.settings.legs);
         let stiffness = self.stiffness(design);
+        let thresholds = self.thresholds_of(design);
         PoseChecker {
             manipulator,
             strength: self.strength_if_asked(design, stiffness.as_ref()),
+            dynamics: stiffness
+                .as_ref()
+                .filter(|_| self.computes_any(PoseScalar::OF_MOTION))
+                .map(|stiffness| self.dynamics(design, stiffness)),
             stiffness,
             definition: self.settings.stiffness_definition,
             length: self.length(design, &manipulator),
@@ -263,9 +275,9 @@ impl Model {
             actuator: design.architecture().actuator(),
             assembly: worst_assembly(&manipulator.legs, &self.settings.legs.geometry),
             in_plane_force: self.settings.in_plane_force,
-            thresholds: self.settings.thresholds,
+            thresholds,
             asked: ScalarSet::default(),
-            computed: computed(&self.settings.thresholds, ScalarSet::default()),
+            computed: computed(&thresholds, ScalarSet::default()),
             instructions: InstructionSet::best(),
         }
     }
@@ -280,6 +292,7 @@ impl Model {
         let mut checker = self.checker(design);
         let stiffness = checker.stiffness.as_ref();
         checker.strength = stiffness.map(|stiffness| self.strength(design, stiffness));
+        checker.dynamics = stiffness.map(|stiffness| self.dynamics(design, stiffness));
         checker
     }
 
@@ -319,6 +332,25 @@ impl Model {
     /// Returns the strength of a design, if an evaluation computes anything of it; `None` also if a bar is infinitely compliant.
     pub(crate) fn strength_of(&self, design: &Design) -> Option<StrengthModel> {
         self.strength_if_asked(design, self.stiffness(design).as_ref())
+    }
+
+    /// Returns the motion of a design, if the study limits anything of it; `None` also if a bar is infinitely compliant.
+    pub(crate) fn dynamics_of(&self, design: &Design) -> Option<DynamicsModel> {
+        let stiffness = self.stiffness(design)?;
+        self.computes_any(PoseScalar::OF_MOTION)
+            .then(|| self.dynamics(design, &stiffness))
+    }
+
+    fn dynamics(&self, design: &Design, stiffness: &StiffnessModel) -> DynamicsModel {
+        let basis = DynamicsBasis {
+            settings: &self.settings.dynamics,
+            legs: &self.settings.legs,
+            material: &self.settings.material,
+            sections: &self.settings.sections,
+            joints: self.settings.joints,
+            platform_bars: self.settings.platform_bars,
+        };
+        DynamicsModel::new(design, &basis, stiffness)
     }
 
     fn strength(&self, design: &Design, stiffness: &StiffnessModel) -> StrengthModel {
@@ -416,20 +448,38 @@ impl Model {
             && self.settings.legs.geometry.is_three_fold()
             && self.settings.surroundings.is_empty()
             && (self.settings.loads.are_three_fold() || !self.depends_on_loads())
+            && (self.settings.dynamics.is_three_fold() || !self.computes_any(PoseScalar::OF_MOTION))
     }
 
     /// Returns whether a scalar of a pose has values for a design: some that depend on the loads do not exist for every design.
     pub fn has(&self, design: &Design, scalar: PoseScalar) -> bool {
         let on_rails = self.rails_of(design).is_some();
         let (strength, actuator) = (self.settings.material.yield_strength, design.architecture().actuator());
-        scalar
-            .of_strength()
-            .is_none_or(|value| value.exists(strength, actuator, on_rails))
+        let of_motion = scalar
+            .of_motion()
+            .is_none_or(|value| value.exists(actuator) && !(on_rails && value == MotionValue::NaturalFrequency));
+        of_motion
+            && scalar
+                .of_strength()
+                .is_none_or(|value| value.exists(strength, actuator, on_rails))
     }
 
-    /// Returns the limits of the scalars at each pose that no constraint reports.
-    pub(super) fn limits_of_poses(&self) -> impl Iterator<Item = QuantityLimit> {
-        let limits = self.settings.thresholds.iter();
+    /// Returns the limits that concern a design: those of actuators that turn bound no design whose actuators slide, and the reverse.
+    pub(crate) fn thresholds_of(&self, design: &Design) -> Thresholds {
+        let mut thresholds = self.settings.thresholds;
+        for (scalar, _) in self.settings.thresholds.iter() {
+            if !Quantity::Worst(scalar).is_of(design) {
+                thresholds.set(scalar, None);
+            }
+        }
+        thresholds
+    }
+
+    /// Returns the limits of the scalars at each pose of a design that no constraint reports.
+    pub(super) fn limits_of_poses(&self, design: &Design) -> impl Iterator<Item = QuantityLimit> {
+        let thresholds = self.thresholds_of(design);
+        let limits: Vec<(PoseScalar, f64)> = thresholds.iter().collect();
+        let limits = limits.into_iter();
         let others = limits.filter(|(scalar, _)| Constraint::of_scalar(*scalar).is_none());
         others.map(|(scalar, threshold)| QuantityLimit {
             quantity: Quantity::Worst(scalar),
@@ -442,10 +492,15 @@ impl Model {
 
     /// Returns whether an evaluation computes scalars that depend on the loads.
     fn depends_on_loads(&self) -> bool {
+        self.computes_any(PoseScalar::OF_LOADS)
+    }
+
+    /// Returns whether an evaluation computes any of some scalars.
+    fn computes_any(&self, scalars: &[PoseScalar]) -> bool {
         let ModelSettings {
             thresholds, quantities, ..
         } = &self.settings;
-        PoseScalar::OF_LOADS
+        scalars
             .iter()
             .any(|&scalar| thresholds.get(scalar).is_some() || quantities.contains(Quantity::Worst(scalar)))
     }

@@ -1,12 +1,14 @@
 //! Evaluation of one design at one pose.
 
+use glam::DVec2;
 use nalgebra::Matrix6;
 
 use super::{Constraint, Model, PoseScalar, PoseValues};
 use crate::clearance::Clearance;
+use crate::dynamics::{DynamicsInputs, DynamicsModel, DynamicsReport, Motion, Response};
 use crate::kinematics::Jacobian;
 use crate::lanes::Planar;
-use crate::mechanism::{AnyLeg, Design, ReachReason, Shortfall};
+use crate::mechanism::{AnyLeg, Design, JointKind, Posture, ReachReason, Shortfall};
 use crate::pose::{PoseChecker, ScalarSet};
 use crate::spatial::{LEGS, Pose};
 use crate::strength::StrengthReport;
@@ -90,14 +92,13 @@ impl PosedDesign {
     /// The leg that does not reach the pose, and why.
     pub fn at(&self, pose: &Pose) -> Result<PoseEvaluation, Unreachable> {
         let checker = &self.checker;
-        let driven = self.design.architecture().driven();
         let posture = checker
             .manipulator
             .posture(pose)
             .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
         let jacobian = Jacobian::new(&posture);
         Ok(PoseEvaluation {
-            actuators: [0, 1, 2].map(|i| checker.manipulator.legs[i].joint_values(&posture.legs[i])[driven]),
+            actuators: self.actuators(&posture),
             b: posture.legs.map(|leg| leg.chain.b.to_array()),
             c: posture.arms.map(|arm| (pose.position + arm).to_array()),
             values: checker.values_at(pose.position, &posture, &jacobian, ScalarSet::all()),
@@ -126,6 +127,48 @@ impl PosedDesign {
         Ok(strength.report(&inputs))
     }
 
+    /// Returns the motion of the design at `pose`, and what its actuators do during a motion; `None` for an infinitely compliant design
+    /// and at a singularity.
+    ///
+    /// # Errors
+    /// The leg that does not reach the pose, and why.
+    pub fn dynamics_at(&self, pose: &Pose) -> Result<Option<PosedDynamics<'_>>, Unreachable> {
+        let checker = &self.checker;
+        let posture = checker
+            .manipulator
+            .posture(pose)
+            .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+        let (Some(dynamics), Some(stiffness)) = (&checker.dynamics, &checker.stiffness) else {
+            return Ok(None);
+        };
+        let arms = posture.arms.map(Planar::from);
+        Ok(Some(PosedDynamics {
+            dynamics,
+            inputs: DynamicsInputs {
+                position: pose.position.into(),
+                legs: checker.strength_inputs(stiffness, pose.position.into(), &arms),
+            },
+            pose: *pose,
+            legs: &checker.manipulator.legs,
+            actuators: self.actuators(&posture),
+            limit_margin: posture.limit_margin,
+            determinant: Jacobian::new(&posture).determinant(),
+            joints: posture.legs.map(|leg| [leg.chain.a, leg.chain.b, leg.chain.c]),
+        }))
+    }
+
+    /// Returns the kind of the actuators.
+    pub fn actuator(&self) -> JointKind {
+        self.design.architecture().actuator()
+    }
+
+    /// Returns the values of the driven joints at a posture.
+    fn actuators(&self, posture: &Posture) -> [f64; LEGS] {
+        let driven = self.design.architecture().driven();
+        let legs = &self.checker.manipulator.legs;
+        [0, 1, 2].map(|leg| legs[leg].joint_values(&posture.legs[leg])[driven])
+    }
+
     /// Returns the margins of all constraints at a pose that is reached, in the order of [`Constraint::ALL`]; that of `det_sign` is
     /// the absolute value.
     pub fn margins(&self, found: &PoseEvaluation) -> [f64; Constraint::COUNT] {
@@ -146,5 +189,51 @@ impl PosedDesign {
         };
         let limit = self.checker.thresholds.get(scalar).unwrap_or(0.0);
         scalar.margin(value, limit, &self.design)
+    }
+}
+
+/// A design at a pose, prepared for its motion.
+#[derive(Clone, Copy)]
+pub struct PosedDynamics<'a> {
+    dynamics: &'a DynamicsModel,
+    inputs: DynamicsInputs<f64>,
+    pose: Pose,
+    legs: &'a [AnyLeg; LEGS],
+    actuators: [f64; LEGS],
+    limit_margin: f64,
+    determinant: f64,
+    joints: [[DVec2; 3]; LEGS],
+}
+
+impl PosedDynamics<'_> {
+    /// Returns the values of the actuators \[m or rad\].
+    pub fn actuators(&self) -> [f64; LEGS] {
+        self.actuators
+    }
+
+    /// Returns the distance to a joint limit or to the end of reach \[m\].
+    pub fn limit_margin(&self) -> f64 {
+        self.limit_margin
+    }
+
+    /// Returns `A_i`, `B_i` and `C_i` of all legs \[m\].
+    pub fn joints(&self) -> impl Iterator<Item = DVec2> {
+        self.joints.into_iter().flatten()
+    }
+
+    /// Returns `det A` \[m\].
+    pub fn determinant(&self) -> f64 {
+        self.determinant
+    }
+
+    /// Returns what the actuators do during a motion.
+    pub fn response(&self, motion: &Motion) -> Response {
+        self.dynamics.response(&self.inputs, motion)
+    }
+
+    /// Returns frequencies, masses, gains and errors; `None` at a singular pose.
+    pub fn report(&self) -> Option<DynamicsReport> {
+        self.dynamics
+            .report(&self.inputs, &self.pose, self.legs, &self.actuators)
     }
 }

@@ -3,8 +3,10 @@
 use glam::DVec2;
 
 use super::{Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues};
+use crate::dynamics::TaskFrame;
 use crate::mechanism::{Design, Leg};
 use crate::pose::{PoseChecker, ScalarSet};
+use crate::spatial::LEGS;
 use crate::workspace::{Grid, Positions, RegularWorkspace, ValueColumns};
 
 /// Returns the quantities of a design that its constraints and dimensions determine, as far as the study asks for them.
@@ -30,6 +32,8 @@ pub(super) fn known(
             }
             // It is a mean over the region, which only some designs have.
             Quantity::DexterityMean => None,
+            // They are of a motion, which is scaled to the workspace.
+            _ => None,
         };
         values.set(quantity, value);
     }
@@ -82,6 +86,44 @@ pub(super) fn add_of_region<L: Leg>(
     for scalar in set.iter() {
         let value = scalar.entry().quantity.better.sign() * least[scalar as usize];
         values.set(Quantity::Worst(scalar), Some(value));
+    }
+}
+
+/// Adds those quantities of the motion of a study that it asks for.
+pub(super) fn add_of_task(values: &mut QuantityValues, model: &Model, design: &Design, frame: &TaskFrame) {
+    let asked = Quantity::OF_TASK
+        .into_iter()
+        .filter(|quantity| model.settings().quantities.contains(*quantity));
+    let asked: Vec<Quantity> = asked.collect();
+    let Some(task) = model.settings().task.as_ref().filter(|_| !asked.is_empty()) else {
+        return;
+    };
+    let posed = model.posed(design);
+    let (outcome, _) = posed.follow(task, frame);
+    let (Some(motion), Some(result)) = (outcome.motion, outcome.result) else {
+        return;
+    };
+    let figures = match result {
+        Ok(figures) => figures,
+        Err(failure) => {
+            if asked.contains(&Quantity::PathReach) {
+                values.set(Quantity::PathReach, Some(failure.path_reach));
+            }
+            return;
+        }
+    };
+    let largest = |values: [f64; LEGS]| values.into_iter().fold(0.0, f64::max);
+    for quantity in asked {
+        let value = match quantity {
+            Quantity::CycleTime => motion.cycle_time(),
+            Quantity::PathReach => figures.path_reach,
+            Quantity::CycleEnergy => figures.energy_shared,
+            Quantity::CornerPower => figures.corner_power,
+            Quantity::PathSpeed | Quantity::PathRate => largest(figures.peak_speed),
+            Quantity::PathForce | Quantity::PathTorque => largest(figures.peak_force),
+            _ => largest(figures.rms_force),
+        };
+        values.set(quantity, quantity.is_of(design).then_some(value));
     }
 }
 

@@ -4,6 +4,7 @@
 //! entry of the table of scalars ([`PoseScalar`]); any other is an entry here, with its value in
 //! [`quantities`](super::quantities).
 
+use crate::mechanism::{Design, JointKind};
 use crate::pose::{Better, Constraint, PoseScalar, QuantityEntry, Reference, Scope};
 
 macro_rules! quantities {
@@ -59,6 +60,40 @@ quantities! {
     DexterityMean = QuantityEntry::new("dexterity_mean", "", "mean dexterity", Scope::Region, Better::Higher,
         "Mean of the inverse condition number over the region, the global conditioning index of Gosselin and Angeles.")
         .below(1.0);
+    /// Time of a cycle of the motion.
+    CycleTime = QuantityEntry::new("cycle_time_s", "s", "cycle time", Scope::Region, Better::Lower,
+        "Time of a cycle of the motion that [task] states, with its rests.").above_zero().logarithmic().reference(Reference::Number(1e4));
+    /// Least distance to a joint limit or to the end of reach over the motion.
+    PathReach = QuantityEntry::new("path_reach_m", "m", "reach of the path", Scope::Region, Better::Higher,
+        "Least distance to a joint limit or to the end of reach over the motion; negative where the motion ends early.");
+    /// Energy of a cycle, with the drives on a common link.
+    CycleEnergy = QuantityEntry::new("energy_j", "J", "energy of a cycle", Scope::Region, Better::Lower,
+        "Mechanical energy of a cycle of the motion, of drives that share what they recover.")
+        .above_zero().logarithmic().reference(Reference::Number(1e6));
+    /// Power of one type of motor for all drives.
+    CornerPower = QuantityEntry::new("power_w", "W", "power of a drive", Scope::Region, Better::Lower,
+        "Largest force times largest speed of any actuator over the motion: the power of one type of motor for all.")
+        .above_zero().logarithmic().reference(Reference::Number(1e6));
+    /// Largest speed of a prismatic actuator over the motion.
+    PathSpeed = QuantityEntry::new("path_speed_max_m_per_s", "m/s", "speed on the path", Scope::Region, Better::Lower,
+        "Largest speed of a prismatic actuator over the motion.").above_zero().logarithmic().reference(Reference::Number(1e3));
+    /// Largest speed of a revolute actuator over the motion.
+    PathRate = QuantityEntry::new("path_speed_max_rad_per_s", "rad/s", "rate on the path", Scope::Region, Better::Lower,
+        "Largest speed of a revolute actuator over the motion.").above_zero().logarithmic().reference(Reference::Number(1e3));
+    /// Largest force of a prismatic actuator over the motion.
+    PathForce = QuantityEntry::new("path_force_max_n", "N", "force on the path", Scope::Region, Better::Lower,
+        "Largest force of a prismatic actuator over the motion.").above_zero().logarithmic().reference(Reference::Number(1e6));
+    /// Largest torque of a revolute actuator over the motion.
+    PathTorque = QuantityEntry::new("path_torque_max_nm", "N·m", "torque on the path", Scope::Region, Better::Lower,
+        "Largest torque of a revolute actuator over the motion.").above_zero().logarithmic().reference(Reference::Number(1e6));
+    /// Largest root mean square of the force of a prismatic actuator over a cycle.
+    PathForceRms = QuantityEntry::new("path_rms_force_n", "N", "RMS force on the path", Scope::Region, Better::Lower,
+        "Largest root mean square of the force of a prismatic actuator over a cycle of the motion.")
+        .above_zero().logarithmic().reference(Reference::Number(1e6));
+    /// Largest root mean square of the torque of a revolute actuator over a cycle.
+    PathTorqueRms = QuantityEntry::new("path_rms_torque_nm", "N·m", "RMS torque on the path", Scope::Region, Better::Lower,
+        "Largest root mean square of the torque of a revolute actuator over a cycle of the motion.")
+        .above_zero().logarithmic().reference(Reference::Number(1e6));
     /// Length that a leg and the platform bridge, the value of g1.
     Assembly = QuantityEntry::new("assembly_m", "m", "assembly", Scope::Design, Better::Higher,
         "Length that a leg and the platform bridge together, of which g1 requires the distance from the base to O.");
@@ -106,6 +141,41 @@ impl Quantity {
             Quantity::Worst(scalar) => &scalar.entry().quantity,
             other => &TABLE[other.index()],
         }
+    }
+
+    /// Quantities of the motion that a study states.
+    pub const OF_TASK: [Quantity; 10] = [
+        Quantity::CycleTime,
+        Quantity::PathReach,
+        Quantity::CycleEnergy,
+        Quantity::CornerPower,
+        Quantity::PathSpeed,
+        Quantity::PathRate,
+        Quantity::PathForce,
+        Quantity::PathTorque,
+        Quantity::PathForceRms,
+        Quantity::PathTorqueRms,
+    ];
+
+    /// Returns the kind of actuators that have the quantity; `None` if it is one of all designs.
+    pub fn of_actuators(self) -> Option<JointKind> {
+        match self {
+            Quantity::PathSpeed | Quantity::PathForce | Quantity::PathForceRms => Some(JointKind::Prismatic),
+            Quantity::PathRate | Quantity::PathTorque | Quantity::PathTorqueRms => Some(JointKind::Revolute),
+            Quantity::Worst(PoseScalar::ActuatorForce | PoseScalar::ActuatorSpeed | PoseScalar::MotionForce) => {
+                Some(JointKind::Prismatic)
+            }
+            Quantity::Worst(PoseScalar::ActuatorTorque | PoseScalar::ActuatorRate | PoseScalar::MotionTorque) => {
+                Some(JointKind::Revolute)
+            }
+            _ => None,
+        }
+    }
+
+    /// Returns whether the actuators of a design are of the kind that has the quantity.
+    pub fn is_of(self, design: &Design) -> bool {
+        let actuator = design.architecture().actuator();
+        self.of_actuators().is_none_or(|kind| kind == actuator)
     }
 
     /// Returns the quantity of a key.
@@ -343,6 +413,13 @@ mod tests {
                 "Pa" => "_pa",
                 "N" => "_n",
                 "N·m" => "_nm",
+                "Hz" => "_hz",
+                "°" => "_deg",
+                "m/s" => "_m_per_s",
+                "rad/s" => "_rad_per_s",
+                "s" => "_s",
+                "J" => "_j",
+                "W" => "_w",
                 unit => panic!("{unit} has no suffix"),
             };
             assert!(entry.key.ends_with(suffix), "{}", entry.key);

@@ -5,6 +5,7 @@ use glam::DVec2;
 use super::scalars::PoseScalar;
 use super::values::{ScalarSet, Thresholds};
 use crate::clearance::{Bodies, Clearance};
+use crate::dynamics::DynamicsModel;
 use crate::kinematics::Jacobian;
 use crate::lanes::{InstructionSet, Planar, Real};
 use crate::mechanism::{Assembly, JointKind, Leg, LegLanes, Manipulator, Posture};
@@ -21,6 +22,8 @@ pub(crate) struct PoseChecker<L> {
     pub stiffness: Option<StiffnessModel>,
     /// Strength of the members; `None` if the design is infinitely compliant, or if nothing that depends on loads is computed.
     pub strength: Option<StrengthModel>,
+    /// Motion of the design; `None` if the design is infinitely compliant, or if nothing of it is computed.
+    pub dynamics: Option<DynamicsModel>,
     /// Definition of the three stiffness values.
     pub definition: StiffnessDefinition,
     /// Characteristic length `ℓ` \[m\].

@@ -136,12 +136,12 @@ impl PoseValues {
 }
 
 /// Returns the value of a scalar that the model reports: a number that is not finite becomes the worst one, or NaN for a scalar
-/// of loads.
+/// of loads or of a motion.
 #[inline]
 pub(crate) fn finite(scalar: PoseScalar, value: f64) -> f64 {
     match scalar.entry().quantity.better {
         _ if value.is_finite() => value.clamp(-NUMBER_LIMIT, NUMBER_LIMIT),
-        _ if scalar.is_of_loads() => f64::NAN,
+        _ if scalar.may_be_missing() => f64::NAN,
         Better::Higher => 0.0,
         Better::Lower => NUMBER_LIMIT,
     }

@@ -29,7 +29,7 @@ pub(crate) fn in_plane_block<V: Real>(jacobian: &Jacobian<V>, stiffness: &[V; LE
 /// Adds the compliance of a bar along `axis` with its distal end at `P − to_p` to `s`, the out-of-plane compliance at `P`. Of the
 /// two lengths, the second one has the sign of the way along `axis` to the distal end.
 #[inline(always)]
-pub(super) fn add_bar<V: Real>(
+pub(crate) fn add_bar<V: Real>(
     s: &mut [V; 6],
     section: &BarCompliance,
     axis: Planar<V>,

@@ -15,7 +15,7 @@ mod rail;
 mod reduced;
 
 pub use bar::{BarCompliance, Material};
-pub(crate) use blocks::in_plane_block;
+pub(crate) use blocks::{add_bar, in_plane_block};
 pub use contributions::{Contribution, LegContributions};
 pub(crate) use lanes::NoSliders;
 pub use planar::{ActuatorStiffness, PlanarStiffness, StiffnessModel};

@@ -6,7 +6,7 @@
 
 mod buckling;
 mod joints;
-mod path;
+pub(crate) mod path;
 mod report;
 mod resultants;
 mod settings;
@@ -167,9 +167,21 @@ impl StrengthValue {
 }
 
 impl<V: Real> StrengthInputs<V> {
+    /// Returns `K_out` as an upper triangle.
+    #[inline(always)]
+    pub fn out_of_plane(&self) -> [V; 6] {
+        let mut sum = [self.along[0].splat(0.0); 6];
+        for leg in &self.stiffness {
+            for (sum, entry) in sum.iter_mut().zip(&leg.at_platform) {
+                *sum = *sum + *entry;
+            }
+        }
+        sum
+    }
+
     /// Returns `K_in` as an upper triangle.
     #[inline(always)]
-    fn in_plane(&self) -> [V; 6] {
+    pub fn in_plane(&self) -> [V; 6] {
         let one = self.along[0].splat(1.0);
         let stiffness = [one / self.along[0], one / self.along[1], one / self.along[2]];
         let legs = &self.legs;

@@ -8,17 +8,17 @@ use crate::spatial::LEGS;
 use crate::stiffness::BarCompliance;
 
 /// Number of bars of a leg, from the base: `AB`, `BC` (or `AC` of a telescopic leg), `CP`.
-pub(super) const BARS: usize = 3;
+pub(crate) const BARS: usize = 3;
 
 /// `BC`, or `AC` of a telescopic leg.
-pub(super) const DISTAL: usize = 1;
+pub(crate) const DISTAL: usize = 1;
 
 /// `CP`.
-pub(super) const PLATFORM: usize = 2;
+pub(crate) const PLATFORM: usize = 2;
 
 /// What the strength of a bar depends on besides its load.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct BarSection {
+pub(crate) struct BarSection {
     /// Compliances per length.
     pub compliance: BarCompliance,
     /// `1/A_s` \[1/m²\].
@@ -55,7 +55,7 @@ struct Piece {
 
 /// A joint of a leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PathJoint {
+pub(crate) struct PathJoint {
     pub kind: JointKind,
     /// Where the joint is.
     pub point: JointPoint,
@@ -68,7 +68,7 @@ pub(super) struct PathJoint {
 
 /// A leg as its loads see it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct LegPath {
+pub(crate) struct LegPath {
     /// The first bar: 0, or 1 in a chain without a bar `AB`.
     pub first: usize,
     /// The joints from the base.
@@ -200,6 +200,19 @@ impl LegPath {
         PathLanes { bars, joints, slides }
     }
 
+    /// Returns the twist of the platform at `P` for a unit rate of a joint: both components of the velocity, and the rotation.
+    #[inline(always)]
+    pub fn twist<V: Real>(&self, path: &PathLanes<V>, joint: usize) -> [V; 3] {
+        let like = path.joints[joint].x;
+        if self.is_revolute(joint) {
+            let turned = path.joints[joint].perp();
+            [-turned.x, -turned.y, like.splat(1.0)]
+        } else {
+            let slide = path.slides[joint];
+            [slide.x, slide.y, like.splat(0.0)]
+        }
+    }
+
     /// Returns whether a joint is revolute.
     pub fn is_revolute(&self, joint: usize) -> bool {
         self.joints[joint].kind == JointKind::Revolute
@@ -256,7 +269,7 @@ fn span<V: Real>(piece: &Option<Piece>, sign: V, length: V) -> Span<V> {
 
 /// Part of uniform mass along a bar at several poses at once.
 #[derive(Clone, Copy)]
-pub(super) struct Span<V> {
+pub(crate) struct Span<V> {
     /// Distances from the end of the bar at the base \[m\].
     pub from: V,
     pub to: V,
@@ -277,7 +290,7 @@ impl<V: Real> Span<V> {
 
 /// A bar at several poses at once, relative to `P`.
 #[derive(Clone, Copy)]
-pub(super) struct BarLanes<V> {
+pub(crate) struct BarLanes<V> {
     /// End at the base \[m\].
     pub base: Planar<V>,
     /// Unit vector towards the platform.
@@ -291,7 +304,7 @@ pub(super) struct BarLanes<V> {
 
 /// A leg at several poses at once, relative to `P`.
 #[derive(Clone, Copy)]
-pub(super) struct PathLanes<V> {
+pub(crate) struct PathLanes<V> {
     pub bars: [BarLanes<V>; BARS],
     /// Where the joints are \[m\].
     pub joints: [Planar<V>; LEGS],
@@ -301,7 +314,7 @@ pub(super) struct PathLanes<V> {
 
 /// Mass beyond a place, towards the platform, and its first moment about `P`.
 #[derive(Clone, Copy)]
-pub(super) struct Beyond<V> {
+pub(crate) struct Beyond<V> {
     pub mass: V,
     pub moment: Planar<V>,
 }

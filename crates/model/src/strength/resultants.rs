@@ -213,9 +213,9 @@ impl StrengthModel {
         let proximal = path.bars[0].mass().and(distal);
         let from = [proximal, distal, platform, Beyond::nothing(like)];
         let twists = [
-            self.twist(&path, index, 0),
-            self.twist(&path, index, 1),
-            self.twist(&path, index, 2),
+            self.paths[index].twist(&path, 0),
+            self.paths[index].twist(&path, 1),
+            self.paths[index].twist(&path, 2),
         ];
         let reactions = V::inverse_transpose(&twists);
         let mut own = [like.splat(0.0); 3];
@@ -236,19 +236,6 @@ impl StrengthModel {
             stiffness: inputs.stiffness[index],
             reactions,
             own,
-        }
-    }
-
-    /// Returns the twist of the platform at `P` for a unit rate of a joint: both components of the velocity, and the rotation.
-    #[inline(always)]
-    fn twist<V: Real>(&self, path: &PathLanes<V>, index: usize, joint: usize) -> [V; 3] {
-        let like = path.joints[joint].x;
-        if self.paths[index].is_revolute(joint) {
-            let turned = path.joints[joint].perp();
-            [-turned.x, -turned.y, like.splat(1.0)]
-        } else {
-            let slide = path.slides[joint];
-            [slide.x, slide.y, like.splat(0.0)]
         }
     }
 

@@ -3,6 +3,7 @@
 use glam::DVec2;
 use kinefront_model::certify::{Certificate, CertifyError, CertifyOptions, Verdict};
 use kinefront_model::clearance::{Layers, Obstacle, ObstacleShape, Surroundings};
+use kinefront_model::dynamics::{Anywhere, DriveInertia, DynamicsSettings, Payload, Tolerances};
 use kinefront_model::enclosure::{Interval, PoseEnclosure, TaylorModel};
 use kinefront_model::evaluation::{GridChoice, Model, ModelSettings, PoseScalar};
 use kinefront_model::kinematics::CharacteristicLength;
@@ -172,7 +173,7 @@ fn holds(model: &Model, design: &Design, pose: &Pose, margin: f64) -> bool {
     model.pose(design, pose).is_ok()
         && AT_POSES
             .iter()
-            .filter(|scalar| is_required(model, **scalar))
+            .filter(|scalar| is_required(model, **scalar) && model.has(design, **scalar))
             .all(|&scalar| model.margin_at(design, pose, scalar) >= margin)
 }
 
@@ -182,7 +183,7 @@ fn is_required(model: &Model, scalar: PoseScalar) -> bool {
     !is_optional || model.settings().thresholds.get(scalar).is_some()
 }
 
-const AT_POSES: [PoseScalar; 15] = [
+const AT_POSES: [PoseScalar; 22] = [
     PoseScalar::Reach,
     PoseScalar::Dexterity,
     PoseScalar::StiffnessXy,
@@ -198,6 +199,13 @@ const AT_POSES: [PoseScalar; 15] = [
     PoseScalar::JointMoment,
     PoseScalar::ActuatorForce,
     PoseScalar::ActuatorTorque,
+    PoseScalar::NaturalFrequency,
+    PoseScalar::PositionError,
+    PoseScalar::OrientationError,
+    PoseScalar::ActuatorSpeed,
+    PoseScalar::ActuatorRate,
+    PoseScalar::MotionForce,
+    PoseScalar::MotionTorque,
 ];
 
 /// The model whose characteristic length depends on which orientations are reached.
@@ -294,7 +302,56 @@ fn other_models() -> Vec<(&'static str, Model)> {
                 };
             }),
         ),
+        (
+            "limits of a motion with a payload beside P, in an inclined plane",
+            model(limit_motion),
+        ),
     ]
+}
+
+/// Limits everything of a motion.
+fn limit_motion(settings: &mut ModelSettings) {
+    settings.dynamics = DynamicsSettings {
+        payload: Payload {
+            mass: 15.0,
+            inertia: 0.4,
+            centre: [0.1, -0.05],
+        },
+        drives: DriveInertia {
+            slider_mass: 3.0,
+            prismatic: 5.0,
+            revolute: 2.0,
+        },
+        gravity: [1.0, -3.0, -9.0],
+        tool: [0.0; 3],
+        anywhere: Anywhere {
+            velocity: 1.0,
+            omega: 1.0,
+            acceleration: 5.0,
+            alpha: 5.0,
+            force: 100.0,
+            moment: 10.0,
+        },
+        tolerances: Tolerances {
+            encoder_prismatic: 1e-5,
+            encoder_revolute: 3e-5,
+            link: 5e-5,
+            base: 5e-5,
+            platform: 5e-5,
+            play: 1e-5,
+        },
+    };
+    for (scalar, limit) in [
+        (PoseScalar::NaturalFrequency, 20.0),
+        (PoseScalar::PositionError, 4e-4),
+        (PoseScalar::OrientationError, 0.03),
+        (PoseScalar::ActuatorSpeed, 3.0),
+        (PoseScalar::ActuatorRate, 3.0),
+        (PoseScalar::MotionForce, 4000.0),
+        (PoseScalar::MotionTorque, 4000.0),
+    ] {
+        settings.thresholds.set(scalar, Some(limit));
+    }
 }
 
 /// Limits everything that depends on loads that both kinds of drives have.
@@ -347,7 +404,7 @@ proptest! {
         x in -1.0..1.0f64,
         y in -1.0..1.0f64,
         phi in -3.0..3.0f64,
-        place in prop::sample::select(vec![0, 1, 2, 3, 4, 5, 6, 9, 10, 11]),
+        place in prop::sample::select(vec![0, 1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 12]),
     ) {
         let (name, model) = other_models().swap_remove(place);
         let scale = 0.4 * design.base_radius();
@@ -367,7 +424,7 @@ proptest! {
         }
         for scalar in AT_POSES {
             let margin = model.margin_at(&design, &pose, scalar);
-            if margin.abs() > 1e-6 && is_required(&model, scalar) {
+            if margin.abs() > 1e-6 && is_required(&model, scalar) && model.has(&design, scalar) {
                 let of = values.iter().filter(|(found, _)| *found == scalar);
                 let ranges: Vec<[f64; 2]> = of.map(|(_, value)| value.range()).collect();
                 let is_proved = ranges.iter().all(|[lower, _]| *lower > 0.0);
@@ -413,6 +470,39 @@ proptest! {
         }
     }
 
+    /// Where the forms of a box are positive, the limits of a motion are kept at each of its poses.
+    #[test]
+    fn a_box_without_open_forms_keeps_the_limits_of_a_motion(
+        design in design(0.005),
+        middle in (0.0..0.3f64, -3.0..3.0f64, -3.0..3.0f64),
+        width in 0.0005..0.02f64,
+        places in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64), 10),
+    ) {
+        let (_, model) = other_models().swap_remove(12);
+        let (pose, widths) = polar_box(&design, middle, width);
+        let enclosed = model.enclose(&design, &pose).expect("values");
+        let proved: Vec<PoseScalar> = AT_POSES
+            .into_iter()
+            .filter(|scalar| PoseScalar::OF_MOTION.contains(scalar))
+            .filter(|scalar| {
+                let mut forms = enclosed.iter().filter(|(found, _)| found == scalar).peekable();
+                forms.peek().is_some() && forms.all(|(_, value)| value.range()[0] > 0.0)
+            })
+            .collect();
+        if proved.is_empty() {
+            return Err(TestCaseError::reject("nothing is proved"));
+        }
+        for (a, b, c) in places {
+            let at = middle.0 * design.base_radius() + a * widths[0];
+            let (theta, phi) = (middle.1 + b * widths[1], middle.2 + c * widths[2]);
+            let pose = Pose::new(at * theta.cos(), at * theta.sin(), phi);
+            for scalar in &proved {
+                let margin = model.margin_at(&design, &pose, *scalar);
+                prop_assert!(margin >= -1e-9, "{} {:?} {}: {}", design, pose, scalar.limit_id(), margin);
+            }
+        }
+    }
+
     /// The enclosure of a box contains the values at its poses.
     #[test]
     fn enclosures_contain_the_values_of_their_boxes(
@@ -420,7 +510,7 @@ proptest! {
         middle in (0.0..0.3f64, -3.0..3.0f64, -3.0..3.0f64),
         width in 0.001..0.2f64,
         places in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64), 20),
-        place in prop::sample::select(vec![0, 1, 2, 5, 6, 9, 10]),
+        place in prop::sample::select(vec![0, 1, 2, 5, 6, 9, 10, 12]),
     ) {
         let (_, model) = other_models().swap_remove(place);
         let radius = middle.0 * design.base_radius();
@@ -444,6 +534,10 @@ proptest! {
             };
             for (place, (constraint, value)) in values.iter().enumerate() {
                 let Some((_, whole)) = of_box(place) else { continue };
+                // Its forms are scaled by the middle of the box.
+                if *constraint == PoseScalar::NaturalFrequency {
+                    continue;
+                }
                 let [lower, upper] = value.range();
                 // Within the remainder of the polynomial, not only within its range.
                 let polynomial = whole.value([a, b, c]);

@@ -3,11 +3,13 @@
 mod assembly;
 mod certify;
 mod clearance;
+mod dynamics;
 mod enclosure;
 mod forms;
 mod joints;
 mod lanes;
 mod legs;
+mod motion;
 mod quantities;
 mod reference;
 mod region_proofs;

@@ -67,9 +67,17 @@ impl Setting {
 
     /// Name for people, with the unit in brackets: `youngs_modulus_pa` is `youngs modulus [Pa]`.
     pub fn title(&self) -> String {
-        const UNITS: [(&str, &str); 10] = [
+        const UNITS: [(&str, &str); 18] = [
             ("_kg_per_m3", "kg/m³"),
             ("_nm_per_rad", "N·m/rad"),
+            ("_rad_per_s2", "rad/s²"),
+            ("_rad_per_s", "rad/s"),
+            ("_m_per_s2", "m/s²"),
+            ("_m_per_s", "m/s"),
+            ("_kg_m2", "kg·m²"),
+            ("_rad", "rad"),
+            ("_hz", "Hz"),
+            ("_w", "W"),
             ("_n_per_m", "N/m"),
             ("_deg", "°"),
             ("_nm", "N·m"),

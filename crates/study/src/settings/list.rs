@@ -4,9 +4,9 @@ use kinefront_model::mechanism::Architecture;
 
 use super::declare::{Check, Initial, Setting, settings};
 use super::{
-    ActuatorSection, AlgorithmName, Bounds, GeometrySection, HypervolumeSection, JointSection, MaterialSection,
-    ModelSection, RailSection, RegionKind, RequirementSection, StrengthSection, Variables, WHOLE_FRONT,
-    WorkspaceSection,
+    ActuatorSection, AlgorithmName, AnywhereSection, Bounds, DriveSection, GeometrySection, HypervolumeSection,
+    JointSection, LoadSection, MaterialSection, ModelSection, PayloadSection, RailSection, RegionKind,
+    RequirementSection, StrengthSection, TaskSection, ToleranceSection, Variables, WHOLE_FRONT, WorkspaceSection,
 };
 
 const MOST: i64 = 100_000_000;
@@ -14,7 +14,7 @@ const PROBABILITY: Check = Check::Within(0.0, 1.0, "");
 const LAYER: Check = Check::Within(-1e3, 1e3, " diameters of the thicker bar");
 const PHI_STEP: Check = Check::Within(0.01, 120.0, "");
 
-const SECTIONS: [&[Setting]; 27] = [
+const SECTIONS: [&[Setting]; 33] = [
     settings!("" {
         name: Check::Name, "Short name, which appears in run folders and recordings.";
         description: Check::Any, "Description of the study in one or two sentences.";
@@ -49,6 +49,12 @@ const SECTIONS: [&[Setting]; 27] = [
     JointSection::SETTINGS,
     RequirementSection::SETTINGS,
     StrengthSection::SETTINGS,
+    PayloadSection::SETTINGS,
+    DriveSection::SETTINGS,
+    LoadSection::SETTINGS,
+    TaskSection::SETTINGS,
+    AnywhereSection::SETTINGS,
+    ToleranceSection::SETTINGS,
     WorkspaceSection::SETTINGS,
     settings!("workspace.region" {
         kind: Check::Choice(RegionKind::NAMES), "Region of positions: the largest disc, or a prescribed one.";

@@ -12,6 +12,7 @@ mod region;
 mod sections;
 mod strength;
 mod surroundings;
+mod task;
 mod variables;
 
 pub use bars::{
@@ -33,4 +34,7 @@ pub use sections::{
 };
 pub use strength::{LoadShapeChoice, StrengthSection};
 pub use surroundings::{ObstacleSection, RoomSection};
+pub use task::{
+    AnywhereSection, DriveSection, DynamicsSections, LoadSection, PayloadSection, TaskSection, ToleranceSection,
+};
 pub use variables::{Tie, VariableChoice, Variables};

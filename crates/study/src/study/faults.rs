@@ -2,8 +2,8 @@
 
 use super::{Study, surroundings, variables};
 use crate::settings::{
-    AlgorithmName, Bounds, LengthChoice, LimitChoice, ObjectiveChoice, RailSection, RailSupportChoice, SectionChoice,
-    settings, unknown_quantity, wrong_name,
+    AlgorithmName, AnywhereSection, Bounds, LengthChoice, LimitChoice, ObjectiveChoice, RailSection, RailSupportChoice,
+    SectionChoice, ToleranceSection, settings, unknown_quantity, wrong_name,
 };
 use kinefront_model::evaluation::{PoseScalar, Quantity, Scope};
 use kinefront_model::mechanism::{Architecture, Arrangement, Design, DesignVariable, Geometry, JointKind};
@@ -29,7 +29,7 @@ impl Fault {
 }
 
 /// Rules about several settings at once, each of which adds what it finds.
-const RULES: [fn(&Study, &mut Vec<Fault>); 17] = [
+const RULES: [fn(&Study, &mut Vec<Fault>); 18] = [
     check_characteristic_length,
     check_slider,
     check_bounds,
@@ -45,7 +45,8 @@ const RULES: [fn(&Study, &mut Vec<Fault>); 17] = [
     check_region,
     check_objectives,
     check_constraints,
-    check_loads,
+    check_inputs,
+    check_task,
     check_surroundings,
 ];
 
@@ -289,40 +290,82 @@ fn check_rails(study: &Study, faults: &mut Vec<Fault>) {
     }
 }
 
-/// A limit that depends on the loads needs what it is computed from.
-fn check_loads(study: &Study, faults: &mut Vec<Fault>) {
-    let thresholds = study.thresholds();
-    let mut fault = |scalar: PoseScalar, message: &str| {
-        if thresholds.get(scalar).is_some() {
-            let key = scalar.entry().quantity.key;
-            faults.push(Fault::new(format!("constraints.{key}"), message));
-        }
+/// A quantity that a study names needs what it is computed from.
+fn check_inputs(study: &Study, faults: &mut Vec<Fault>) {
+    let mut fault = |key: String, quantity: &str| {
+        let missing = Quantity::find(quantity).and_then(|quantity| missing_input(study, quantity));
+        faults.extend(missing.map(|message| Fault::new(key, message)));
     };
-    if study.material.yield_strength_pa.is_none() {
-        fault(
-            PoseScalar::SafetyFactor,
-            "has no value without a yield strength; set material.yield_strength_pa, or material.name to a known material",
-        );
+    for key in study.constraints.keys() {
+        fault(format!("constraints.{key}"), key);
     }
+    for choice in &study.objectives {
+        fault("objectives".to_owned(), choice.key());
+    }
+}
+
+/// Returns why no design of a study has a quantity, and what would change that.
+fn missing_input(study: &Study, quantity: Quantity) -> Option<String> {
+    let key = quantity.entry().key;
     let all = |holds: fn(Architecture) -> bool| study.architectures.iter().copied().all(holds);
-    if all(|architecture| architecture.actuator() == JointKind::Revolute) {
-        fault(
-            PoseScalar::ActuatorForce,
-            "has no value, because all drives turn; limit actuator_torque_max_nm instead",
-        );
+    let other = |key: &str| {
+        let twin = if key.ends_with("_rad_per_s") {
+            key.replace("_rad_per_s", "_m_per_s")
+        } else if key.ends_with("_m_per_s") {
+            key.replace("_m_per_s", "_rad_per_s")
+        } else if key.ends_with("_nm") {
+            key.replace("torque", "force").replace("_nm", "_n")
+        } else {
+            key.replace("force", "torque").replace("_n", "_nm")
+        };
+        format!("use {twin} instead")
+    };
+    match quantity.of_actuators() {
+        Some(JointKind::Prismatic) if all(|architecture| architecture.actuator() == JointKind::Revolute) => {
+            return Some(format!(
+                "`{key}` has no value, because all actuators turn; {}",
+                other(key)
+            ));
+        }
+        Some(JointKind::Revolute) if all(|architecture| architecture.actuator() == JointKind::Prismatic) => {
+            return Some(format!(
+                "`{key}` has no value, because all actuators slide; {}",
+                other(key)
+            ));
+        }
+        _ => {}
     }
-    if all(|architecture| architecture.actuator() == JointKind::Prismatic) {
-        fault(
-            PoseScalar::ActuatorTorque,
-            "has no value, because all drives slide; limit actuator_force_max_n instead",
-        );
+    let rails_bend = study.rails.radius_m.is_some() && all(|architecture| architecture.chain().is_on_rails());
+    let message = match quantity {
+        Quantity::Worst(PoseScalar::SafetyFactor) if study.material.yield_strength_pa.is_none() => {
+            "has no value without a yield strength; set material.yield_strength_pa, or material.name to a known material"
+        }
+        Quantity::Worst(PoseScalar::BucklingFactor | PoseScalar::NaturalFrequency) if rails_bend => {
+            "has no value on rails that bend; omit rails.radius_m, or this quantity"
+        }
+        Quantity::Worst(PoseScalar::PositionError | PoseScalar::OrientationError)
+            if study.tolerances == ToleranceSection::default() =>
+        {
+            "is 0 without tolerances; state them in [tolerances]"
+        }
+        Quantity::Worst(
+            PoseScalar::ActuatorSpeed | PoseScalar::ActuatorRate | PoseScalar::MotionForce | PoseScalar::MotionTorque,
+        ) if study.anywhere == AnywhereSection::default() => "is 0 without a motion; state it in [anywhere]",
+        other if Quantity::OF_TASK.contains(&other) && study.task.shape.is_none() => {
+            "has no value without a motion; state it in [task]"
+        }
+        _ => return None,
+    };
+    Some(format!("`{key}` {message}"))
+}
+
+fn check_task(study: &Study, faults: &mut Vec<Fault>) {
+    // A number that is invalid by itself has its fault already.
+    if faults.iter().any(|fault| fault.key.starts_with("task.")) {
+        return;
     }
-    if study.rails.radius_m.is_some() && all(|architecture| architecture.chain().is_on_rails()) {
-        fault(
-            PoseScalar::BucklingFactor,
-            "has no value on rails that bend; omit rails.radius_m, or this limit",
-        );
-    }
+    let found = study.task.faults().into_iter();
+    faults.extend(found.map(|(key, message)| Fault::new(format!("task.{key}"), message)));
 }
 
 fn check_variables(study: &Study, faults: &mut Vec<Fault>) {

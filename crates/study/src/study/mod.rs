@@ -20,9 +20,10 @@ pub use faults::Fault;
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{
-    ActuatorSection, AlgorithmName, Bounds, GeometrySection, Grids, HypervolumeSection, JointSection, Limits,
-    MaterialSection, ModelSection, ObjectiveChoice, ObstacleSection, OptimizerSection, RailSection, ReferenceDesign,
-    RequirementSection, RoomSection, SectionsSection, StrengthSection, Variables, WorkspaceSection,
+    ActuatorSection, AlgorithmName, AnywhereSection, Bounds, DriveSection, GeometrySection, Grids, HypervolumeSection,
+    JointSection, Limits, LoadSection, MaterialSection, ModelSection, ObjectiveChoice, ObstacleSection,
+    OptimizerSection, PayloadSection, RailSection, ReferenceDesign, RequirementSection, RoomSection, SectionsSection,
+    StrengthSection, TaskSection, ToleranceSection, Variables, WorkspaceSection,
 };
 use kinefront_model::clearance::BodySettings;
 use kinefront_model::mechanism::{Architecture, WorkingMode};
@@ -61,6 +62,18 @@ pub struct Study {
     pub requirements: RequirementSection,
     /// The section `[strength]`.
     pub strength: StrengthSection,
+    /// The section `[payload]`.
+    pub payload: PayloadSection,
+    /// The section `[drives]`.
+    pub drives: DriveSection,
+    /// The section `[loads]`.
+    pub loads: LoadSection,
+    /// The section `[task]`.
+    pub task: TaskSection,
+    /// The section `[anywhere]`.
+    pub anywhere: AnywhereSection,
+    /// The section `[tolerances]`.
+    pub tolerances: ToleranceSection,
     /// The section `[workspace]`.
     pub workspace: WorkspaceSection,
     /// The section `[model]`.
@@ -107,6 +120,12 @@ impl Default for Study {
             joints: JointSection::default(),
             requirements: RequirementSection::default(),
             strength: StrengthSection::default(),
+            payload: PayloadSection::default(),
+            drives: DriveSection::default(),
+            loads: LoadSection::default(),
+            task: TaskSection::default(),
+            anywhere: AnywhereSection::default(),
+            tolerances: ToleranceSection::default(),
             workspace: WorkspaceSection::default(),
             model: ModelSection::default(),
             bodies: BodySettings::default(),

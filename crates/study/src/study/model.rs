@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use super::Study;
-use crate::settings::{LengthChoice, StiffnessChoice, TelescopicBar};
+use crate::settings::{DynamicsSections, LengthChoice, StiffnessChoice, TelescopicBar};
+use kinefront_model::dynamics::DynamicsSettings;
 use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar, Thresholds};
 use kinefront_model::kinematics::CharacteristicLength;
 use kinefront_model::mechanism::{Arrangement, BarLength, JointMasses, LegSettings};
@@ -53,6 +54,14 @@ impl Study {
             thresholds: self.thresholds(),
             in_plane_force: self.requirements.in_plane_force_n,
             loads: self.strength.loads(&self.requirements),
+            dynamics: DynamicsSettings::from(DynamicsSections {
+                payload: &self.payload,
+                drives: &self.drives,
+                loads: &self.loads,
+                anywhere: &self.anywhere,
+                tolerances: &self.tolerances,
+            }),
+            task: self.task.task(),
             objectives: self.objectives(),
             limits: self.limits_of_designs(),
             quantities: self.asked_quantities(),

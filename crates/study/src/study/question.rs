@@ -34,7 +34,8 @@ impl Study {
         let of_objectives = self.objectives().into_iter().map(|objective| objective.quantity);
         let of_limits = self.limits().map(|limit| limit.quantity);
         let reported = self.quantities.iter().filter_map(|key| Quantity::find(key));
-        of_objectives.chain(of_limits).chain(reported).collect()
+        let of_task = self.task.shape.map(|_| Quantity::PathReach);
+        of_objectives.chain(of_limits).chain(reported).chain(of_task).collect()
     }
 
     /// Returns the quantities that describe a design of the study in brief: mass and workspace radius, which every design has, then
@@ -48,7 +49,15 @@ impl Study {
 
     /// Returns the limits that hold for the region as a whole, not for each of its poses.
     pub fn limits_of_designs(&self) -> Vec<QuantityLimit> {
-        self.limits().filter(|limit| limited_scalar(limit).is_none()).collect()
+        let stated = self.limits().filter(|limit| limited_scalar(limit).is_none());
+        // A design that does not follow the motion of the study is infeasible.
+        let followed = QuantityLimit {
+            quantity: Quantity::PathReach,
+            bound: Bound::AtLeast(0.0),
+        };
+        let is_stated = |limit: &QuantityLimit| limit.quantity == Quantity::PathReach;
+        let of_task = self.task.shape.is_some() && !self.limits().any(|limit| is_stated(&limit));
+        stated.chain(of_task.then_some(followed)).collect()
     }
 
     /// Applies the limits that hold for each pose to thresholds.

@@ -96,6 +96,8 @@ fn complete_study() -> Study {
         }
     }
     insert_text(&mut table, "model", "characteristic_length", "fixed");
+    insert_text(&mut table, "task", "shape", "pick-and-place");
+    insert_text(&mut table, "task", "law", "trapezoid");
     for key in ["force_range_n", "moment_range_nm"] {
         let setting = settings().find(|setting| setting.key == key).expect("a setting");
         insert(
@@ -119,7 +121,14 @@ fn value_of(initial: Initial) -> Option<toml::Value> {
 fn is_alternative(setting: &Setting) -> bool {
     let of_sections = setting.section.starts_with("sections.") && setting.key != "kind";
     let of_region = setting.section == "workspace.region" && setting.key != "kind";
-    let paths = ["quantities", "constraints", "hypervolume.reference", "material.name"];
+    let paths = [
+        "quantities",
+        "constraints",
+        "hypervolume.reference",
+        "material.name",
+        "task.waypoints",
+        "task.cycle_time_s",
+    ];
     let of_some_chains = setting.section == "bounds" && setting.initial.is_some();
     of_sections
         || of_region
@@ -264,10 +273,11 @@ fn every_setting_has_an_effect() {
                     .remove("characteristic_length_m");
             }
             // A threshold that is set directly takes precedence over force and displacement.
-            key if key.ends_with("_n")
-                || key.ends_with("_nm")
-                || key.ends_with("displacement_m")
-                || key == "rotation_z_deg" =>
+            key if setting.section == "requirements"
+                && (key.ends_with("_n")
+                    || key.ends_with("_nm")
+                    || key.ends_with("displacement_m")
+                    || key == "rotation_z_deg") =>
             {
                 let requirements = table["requirements"].as_table_mut().expect("a section");
                 for key in ["k_xy_min_n_per_m", "k_z_min_n_per_m", "k_phi_z_min_nm_per_rad"] {
@@ -283,7 +293,8 @@ fn every_setting_has_an_effect() {
         match setting.section.split('.').next().expect("a section") {
             // The run proves the front or does not; the model is the same.
             _ if setting.key == "certify" => assert_ne!(changed, complete, "{path}"),
-            "material" | "rails" | "actuators" | "joints" | "strength" | "workspace" | "model" | "bodies" | "grid" => {
+            "material" | "rails" | "actuators" | "joints" | "strength" | "payload" | "drives" | "loads" | "task"
+            | "anywhere" | "tolerances" | "workspace" | "model" | "bodies" | "grid" => {
                 assert_ne!(found, model, "{path} does not reach the model");
             }
             "requirements" => {
@@ -315,6 +326,11 @@ fn every_alternative_has_an_effect() {
     let paper = Study::default();
     let variables = DesignProblem::new(&paper).expect("a problem").variables();
     let cases = [
+        (
+            "task.waypoints",
+            "[task]\nshape = \"waypoints\"\nwaypoints = [[0, 0, 0], [0.1, 0, 0]]\ncycle_time_s = 1",
+        ),
+        ("task.cycle_time_s", "[task]\nshape = \"star\"\ncycle_time_s = 2"),
         (
             "sections.legs.wall_ratio",
             "[sections]\nlegs = { kind = \"tube\", wall_ratio = 0.2 }",

@@ -1,11 +1,13 @@
 //! The constraints as functions that are positive, all those of one together, where it holds strictly (docs/model.md, section 13.3).
 //!
 //! They are cleared of roots and quotients where this keeps the enclosures narrow, and most are written apart from those that the
-//! evaluation uses. Where the evaluation has many formulas (`strength`, `reach`), these run on enclosed numbers.
+//! evaluation uses. Where the evaluation has many formulas (`strength`, `motion`, `reach`), these run on enclosed
+//! numbers.
 
 mod bars;
 mod clearance;
 mod compliances;
+mod motion;
 mod rails;
 mod reach;
 mod stiffness;
@@ -13,8 +15,9 @@ mod strength;
 
 use clearance::{MemberBoxes, Separations};
 use compliances::Compliances;
+use motion::MotionForms;
 use reach::ReachForms;
-use strength::StrengthForms;
+use strength::{LoadForms, StrengthForms};
 
 use super::CertifyError;
 use crate::enclosure::{Interval, PoseEnclosure, TaylorModel, VARIABLES, cross, dot};
@@ -143,12 +146,17 @@ pub(super) struct Forms<'a> {
     reach: Option<ReachForms>,
     /// What the limits of the strength need, if there are any.
     strength: Option<StrengthForms>,
+    /// What the enclosed numbers of loads and motions begin with.
+    loads: LoadForms,
+    /// What the limits of a motion need, if there are any.
+    motion: Option<MotionForms>,
 }
 
 impl<'a> Forms<'a> {
     /// Prepares the forms of a design; the sign of `det A` counts as positive.
     pub fn new(model: &'a Model, design: &'a Design) -> Result<Self, CertifyError> {
         let frames = [0, 1, 2].map(|index| LegFrameEnclosure::new(design, &model.settings().legs.geometry, index));
+        let (strength, motion) = (StrengthForms::new(model, design), MotionForms::new(model, design));
         Ok(Self {
             sign: 1.0,
             design,
@@ -157,7 +165,9 @@ impl<'a> Forms<'a> {
             to_length: Interval::exactly(design.platform_radius()) / characteristic_length(model, design, &frames),
             separations: Separations::new(model, design),
             reach: ReachForms::new(model, design),
-            strength: StrengthForms::new(model, design),
+            loads: LoadForms::new(design),
+            strength,
+            motion,
             frames,
         })
     }
@@ -216,6 +226,7 @@ impl<'a> Forms<'a> {
             if has_values {
                 self.enclose_reach(pose, &legs, &mut found);
                 self.enclose_strength(&legs, &mut found);
+                self.enclose_motion(pose, &legs, &mut found);
             }
         }
         found

@@ -15,6 +15,10 @@ use crate::strength::{LegLoadPath, LegStiffness, StrengthInputs, StrengthModel, 
 pub(super) struct StrengthForms {
     model: StrengthModel,
     limits: Vec<StrengthLimit>,
+}
+
+/// Units of the legs of the other forms, which the enclosed numbers of loads and motions begin with.
+pub(super) struct LoadForms {
     /// `L_b` \[m\].
     link: Interval,
     /// Unit of the transmissions: `L_b` where they are levers.
@@ -35,8 +39,7 @@ impl StrengthForms {
     pub fn new(model: &Model, design: &Design) -> Option<Self> {
         let strength = model.strength_of(design)?;
         let limits: Vec<StrengthLimit> = model
-            .settings()
-            .thresholds
+            .thresholds_of(design)
             .iter()
             .filter_map(|(scalar, limit)| {
                 let value = scalar.of_strength()?;
@@ -47,17 +50,25 @@ impl StrengthForms {
                 })
             })
             .collect();
-        let link = Interval::exactly(design.link_length());
-        (!limits.is_empty()).then(|| Self {
+        (!limits.is_empty()).then_some(Self {
             model: strength,
             limits,
+        })
+    }
+}
+
+impl LoadForms {
+    /// Returns the units of a design.
+    pub fn new(design: &Design) -> Self {
+        let link = Interval::exactly(design.link_length());
+        Self {
             link,
             lever: match design.architecture().actuator() {
                 JointKind::Prismatic => Interval::exactly(1.0),
                 JointKind::Revolute => link,
             },
             platform_radius: Interval::exactly(design.platform_radius()),
-        })
+        }
     }
 
     /// Encloses what the loads of a leg follow from.
@@ -91,7 +102,7 @@ impl Forms<'_> {
         if set.is_empty() {
             return;
         }
-        let demands = strength.model.enclose(&self.strength_inputs(strength, legs), set);
+        let demands = strength.model.enclose(&self.load_inputs(legs), set);
         let forms: Vec<(PoseScalar, TaylorModel)> = open()
             .map(|limit| {
                 let form = match limit.demand {
@@ -106,10 +117,11 @@ impl Forms<'_> {
         }
     }
 
-    fn strength_inputs(&self, strength: &StrengthForms, legs: &[LegEnclosure; LEGS]) -> StrengthInputs<EnclosedNumber> {
+    /// Encloses what loads and motions follow from.
+    pub(super) fn load_inputs(&self, legs: &[LegEnclosure; LEGS]) -> StrengthInputs<EnclosedNumber> {
         // Legs are large, and `map` would copy them.
         StrengthInputs {
-            legs: [0, 1, 2].map(|i| strength.path(&legs[i], &self.frames[i])),
+            legs: [0, 1, 2].map(|i| self.loads.path(&legs[i], &self.frames[i])),
             arms: [0, 1, 2].map(|i| planar(legs[i].arm.map(|part| part.scaled(self.frames[i].arm_length)))),
             along: [0, 1, 2].map(|i| EnclosedNumber(self.along_line(&legs[i], i).scaled(self.compliance.unit))),
             stiffness: [0, 1, 2].map(|i| self.stiffness_out_of_plane(&legs[i], i)),
@@ -170,7 +182,7 @@ fn decoupled(compliance: &[TaylorModel; 6]) -> [f64; 2] {
     }
 }
 
-fn planar([x, y]: PlanarModel) -> Planar<EnclosedNumber> {
+pub(super) fn planar([x, y]: PlanarModel) -> Planar<EnclosedNumber> {
     Planar::new(EnclosedNumber(x), EnclosedNumber(y))
 }
 

@@ -4,6 +4,7 @@
 //! A further scalar is an entry here and a file with its formula. If it is a constraint with an id of its own, the entry says so.
 
 mod displacement;
+mod dynamics;
 mod footprint;
 mod strength;
 mod transmission;
@@ -11,6 +12,7 @@ mod transmission;
 use super::PoseChecker;
 use super::entry::{Better, QuantityEntry, Reference, Scope};
 use super::values::{PoseScalars, ScalarSet};
+use crate::dynamics::MotionValue;
 use crate::lanes::{LaneJob, Planar, Real};
 use crate::mechanism::Leg;
 use crate::spatial::LEGS;
@@ -89,6 +91,9 @@ macro_rules! pose_scalars {
         of_loads {
             $($(#[$load_doc:meta])* $load:ident = $load_entry:expr;)*
         }
+        of_motion {
+            $($(#[$motion_doc:meta])* $motion:ident = $motion_entry:expr;)*
+        }
     ) => {
         /// A number that describes the manipulator at one pose.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -96,9 +101,10 @@ macro_rules! pose_scalars {
             $($(#[$doc])* $scalar,)*
             $($(#[$more_doc])* $more,)*
             $($(#[$load_doc])* $load,)*
+            $($(#[$motion_doc])* $motion,)*
         }
 
-        const TABLE: &[PoseScalarEntry] = &[$($entry,)* $($more_entry,)* $($load_entry,)*];
+        const TABLE: &[PoseScalarEntry] = &[$($entry,)* $($more_entry,)* $($load_entry,)* $($motion_entry,)*];
 
         impl PoseScalar {
             /// All scalars, in the order of the table.
@@ -106,10 +112,23 @@ macro_rules! pose_scalars {
                 $(PoseScalar::$scalar,)*
                 $(PoseScalar::$more,)*
                 $(PoseScalar::$load,)*
+                $(PoseScalar::$motion,)*
             ];
 
             /// Those that depend on the loads of the members.
             pub const OF_LOADS: &[PoseScalar] = &[$(PoseScalar::$load),*];
+
+            /// Those that depend on the payload, the motion or the tolerances.
+            pub const OF_MOTION: &[PoseScalar] = &[$(PoseScalar::$motion),*];
+
+            /// Returns what of the motion at a pose the scalar is, if it depends on that.
+            #[inline(always)]
+            pub(crate) fn of_motion(self) -> Option<MotionValue> {
+                match self {
+                    $(PoseScalar::$motion => Some(MotionValue::$motion),)*
+                    _ => None,
+                }
+            }
 
             /// Returns what of the strength at a pose the scalar is, if it depends on the loads of the members.
             #[inline(always)]
@@ -193,6 +212,9 @@ macro_rules! pose_scalars {
                     let values = strength::lanes(self, position, arms, of_strength);
                     $(scalars[PoseScalar::$load] = values[StrengthValue::$load as usize];)*
                 }
+                $(if set.contains(PoseScalar::$motion) {
+                    scalars[PoseScalar::$motion] = dynamics::lanes(self, position, arms, MotionValue::$motion);
+                })*
             }
         }
     };
@@ -301,6 +323,50 @@ pose_scalars! {
                 .above_zero().logarithmic().reference(Reference::Number(1e5)),
             "actuator_torque").labelled("largest torque of an actuator");
     }
+    of_motion {
+        /// Lowest natural frequency \[Hz\].
+        NaturalFrequency = PoseScalarEntry::new(
+            QuantityEntry::new("natural_frequency_hz", "Hz", "natural frequency", Scope::Poses, Better::Higher,
+                "Lowest natural frequency with the payload, the actuators being held.")
+                .above_zero().logarithmic().reference(Reference::Number(1e3)),
+            "natural_frequency").labelled("lowest natural frequency");
+        /// Largest error of the position \[m\].
+        PositionError = PoseScalarEntry::new(
+            QuantityEntry::new("position_error_m", "m", "position error", Scope::Poses, Better::Lower,
+                "Largest error of the position that the tolerances cause.")
+                .above_zero().logarithmic().reference(Reference::Number(1.0)),
+            "position_error").labelled("largest error of the position").in_millimetres();
+        /// Largest error of the orientation \[deg\].
+        OrientationError = PoseScalarEntry::new(
+            QuantityEntry::new("orientation_error_deg", "°", "orientation error", Scope::Poses, Better::Lower,
+                "Largest error of the orientation that the tolerances cause.")
+                .above_zero().logarithmic().reference(Reference::Number(90.0)),
+            "orientation_error").labelled("largest error of the orientation");
+        /// Largest speed of a prismatic actuator for the motion in any direction \[m/s\].
+        ActuatorSpeed = PoseScalarEntry::new(
+            QuantityEntry::new("actuator_speed_max_m_per_s", "m/s", "actuator speed", Scope::Poses, Better::Lower,
+                "Largest speed of a prismatic actuator for the motion in any direction that [anywhere] states.")
+                .above_zero().logarithmic().reference(Reference::Number(1e3)),
+            "actuator_speed").labelled("largest speed of an actuator");
+        /// Largest speed of a revolute actuator for the motion in any direction \[rad/s\].
+        ActuatorRate = PoseScalarEntry::new(
+            QuantityEntry::new("actuator_speed_max_rad_per_s", "rad/s", "actuator rate", Scope::Poses, Better::Lower,
+                "Largest speed of a revolute actuator for the motion in any direction that [anywhere] states.")
+                .above_zero().logarithmic().reference(Reference::Number(1e3)),
+            "actuator_rate").labelled("largest rate of an actuator");
+        /// Largest force of a prismatic actuator for the motion and load in any direction \[N\].
+        MotionForce = PoseScalarEntry::new(
+            QuantityEntry::new("motion_force_max_n", "N", "force in motion", Scope::Poses, Better::Lower,
+                "Largest force of a prismatic actuator for the acceleration and load in any direction that [anywhere] states.")
+                .above_zero().logarithmic().reference(Reference::Number(1e6)),
+            "motion_force").labelled("largest force of an actuator in motion");
+        /// Largest torque of a revolute actuator for the motion and load in any direction \[N·m\].
+        MotionTorque = PoseScalarEntry::new(
+            QuantityEntry::new("motion_torque_max_nm", "N·m", "torque in motion", Scope::Poses, Better::Lower,
+                "Largest torque of a revolute actuator for the acceleration and load in any direction that [anywhere] states.")
+                .above_zero().logarithmic().reference(Reference::Number(1e6)),
+            "motion_torque").labelled("largest torque of an actuator in motion");
+    }
 }
 
 impl PoseScalar {
@@ -326,6 +392,11 @@ impl PoseScalar {
     /// not a number counts as the worst one.
     pub fn is_of_loads(self) -> bool {
         self.of_strength().is_some()
+    }
+
+    /// Returns whether some designs or poses have no such value: it depends on the loads of the members, or on a motion.
+    pub(crate) fn may_be_missing(self) -> bool {
+        self.is_of_loads() || self.of_motion().is_some()
     }
 
     /// Whether a limit of the quantity bounds each pose.

@@ -77,11 +77,22 @@ pub(super) fn lanes<L: Leg, V: Real>(
     let (Some(model), Some(stiffness)) = (&checker.strength, &checker.stiffness) else {
         return StrengthValue::none(like);
     };
-    let inputs = &like.call_apart(Inputs {
+    let inputs = &inputs(checker, stiffness, position, arms);
+    like.call_apart(StrengthJob { model, inputs, set })
+}
+
+/// Returns what the strength at several poses at once follows from.
+#[inline(always)]
+pub(super) fn inputs<L: Leg, V: Real>(
+    checker: &PoseChecker<L>,
+    stiffness: &StiffnessModel,
+    position: Planar<V>,
+    arms: &[Planar<V>; LEGS],
+) -> StrengthInputs<V> {
+    position.x.call_apart(Inputs {
         checker,
         stiffness,
         position,
         arms,
-    });
-    like.call_apart(StrengthJob { model, inputs, set })
+    })
 }

@@ -1,5 +1,9 @@
 //! Result tables for the terminal.
 
+mod motion;
+
+pub use motion::{dynamics, task};
+
 use super::wire::CertificateJson;
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{CellAlignment, Table};
@@ -168,10 +172,10 @@ pub fn pose(
             point(report.c[leg]),
         ]);
     }
-    // The clearance has a row of its own, with the members between which it is, and the strength has tables.
-    let scalars = PoseScalar::ALL
-        .iter()
-        .filter(|scalar| **scalar != PoseScalar::Clearance && !scalar.is_of_loads());
+    // The clearance has a row of its own, with the members between which it is, and strength and motion have tables.
+    let scalars = PoseScalar::ALL.iter().filter(|scalar| {
+        **scalar != PoseScalar::Clearance && !scalar.is_of_loads() && !PoseScalar::OF_MOTION.contains(scalar)
+    });
     for scalar in scalars {
         if let Some(value) = report.values.get(*scalar) {
             let entry = scalar.entry();

@@ -1,0 +1,117 @@
+//! Forms of the limits on natural frequencies, errors of the pose, and the speeds and forces of actuators in motion (docs/model.md,
+//! section 13.3). The formulas of the evaluation run on enclosed numbers, as those of the strength do.
+
+use super::strength::planar;
+use super::{Enclosures, Forms};
+use crate::dynamics::{DynamicsInputs, DynamicsModel, MotionValue};
+use crate::enclosure::{EnclosedNumber, Interval, PoseEnclosure, TaylorModel};
+use crate::evaluation::{Model, PoseScalar};
+use crate::mechanism::{Design, LegEnclosure};
+use crate::spatial::LEGS;
+
+/// What the limits of a motion need of a design.
+pub(super) struct MotionForms {
+    model: DynamicsModel,
+    limits: Vec<(PoseScalar, MotionValue, f64)>,
+}
+
+impl MotionForms {
+    /// Returns `None` if the study limits nothing of a motion.
+    pub fn new(model: &Model, design: &Design) -> Option<Self> {
+        let thresholds = model.thresholds_of(design);
+        let limits = thresholds.iter();
+        let limits: Vec<_> = limits
+            .filter_map(|(scalar, limit)| Some((scalar, scalar.of_motion()?, limit)))
+            .collect();
+        if limits.is_empty() {
+            return None;
+        }
+        Some(Self {
+            model: model.dynamics_of(design)?,
+            limits,
+        })
+    }
+}
+
+impl Forms<'_> {
+    /// Encloses by how much the values of a motion keep their limits.
+    pub(super) fn enclose_motion(&self, pose: &PoseEnclosure, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
+        let Some(motion) = &self.motion else { return };
+        let open = |scalar: PoseScalar| found.needs(scalar);
+        let open: Vec<_> = motion.limits.iter().filter(|(scalar, ..)| open(*scalar)).collect();
+        if open.is_empty() {
+            return;
+        }
+        let inputs = DynamicsInputs {
+            position: planar(pose.position),
+            legs: self.load_inputs(legs),
+        };
+        for &&(scalar, value, limit) in &open {
+            if !self.model.has(self.design, scalar) {
+                found.push(scalar, TaylorModel::exactly(-1.0));
+            } else if value == MotionValue::NaturalFrequency {
+                for form in motion
+                    .model
+                    .enclose_stiffness_above(&inputs, limit)
+                    .into_iter()
+                    .flat_map(minors)
+                {
+                    found.push(scalar, form);
+                }
+            } else {
+                let demand = motion.model.enclose(&inputs, value);
+                found.push(scalar, TaylorModel::constant(Interval::exactly(limit)) - demand);
+            }
+        }
+    }
+}
+
+/// Encloses the leading minors of a symmetric matrix, given as an upper triangle, which are all positive where it is positive definite.
+///
+/// Differences of large products would lose the sign. The matrix is therefore brought near the identity first, by the Cholesky factor of
+/// its middle, which changes no definiteness; a middle that has none is left as it is.
+fn minors(matrix: [EnclosedNumber; 6]) -> [TaylorModel; 3] {
+    let middle = matrix.map(|entry| entry.0.constant);
+    let scaled = match inverse_factor(&middle) {
+        Some(factor) => congruent(&matrix, &factor),
+        None => matrix.map(|entry| entry.0),
+    };
+    let [a, b, c, d, e, f] = scaled;
+    [
+        a,
+        a * d - b * b,
+        a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d),
+    ]
+}
+
+/// Returns the rows of the inverse of the Cholesky factor of a matrix, if it is positive definite.
+fn inverse_factor(m: &[f64; 6]) -> Option<[[f64; 3]; 3]> {
+    let a = m[0].sqrt();
+    let (b, c) = (m[1] / a, m[2] / a);
+    let d = (m[3] - b * b).sqrt();
+    let e = (m[4] - b * c) / d;
+    let f = (m[5] - c * c - e * e).sqrt();
+    let second = [-b / (a * d), 1.0 / d, 0.0];
+    let third = [(b * e / d - c) / (a * f), -e / (d * f), 1.0 / f];
+    let rows = [[1.0 / a, 0.0, 0.0], second, third];
+    rows.as_flattened()
+        .iter()
+        .all(|entry| entry.is_finite())
+        .then_some(rows)
+}
+
+/// Encloses `T M Tᵀ`.
+fn congruent(matrix: &[EnclosedNumber; 6], rows: &[[f64; 3]; 3]) -> [TaylorModel; 6] {
+    let [a, b, c, d, e, f] = matrix.map(|entry| entry.0);
+    let applied = rows.map(|[p, q, r]| {
+        [
+            a.times(p) + b.times(q) + c.times(r),
+            b.times(p) + d.times(q) + e.times(r),
+            c.times(p) + e.times(q) + f.times(r),
+        ]
+    });
+    [[0, 0], [0, 1], [0, 2], [1, 1], [1, 2], [2, 2]].map(|[i, k]| {
+        let ([p, q, r], [x, y, z]) = (rows[i], applied[k]);
+        x.times(p) + y.times(q) + z.times(r)
+    })
+}

@@ -1,0 +1,359 @@
+//! Rates, forces of actuators, masses, natural frequencies and errors of the pose, compared with values from an independent program
+//! (tests/fixtures/README.md), and identities.
+
+use glam::DVec2;
+use kinefront_model::dynamics::{
+    Anywhere, DriveInertia, DynamicsSettings, Motion, MotionLaw, Payload, Task, TaskFrame, TaskShape, TaskTiming,
+    Tolerances,
+};
+use kinefront_model::evaluation::{Model, TaskSample};
+use kinefront_model::mechanism::{Architecture, Design, JointKind};
+use kinefront_model::spatial::Pose;
+use serde_json::Value;
+
+use super::reference::{fixture, number};
+use super::strategies;
+
+fn numbers<const N: usize>(value: &Value) -> [f64; N] {
+    std::array::from_fn(|k| number(&value[k]))
+}
+
+fn cases() -> Vec<Value> {
+    fixture("task_cases.json")["cases"].as_array().expect("cases").clone()
+}
+
+fn design(case: &Value) -> Design {
+    let dimensions = ["R", "r", "Lb", "rj", "rp"].map(|key| number(&case["design"][key]));
+    let architecture: Architecture = case["architecture"]
+        .as_str()
+        .expect("a name")
+        .parse()
+        .expect("an architecture");
+    let plus = numbers::<3>(&case["working_mode"]).map(|sign| sign > 0.0);
+    let mode = kinefront_model::mechanism::WorkingMode::new(plus);
+    Design::new(architecture, mode, dimensions).expect("a design")
+}
+
+/// The settings of a case, whose short names are those of the drives of its architecture.
+fn settings(case: &Value) -> DynamicsSettings {
+    let study = &case["study"];
+    let or_zero = |value: &Value| value.as_f64().unwrap_or(0.0);
+    let is_prismatic = design(case).architecture().actuator() == JointKind::Prismatic;
+    let of_kind = |value: f64| if is_prismatic { [value, 0.0] } else { [0.0, value] };
+    let [prismatic, revolute] = of_kind(or_zero(&study["actuator_inertia"]));
+    let [encoder_prismatic, encoder_revolute] = of_kind(or_zero(&study["tolerances"]["encoder"]));
+    let payload = &study["payload"];
+    let anywhere = &study["anywhere"];
+    let tolerances = &study["tolerances"];
+    let vector = |value: &Value| match value {
+        Value::Array(_) => numbers(value),
+        _ => [0.0; 3],
+    };
+    DynamicsSettings {
+        payload: Payload {
+            mass: or_zero(&payload["mass_kg"]),
+            inertia: or_zero(&payload["inertia_kgm2"]),
+            centre: match &payload["centre_m"] {
+                Value::Null => [0.0; 2],
+                centre => numbers(centre),
+            },
+        },
+        drives: DriveInertia {
+            slider_mass: or_zero(&study["slider_mass"]) + or_zero(&study["slider_mass_kg"]),
+            prismatic,
+            revolute,
+        },
+        gravity: vector(&study["gravity_mps2"]),
+        tool: vector(&study["tool_wrench"]),
+        anywhere: Anywhere {
+            velocity: or_zero(&anywhere["v"]),
+            omega: or_zero(&anywhere["omega"]),
+            acceleration: or_zero(&anywhere["a"]),
+            alpha: or_zero(&anywhere["alpha"]),
+            force: or_zero(&anywhere["force"]),
+            moment: or_zero(&anywhere["moment"]),
+        },
+        tolerances: Tolerances {
+            encoder_prismatic,
+            encoder_revolute,
+            link: or_zero(&tolerances["link"]),
+            base: or_zero(&tolerances["base"]),
+            platform: or_zero(&tolerances["platform"]),
+            play: or_zero(&tolerances["play"]),
+        },
+    }
+}
+
+fn model(case: &Value) -> Model {
+    strategies::model(|model| model.dynamics = settings(case))
+}
+
+/// Asserts that values agree, relative to the largest of them.
+fn agree(values: &[f64], wanted: &[f64], tolerance: f64, what: &str) {
+    assert_eq!(values.len(), wanted.len(), "{what}");
+    let largest = wanted
+        .iter()
+        .fold(f64::MIN_POSITIVE, |most, value| value.abs().max(most));
+    for (value, wanted) in values.iter().zip(wanted) {
+        let off = (value - wanted).abs() / largest;
+        assert!(off < tolerance, "{what}: {value} instead of {wanted}, off by {off:e}");
+    }
+}
+
+fn matrix(value: &Value) -> Vec<f64> {
+    (0..3).flat_map(|row| numbers::<3>(&value[row])).collect()
+}
+
+#[test]
+fn poses_agree() {
+    for case in cases() {
+        let (design, model) = (design(&case), model(&case));
+        let posed = model.posed(&design);
+        for wanted in case["poses"].as_array().expect("poses") {
+            let at = &wanted["pose"];
+            let pose = Pose::new(number(&at["x"]), number(&at["y"]), number(&at["phi_deg"]).to_radians());
+            let name = |what: &str| format!("{design} at {at}: {what}");
+            let dynamics = posed.dynamics_at(&pose).expect("reached").expect("stiff");
+            let motion = Motion {
+                twist: numbers(&wanted["twist"]),
+                acceleration: numbers(&wanted["acceleration"]),
+            };
+            let response = dynamics.response(&motion);
+            let report = dynamics.report().expect("regular");
+            agree(
+                &dynamics.actuators(),
+                &numbers::<3>(&wanted["actuators"]),
+                1e-9,
+                &name("actuators"),
+            );
+            agree(
+                &response.speeds,
+                &numbers::<3>(&wanted["actuator_speeds"]),
+                1e-9,
+                &name("speeds"),
+            );
+            let accelerations = numbers::<3>(&wanted["actuator_accelerations"]);
+            agree(&response.accelerations, &accelerations, 1e-9, &name("accelerations"));
+            agree(
+                &response.forces,
+                &numbers::<3>(&wanted["actuator_forces"]),
+                1e-8,
+                &name("forces"),
+            );
+            agree(
+                report.rigid_mass.as_flattened(),
+                &matrix(&wanted["mass_rigid"]),
+                1e-8,
+                &name("rigid mass"),
+            );
+            let out_of_plane = matrix(&wanted["mass_out_of_plane"]);
+            agree(
+                report.mass_out_of_plane.as_flattened(),
+                &out_of_plane,
+                1e-8,
+                &name("mass out of plane"),
+            );
+            agree(
+                report.mass_in_plane.as_flattened(),
+                &matrix(&wanted["mass_in_plane"]),
+                1e-8,
+                &name("mass in plane"),
+            );
+            let [in_plane, out_of_plane] = report.frequencies.expect("rigid rails");
+            for (found, key) in [
+                (in_plane, "frequencies_in_plane_hz"),
+                (out_of_plane, "frequencies_out_of_plane_hz"),
+            ] {
+                for (found, wanted) in found.iter().zip(numbers::<3>(&wanted[key])) {
+                    agree(&[*found], &[wanted], 1e-7, &name(key));
+                }
+            }
+            agree(
+                &[report.bar_frequency],
+                &[number(&wanted["bar_frequency_hz"])],
+                1e-7,
+                &name("bar frequency"),
+            );
+            let gains = &report.gains;
+            for (found, key) in [
+                (gains.speed[0], "speed_gain"),
+                (gains.speed[1], "speed_gain_phi"),
+                (gains.force[0], "force_gain"),
+                (gains.force[1], "force_gain_phi"),
+                (gains.inertia[0], "inertia_gain"),
+                (gains.inertia[1], "inertia_gain_phi"),
+                (report.anywhere_speed, "speed"),
+                (report.anywhere_force, "force"),
+            ] {
+                agree(&[found], &[number(&wanted["figures"][key])], 1e-8, &name(key));
+            }
+            let accuracy = &report.accuracy;
+            for (found, key) in [
+                (accuracy.worst_position, "worst_xy_m"),
+                (accuracy.worst_orientation, "worst_phi_rad"),
+                (accuracy.rms_position, "rms_xy_m"),
+                (accuracy.rms_orientation, "rms_phi_rad"),
+                (accuracy.nonlinearity, "eta"),
+            ] {
+                agree(&[found], &[number(&wanted["error"][key])], 1e-7, &name(key));
+            }
+        }
+    }
+}
+
+fn task(value: &Value) -> Task {
+    let or = |key: &str, default: f64| value[key].as_f64().unwrap_or(default);
+    let limit = |key: &str| value[key].as_f64();
+    Task {
+        shape: match value["shape"].as_str().expect("a shape") {
+            "circle" => TaskShape::Circle,
+            "star" => TaskShape::Star,
+            "pick_and_place" => TaskShape::PickAndPlace {
+                swing: or("swing_deg", 0.0).to_radians(),
+            },
+            _ => TaskShape::Waypoints(
+                value["waypoints"]
+                    .as_array()
+                    .expect("points")
+                    .iter()
+                    .map(|point| {
+                        let [x, y, phi_deg] = numbers(point);
+                        [x, y, f64::to_radians(phi_deg)]
+                    })
+                    .collect(),
+            ),
+        },
+        share: or("share", 0.8),
+        angle: or("angle_deg", 0.0).to_radians(),
+        closed: value["closed"].as_bool().unwrap_or(true),
+        law: match value["law"].as_str() {
+            Some("trapezoid") => MotionLaw::Trapezoid {
+                blend: or("blend", 1.0 / 3.0),
+                ramp: or("ramp", 0.25),
+            },
+            _ => MotionLaw::Quintic,
+        },
+        dwell: or("dwell_s", 0.0),
+        samples: 200,
+        timing: match value["cycle_time_s"].as_f64() {
+            Some(time) => TaskTiming::Cycle(time),
+            None => TaskTiming::Limits {
+                velocity: limit("v_max"),
+                acceleration: limit("a_max"),
+                omega: limit("omega_max"),
+                alpha: limit("alpha_max"),
+            },
+        },
+    }
+}
+
+fn sample_agrees(found: &TaskSample, wanted: &Value, name: &str) {
+    let instant = &found.instant;
+    let at = [instant.time, instant.pose.position.x, instant.pose.position.y];
+    let wanted_at = ["t_s", "x", "y"].map(|key| number(&wanted[key]));
+    agree(&at, &wanted_at, 1e-9, &format!("{name}: place"));
+    let phi_deg = instant.pose.phi.to_degrees();
+    assert!(
+        (phi_deg - number(&wanted["phi_deg"])).abs() < 1e-9,
+        "{name}: {phi_deg}°"
+    );
+    let response = &found.response;
+    for (values, key, tolerance) in [
+        (&instant.motion.twist, "twist", 1e-9),
+        (&instant.motion.acceleration, "acceleration", 1e-9),
+        (&found.actuators, "actuators", 1e-9),
+        (&response.speeds, "actuator_speeds", 1e-8),
+        (&response.accelerations, "actuator_accelerations", 1e-8),
+        (&response.forces, "actuator_forces", 1e-8),
+    ] {
+        agree(
+            values,
+            &numbers::<3>(&wanted[key]),
+            tolerance,
+            &format!("{name}: {key}"),
+        );
+    }
+}
+
+#[test]
+fn motions_agree() {
+    for case in cases() {
+        let (design, model) = (design(&case), model(&case));
+        let posed = model.posed(&design);
+        for motion in case["motions"].as_array().expect("motions") {
+            let wanted = &motion["expect"];
+            let name = format!("{design} along {}", motion["task"]);
+            let frame = TaskFrame {
+                centre: DVec2::ZERO,
+                radius: case["workspace_radius_m"].as_f64().unwrap_or(0.0),
+                home_phi: case["home_phi_deg"].as_f64().unwrap_or(0.0).to_radians(),
+                half_range: 10f64.to_radians(),
+                lever: design.platform_radius(),
+            };
+            let (outcome, samples) = posed.follow(&task(&motion["task"]), &frame);
+            let moved = outcome.motion.expect("a motion");
+            let pieces: Vec<f64> = wanted["pieces_s"]
+                .as_array()
+                .expect("pieces")
+                .iter()
+                .map(number)
+                .collect();
+            agree(moved.durations(), &pieces, 1e-9, &name);
+            match outcome.result.expect("a result") {
+                Err(failure) => {
+                    assert_eq!(wanted["ok"], false, "{name}");
+                    assert_eq!(
+                        failure.piece + 1,
+                        wanted["piece"].as_u64().expect("a piece") as usize,
+                        "{name}"
+                    );
+                    assert_eq!(failure.leg.map(|leg| leg as u64 + 1), wanted["leg"].as_u64(), "{name}");
+                    assert_eq!(
+                        failure.fault.name(),
+                        wanted["reason"].as_str().expect("a reason"),
+                        "{name}"
+                    );
+                    agree(&[failure.time], &[number(&wanted["time_s"])], 1e-9, &name);
+                    agree(&[failure.path_reach], &[number(&wanted["path_reach_m"])], 1e-7, &name);
+                }
+                Ok(figures) => {
+                    assert_eq!(wanted["ok"], true, "{name}");
+                    assert_eq!(wanted["inside_workspace"], figures.inside_workspace, "{name}");
+                    agree(&[moved.cycle_time()], &[number(&wanted["cycle_time_s"])], 1e-9, &name);
+                    let largest = number(&wanted["energy_each_j"]);
+                    for (found, key, scale) in [
+                        (figures.path_reach, "path_reach_m", None),
+                        (figures.corner_power, "corner_power_w", None),
+                        (figures.peak_power_total, "peak_power_total_w", None),
+                        (figures.energy_each, "energy_each_j", None),
+                        (figures.energy_shared, "energy_shared_j", None),
+                        (figures.energy_net, "energy_net_j", Some(largest)),
+                    ] {
+                        // The net energy is the difference of large numbers.
+                        let scale = scale.unwrap_or(number(&wanted[key]).abs());
+                        let off = (found - number(&wanted[key])).abs() / scale;
+                        assert!(
+                            off < 1e-7,
+                            "{name}: {key} {found} instead of {}, off by {off:e}",
+                            wanted[key]
+                        );
+                    }
+                    for (found, key) in [
+                        (&figures.peak_speed, "peak_speed"),
+                        (&figures.peak_acceleration, "peak_acceleration"),
+                        (&figures.peak_force, "peak_force"),
+                        (&figures.rms_force, "rms_force"),
+                        (&figures.peak_power, "peak_power_w"),
+                        (&figures.stroke, "stroke"),
+                    ] {
+                        agree(found, &numbers::<3>(&wanted[key]), 1e-7, &format!("{name}: {key}"));
+                    }
+                    for wanted in wanted["samples"].as_array().expect("samples") {
+                        let index = wanted["index"].as_u64().expect("an index") as usize;
+                        sample_agrees(&samples[index], wanted, &name);
+                    }
+                }
+            }
+        }
+    }
+}

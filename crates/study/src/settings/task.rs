@@ -1,0 +1,341 @@
+//! Payload, drives, motion and tolerances (docs/model.md, section 15).
+
+use serde::{Deserialize, Serialize};
+
+use super::declare::{Check, Initial, section};
+use kinefront_model::dynamics::{
+    Anywhere, DriveInertia, DynamicsSettings, MotionLaw, Payload, Task, TaskShape, TaskTiming, Tolerances,
+};
+
+section! {
+    /// What the platform carries.
+    pub struct PayloadSection in "payload" {
+        /// Mass of the payload.
+        mass_kg: f64 = 0.0, Check::Within(0.0, 1e12, " kg");
+        /// Moment of inertia of the payload about z through its own centre of mass.
+        inertia_kg_m2: f64 = 0.0, Check::Within(0.0, 1e12, " kg·m²");
+        /// Centre of mass of the payload from `P`, in the axes of the platform.
+        centre_m: [f64; 2] = [0.0; 2], Check::Within(-1e6, 1e6, " m");
+    }
+}
+
+section! {
+    /// What the drives move besides the members.
+    pub struct DriveSection in "drives" {
+        /// Mass of a slider on a rail of the base, besides that of its carriage in `joints`.
+        slider_mass_kg: f64 = 0.0, Check::Within(0.0, 1e12, " kg");
+        /// Inertia of the rotor, as a mass that moves with a prismatic actuator.
+        prismatic_inertia_kg: f64 = 0.0, Check::Within(0.0, 1e12, " kg");
+        /// Inertia of the rotor, as one that turns with a revolute actuator.
+        revolute_inertia_kg_m2: f64 = 0.0, Check::Within(0.0, 1e12, " kg·m²");
+    }
+}
+
+section! {
+    /// Loads during a motion.
+    pub struct LoadSection in "loads" {
+        /// Acceleration of gravity, along the axes of the base; its part in the plane loads the actuators.
+        gravity_m_per_s2: [f64; 3] = [0.0, 0.0, -9.81], Check::Within(-1e6, 1e6, "");
+        /// Force that the surroundings exert on the platform at `P`, along the axes of the base.
+        tool_force_n: [f64; 2] = [0.0; 2], Check::Within(-1e12, 1e12, " N");
+        /// Moment about z that the surroundings exert on the platform.
+        tool_moment_nm: f64 = 0.0, Check::Within(-1e12, 1e12, " N·m");
+    }
+}
+
+section! {
+    /// Motion and load that every pose of the workspace must allow in any direction.
+    pub struct AnywhereSection in "anywhere" {
+        /// Speed of `P`.
+        v_m_per_s: f64 = 0.0, Check::Within(0.0, 1e9, "");
+        /// Rate of rotation of the platform.
+        omega_rad_per_s: f64 = 0.0, Check::Within(0.0, 1e9, "");
+        /// Acceleration of `P`.
+        a_m_per_s2: f64 = 0.0, Check::Within(0.0, 1e9, "");
+        /// Angular acceleration of the platform.
+        alpha_rad_per_s2: f64 = 0.0, Check::Within(0.0, 1e9, "");
+        /// Force on the platform at `P`.
+        force_n: f64 = 0.0, Check::Within(0.0, 1e12, " N");
+        /// Moment on the platform about z.
+        moment_nm: f64 = 0.0, Check::Within(0.0, 1e12, " N·m");
+    }
+}
+
+section! {
+    /// Errors of manufacture, assembly and control, each in both directions.
+    pub struct ToleranceSection in "tolerances" {
+        /// Error of a prismatic actuator.
+        encoder_m: f64 = 0.0, Check::Within(0.0, 1e3, " m");
+        /// Error of a revolute actuator.
+        encoder_rad: f64 = 0.0, Check::Within(0.0, 1.0, " rad");
+        /// Error of the length of each link; of a telescopic leg, of the zero of its length.
+        link_m: f64 = 0.0, Check::Within(0.0, 1e3, " m");
+        /// Radius of the disc in which each base joint, or each end of a rail, lies.
+        base_m: f64 = 0.0, Check::Within(0.0, 1e3, " m");
+        /// Radius of the disc in which each platform joint lies.
+        platform_m: f64 = 0.0, Check::Within(0.0, 1e3, " m");
+        /// Radial clearance of each revolute joint.
+        play_m: f64 = 0.0, Check::Within(0.0, 1e3, " m");
+    }
+}
+
+/// Path of a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TaskShapeChoice {
+    /// Straight from point to point.
+    Waypoints,
+    /// A circle about the centre of the workspace.
+    Circle,
+    /// A pentagram about the centre.
+    Star,
+    /// Across the workspace and back.
+    PickAndPlace,
+}
+
+/// How a piece of a path is covered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MotionLawChoice {
+    /// A polynomial of the fifth degree.
+    Quintic,
+    /// An acceleration in the shape of a trapezoid.
+    Trapezoid,
+}
+
+section! {
+    /// A motion that the platform makes again and again.
+    pub struct TaskSection in "task" {
+        /// Size of a path that is scaled to the workspace, as a share of its radius.
+        share: f64 = 0.8, Check::Within(1e-6, 1e3, "");
+        /// Direction in which such a path begins.
+        angle_deg: f64 = 0.0, Check::Within(-1e6, 1e6, "°");
+        /// Rotation during a pick-and-place stroke.
+        swing_deg: f64 = 0.0, Check::Within(-1e6, 1e6, "°");
+        /// Whether the path returns to its first point; without effect for a circle and a star.
+        closed: bool = true, Check::Any;
+        /// How each piece of the path is covered from rest to rest.
+        law: MotionLawChoice = MotionLawChoice::Quintic, Check::Choice(&["quintic", "trapezoid"]);
+        /// Share of the time in which a `trapezoid` motion accelerates.
+        blend: f64 = 1.0 / 3.0, Check::Within(1e-3, 0.5, "");
+        /// Share of that in which its acceleration rises, and in which it falls.
+        ramp: f64 = 0.25, Check::Within(1e-3, 0.5, "");
+        /// Rest after each piece.
+        dwell_s: f64 = 0.0, Check::Within(0.0, 1e6, " s");
+        /// Number of equal intervals in which each piece is sampled.
+        samples: i64 = 200, Check::Count(2, 100_000);
+        optional {
+            /// Path: straight between `waypoints`, or a `circle`, a `star` or a `pick-and-place` stroke that is scaled to the workspace; if
+            /// omitted, no motion is asked for.
+            shape: TaskShapeChoice, Check::Choice(&["pick-and-place", "circle", "star", "waypoints"]), Initial::AsText;
+            /// Points of the path, as [x in metres, y in metres, φ in degrees]; angles are not wrapped.
+            waypoints: Vec<[f64; 3]>, Check::Within(-1e6, 1e6, ""), Initial::AsText;
+            /// Time of the whole cycle with its rests; if omitted, the motion is as fast as its limits allow.
+            cycle_time_s: f64, Check::Positive, Initial::Number(2.0);
+            /// Largest speed of `P`.
+            v_max_m_per_s: f64, Check::Positive, Initial::Number(1.0);
+            /// Largest acceleration of `P`.
+            a_max_m_per_s2: f64, Check::Positive, Initial::Number(10.0);
+            /// Largest rate of rotation of the platform.
+            omega_max_rad_per_s: f64, Check::Positive, Initial::Number(1.0);
+            /// Largest angular acceleration of the platform.
+            alpha_max_rad_per_s2: f64, Check::Positive, Initial::Number(10.0);
+        }
+    }
+}
+
+/// Largest number of samples of a motion.
+const MOST_SAMPLES: i64 = 1_000_000;
+
+impl TaskSection {
+    /// Returns the points of the path.
+    fn points(&self) -> &[[f64; 3]] {
+        self.waypoints.as_deref().unwrap_or_default()
+    }
+
+    /// Returns the motion that the section asks for; `None` if it asks for none.
+    pub fn task(&self) -> Option<Task> {
+        Some(Task {
+            shape: match self.shape? {
+                TaskShapeChoice::Waypoints => TaskShape::Waypoints(
+                    self.points()
+                        .iter()
+                        .map(|[x, y, phi_deg]| [*x, *y, phi_deg.to_radians()])
+                        .collect(),
+                ),
+                TaskShapeChoice::Circle => TaskShape::Circle,
+                TaskShapeChoice::Star => TaskShape::Star,
+                TaskShapeChoice::PickAndPlace => TaskShape::PickAndPlace {
+                    swing: self.swing_deg.to_radians(),
+                },
+            },
+            share: self.share,
+            angle: self.angle_deg.to_radians(),
+            closed: self.closed,
+            law: match self.law {
+                MotionLawChoice::Quintic => MotionLaw::Quintic,
+                MotionLawChoice::Trapezoid => MotionLaw::Trapezoid {
+                    blend: self.blend,
+                    ramp: self.ramp,
+                },
+            },
+            dwell: self.dwell_s,
+            samples: usize::try_from(self.samples).unwrap_or(1),
+            timing: match self.cycle_time_s {
+                Some(time) => TaskTiming::Cycle(time),
+                None => TaskTiming::Limits {
+                    velocity: self.v_max_m_per_s,
+                    acceleration: self.a_max_m_per_s2,
+                    omega: self.omega_max_rad_per_s,
+                    alpha: self.alpha_max_rad_per_s2,
+                },
+            },
+        })
+    }
+
+    /// Returns the keys that are at fault together with others, and what is wrong.
+    pub(crate) fn faults(&self) -> Vec<(&'static str, String)> {
+        let mut faults = Vec::new();
+        let mut fault = |key, message: String| faults.push((key, message));
+        let (Some(shape), Some(task)) = (self.shape, self.task()) else {
+            if *self != Self::default() {
+                fault(
+                    "shape",
+                    "is missing; without it, nothing else in [task] has an effect".to_owned(),
+                );
+            }
+            return faults;
+        };
+        let is_of_points = shape == TaskShapeChoice::Waypoints;
+        if is_of_points {
+            let differ = self.points().windows(2).any(|pair| pair[0] != pair[1]);
+            if !differ {
+                let count = self.points().len();
+                fault(
+                    "waypoints",
+                    format!("has {count} entries; a path needs two different points at least"),
+                );
+            }
+        } else if self.waypoints.is_some() {
+            fault(
+                "waypoints",
+                "has no effect; set shape = \"waypoints\", or omit it".to_owned(),
+            );
+        }
+        let pieces = task.pieces() as i64;
+        if pieces.saturating_mul(self.samples) > MOST_SAMPLES {
+            let key = if is_of_points { "waypoints" } else { "samples" };
+            fault(
+                key,
+                format!(
+                    "makes {pieces} pieces of {} samples; a motion has at most {MOST_SAMPLES} samples, so that fewer points or \
+                     samples are needed",
+                    self.samples
+                ),
+            );
+        }
+        let limits = [
+            ("v_max_m_per_s", self.v_max_m_per_s),
+            ("a_max_m_per_s2", self.a_max_m_per_s2),
+            ("omega_max_rad_per_s", self.omega_max_rad_per_s),
+            ("alpha_max_rad_per_s2", self.alpha_max_rad_per_s2),
+        ];
+        match self.cycle_time_s {
+            Some(time) => {
+                for (key, limit) in limits {
+                    if limit.is_some() {
+                        fault(key, "has no effect beside cycle_time_s; omit one of both".to_owned());
+                    }
+                }
+                let resting = self.dwell_s * pieces as f64;
+                if time <= resting {
+                    let message = format!(
+                        "is {time}, but the rests after {pieces} pieces take {resting} s of it; it must be longer than that"
+                    );
+                    fault("cycle_time_s", message);
+                }
+            }
+            None if limits.iter().all(|(_, limit)| limit.is_none()) => fault(
+                "cycle_time_s",
+                "is missing; set it, or limits such as v_max_m_per_s and a_max_m_per_s2".to_owned(),
+            ),
+            None => {
+                let moves = |index: usize| self.points().windows(2).any(|pair| pair[0][index] != pair[1][index]);
+                let turns = match shape {
+                    TaskShapeChoice::Waypoints => moves(2),
+                    TaskShapeChoice::PickAndPlace => self.swing_deg != 0.0,
+                    _ => false,
+                };
+                let shifts = !is_of_points || moves(0) || moves(1);
+                let is_bound = shifts && limits[..2].iter().any(|(_, limit)| limit.is_some())
+                    || turns && limits[2..].iter().any(|(_, limit)| limit.is_some());
+                if !is_bound {
+                    let key = if shifts { limits[0].0 } else { limits[2].0 };
+                    fault(
+                        key,
+                        "is missing; nothing else limits how fast the platform moves along the path".to_owned(),
+                    );
+                }
+            }
+        }
+        faults
+    }
+}
+
+/// The sections of a study that describe payload, drives, motion and tolerances.
+#[derive(Debug, Clone, Copy)]
+pub struct DynamicsSections<'a> {
+    /// `[payload]`.
+    pub payload: &'a PayloadSection,
+    /// `[drives]`.
+    pub drives: &'a DriveSection,
+    /// `[loads]`.
+    pub loads: &'a LoadSection,
+    /// `[anywhere]`.
+    pub anywhere: &'a AnywhereSection,
+    /// `[tolerances]`.
+    pub tolerances: &'a ToleranceSection,
+}
+
+impl From<DynamicsSections<'_>> for DynamicsSettings {
+    fn from(sections: DynamicsSections<'_>) -> Self {
+        let DynamicsSections {
+            payload,
+            drives,
+            loads,
+            anywhere,
+            tolerances,
+        } = sections;
+        let [fx, fy] = loads.tool_force_n;
+        Self {
+            payload: Payload {
+                mass: payload.mass_kg,
+                inertia: payload.inertia_kg_m2,
+                centre: payload.centre_m,
+            },
+            drives: DriveInertia {
+                slider_mass: drives.slider_mass_kg,
+                prismatic: drives.prismatic_inertia_kg,
+                revolute: drives.revolute_inertia_kg_m2,
+            },
+            gravity: loads.gravity_m_per_s2,
+            tool: [fx, fy, loads.tool_moment_nm],
+            anywhere: Anywhere {
+                velocity: anywhere.v_m_per_s,
+                omega: anywhere.omega_rad_per_s,
+                acceleration: anywhere.a_m_per_s2,
+                alpha: anywhere.alpha_rad_per_s2,
+                force: anywhere.force_n,
+                moment: anywhere.moment_nm,
+            },
+            tolerances: Tolerances {
+                encoder_prismatic: tolerances.encoder_m,
+                encoder_revolute: tolerances.encoder_rad,
+                link: tolerances.link_m,
+                base: tolerances.base_m,
+                platform: tolerances.platform_m,
+                play: tolerances.play_m,
+            },
+        }
+    }
+}

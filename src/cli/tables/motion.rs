@@ -1,0 +1,130 @@
+//! Tables of the motion of a design.
+
+use kinefront_model::dynamics::Motion;
+use kinefront_model::evaluation::{PosedDynamics, TaskOutcome};
+use kinefront_model::mechanism::Design;
+use kinefront_scene::text::number;
+
+use super::table;
+
+/// Formats the motion at a pose: frequencies and errors, and what the actuators do during a motion.
+pub fn dynamics(design: &Design, dynamics: &PosedDynamics<'_>, motion: Option<&Motion>) -> String {
+    let Some(report) = dynamics.report() else {
+        return String::new();
+    };
+    let mut facts = table(["motion", ""], &[]);
+    let list = |values: &[f64]| values.iter().map(|value| number(*value)).collect::<Vec<_>>().join(", ");
+    if let Some([in_plane, out_of_plane]) = &report.frequencies {
+        facts.add_row([
+            "natural frequencies in the plane".to_owned(),
+            format!("{} Hz", list(in_plane)),
+        ]);
+        facts.add_row([
+            "natural frequencies out of the plane".to_owned(),
+            format!("{} Hz", list(out_of_plane)),
+        ]);
+    }
+    facts.add_row([
+        "bending of the leg bars themselves".to_owned(),
+        format!("{} Hz", number(report.bar_frequency)),
+    ]);
+    let accuracy = &report.accuracy;
+    if accuracy.worst_position > 0.0 {
+        let position = format!("{} mm", number(1e3 * accuracy.worst_position));
+        facts.add_row(["largest error of the position".to_owned(), position]);
+        let orientation = format!("{}°", number(accuracy.worst_orientation.to_degrees()));
+        facts.add_row(["largest error of the orientation".to_owned(), orientation]);
+    }
+    let actuator = design.architecture().actuator();
+    for (name, value, unit) in [
+        (
+            "largest actuator speed in any direction",
+            report.anywhere_speed,
+            format!("{}/s", actuator.unit()),
+        ),
+        (
+            "largest actuator effort in any direction",
+            report.anywhere_force,
+            actuator.effort_unit().to_owned(),
+        ),
+    ] {
+        if value > 0.0 {
+            facts.add_row([name.to_owned(), format!("{} {unit}", number(value))]);
+        }
+    }
+    let Some(motion) = motion else {
+        return format!("\n{facts}");
+    };
+    let (unit, effort) = (actuator.unit(), actuator.effort_unit());
+    let columns = [
+        format!("speed [{unit}/s]"),
+        format!("acceleration [{unit}/s²]"),
+        format!("effort [{effort}]"),
+    ];
+    let response = dynamics.response(motion);
+    let mut drives = table(["leg", &columns[0], &columns[1], &columns[2]], &[1, 2, 3]);
+    for leg in 0..3 {
+        let values = [response.speeds[leg], response.accelerations[leg], response.forces[leg]].map(number);
+        drives.add_row([vec![(leg + 1).to_string()], values.to_vec()].concat());
+    }
+    format!("\n{facts}\n{drives}")
+}
+
+/// Formats what a motion asks of the drives.
+pub fn task(design: &Design, outcome: &TaskOutcome, why_not: Option<String>) -> String {
+    let mut facts = table(["design", &design.to_string()], &[]);
+    if let Some(motion) = &outcome.motion {
+        facts.add_row(["cycle time".to_owned(), format!("{} s", number(motion.cycle_time()))]);
+    }
+    let figures = match (why_not, &outcome.result) {
+        (None, Some(Ok(figures))) => figures,
+        (reason, _) => {
+            facts.add_row(["not possible".to_owned(), reason.unwrap_or_default()]);
+            return facts.to_string();
+        }
+    };
+    let inside = if figures.inside_workspace { "yes" } else { "no" };
+    facts.add_row(["inside the workspace".to_owned(), inside.to_owned()]);
+    facts.add_row([
+        "least distance to the limits".to_owned(),
+        format!("{} mm", number(1e3 * figures.path_reach)),
+    ]);
+    // Without a tool it is 0, up to rounding.
+    let is_nothing = figures.energy_net.abs() < 1e-9 * figures.energy_each;
+    let net = if is_nothing { 0.0 } else { figures.energy_net };
+    for (name, value, unit) in [
+        ("energy a cycle, no recuperation", figures.energy_each, "J"),
+        ("energy a cycle, drives on a common link", figures.energy_shared, "J"),
+        ("energy a cycle, all recovered", net, "J"),
+        ("largest power of all drives", figures.peak_power_total, "W"),
+        ("power of one type of motor for all", figures.corner_power, "W"),
+    ] {
+        facts.add_row([name.to_owned(), format!("{} {unit}", number(value))]);
+    }
+    let actuator = design.architecture().actuator();
+    let (unit, effort) = (actuator.unit(), actuator.effort_unit());
+    let columns = [
+        format!("stroke [{unit}]"),
+        format!("speed [{unit}/s]"),
+        format!("acceleration [{unit}/s²]"),
+        format!("peak effort [{effort}]"),
+        format!("RMS effort [{effort}]"),
+        "peak power [W]".to_owned(),
+    ];
+    let mut header = vec!["leg"];
+    header.extend(columns.iter().map(String::as_str));
+    let header: [&str; 7] = std::array::from_fn(|column| header[column]);
+    let mut drives = table(header, &[1, 2, 3, 4, 5, 6]);
+    for leg in 0..3 {
+        let values = [
+            figures.stroke[leg],
+            figures.peak_speed[leg],
+            figures.peak_acceleration[leg],
+            figures.peak_force[leg],
+            figures.rms_force[leg],
+            figures.peak_power[leg],
+        ];
+        drives.add_row([vec![(leg + 1).to_string()], values.map(number).to_vec()].concat());
+    }
+    format!("{facts}\n{drives}")
+}

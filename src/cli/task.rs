@@ -1,0 +1,113 @@
+//! The command `kinefront task`.
+
+use std::ffi::OsString;
+use std::io::Write;
+
+use kinefront_export::{TaskJson, TaskRow};
+use kinefront_model::evaluation::{TaskFault, TaskOutcome};
+use kinefront_model::mechanism::Design;
+use miette::miette;
+use serde::Serialize;
+
+use super::{Ending, Failure, GridArgument, load_study, say, tables, to_json};
+
+#[derive(Debug, clap::Args)]
+pub struct TaskArguments {
+    /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
+    #[arg(long)]
+    design: String,
+    /// Study file, or name of a built-in study; its section `task` states the motion [default: paper].
+    #[arg(long, value_name = "FILE")]
+    study: Option<OsString>,
+    /// Sampling grid that determines the workspace to which the motion is scaled.
+    #[arg(long, value_enum, default_value = "reference")]
+    grid: GridArgument,
+    /// Print the curves over time as CSV, a row for each sample.
+    #[arg(long, conflicts_with = "json")]
+    csv: bool,
+    /// Print figures and curves as one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// The output of `kinefront task --json`.
+#[derive(Debug, Serialize)]
+struct TaskReportJson {
+    design: String,
+    study: String,
+    #[serde(flatten)]
+    task: TaskJson,
+    samples: Vec<TaskRow>,
+}
+
+pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
+    let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
+    let design = Design::parse(&arguments.design, study.working_mode).map_err(Failure::input)?;
+    let model = study.model().map_err(Failure::runtime)?;
+    let evaluation = model.evaluate(&design, arguments.grid.into());
+    let Some((outcome, samples)) = model.follow_task(&evaluation) else {
+        return Err(Failure::Input(miette!(
+            help = "add a section [task], for example with shape = \"pick-and-place\" and cycle_time_s = 2.0, and name the file \
+                    with --study",
+            "the study `{}` states no motion",
+            study.name
+        )));
+    };
+    let mut out = std::io::stdout().lock();
+    // A motion that ends early has no curves that stop in the middle.
+    let is_complete = matches!(outcome.result, Some(Ok(_)));
+    let rows = samples.iter().filter(|_| is_complete).map(TaskRow::from);
+    if arguments.json {
+        let json = TaskReportJson {
+            design: design.to_string(),
+            study: study.name.clone(),
+            task: TaskJson::from(&outcome),
+            samples: rows.collect(),
+        };
+        writeln!(out, "{}", to_json(&json).map_err(Failure::Runtime)?)?;
+    } else if arguments.csv {
+        write_rows(&mut out, rows)?;
+        if let Some(reason) = why_not(&outcome) {
+            say(format_args!("{design}: {reason}"));
+        }
+    } else {
+        writeln!(out, "{}", tables::task(&design, &outcome, why_not(&outcome)))?;
+    }
+    Ok(Ending::Done)
+}
+
+fn write_rows(out: &mut impl Write, rows: impl Iterator<Item = TaskRow>) -> Result<(), Failure> {
+    let mut writer = csv::WriterBuilder::new().from_writer(out);
+    for row in rows {
+        writer.serialize(row).map_err(|error| match error.into_kind() {
+            csv::ErrorKind::Io(error) => Failure::from(error),
+            other => Failure::Runtime(miette!("cannot write a sample: {other:?}")),
+        })?;
+    }
+    writer.flush()?;
+    Ok(())
+}
+
+/// Returns why a design does not follow its motion, in words.
+fn why_not(outcome: &TaskOutcome) -> Option<String> {
+    let Some(result) = &outcome.result else {
+        return Some(
+            "there is no motion: the path has no length, or it is scaled to a workspace that the design does not have"
+                .to_owned(),
+        );
+    };
+    let failure = result.as_ref().err()?;
+    let place = format!("piece {} at {:.4} s", failure.piece + 1, failure.time);
+    Some(match failure.leg {
+        Some(leg) => format!(
+            "the motion ends in {place}: leg {} is {:.6} m beyond its {}",
+            leg + 1,
+            -failure.path_reach,
+            match failure.fault {
+                TaskFault::Limit => "joint limit",
+                _ => "reach",
+            }
+        ),
+        None => format!("the motion ends in {place}: it meets a parallel singularity"),
+    })
+}

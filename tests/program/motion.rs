@@ -1,0 +1,243 @@
+//! Payload, motion, frequencies and accuracy, as a user of the program meets them.
+
+use std::fs;
+
+use predicates::prelude::*;
+use predicates::str::contains;
+use serde_json::Value;
+
+use super::exports::{DESIGNS, OTHERS};
+use super::support::{DESIGN, folder, json, kinefront, python, script};
+
+/// The settings of the first independent case of the model's fixture `task_cases.json`.
+const STUDY: &str = r#"
+    name = "moving"
+    [payload]
+    mass_kg = 20.0
+    inertia_kg_m2 = 0.6
+    centre_m = [0.1, -0.05]
+    [drives]
+    slider_mass_kg = 5.0
+    prismatic_inertia_kg = 10.0
+    [anywhere]
+    v_m_per_s = 1.0
+    omega_rad_per_s = 1.0
+    a_m_per_s2 = 10.0
+    alpha_rad_per_s2 = 10.0
+    force_n = 100.0
+    moment_nm = 10.0
+    [tolerances]
+    encoder_m = 1e-5
+    base_m = 5e-5
+    platform_m = 5e-5
+    link_m = 5e-5
+    play_m = 1e-5
+    [task]
+    shape = "star"
+    cycle_time_s = 5.0
+"#;
+
+fn near(found: &Value, wanted: f64) {
+    let found = found.as_f64().expect("a number");
+    assert!(
+        (found - wanted).abs() < 1e-6 * wanted.abs(),
+        "{found} instead of {wanted}"
+    );
+}
+
+/// `pose`, `evaluate` and `task` give what an independent program found for the same design.
+#[test]
+fn commands_give_independent_values() {
+    let folder = folder();
+    let study = folder.path().join("moving.toml");
+    fs::write(&study, STUDY).expect("a study");
+    let study = study.to_str().expect("a path");
+    let of = |command: &str, more: &[&str]| {
+        let plain = [command, "--design", DESIGN, "--study", study, "--json"];
+        json(plain.iter().chain(more).copied())
+    };
+    let pose = of(
+        "pose",
+        &[
+            "--pose",
+            "x=-0.059 y=-0.0521 phi_deg=39.68",
+            "--twist",
+            "vx=0.113 vy=-1.22 omega=0.305",
+            "--acceleration",
+            "ax=4.758 ay=0.712 alpha=-5.472",
+        ],
+    );
+    near(&pose["frequencies_hz"][0], 15.614158288064678);
+    near(&pose["frequencies_hz"][3], 8.475001866114397);
+    near(&pose["actuator_forces"][2], -1854.8122470604092);
+    near(&pose["pose_error"]["worst_xy_m"], 0.00024555959650917643);
+    let evaluated = of("evaluate", &[]);
+    near(&evaluated["over_workspace"]["f1"]["value"], 8.181517922480754);
+    near(&evaluated["quantities"]["natural_frequency_hz"], 8.181517922480754);
+    near(&evaluated["over_workspace"]["footprint_m2"], 19.88929035526777);
+    near(&evaluated["quantities"]["motion_force_max_n"], 6864.787152288396);
+    near(&evaluated["task"]["corner_power_w"], 15797.342239571883);
+    let task = of("task", &[]);
+    assert_eq!(task["ok"], true);
+    near(&task["energy_shared_j"], 14085.007102823249);
+    let samples = task["samples"].as_array().expect("samples");
+    assert_eq!(samples.len(), 5 * 201);
+    near(&samples[70]["tau1"], -1995.0279436305827);
+    // The table of the curves holds the same samples.
+    let table = kinefront()
+        .args(["task", "--design", DESIGN, "--study", study, "--csv"])
+        .assert()
+        .success();
+    let text = String::from_utf8(table.get_output().stdout.clone()).expect("text");
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    assert_eq!(reader.headers().expect("a header").len(), 26);
+    let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("a row")).collect();
+    assert_eq!(rows.len(), samples.len());
+    assert_eq!(rows[70][20].parse::<f64>().ok(), samples[70]["tau1"].as_f64());
+}
+
+/// What cannot be moved, or makes no sense, is said with its place and its remedy.
+#[test]
+fn motions_that_are_impossible_are_told() {
+    let folder = folder();
+    let study = folder.path().join("study.toml");
+    let path = study.to_str().expect("a path");
+    let run = |text: &str, more: &[&str]| {
+        fs::write(&study, text).expect("a study");
+        let plain = ["task", "--design", DESIGN, "--study", path];
+        kinefront().args(plain.iter().chain(more)).assert()
+    };
+    let task = |keys: &str| format!("[task]\n{keys}\n");
+    for (text, words) in [
+        (String::new(), "states no motion"),
+        (
+            task("cycle_time_s = 1"),
+            "is missing; without it, nothing else in [task] has an effect",
+        ),
+        (task("shape = \"star\""), "is missing; set it, or limits"),
+        (task("shape = \"star\"\ncycle_time_s = 0"), "must be above 0"),
+        (
+            task("shape = \"star\"\ncycle_time_s = 1\ndwell_s = 0.2"),
+            "the rests after 5 pieces take 1 s of it",
+        ),
+        (
+            task("shape = \"waypoints\"\ncycle_time_s = 1"),
+            "needs two different points",
+        ),
+        (
+            task("shape = \"waypoints\"\nwaypoints = [[0, 0, 0], [0, 0, 9]]\nv_max_m_per_s = 1"),
+            "nothing else limits how fast",
+        ),
+        (
+            format!(
+                "[task]\nshape = \"waypoints\"\ncycle_time_s = 1e5\nwaypoints = [{}]\n",
+                "[0, 0, 0], [0.01, 0, 0], ".repeat(50_000)
+            ),
+            "a motion has at most 1000000 samples",
+        ),
+        (
+            "[constraints]\nenergy_j = { at_most = 5 }".to_owned(),
+            "has no value without a motion; state it in [task]",
+        ),
+        (
+            "[constraints]\nposition_error_m = { at_most = 1e-3 }".to_owned(),
+            "is 0 without tolerances; state them in [tolerances]",
+        ),
+        ("[payload]\nmass_kg = -1".to_owned(), "mass_kg"),
+    ] {
+        run(&text, &[]).code(2).stderr(contains(words));
+    }
+    // A motion that leaves the reach is a result: where, when and why, and no other figure.
+    let far = task("shape = \"waypoints\"\nwaypoints = [[0, 0, 30], [9, 0, 30]]\ncycle_time_s = 2");
+    run(&far, &[])
+        .success()
+        .stdout(contains("not possible").and(contains("the motion ends in piece 1 at")));
+    run(&far, &["--csv"])
+        .success()
+        .stdout("")
+        .stderr(contains("the motion ends in piece 1"));
+    let text = run(&far, &["--json"]).success();
+    let found: Value = serde_json::from_slice(&text.get_output().stdout).expect("JSON");
+    assert_eq!(found["ok"], false);
+    assert_eq!(found["piece"], 1);
+    assert!(found["time_s"].is_number() && found["reason"].is_string());
+    assert!(found["cycle_time_s"].is_null() && found["peak_force"].is_null() && found["energy_net_j"].is_null());
+    // A payload beyond all machines gives numbers.
+    let heavy = format!(
+        "[payload]\nmass_kg = 1e9\n{}",
+        task("shape = \"circle\"\ncycle_time_s = 2")
+    );
+    let text = run(&heavy, &["--json"]).success();
+    let found: Value = serde_json::from_slice(&text.get_output().stdout).expect("JSON");
+    assert!(found["peak_force"][0].as_f64().expect("a number") > 1e8);
+}
+
+/// MuJoCo needs the same forces of the actuators for the same motion of the exported mechanisms, with joints, motors and gravity in the
+/// plane: it knows their bodies alone.
+#[test]
+fn mujoco_needs_the_same_forces() {
+    let Some(interpreter) = python(&["mujoco", "numpy"]) else {
+        return;
+    };
+    let folder = folder();
+    let study = folder.path().join("study.toml");
+    let text = "[joints]\nrevolute_kg = 0.5\ncarriage_kg = 1.5\nmotor_kg = 2.5\n\
+                [loads]\ngravity_m_per_s2 = [1.5, -4.0, -9.81]\n";
+    fs::write(&study, text).expect("a study");
+    let motion = folder.path().join("motion.json");
+    let text = r#"{"twist": [0.3, -0.4, 0.5], "acceleration": [2.0, 3.0, -4.0], "gravity": [1.5, -4.0, -9.81]}"#;
+    fs::write(&motion, text).expect("a motion");
+    // The file for MuJoCo gives the carriage of this one half of the mass of its guide, because a driven body needs inertia.
+    let others = OTHERS.into_iter().filter(|design| !design.starts_with("3-P_PR"));
+    let designs: Vec<&str> = DESIGNS.iter().map(|(design, _)| *design).chain(others).collect();
+    let files = designs.iter().enumerate().map(|(index, design)| {
+        let file = folder.path().join(format!("{index}.xml"));
+        kinefront()
+            .args(["export", "--design", design, "--study"])
+            .arg(&study)
+            .arg("--out")
+            .arg(&file)
+            .assert()
+            .success();
+        file
+    });
+    let files: Vec<std::path::PathBuf> = std::iter::once(motion.clone()).chain(files).collect();
+    let arguments: Vec<&std::path::Path> = files.iter().map(|file| file.as_path()).collect();
+    let found: Value = serde_json::from_str(&script(interpreter, "mujoco_forces.py", &arguments)).expect("JSON");
+    assert_eq!(found.as_array().expect("designs").len(), 17);
+    for (design, found) in designs.iter().zip(found.as_array().expect("designs")) {
+        let number = |value: &Value| value.as_f64().expect("a number");
+        let pose = &found["pose"];
+        let at = format!(
+            "x={} y={} phi_deg={}",
+            number(&pose[0]),
+            number(&pose[1]),
+            number(&pose[2]).to_degrees()
+        );
+        let ours = json([
+            "pose",
+            "--design",
+            design,
+            "--pose",
+            &at,
+            "--study",
+            study.to_str().expect("a path"),
+            "--twist",
+            "vx=0.3 vy=-0.4 omega=0.5",
+            "--acceleration",
+            "ax=2 ay=3 alpha=-4",
+            "--json",
+        ]);
+        for (key, of_mujoco, tolerance) in [("actuator_speeds", "speeds", 1e-9), ("actuator_forces", "forces", 1e-6)] {
+            let largest = (0..3).fold(0.0f64, |most, leg| most.max(number(&ours[key][leg]).abs()));
+            for leg in 0..3 {
+                let off = (number(&ours[key][leg]) - number(&found[of_mujoco][leg])).abs();
+                assert!(off < tolerance * largest, "{design}: {key} {} and {found}", ours[key]);
+            }
+        }
+        assert!(
+            number(&found["off"]) < 1e-9,
+            "{design}: the loops are not closed: {found}"
+        );
+    }
+}
