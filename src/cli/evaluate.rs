@@ -47,8 +47,7 @@ pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
             let evaluation = server.evaluate(text).map_err(Failure::input)?;
             let mut out = std::io::stdout().lock();
             if arguments.json {
-                let json =
-                    EvaluationJson::new(&evaluation).with_dynamics(server.study.model(), &evaluation, server.grid);
+                let json = EvaluationJson::new(&evaluation).with_dynamics(server.study.model(), &evaluation);
                 writeln!(out, "{}", to_json(&json).map_err(Failure::Runtime)?)?;
             } else {
                 writeln!(out, "{}", tables::evaluation(&evaluation, server.study.model()))?;

@@ -129,11 +129,22 @@ fn motions_that_are_impossible_are_told() {
             "nothing else limits how fast",
         ),
         (
+            task("shape = \"star\"\ncycle_time_s = 1\nsamples = 100001"),
+            "must be 2 to 100000",
+        ),
+        (
+            format!(
+                "[task]\nshape = \"waypoints\"\ncycle_time_s = 1\nsamples = 100000\nwaypoints = [{}]\n",
+                "[0, 0, 0], [0.01, 0, 0], ".repeat(10)
+            ),
+            "a motion has at most 1000000 samples",
+        ),
+        (
             format!(
                 "[task]\nshape = \"waypoints\"\ncycle_time_s = 1e5\nwaypoints = [{}]\n",
                 "[0, 0, 0], [0.01, 0, 0], ".repeat(50_000)
             ),
-            "a motion has at most 1000000 samples",
+            "it has more than 262144",
         ),
         (
             "[constraints]\nenergy_j = { at_most = 5 }".to_owned(),

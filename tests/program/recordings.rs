@@ -77,7 +77,7 @@ fn a_design_is_recorded_with_its_overlays_and_its_tour() {
             assert_eq!(found["leg_bars"], bars);
             assert_eq!(
                 found["views"],
-                serde_json::json!({"2D": 16, "3D": 19, "TextDocument": 1})
+                serde_json::json!({"2D": 17, "3D": 20, "TextDocument": 1})
             );
             assert!(found["vertices"].as_u64().expect("a count") > 5000);
             let card = found["card"].as_str().expect("a card");

@@ -209,7 +209,7 @@ fn a_study_says_what_it_leaves_open_and_what_cannot_be_computed() {
         ("[joints]\nmotor_kg = -3.0", "joints.motor_kg"),
         (
             "architectures = [\"3-RRR\"]\n[constraints]\nactuator_force_max_n = { at_most = 100.0 }",
-            "all drives turn",
+            "all actuators turn",
         ),
     ] {
         checked(text).code(2).stderr(contains(words));

@@ -165,11 +165,12 @@ impl EvaluationJson {
         }
     }
 
-    /// Adds what the motion of the study asks of the drives, and the worst figures of the motion over the workspace.
-    pub fn with_dynamics(mut self, model: &Model, evaluation: &Evaluation, grid: GridChoice) -> Self {
+    /// Adds what the motion of the study asks of the drives, and the worst figures of the motion over the workspace, at the
+    /// poses of the reference grid.
+    pub fn with_dynamics(mut self, model: &Model, evaluation: &Evaluation) -> Self {
         let followed = model.follow_task(evaluation);
         self.task = followed.map(|(outcome, _)| TaskJson::from(&outcome));
-        let over_workspace = model.over_workspace(evaluation, grid);
+        let over_workspace = model.over_workspace(evaluation, GridChoice::Reference);
         self.over_workspace = over_workspace.as_ref().map(OverWorkspaceJson::from);
         self
     }
