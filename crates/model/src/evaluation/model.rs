@@ -278,6 +278,7 @@ impl Model {
             thresholds,
             asked: ScalarSet::default(),
             computed: computed(&thresholds, ScalarSet::default()),
+            examines_all: thresholds.need_all_scalars(),
             instructions: InstructionSet::best(),
         }
     }

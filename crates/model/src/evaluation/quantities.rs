@@ -57,7 +57,7 @@ pub(super) fn add_of_region<L: Leg>(
     }
     let on_demand = PoseScalar::on_demand().iter().copied();
     let set: ScalarSet = on_demand.filter(|scalar| asked(Quantity::Worst(*scalar))).collect();
-    if set == ScalarSet::default() {
+    if set.is_empty() {
         return;
     }
     // The search of a prescribed region knows the limited ones that depend on loads, which cost most.
@@ -75,7 +75,7 @@ pub(super) fn add_of_region<L: Leg>(
             let least = &mut least[scalar as usize];
             *least = least.min(found.of_loads[index][scalar]);
         }
-        if left == ScalarSet::default() {
+        if left.is_empty() {
             continue;
         }
         let minima = checker.worst(left, arms, &positions.xs, &positions.ys, &indices);

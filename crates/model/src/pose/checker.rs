@@ -46,6 +46,8 @@ pub(crate) struct PoseChecker<L> {
     pub asked: ScalarSet,
     /// Scalars that are computed where all values of a pose are.
     pub computed: ScalarSet,
+    /// [`Thresholds::need_all_scalars`].
+    pub examines_all: bool,
     /// Instruction set by which several poses are evaluated at a time. It changes no bit of a result.
     pub instructions: InstructionSet,
 }
@@ -65,6 +67,7 @@ impl<L: Leg> PoseChecker<L> {
     pub fn set_threshold(&mut self, scalar: PoseScalar, limit: Option<f64>) {
         self.thresholds.set(scalar, limit);
         self.computed = computed(&self.thresholds, self.asked);
+        self.examines_all = self.thresholds.need_all_scalars();
     }
 
     /// Computes a scalar besides those that every evaluation determines and those that are limited.
@@ -76,7 +79,7 @@ impl<L: Leg> PoseChecker<L> {
     /// Returns the design without the limits that depend on loads; `None` if there are none.
     pub fn without_loads(&self) -> Option<Self> {
         let limited = self.limited_of_loads();
-        if limited == ScalarSet::default() {
+        if limited.is_empty() {
             return None;
         }
         let mut checker = self.clone();

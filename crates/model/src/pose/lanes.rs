@@ -3,21 +3,12 @@
 use super::PoseChecker;
 use super::entry::Better;
 use super::scalars::PoseScalar;
-use super::values::{PoseLanes, PoseScalars, ScalarSet};
+use super::values::{CoreLanes, CoreScalars, EXAMINED_ALWAYS, PoseLanes, PoseScalars, ScalarSet};
 use crate::kinematics::Jacobian;
 use crate::lanes::{LaneJob, Planar, Real};
 use crate::mechanism::{DistalLanes, Leg};
 use crate::spatial::LEGS;
 use crate::stiffness::NoSliders;
-
-/// The scalars whose limits every loop over poses examines; those of all others cost a loop of its own.
-pub(crate) const EXAMINED_ALWAYS: [PoseScalar; 5] = [
-    PoseScalar::Dexterity,
-    PoseScalar::StiffnessXy,
-    PoseScalar::StiffnessPhiZ,
-    PoseScalar::StiffnessZ,
-    PoseScalar::Clearance,
-];
 
 /// The stiffness on rails that bend, as a job of its own: few studies have them, and the loop over the poses stays short.
 struct StiffnessOnRails<'a, L, V> {
@@ -50,7 +41,7 @@ struct Core<'a, L, V> {
 }
 
 impl<L: Leg, V: Real> LaneJob for Core<'_, L, V> {
-    type Output = (PoseLanes<V>, [DistalLanes<V>; LEGS]);
+    type Output = (CoreLanes<V>, [DistalLanes<V>; LEGS]);
 
     #[inline(always)]
     fn run(self) -> Self::Output {
@@ -82,12 +73,25 @@ impl<L: Leg> PoseChecker<L> {
     /// `arms` as in [`Manipulator::arms`](crate::mechanism::Manipulator::arms).
     #[inline(always)]
     pub fn lanes<V: Real>(&self, position: Planar<V>, arms: &[Planar<V>; LEGS], set: ScalarSet) -> PoseLanes<V> {
+        let CoreLanes { reachable, scalars } = self.core_lanes_with_clearance(position, arms, set);
+        let mut scalars = PoseScalars::of_core(&scalars);
+        self.fill_on_demand(set, position, arms, &mut scalars);
+        PoseLanes { reachable, scalars }
+    }
+
+    /// Returns the scalars that every evaluation determines, at several poses at once, with the clearance if a set contains it.
+    #[inline(always)]
+    pub fn core_lanes_with_clearance<V: Real>(
+        &self,
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
+        set: ScalarSet,
+    ) -> CoreLanes<V> {
         let (mut values, distals) = self.core_lanes(position, arms);
         if set.contains(PoseScalar::Clearance) {
             let limit = position.x.splat(f64::INFINITY);
             values.scalars[PoseScalar::Clearance] = self.compute_clearance_apart(position, arms, &distals, limit);
         }
-        self.fill_on_demand(set, position, arms, &mut values.scalars);
         values
     }
 
@@ -132,7 +136,7 @@ impl<L: Leg> PoseChecker<L> {
         &self,
         position: Planar<V>,
         arms: &[Planar<V>; LEGS],
-    ) -> (PoseLanes<V>, [DistalLanes<V>; LEGS]) {
+    ) -> (CoreLanes<V>, [DistalLanes<V>; LEGS]) {
         let like = position.x;
         let legs = self.leg_lanes(position, arms);
         let jacobian = Jacobian::of_lanes(&legs);
@@ -150,7 +154,7 @@ impl<L: Leg> PoseChecker<L> {
             None => [like.splat(0.0); 3],
         };
         let [first, second, third] = [&legs[0].chain, &legs[1].chain, &legs[2].chain];
-        let mut scalars = PoseScalars::splat(like);
+        let mut scalars = CoreScalars::splat(like);
         scalars[PoseScalar::Reach] = first
             .limit_margin
             .smaller(second.limit_margin.smaller(third.limit_margin));
@@ -159,7 +163,7 @@ impl<L: Leg> PoseChecker<L> {
         scalars[PoseScalar::StiffnessXy] = k_xy;
         scalars[PoseScalar::StiffnessZ] = k_z;
         scalars[PoseScalar::StiffnessPhiZ] = k_phi_z;
-        let values = PoseLanes {
+        let values = CoreLanes {
             reachable: first.reachable & second.reachable & third.reachable,
             scalars,
         };
@@ -172,7 +176,7 @@ impl<L: Leg> PoseChecker<L> {
         &self,
         position: Planar<V>,
         arms: &[Planar<V>; LEGS],
-    ) -> (PoseLanes<V>, [DistalLanes<V>; LEGS]) {
+    ) -> (CoreLanes<V>, [DistalLanes<V>; LEGS]) {
         let checker = self;
         position.x.call_apart(Core {
             checker,
@@ -198,12 +202,12 @@ impl<L: Leg> PoseChecker<L> {
         sign: V,
         set: ScalarSet,
     ) -> V::Mask {
-        let (mut values, distals) = if ALL {
+        let (values, distals) = if ALL {
             self.core_lanes_apart(position, arms)
         } else {
             self.core_lanes(position, arms)
         };
-        let scalars = &mut values.scalars;
+        let scalars = &values.scalars;
         let good = values.reachable
             & (scalars[PoseScalar::Determinant] * sign).exceeds(sign.splat(0.0))
             & scalars[PoseScalar::Dexterity].at_least(self.bound_lanes(sign, PoseScalar::Dexterity))
@@ -212,7 +216,8 @@ impl<L: Leg> PoseChecker<L> {
             & scalars[PoseScalar::StiffnessZ].at_least(self.bound_lanes(sign, PoseScalar::StiffnessZ));
         let mut good = good;
         if ALL && V::any(good) {
-            self.fill_on_demand(set, position, arms, scalars);
+            let mut scalars = PoseScalars::of_core(scalars);
+            self.fill_on_demand(set, position, arms, &mut scalars);
             for &scalar in PoseScalar::ALL {
                 if !EXAMINED_ALWAYS.contains(&scalar) && self.thresholds.get(scalar).is_some() {
                     let (value, limit) = (scalars[scalar], self.bound_lanes(sign, scalar));

@@ -15,7 +15,6 @@ mod values;
 pub(crate) use checker::{PoseChecker, computed};
 pub use constraint::ConstraintSet;
 pub use entry::{Better, QuantityEntry, Reference, Scale, Scope};
-pub(crate) use lanes::EXAMINED_ALWAYS;
 pub use scalars::{Constraint, MarginUnit, PoseScalar, PoseScalarEntry};
-pub(crate) use values::{PoseLanes, finite, is_within};
+pub(crate) use values::{CoreLanes, EXAMINED_ALWAYS, finite, is_within};
 pub use values::{PoseScalars, PoseValues, ScalarSet, Thresholds};

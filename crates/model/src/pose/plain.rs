@@ -3,9 +3,8 @@
 use glam::DVec2;
 
 use super::PoseChecker;
-use super::lanes::EXAMINED_ALWAYS;
 use super::scalars::PoseScalar;
-use super::values::{PoseScalars, PoseValues, ScalarSet};
+use super::values::{EXAMINED_ALWAYS, PoseScalars, PoseValues, ScalarSet};
 use crate::kinematics::Jacobian;
 use crate::lanes::Planar;
 use crate::mechanism::{Leg, Posture};

@@ -61,6 +61,45 @@ impl<T> IndexMut<PoseScalar> for PoseScalars<T> {
     }
 }
 
+/// A value for each scalar that every evaluation determines. Loops over poses hold no more than these: an array of all scalars does not
+/// stay in registers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CoreScalars<T>([T; PoseScalar::ALWAYS.len()]);
+
+impl<T: Copy> CoreScalars<T> {
+    /// Creates the values, all of them the same.
+    #[inline(always)]
+    pub fn splat(value: T) -> Self {
+        Self([value; PoseScalar::ALWAYS.len()])
+    }
+}
+
+impl<T> Index<PoseScalar> for CoreScalars<T> {
+    type Output = T;
+
+    #[inline(always)]
+    fn index(&self, scalar: PoseScalar) -> &T {
+        &self.0[scalar as usize]
+    }
+}
+
+impl<T> IndexMut<PoseScalar> for CoreScalars<T> {
+    #[inline(always)]
+    fn index_mut(&mut self, scalar: PoseScalar) -> &mut T {
+        &mut self.0[scalar as usize]
+    }
+}
+
+impl<T: Copy> PoseScalars<T> {
+    /// Creates the values of all scalars from those that are known.
+    #[inline(always)]
+    pub(crate) fn of_core(core: &CoreScalars<T>) -> Self {
+        let mut all = Self::splat(core.0[0]);
+        all.0[..core.0.len()].copy_from_slice(&core.0);
+        all
+    }
+}
+
 /// A set of scalars.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ScalarSet(u64);
@@ -80,6 +119,19 @@ impl ScalarSet {
     #[inline(always)]
     pub fn contains(self, scalar: PoseScalar) -> bool {
         self.0 & (1 << scalar as u32) != 0
+    }
+
+    /// Returns the scalars of the set that are computed on demand.
+    #[inline(always)]
+    pub(crate) fn on_demand(self) -> Self {
+        // Those of every evaluation are the first ones of the table.
+        Self(self.0 >> PoseScalar::ALWAYS.len() << PoseScalar::ALWAYS.len())
+    }
+
+    /// Returns whether the set is empty.
+    #[inline(always)]
+    pub(crate) fn is_empty(self) -> bool {
+        self.0 == 0
     }
 
     /// Iterates over the scalars of the set.
@@ -156,6 +208,15 @@ impl Index<PoseScalar> for PoseValues {
     }
 }
 
+/// The scalars that every evaluation determines, at several poses at once.
+#[derive(Clone, Copy)]
+pub struct CoreLanes<V: Real> {
+    /// Mask of the poses that every leg reaches; elsewhere only the limit margin is meaningful, which is at most 0 there.
+    pub reachable: V::Mask,
+    /// The scalars.
+    pub scalars: CoreScalars<V>,
+}
+
 /// [`PoseValues`] at several poses at once.
 #[derive(Clone, Copy)]
 pub struct PoseLanes<V: Real> {
@@ -164,6 +225,15 @@ pub struct PoseLanes<V: Real> {
     /// The scalars; those that were not computed are meaningless.
     pub scalars: PoseScalars<V>,
 }
+
+/// The scalars whose limits every loop over poses examines; those of all others cost a loop of its own.
+pub(crate) const EXAMINED_ALWAYS: [PoseScalar; 5] = [
+    PoseScalar::Dexterity,
+    PoseScalar::StiffnessXy,
+    PoseScalar::StiffnessPhiZ,
+    PoseScalar::StiffnessZ,
+    PoseScalar::Clearance,
+];
 
 /// The values that a study allows at a feasible pose: of each scalar, the smallest one, or the largest one where smaller values are
 /// better.
@@ -216,6 +286,11 @@ impl Thresholds {
             .iter()
             .copied()
             .filter_map(|scalar| Some((scalar, self.get(scalar)?)))
+    }
+
+    /// Returns whether a limit is of a scalar that not every loop over poses examines.
+    pub(crate) fn need_all_scalars(&self) -> bool {
+        self.iter().any(|(scalar, _)| !EXAMINED_ALWAYS.contains(&scalar))
     }
 
     /// Returns whether the values of a reachable pose keep all limits.

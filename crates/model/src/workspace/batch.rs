@@ -9,7 +9,7 @@ use pulp::{Simd, WithSimd};
 
 use crate::lanes::{Lanes, MAX_LANES, Planar, Real, padded_length};
 use crate::mechanism::Leg;
-use crate::pose::{EXAMINED_ALWAYS, PoseChecker, PoseScalar, PoseScalars, ScalarSet};
+use crate::pose::{PoseChecker, PoseScalar, PoseScalars, ScalarSet};
 use crate::spatial::LEGS;
 
 /// Orientation in which poses are evaluated.
@@ -253,15 +253,7 @@ impl<L: Leg> PoseChecker<L> {
                 })
             };
         }
-        if self
-            .thresholds
-            .iter()
-            .any(|(scalar, _)| !EXAMINED_ALWAYS.contains(&scalar))
-        {
-            run!(true)
-        } else {
-            run!(false)
-        }
+        if self.examines_all { run!(true) } else { run!(false) }
     }
 
     /// Returns the smallest values over many positions in one orientation; `indices` numbers the positions from 0. The
@@ -297,6 +289,9 @@ impl<L: Leg> PoseChecker<L> {
         indices: &[f64],
     ) -> [Minimum; PoseScalar::COUNT] {
         assert!(xs.len() == ys.len() && xs.len() == indices.len() && xs.len().is_multiple_of(MAX_LANES));
+        if set.is_empty() {
+            return [Minimum::NONE; PoseScalar::COUNT];
+        }
         self.instructions.run(Worst {
             checker: self,
             arms,

@@ -6,7 +6,7 @@ use pulp::{Simd, WithSimd};
 use crate::lanes::{Lanes, MAX_LANES, Planar, Real, padded_length};
 use crate::mechanism::Leg;
 use crate::pose::{
-    Better, PoseChecker, PoseLanes, PoseScalar, PoseScalars, PoseValues, ScalarSet, Thresholds, finite, is_within,
+    Better, CoreLanes, PoseChecker, PoseScalar, PoseScalars, PoseValues, ScalarSet, Thresholds, finite, is_within,
 };
 use crate::spatial::{LEGS, NUMBER_LIMIT};
 
@@ -168,14 +168,21 @@ struct ColumnWriter<'a, S: Simd> {
 
 impl<S: Simd> ColumnWriter<'_, S> {
     #[inline(always)]
-    fn put(&mut self, group: usize, values: &PoseLanes<Lanes<S>>) {
+    fn put(&mut self, group: usize, values: &CoreLanes<Lanes<S>>) {
         let margin = values.scalars[PoseScalar::Reach];
         let (one, zero) = (margin.splat(1.0), margin.splat(0.0));
         one.select(values.reachable, zero).store(&mut self.reachable[group]);
-        for &scalar in PoseScalar::ALL {
+        for &scalar in PoseScalar::ALWAYS {
             if self.computed.contains(scalar) {
                 values.scalars[scalar].store(&mut self.scalars[scalar][group]);
             }
+        }
+    }
+
+    #[inline(always)]
+    fn put_on_demand(&mut self, group: usize, scalars: &PoseScalars<Lanes<S>>) {
+        for scalar in self.computed.on_demand().iter() {
+            scalars[scalar].store(&mut self.scalars[scalar][group]);
         }
     }
 }
@@ -284,7 +291,13 @@ impl<L: Leg> WithSimd for AtPoses<'_, L> {
                     Planar::new(Lanes::load(simd, &x2[group]), Lanes::load(simd, &y2[group])),
                 ];
             }
-            writer.put(group, &self.checker.lanes(position, &arms, computed));
+            let checker = self.checker;
+            writer.put(group, &checker.core_lanes_with_clearance(position, &arms, computed));
+            if !computed.on_demand().is_empty() {
+                let mut scalars = PoseScalars::splat(zero);
+                checker.fill_on_demand(computed, position, &arms, &mut scalars);
+                writer.put_on_demand(group, &scalars);
+            }
         }
     }
 }

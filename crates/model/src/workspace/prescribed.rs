@@ -304,14 +304,15 @@ impl<L: Leg> WithSimd for WorstMargin<'_, L> {
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         for (x, y) in xs.iter().zip(ys) {
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            let (margin, scalars) = self
-                .checker
-                .margin_lanes(position, &arms, sign, self.base_radius, limited);
+            let margin = self.checker.margin_lanes(
+                position,
+                &arms,
+                sign,
+                self.base_radius,
+                limited,
+                (self.of_loads, &mut least_of_loads),
+            );
             least = margin.smaller(least);
-            for scalar in self.of_loads.iter() {
-                let reversed = sign.splat(scalar.entry().quantity.better.sign());
-                least_of_loads[scalar] = (scalars[scalar] * reversed).smaller(least_of_loads[scalar]);
-            }
         }
         let mut of_loads = PoseScalars::splat(f64::INFINITY);
         for scalar in self.of_loads.iter() {
@@ -347,7 +348,8 @@ impl<L: Leg> PoseChecker<L> {
     }
 
     /// Returns the worst margin of the limits at several poses at once, no less than −1, and less than −1 where a leg does not reach
-    /// the pose, and the scalars. Margins of lengths are divided by `base_radius`. `set` are the scalars that are limited.
+    /// the pose. Margins of lengths are divided by `base_radius`. `set` are the scalars that are limited; of those that depend on loads,
+    /// the worst values so far are kept.
     #[inline(always)]
     fn margin_lanes<V: Real>(
         &self,
@@ -356,9 +358,10 @@ impl<L: Leg> PoseChecker<L> {
         sign: V,
         base_radius: f64,
         set: ScalarSet,
-    ) -> (V, PoseScalars<V>) {
-        let (mut values, distals) = self.core_lanes(position, arms);
-        let scalars = &mut values.scalars;
+        (of_loads, least_of_loads): (ScalarSet, &mut PoseScalars<V>),
+    ) -> V {
+        let (values, distals) = self.core_lanes(position, arms);
+        let scalars = &values.scalars;
         let none = sign.splat(-1.0);
         let per_length = sign.splat(1.0 / base_radius);
         // A margin that is not a number counts as a constraint that is missed entirely.
@@ -381,13 +384,20 @@ impl<L: Leg> PoseChecker<L> {
                 .select(determinant.exceeds(sign.splat(0.0)), determinant.smaller(vanishing))
                 .larger(none),
         );
-        self.fill_on_demand(set, position, arms, scalars);
-        for &scalar in PoseScalar::ALL {
-            if let Some(threshold) = self.thresholds.get(scalar)
-                && !EXAMINED_ALWAYS.contains(&scalar)
-            {
-                let margin = limit_margin(scalar, scalars[scalar], threshold, per_length);
-                worst = worst.smaller(margin.larger(none));
+        if self.examines_all {
+            let mut scalars = PoseScalars::of_core(scalars);
+            self.fill_on_demand(set, position, arms, &mut scalars);
+            for &scalar in PoseScalar::ALL {
+                if let Some(threshold) = self.thresholds.get(scalar)
+                    && !EXAMINED_ALWAYS.contains(&scalar)
+                {
+                    let margin = limit_margin(scalar, scalars[scalar], threshold, per_length);
+                    worst = worst.smaller(margin.larger(none));
+                }
+            }
+            for scalar in of_loads.iter() {
+                let reversed = sign.splat(scalar.entry().quantity.better.sign());
+                least_of_loads[scalar] = (scalars[scalar] * reversed).smaller(least_of_loads[scalar]);
             }
         }
         if let Some(threshold) = self.thresholds.get(PoseScalar::Clearance) {
@@ -396,7 +406,7 @@ impl<L: Leg> PoseChecker<L> {
             let clearance = self.compute_clearance_apart(position, arms, &distals, limit);
             worst = worst.smaller(((clearance - sign.splat(threshold)) * per_length).larger(none));
         }
-        (worst.select(values.reachable, unreached), values.scalars)
+        worst.select(values.reachable, unreached)
     }
 }
 
