@@ -9,7 +9,7 @@ use super::pose::PoseJson;
 use super::strength::StrengthJson;
 use kinefront_model::clearance::Clearance;
 use kinefront_model::evaluation::{
-    Bound, Evaluation, GridChoice, LimitResult, Model, PoseEvaluation, PoseScalar, Quantity, Unreachable,
+    Bound, Evaluation, LimitResult, Model, PoseEvaluation, PoseScalar, Quantity, Unreachable,
 };
 use kinefront_model::mechanism::{Design, DesignVariable};
 use kinefront_model::strength::StrengthReport;
@@ -170,7 +170,7 @@ impl EvaluationJson {
     pub fn with_dynamics(mut self, model: &Model, evaluation: &Evaluation) -> Self {
         let followed = model.follow_task(evaluation);
         self.task = followed.map(|(outcome, _)| TaskJson::from(&outcome));
-        let over_workspace = model.over_workspace(evaluation, GridChoice::Reference);
+        let over_workspace = model.over_workspace(evaluation);
         self.over_workspace = over_workspace.as_ref().map(OverWorkspaceJson::from);
         self
     }

@@ -85,6 +85,18 @@ pub trait Real:
         ]
     }
 
+    /// Returns the lower triangle, column by column, of the Cholesky factor of a symmetric matrix, given as an upper triangle; not a number
+    /// where the matrix is not positive definite.
+    #[inline(always)]
+    fn cholesky(matrix: &[Self; 6]) -> [Self; 6] {
+        let a = matrix[0].sqrt();
+        let (b, c) = (matrix[1] / a, matrix[2] / a);
+        let d = (matrix[3] - b * b).sqrt();
+        let e = (matrix[4] - b * c) / d;
+        let f = (matrix[5] - c * c - e * e).sqrt();
+        [a, b, c, d, e, f]
+    }
+
     /// Returns the rows of the inverse of the transpose of a matrix, which is given by its rows.
     #[inline(always)]
     fn inverse_transpose([a, b, c]: &[[Self; 3]; 3]) -> [[Self; 3]; 3] {
@@ -117,6 +129,24 @@ fn cross<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
         a[2] * b[0] - a[0] * b[2],
         a[0] * b[1] - a[1] * b[0],
     ]
+}
+
+/// Returns the dot product of two vectors.
+#[inline(always)]
+pub(crate) fn dot<V: Real>(a: &[V; 3], b: &[V; 3]) -> V {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Returns the sum of two vectors.
+#[inline(always)]
+pub(crate) fn sum<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// Returns the difference of two vectors.
+#[inline(always)]
+pub(crate) fn less<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// Returns the multiple of a vector.

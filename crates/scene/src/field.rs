@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use kinefront_model::dynamics::{Anywhere, Tolerances};
 use kinefront_model::evaluation::{Better, Model, PoseScalar, PoseValues, Scale};
 use kinefront_model::mechanism::Design;
 use kinefront_model::workspace::PoseEvaluator;
@@ -26,24 +25,10 @@ impl Field {
         scalars.chain([Field::WorstMargin])
     }
 
-    /// The fields that have values for a design. Errors need tolerances, and speeds and forces in motion need a motion: they are 0
-    /// everywhere without.
+    /// The fields that tell something of a design.
     pub fn of(model: &Model, design: &Design) -> impl Iterator<Item = Field> {
-        let dynamics = &model.settings().dynamics;
-        let (errs, moves) = (
-            dynamics.tolerances != Tolerances::default(),
-            dynamics.anywhere != Anywhere::default(),
-        );
-        let is_asked = move |scalar: PoseScalar| match scalar {
-            PoseScalar::PositionError | PoseScalar::OrientationError => errs,
-            PoseScalar::ActuatorSpeed
-            | PoseScalar::ActuatorRate
-            | PoseScalar::MotionForce
-            | PoseScalar::MotionTorque => moves,
-            _ => true,
-        };
-        let has = move |field: &Field| match *field {
-            Field::Scalar(scalar) => model.has(design, scalar) && is_asked(scalar),
+        let has = |field: &Field| match *field {
+            Field::Scalar(scalar) => model.tells(design, scalar),
             Field::WorstMargin => true,
         };
         Self::all().filter(has)

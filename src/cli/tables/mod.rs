@@ -80,15 +80,13 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         Quantity::WorkspaceRadius,
     ];
     let is_fact = |quantity: &Quantity| quantity.constraint().is_none() && !told_elsewhere.contains(quantity);
-    // Without tolerances there are no errors, and without a motion no speeds and forces.
-    let is_nothing = |quantity: Quantity, value: f64| match quantity {
-        Quantity::Worst(scalar) => PoseScalar::OF_MOTION.contains(&scalar) && value == 0.0,
-        _ => false,
+    let tells = |quantity: &Quantity| match quantity {
+        Quantity::Worst(scalar) => model.tells(design, *scalar),
+        _ => true,
     };
-    for quantity in Quantity::all().filter(is_fact) {
+    for quantity in Quantity::all().filter(is_fact).filter(tells) {
         let entry = quantity.entry();
-        let value = evaluation.quantities.get(quantity);
-        if let Some(value) = value.filter(|value| !is_nothing(quantity, *value)) {
+        if let Some(value) = evaluation.quantities.get(quantity) {
             facts.add_row([
                 entry.label.to_owned(),
                 format!("{} {}", text::number(value), entry.unit),

@@ -1,10 +1,10 @@
 //! What the motion of a design asks of its actuators at several poses at once, whatever its direction (docs/model.md, section 15.7).
 
-use super::legs::{DynamicsInputs, MovingLeg, dot};
+use super::legs::{DynamicsInputs, MovingLeg};
 use super::modes::lowest_frequency;
-use super::{Anywhere, DynamicsModel};
+use super::{Anywhere, DynamicsModel, DynamicsSettings, Tolerances};
 use crate::enclosure::{EnclosedNumber, TaylorModel};
-use crate::lanes::{LaneJob, Real, scaled};
+use crate::lanes::{LaneJob, Real, dot, scaled};
 use crate::mechanism::JointKind;
 use crate::spatial::LEGS;
 
@@ -21,13 +21,31 @@ pub(crate) enum MotionValue {
 }
 
 impl MotionValue {
+    /// Returns the kind of actuators that have the value; `None` if all designs have it.
+    #[inline(always)]
+    pub fn of_actuators(self) -> Option<JointKind> {
+        match self {
+            MotionValue::ActuatorSpeed | MotionValue::MotionForce => Some(JointKind::Prismatic),
+            MotionValue::ActuatorRate | MotionValue::MotionTorque => Some(JointKind::Revolute),
+            _ => None,
+        }
+    }
+
     /// Returns whether designs with actuators of a kind have the value.
     #[inline(always)]
     pub fn exists(self, actuator: JointKind) -> bool {
+        self.of_actuators().is_none_or(|kind| kind == actuator)
+    }
+
+    /// Returns whether the settings ask for something of which the value tells: it is 0 everywhere otherwise.
+    pub fn is_asked(self, settings: &DynamicsSettings) -> bool {
         match self {
-            MotionValue::ActuatorSpeed | MotionValue::MotionForce => actuator == JointKind::Prismatic,
-            MotionValue::ActuatorRate | MotionValue::MotionTorque => actuator == JointKind::Revolute,
-            MotionValue::NaturalFrequency | MotionValue::PositionError | MotionValue::OrientationError => true,
+            MotionValue::NaturalFrequency => true,
+            MotionValue::PositionError | MotionValue::OrientationError => settings.tolerances != Tolerances::default(),
+            MotionValue::ActuatorSpeed
+            | MotionValue::ActuatorRate
+            | MotionValue::MotionForce
+            | MotionValue::MotionTorque => settings.anywhere != Anywhere::default(),
         }
     }
 
@@ -53,9 +71,10 @@ impl<V: Real> LaneJob for MotionJob<'_, V> {
     #[inline(always)]
     fn run(self) -> V {
         let Self { model, inputs, value } = self;
+        let legs = model.legs(inputs);
         let found = match value {
-            MotionValue::NaturalFrequency => model.lowest_frequency(inputs, &model.legs(inputs)),
-            _ => model.demand(inputs, value),
+            MotionValue::NaturalFrequency => model.lowest_frequency(inputs, &legs),
+            _ => model.demand(inputs, &legs, value),
         };
         // What is no number is the worst one.
         let is_known = found.splat(f64::INFINITY).exceeds(found.abs());
@@ -65,8 +84,13 @@ impl<V: Real> LaneJob for MotionJob<'_, V> {
 
 impl DynamicsModel {
     /// Encloses what a limit bounds from above over a box of poses.
-    pub fn enclose(&self, inputs: &DynamicsInputs<EnclosedNumber>, value: MotionValue) -> TaylorModel {
-        self.demand(inputs, value).0
+    pub fn enclose(
+        &self,
+        inputs: &DynamicsInputs<EnclosedNumber>,
+        legs: &[MovingLeg<EnclosedNumber>; LEGS],
+        value: MotionValue,
+    ) -> TaylorModel {
+        self.demand(inputs, legs, value).0
     }
 
     /// Encloses both blocks of `K − (2πf)² M` over a box of poses, as upper triangles: they are positive definite where all natural
@@ -74,39 +98,37 @@ impl DynamicsModel {
     pub fn enclose_stiffness_above(
         &self,
         inputs: &DynamicsInputs<EnclosedNumber>,
+        legs: &[MovingLeg<EnclosedNumber>; LEGS],
         frequency: f64,
     ) -> [[EnclosedNumber; 6]; 2] {
-        let legs = self.legs(inputs);
         let rate = 2.0 * std::f64::consts::PI * frequency;
         let less = |stiffness: [EnclosedNumber; 6], mass: [EnclosedNumber; 6]| {
             let square = stiffness[0].splat(rate * rate);
             std::array::from_fn(|entry| stiffness[entry] - square * mass[entry])
         };
         [
-            less(inputs.legs.in_plane(), self.mass_in_plane(inputs, &legs)),
-            less(inputs.legs.out_of_plane(), self.mass_out_of_plane(inputs, &legs)),
+            less(inputs.legs.in_plane(), self.mass_in_plane(inputs, legs)),
+            less(inputs.legs.out_of_plane(), self.mass_out_of_plane(inputs, legs)),
         ]
     }
 
     /// Returns a value that a limit bounds from above, at several poses at once; not a number where there is none.
     #[inline(always)]
-    fn demand<V: Real>(&self, inputs: &DynamicsInputs<V>, value: MotionValue) -> V {
-        let model = self;
-        let legs = model.legs(inputs);
+    fn demand<V: Real>(&self, inputs: &DynamicsInputs<V>, legs: &[MovingLeg<V>; LEGS], value: MotionValue) -> V {
         match value {
             MotionValue::NaturalFrequency => legs[0].transmission.splat(f64::NAN),
-            MotionValue::PositionError => model.worst_position(&model.leg_errors(inputs, &legs)).0,
+            MotionValue::PositionError => self.worst_position(&self.leg_errors(inputs, legs)).0,
             MotionValue::OrientationError => {
-                let error = model.worst_orientation(&model.leg_errors(inputs, &legs));
+                let error = self.worst_orientation(&self.leg_errors(inputs, legs));
                 error * error.splat(180.0 / std::f64::consts::PI)
             }
             MotionValue::ActuatorSpeed | MotionValue::ActuatorRate => {
-                let driven = model.driven;
-                model.largest_speed(&[legs[0].rates[driven], legs[1].rates[driven], legs[2].rates[driven]])
+                let driven = self.driven;
+                self.largest_speed(&[legs[0].rates[driven], legs[1].rates[driven], legs[2].rates[driven]])
             }
             MotionValue::MotionForce | MotionValue::MotionTorque => {
-                let rigid = model.rigid_mass(inputs, &legs);
-                model.largest_force(inputs, &legs, &model.effort_rows(&legs, &rigid))
+                let rigid = self.rigid_mass(inputs, legs);
+                self.largest_force(inputs, legs, &self.effort_rows(legs, &rigid))
             }
         }
     }
@@ -122,8 +144,9 @@ pub(super) struct EffortRows<V> {
     pub inertia: [[V; 3]; LEGS],
 }
 
+/// Returns the length of the linear part of a row.
 #[inline(always)]
-fn norm<V: Real>(row: &[V; 3]) -> V {
+pub(super) fn norm<V: Real>(row: &[V; 3]) -> V {
     (row[0] * row[0] + row[1] * row[1]).sqrt()
 }
 

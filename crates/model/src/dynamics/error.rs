@@ -2,9 +2,9 @@
 
 use std::sync::LazyLock;
 
-use super::legs::{DynamicsInputs, MovingLeg, dot};
+use super::legs::{DynamicsInputs, MovingLeg};
 use super::{DynamicsModel, Rail};
-use crate::lanes::{Planar, Real};
+use crate::lanes::{Planar, Real, dot};
 use crate::spatial::LEGS;
 use crate::strength::path::PLATFORM;
 

@@ -3,8 +3,8 @@
 //! Velocities and accelerations are those of the points of the bodies that pass `P`, so that they add up along a chain.
 
 use super::DynamicsModel;
-use super::legs::{DynamicsInputs, MovingLeg, dot, less, sum};
-use crate::lanes::{LaneJob, Planar, Real, scaled};
+use super::legs::{DynamicsInputs, MovingLeg};
+use crate::lanes::{LaneJob, Planar, Real, dot, less, scaled, sum};
 use crate::spatial::LEGS;
 use crate::strength::path::{BARS, PLATFORM};
 

@@ -1,7 +1,7 @@
 //! The legs at several poses at once as their motion sees them.
 
 use super::DynamicsModel;
-use crate::lanes::{Planar, Real};
+use crate::lanes::{Planar, Real, dot};
 use crate::spatial::LEGS;
 use crate::strength::StrengthInputs;
 use crate::strength::path::PathLanes;
@@ -17,7 +17,7 @@ pub(crate) struct DynamicsInputs<V: Real> {
 
 /// A leg at several poses at once.
 #[derive(Clone, Copy)]
-pub(super) struct MovingLeg<V> {
+pub(crate) struct MovingLeg<V> {
     pub path: PathLanes<V>,
     /// Twists of the platform at `P` for a unit rate of each joint.
     pub twists: [[V; 3]; 3],
@@ -31,25 +31,10 @@ pub(super) struct MovingLeg<V> {
     pub column: [V; 3],
 }
 
-#[inline(always)]
-pub(super) fn dot<V: Real>(a: &[V; 3], b: &[V; 3]) -> V {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-pub(super) fn sum<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-#[inline(always)]
-pub(super) fn less<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
 impl DynamicsModel {
     /// Returns the legs at several poses at once.
     #[inline(always)]
-    pub(super) fn legs<V: Real>(&self, inputs: &DynamicsInputs<V>) -> [MovingLeg<V>; LEGS] {
+    pub fn legs<V: Real>(&self, inputs: &DynamicsInputs<V>) -> [MovingLeg<V>; LEGS] {
         let rows = [row(inputs, 0), row(inputs, 1), row(inputs, 2)];
         let columns = V::inverse_transpose(&rows);
         [

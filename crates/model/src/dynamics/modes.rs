@@ -4,8 +4,8 @@
 //! that displace the platform, and each bar bends between its ends as a cubic.
 
 use super::DynamicsModel;
-use super::legs::{DynamicsInputs, MovingLeg, dot, sum};
-use crate::lanes::{LaneJob, Planar, Real, scaled};
+use super::legs::{DynamicsInputs, MovingLeg};
+use crate::lanes::{LaneJob, Planar, Real, dot, scaled, sum};
 use crate::spatial::LEGS;
 use crate::stiffness::add_bar;
 use crate::strength::path::{BARS, BarLanes, DISTAL, PLATFORM};
@@ -118,8 +118,8 @@ impl<V: Real> BarShape<V> {
         add(mass, &added);
     }
 
-    /// Adds what the pieces of a bar contribute to the mass; `moves` tells of each piece with which of the displacements along the bar
-    /// it moves.
+    /// Adds what the pieces of a bar contribute to the mass, out of the plane if `is_torsion`: the second displacement is then the rotation
+    /// about the bar.
     #[inline(always)]
     fn add_pieces(&self, mass: &mut [V; 6], bar: &BarLanes<V>, gyration: f64, is_torsion: bool, is_telescopic: bool) {
         let zero = bar.length.splat(0.0);
@@ -501,10 +501,15 @@ fn add_twist<V: Real>(moved: &mut Displacement<V>, twist: &[V; 3], by: &Row<V>) 
     }
 }
 
+/// Returns a symmetric matrix that is given as an upper triangle.
+#[inline(always)]
+pub(super) fn full<V: Copy>(m: &[V; 6]) -> [[V; 3]; 3] {
+    [[m[0], m[1], m[2]], [m[1], m[3], m[4]], [m[2], m[4], m[5]]]
+}
+
 /// Returns the product of two symmetric matrices that are given as upper triangles.
 #[inline(always)]
 fn times<V: Real>(a: &[V; 6], b: &[V; 6]) -> Displacement<V> {
-    let full = |m: &[V; 6]| [[m[0], m[1], m[2]], [m[1], m[3], m[4]], [m[2], m[4], m[5]]];
     let (a, b) = (full(a), full(b));
     // `b` is symmetric, so that its rows are its columns.
     [0, 1, 2].map(|i| [dot(&a[i], &b[0]), dot(&a[i], &b[1]), dot(&a[i], &b[2])])
@@ -523,11 +528,7 @@ pub(super) fn lowest_frequency<V: Real>(stiffness: &[V; 6], mass: &[V; 6]) -> V 
 /// Returns `L⁻¹ M L⁻ᵀ` of a mass, with the Cholesky factor `L` of a stiffness.
 #[inline(always)]
 fn reduced<V: Real>(k: &[V; 6], m: &[V; 6]) -> [V; 6] {
-    let a = k[0].sqrt();
-    let (b, c) = (k[1] / a, k[2] / a);
-    let d = (k[3] - b * b).sqrt();
-    let e = (k[4] - b * c) / d;
-    let f = (k[5] - c * c - e * e).sqrt();
+    let [a, b, c, d, e, f] = V::cholesky(k);
     // Columns of `L⁻¹ M`, and then rows.
     let forward = |x: V, y: V, z: V| {
         let first = x / a;

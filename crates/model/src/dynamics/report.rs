@@ -1,10 +1,11 @@
 //! The motion of a design at one pose in full.
 
 use super::DynamicsModel;
+use super::effort::norm;
 use super::error::{LegErrors, PoseErrors};
 use super::inverse::DriveMotion;
 use super::legs::{DynamicsInputs, MovingLeg};
-use super::modes::lowest_frequency;
+use super::modes::{full, lowest_frequency};
 use crate::mechanism::AnyLeg;
 use crate::spatial::{LEGS, Pose, Rotation};
 use glam::DVec2;
@@ -87,11 +88,6 @@ impl DynamicsReport {
     }
 }
 
-/// Returns a symmetric matrix that is given as an upper triangle.
-fn full(m: &[f64; 6]) -> [[f64; 3]; 3] {
-    [[m[0], m[1], m[2]], [m[1], m[3], m[4]], [m[2], m[4], m[5]]]
-}
-
 /// Returns the natural frequencies of a block with its mass, in increasing order \[Hz\]; `None` where the mass is not positive definite.
 fn frequencies(stiffness: &[f64; 6], mass: &[f64; 6]) -> Option<[f64; 3]> {
     let matrix = |m: &[f64; 6]| Matrix3::from(full(m));
@@ -115,10 +111,7 @@ fn frequencies(stiffness: &[f64; 6], mass: &[f64; 6]) -> Option<[f64; 3]> {
 /// Returns the largest length of the linear part of some rows, and the largest magnitude of their rotational part.
 fn largest(rows: &[[f64; 3]; LEGS]) -> [f64; 2] {
     rows.iter().fold([0.0, 0.0], |[linear, angular]: [f64; 2], row| {
-        [
-            linear.max((row[0] * row[0] + row[1] * row[1]).sqrt()),
-            angular.max(row[2].abs()),
-        ]
+        [linear.max(norm(row)), angular.max(row[2].abs())]
     })
 }
 

@@ -465,6 +465,13 @@ impl Model {
                 .is_none_or(|value| value.exists(strength, actuator, on_rails))
     }
 
+    /// Returns whether a scalar of a pose tells something of a design: errors need tolerances, and speeds and forces in motion need a
+    /// motion.
+    pub fn tells(&self, design: &Design, scalar: PoseScalar) -> bool {
+        let of_motion = scalar.of_motion();
+        self.has(design, scalar) && of_motion.is_none_or(|value| value.is_asked(&self.settings.dynamics))
+    }
+
     /// Returns the limits that concern a design: those of actuators that turn bound no design whose actuators slide, and the reverse.
     pub(crate) fn thresholds_of(&self, design: &Design) -> Thresholds {
         let mut thresholds = self.settings.thresholds;

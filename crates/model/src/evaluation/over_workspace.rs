@@ -2,13 +2,11 @@
 
 use glam::DVec2;
 
-use super::{Evaluation, GridChoice, Model, PosedDesign};
+use super::worst::positions_in_disc;
+use super::{Evaluation, Model, PosedDesign};
 use crate::dynamics::DynamicsReport;
-use crate::spatial::{Pose, direction_deg};
-use crate::workspace::Region;
-
-/// Largest number of rings of the disc.
-const MAX_RINGS: f64 = 24.0;
+use crate::spatial::Pose;
+use crate::workspace::{Region, directions};
 
 /// A value with the pose at which it occurs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,19 +51,19 @@ pub struct OverWorkspace {
 }
 
 impl Model {
-    /// Returns the worst figures over the disc of an evaluated design; `None` without one, for a prescribed region, and for a design that
-    /// is infinitely compliant or singular in it.
-    pub fn over_workspace(&self, evaluation: &Evaluation, choice: GridChoice) -> Option<OverWorkspace> {
+    /// Returns the worst figures over the disc of an evaluated design, at the poses of the reference grid in all directions; `None` without
+    /// a disc, for a prescribed region, and for a design that is infinitely compliant or singular in it.
+    pub fn over_workspace(&self, evaluation: &Evaluation) -> Option<OverWorkspace> {
         let workspace = &self.settings().workspace;
         let is_disc = matches!(workspace.region, Region::Largest);
         let home = evaluation
             .home_phi_deg
             .filter(|_| is_disc && evaluation.workspace_radius() > 0.0)?;
-        let grid = match choice {
-            GridChoice::Reference => &self.settings().reference_grid,
-            GridChoice::Fine => &self.settings().fine_grid,
-        };
-        let positions = positions(workspace.centre, evaluation, grid.ray_steps(), grid.directions());
+        let grid = &self.settings().reference_grid;
+        let directions = directions(grid, false);
+        let spacing = evaluation.design.base_radius() / grid.ray_steps() as f64;
+        let radius = evaluation.workspace_radius();
+        let positions: Vec<DVec2> = positions_in_disc(workspace.centre, &directions, radius, spacing).collect();
         let half = grid.half_window(workspace.rotation_range_deg).ok()?;
         let posed = self.posed(&evaluation.design);
         let mut found = OverWorkspace {
@@ -112,20 +110,6 @@ impl OverWorkspace {
         points.extend(dynamics.joints());
         Some(())
     }
-}
-
-/// Returns the centre of the disc and points on equal rings about it.
-fn positions(centre: DVec2, evaluation: &Evaluation, ray_steps: usize, directions: usize) -> Vec<DVec2> {
-    let radius = evaluation.workspace_radius();
-    let rings = (ray_steps as f64 * radius / evaluation.design.base_radius())
-        .ceil()
-        .clamp(1.0, MAX_RINGS);
-    let mut positions = vec![centre];
-    for direction in 0..directions {
-        let towards = direction_deg(360.0 * direction as f64 / directions as f64);
-        positions.extend((1..=rings as usize).map(|ring| centre + towards * (radius * ring as f64 / rings)));
-    }
-    positions
 }
 
 /// Returns the area of the convex hull of some points.

@@ -92,10 +92,7 @@ impl PosedDesign {
     /// The leg that does not reach the pose, and why.
     pub fn at(&self, pose: &Pose) -> Result<PoseEvaluation, Unreachable> {
         let checker = &self.checker;
-        let posture = checker
-            .manipulator
-            .posture(pose)
-            .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+        let posture = self.posture(pose)?;
         let jacobian = Jacobian::new(&posture);
         Ok(PoseEvaluation {
             actuators: self.actuators(&posture),
@@ -114,10 +111,7 @@ impl PosedDesign {
     /// The leg that does not reach the pose, and why.
     pub fn strength_at(&self, pose: &Pose, wrench: Option<[f64; 6]>) -> Result<Option<StrengthReport>, Unreachable> {
         let checker = &self.checker;
-        let posture = checker
-            .manipulator
-            .posture(pose)
-            .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+        let posture = self.posture(pose)?;
         let (Some(strength), Some(stiffness)) = (&checker.strength, &checker.stiffness) else {
             return Ok(None);
         };
@@ -134,10 +128,7 @@ impl PosedDesign {
     /// The leg that does not reach the pose, and why.
     pub fn dynamics_at(&self, pose: &Pose) -> Result<Option<PosedDynamics<'_>>, Unreachable> {
         let checker = &self.checker;
-        let posture = checker
-            .manipulator
-            .posture(pose)
-            .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+        let posture = self.posture(pose)?;
         let (Some(dynamics), Some(stiffness)) = (&checker.dynamics, &checker.stiffness) else {
             return Ok(None);
         };
@@ -155,6 +146,12 @@ impl PosedDesign {
             determinant: Jacobian::new(&posture).determinant(),
             joints: posture.legs.map(|leg| [leg.chain.a, leg.chain.b, leg.chain.c]),
         }))
+    }
+
+    /// Solves the inverse kinematics at `pose`.
+    fn posture(&self, pose: &Pose) -> Result<Posture, Unreachable> {
+        let posture = self.checker.manipulator.posture(pose);
+        posture.map_err(|(leg, shortfall)| Unreachable { leg, shortfall })
     }
 
     /// Returns the kind of the actuators.

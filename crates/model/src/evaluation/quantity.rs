@@ -162,14 +162,32 @@ impl Quantity {
         match self {
             Quantity::PathSpeed | Quantity::PathForce | Quantity::PathForceRms => Some(JointKind::Prismatic),
             Quantity::PathRate | Quantity::PathTorque | Quantity::PathTorqueRms => Some(JointKind::Revolute),
-            Quantity::Worst(PoseScalar::ActuatorForce | PoseScalar::ActuatorSpeed | PoseScalar::MotionForce) => {
-                Some(JointKind::Prismatic)
-            }
-            Quantity::Worst(PoseScalar::ActuatorTorque | PoseScalar::ActuatorRate | PoseScalar::MotionTorque) => {
-                Some(JointKind::Revolute)
-            }
+            Quantity::Worst(scalar) => scalar.of_actuators(),
             _ => None,
         }
+    }
+
+    /// Returns the quantity that takes the place of this one where the actuators are of the other kind.
+    pub fn of_other_actuators(self) -> Option<Quantity> {
+        const PAIRS: [[Quantity; 2]; 6] = [
+            [Quantity::PathSpeed, Quantity::PathRate],
+            [Quantity::PathForce, Quantity::PathTorque],
+            [Quantity::PathForceRms, Quantity::PathTorqueRms],
+            [
+                Quantity::Worst(PoseScalar::ActuatorForce),
+                Quantity::Worst(PoseScalar::ActuatorTorque),
+            ],
+            [
+                Quantity::Worst(PoseScalar::ActuatorSpeed),
+                Quantity::Worst(PoseScalar::ActuatorRate),
+            ],
+            [
+                Quantity::Worst(PoseScalar::MotionForce),
+                Quantity::Worst(PoseScalar::MotionTorque),
+            ],
+        ];
+        let pair = PAIRS.into_iter().find(|pair| pair.contains(&self))?;
+        pair.into_iter().find(|other| *other != self)
     }
 
     /// Returns whether the actuators of a design are of the kind that has the quantity.

@@ -27,6 +27,29 @@ pub(super) struct ConstraintSearch<'a, L> {
     pub found: &'a RegularWorkspace,
 }
 
+/// Returns the centre of a disc, and the positions on equal rings about it in some directions, direction by direction. The rings are no
+/// farther from each other than `spacing`, unless that needs more than [`MAX_RINGS`].
+pub(super) fn positions_in_disc(
+    centre: DVec2,
+    directions: &[DVec2],
+    radius: f64,
+    spacing: f64,
+) -> impl Iterator<Item = DVec2> {
+    let rings = (radius / spacing).ceil().clamp(1.0, MAX_RINGS) as usize;
+    let on_rings = directions.iter().flat_map(move |direction| {
+        (1..=rings).map(move |ring| {
+            // The radius of the last ring equals that of the rim to the bit.
+            let radius = if ring == rings {
+                radius
+            } else {
+                radius * ring as f64 / rings as f64
+            };
+            centre + *direction * radius
+        })
+    });
+    std::iter::once(centre).chain(on_rings)
+}
+
 type ConstraintResults = [ConstraintResult; Constraint::COUNT];
 
 impl<L: Leg> ConstraintSearch<'_, L> {
@@ -123,18 +146,8 @@ impl<L: Leg> ConstraintSearch<'_, L> {
         }
         let centre = self.model.settings().workspace.centre;
         let spacing = self.design.base_radius() / grid.ray_steps() as f64;
-        let rings = (found.radius / spacing).ceil().clamp(1.0, MAX_RINGS) as usize;
-        disc.push(centre);
-        for direction in &found.directions {
-            for ring in 1..=rings {
-                // The radius of the last ring equals that of the rim to the bit.
-                let radius = if ring == rings {
-                    found.radius
-                } else {
-                    found.radius * ring as f64 / rings as f64
-                };
-                disc.push(centre + *direction * radius);
-            }
+        for position in positions_in_disc(centre, &found.directions, found.radius, spacing) {
+            disc.push(position);
         }
         disc.pad();
         disc

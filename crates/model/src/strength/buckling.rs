@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use super::path::BARS;
-use super::resultants::{LoadedLeg, LoadedLegs, dot, times};
+use super::resultants::{LoadedLeg, LoadedLegs, times};
 use super::{LARGEST_FACTOR, StrengthInputs, StrengthModel};
-use crate::lanes::{Planar, Real};
+use crate::lanes::{Planar, Real, dot};
 use crate::spatial::LEGS;
 
 /// A compression below this part of the largest force is a rounding error.

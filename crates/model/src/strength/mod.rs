@@ -141,9 +141,17 @@ impl StrengthValue {
         match self {
             StrengthValue::SafetyFactor => yield_strength.is_some(),
             StrengthValue::BucklingFactor => !is_on_bending_rails,
-            StrengthValue::ActuatorForce => actuator == JointKind::Prismatic,
-            StrengthValue::ActuatorTorque => actuator == JointKind::Revolute,
-            StrengthValue::Stress | StrengthValue::JointForce | StrengthValue::JointMoment => true,
+            _ => self.of_actuators().is_none_or(|kind| kind == actuator),
+        }
+    }
+
+    /// Returns the kind of actuators that have the value; `None` if all designs have it.
+    #[inline(always)]
+    pub fn of_actuators(self) -> Option<JointKind> {
+        match self {
+            StrengthValue::ActuatorForce => Some(JointKind::Prismatic),
+            StrengthValue::ActuatorTorque => Some(JointKind::Revolute),
+            _ => None,
         }
     }
 

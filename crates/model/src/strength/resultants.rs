@@ -2,7 +2,7 @@
 
 use super::path::{BARS, Beyond, PathLanes};
 use super::{LegStiffness, Loads, StrengthInputs, StrengthModel};
-use crate::lanes::{Planar, Real, scaled};
+use crate::lanes::{Planar, Real, dot, less, scaled, sum};
 use crate::spatial::LEGS;
 
 /// A force or moment: its value under the given wrench and the weight, and by how much the set of wrenches changes it at most.
@@ -93,21 +93,6 @@ pub(super) fn times<V: Real>(s: &[V; 6], v: &[V; 3]) -> [V; 3] {
         s[1] * v[0] + s[3] * v[1] + s[4] * v[2],
         s[2] * v[0] + s[4] * v[1] + s[5] * v[2],
     ]
-}
-
-#[inline(always)]
-pub(super) fn dot<V: Real>(a: &[V; 3], b: &[V; 3]) -> V {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn sum<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-#[inline(always)]
-fn less<V: Real>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// Returns the in-plane wrench about `P` of a mass beyond a place.

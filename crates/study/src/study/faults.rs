@@ -307,35 +307,27 @@ fn check_inputs(study: &Study, faults: &mut Vec<Fault>) {
 /// Returns why no design of a study has a quantity, and what would change that.
 fn missing_input(study: &Study, quantity: Quantity) -> Option<String> {
     let key = quantity.entry().key;
-    let all = |holds: fn(Architecture) -> bool| study.architectures.iter().copied().all(holds);
-    let other = |key: &str| {
-        let twin = if key.ends_with("_rad_per_s") {
-            key.replace("_rad_per_s", "_m_per_s")
-        } else if key.ends_with("_m_per_s") {
-            key.replace("_m_per_s", "_rad_per_s")
-        } else if key.ends_with("_nm") {
-            key.replace("torque", "force").replace("_nm", "_n")
-        } else {
-            key.replace("force", "torque").replace("_n", "_nm")
-        };
-        format!("use {twin} instead")
-    };
-    match quantity.of_actuators() {
-        Some(JointKind::Prismatic) if all(|architecture| architecture.actuator() == JointKind::Revolute) => {
+    if let (Some(kind), Some(other)) = (quantity.of_actuators(), quantity.of_other_actuators()) {
+        let none_has_it = study
+            .architectures
+            .iter()
+            .all(|architecture| architecture.actuator() != kind);
+        if none_has_it {
+            let move_so = match kind {
+                JointKind::Prismatic => "turn",
+                JointKind::Revolute => "slide",
+            };
+            let other = other.entry().key;
             return Some(format!(
-                "`{key}` has no value, because all actuators turn; {}",
-                other(key)
+                "`{key}` has no value, because all actuators {move_so}; use {other} instead"
             ));
         }
-        Some(JointKind::Revolute) if all(|architecture| architecture.actuator() == JointKind::Prismatic) => {
-            return Some(format!(
-                "`{key}` has no value, because all actuators slide; {}",
-                other(key)
-            ));
-        }
-        _ => {}
     }
-    let rails_bend = study.rails.radius_m.is_some() && all(|architecture| architecture.chain().is_on_rails());
+    let all_on_rails = study
+        .architectures
+        .iter()
+        .all(|architecture| architecture.chain().is_on_rails());
+    let rails_bend = study.rails.radius_m.is_some() && all_on_rails;
     let message = match quantity {
         Quantity::Worst(PoseScalar::SafetyFactor) if study.material.yield_strength_pa.is_none() => {
             "has no value without a yield strength; set material.yield_strength_pa, or material.name to a known material"

@@ -1,11 +1,12 @@
 //! Forms of the limits on natural frequencies, errors of the pose, and the speeds and forces of actuators in motion (docs/model.md,
 //! section 13.3). The formulas of the evaluation run on enclosed numbers, as those of the strength do.
 
-use super::strength::planar;
+use super::strength::{in_other_axes, planar};
 use super::{Enclosures, Forms};
 use crate::dynamics::{DynamicsInputs, DynamicsModel, MotionValue};
 use crate::enclosure::{EnclosedNumber, Interval, PoseEnclosure, TaylorModel};
 use crate::evaluation::{Model, PoseScalar};
+use crate::lanes::Real;
 use crate::mechanism::{Design, LegEnclosure};
 use crate::spatial::LEGS;
 
@@ -46,20 +47,21 @@ impl Forms<'_> {
             position: planar(pose.position),
             legs: self.load_inputs(legs),
         };
+        let legs = motion.model.legs(&inputs);
         for &&(scalar, value, limit) in &open {
             if !self.model.has(self.design, scalar) {
                 found.push(scalar, TaylorModel::exactly(-1.0));
             } else if value == MotionValue::NaturalFrequency {
                 for form in motion
                     .model
-                    .enclose_stiffness_above(&inputs, limit)
+                    .enclose_stiffness_above(&inputs, &legs, limit)
                     .into_iter()
                     .flat_map(minors)
                 {
                     found.push(scalar, form);
                 }
             } else {
-                let demand = motion.model.enclose(&inputs, value);
+                let demand = motion.model.enclose(&inputs, &legs, value);
                 found.push(scalar, TaylorModel::constant(Interval::exactly(limit)) - demand);
             }
         }
@@ -72,11 +74,11 @@ impl Forms<'_> {
 /// its middle, which changes no definiteness; a middle that has none is left as it is.
 fn minors(matrix: [EnclosedNumber; 6]) -> [TaylorModel; 3] {
     let middle = matrix.map(|entry| entry.0.constant);
-    let scaled = match inverse_factor(&middle) {
-        Some(factor) => congruent(&matrix, &factor),
-        None => matrix.map(|entry| entry.0),
+    let matrix = matrix.map(|entry| entry.0);
+    let [a, b, c, d, e, f] = match inverse_factor(&middle) {
+        Some(rows) => in_other_axes(&matrix, rows.map(|row| row.map(TaylorModel::exactly))),
+        None => matrix,
     };
-    let [a, b, c, d, e, f] = scaled;
     [
         a,
         a * d - b * b,
@@ -85,12 +87,8 @@ fn minors(matrix: [EnclosedNumber; 6]) -> [TaylorModel; 3] {
 }
 
 /// Returns the rows of the inverse of the Cholesky factor of a matrix, if it is positive definite.
-fn inverse_factor(m: &[f64; 6]) -> Option<[[f64; 3]; 3]> {
-    let a = m[0].sqrt();
-    let (b, c) = (m[1] / a, m[2] / a);
-    let d = (m[3] - b * b).sqrt();
-    let e = (m[4] - b * c) / d;
-    let f = (m[5] - c * c - e * e).sqrt();
+fn inverse_factor(matrix: &[f64; 6]) -> Option<[[f64; 3]; 3]> {
+    let [a, b, c, d, e, f] = f64::cholesky(matrix);
     let second = [-b / (a * d), 1.0 / d, 0.0];
     let third = [(b * e / d - c) / (a * f), -e / (d * f), 1.0 / f];
     let rows = [[1.0 / a, 0.0, 0.0], second, third];
@@ -98,20 +96,4 @@ fn inverse_factor(m: &[f64; 6]) -> Option<[[f64; 3]; 3]> {
         .iter()
         .all(|entry| entry.is_finite())
         .then_some(rows)
-}
-
-/// Encloses `T M Tᵀ`.
-fn congruent(matrix: &[EnclosedNumber; 6], rows: &[[f64; 3]; 3]) -> [TaylorModel; 6] {
-    let [a, b, c, d, e, f] = matrix.map(|entry| entry.0);
-    let applied = rows.map(|[p, q, r]| {
-        [
-            a.times(p) + b.times(q) + c.times(r),
-            b.times(p) + d.times(q) + e.times(r),
-            c.times(p) + e.times(q) + f.times(r),
-        ]
-    });
-    [[0, 0], [0, 1], [0, 2], [1, 1], [1, 2], [2, 2]].map(|[i, k]| {
-        let ([p, q, r], [x, y, z]) = (rows[i], applied[k]);
-        x.times(p) + y.times(q) + z.times(r)
-    })
 }

@@ -161,7 +161,7 @@ impl Forms<'_> {
 }
 
 /// Returns a stiffness for displacements of which the given columns are the images in those of the stiffness.
-fn in_other_axes(stiffness: &[TaylorModel; 6], columns: [[TaylorModel; 3]; 3]) -> [TaylorModel; 6] {
+pub(super) fn in_other_axes(stiffness: &[TaylorModel; 6], columns: [[TaylorModel; 3]; 3]) -> [TaylorModel; 6] {
     let [a, b, c, d, e, f] = *stiffness;
     let applied = columns.map(|[p, q, r]| [a * p + b * q + c * r, b * p + d * q + e * r, c * p + e * q + f * r]);
     [[0, 0], [0, 1], [0, 2], [1, 1], [1, 2], [2, 2]].map(|[i, k]| {

@@ -14,7 +14,7 @@ use super::entry::{Better, QuantityEntry, Reference, Scope};
 use super::values::{PoseScalars, ScalarSet};
 use crate::dynamics::MotionValue;
 use crate::lanes::{LaneJob, Planar, Real};
-use crate::mechanism::Leg;
+use crate::mechanism::{JointKind, Leg};
 use crate::spatial::LEGS;
 use crate::strength::{StrengthSet, StrengthValue};
 
@@ -212,9 +212,9 @@ macro_rules! pose_scalars {
                     let values = strength::lanes(self, position, arms, of_strength);
                     $(scalars[PoseScalar::$load] = values[StrengthValue::$load as usize];)*
                 }
-                $(if set.contains(PoseScalar::$motion) {
-                    scalars[PoseScalar::$motion] = dynamics::lanes(self, position, arms, MotionValue::$motion);
-                })*
+                if PoseScalar::OF_MOTION.iter().any(|scalar| set.contains(*scalar)) {
+                    dynamics::fill(self, set, position, arms, scalars);
+                }
             }
         }
     };
@@ -392,6 +392,12 @@ impl PoseScalar {
     /// not a number counts as the worst one.
     pub fn is_of_loads(self) -> bool {
         self.of_strength().is_some()
+    }
+
+    /// Returns the kind of actuators that have the value; `None` if all designs have it.
+    pub(crate) fn of_actuators(self) -> Option<JointKind> {
+        let of_strength = self.of_strength().and_then(StrengthValue::of_actuators);
+        of_strength.or_else(|| self.of_motion().and_then(MotionValue::of_actuators))
     }
 
     /// Returns whether some designs or poses have no such value: it depends on the loads of the members, or on a motion.
