@@ -146,7 +146,7 @@ impl Polygon {
 
     /// Returns the middles of the cells of a square lattice that lie within the polygon, with `count` cells along the longer
     /// side of the rectangle that holds the polygon.
-    pub(crate) fn lattice(&self, count: usize) -> Vec<DVec2> {
+    pub fn lattice(&self, count: usize) -> Vec<DVec2> {
         let [low, high] = self.bounds();
         let spacing = (high - low).max_element() / count as f64;
         let [columns, rows] = (high - low)

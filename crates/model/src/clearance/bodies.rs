@@ -286,7 +286,7 @@ impl Bodies {
     }
 
     /// Returns the height of the stack of members: from the lowest to the highest point of any of them \[m\].
-    pub(crate) fn height(&self) -> f64 {
+    pub fn height(&self) -> f64 {
         let rows = (0..ROWS).filter(|&row| self.kinds[row].is_some());
         let [low, high] = rows.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| {
             let (middle, radius) = (self.heights[row], self.radii[row]);

@@ -142,8 +142,9 @@ impl ValueColumns {
             .collect()
     }
 
-    /// Returns the column of a scalar, which is empty if it was not computed; meaningless where a leg does not reach the pose.
-    pub(crate) fn column(&self, scalar: PoseScalar) -> &[f64] {
+    /// Returns the column of a scalar, which is empty if it was not computed. Where joints are beyond their limits, the values continue
+    /// as functions of the pose; where the inverse kinematics has no solution, they are no numbers.
+    pub fn column(&self, scalar: PoseScalar) -> &[f64] {
         &self.scalars[scalar]
     }
 

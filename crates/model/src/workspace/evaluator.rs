@@ -6,7 +6,7 @@ use super::ValueColumns;
 use crate::kinematics::Jacobian;
 use crate::lanes::{InstructionSet, Planar};
 use crate::mechanism::{Leg, ReachReason};
-use crate::pose::{PoseChecker, PoseScalar, PoseValues, Thresholds};
+use crate::pose::{PoseChecker, PoseScalar, PoseScalars, PoseValues, Thresholds};
 use crate::spatial::{LEGS, NUMBER_LIMIT, Rotation};
 
 /// One design, prepared for evaluation at many poses, whatever its legs are.
@@ -35,6 +35,11 @@ pub trait PoseEvaluator: Sync {
     /// # Errors
     /// The limit margin of a position that is not reached.
     fn evaluate_position(&self, arms: &[DVec2; LEGS], position: DVec2) -> Result<PoseValues, f64>;
+
+    /// Returns the values at one position \[m\], also where joints are beyond their limits: a function that continues there, for
+    /// methods that approach the limits from both sides. A value that was not computed has no meaning, and none is a number where the
+    /// inverse kinematics has no solution.
+    fn evaluate_beyond_limits(&self, arms: &[DVec2; LEGS], position: DVec2) -> PoseScalars<f64>;
 
     /// Returns the values at one position \[m\] by the closed form as it is defined, with which the others are compared.
     ///
@@ -89,6 +94,10 @@ impl<L: Leg> PoseEvaluator for PoseChecker<L> {
         } else {
             Err(found.scalars[PoseScalar::Reach].max(-NUMBER_LIMIT).min(0.0))
         }
+    }
+
+    fn evaluate_beyond_limits(&self, arms: &[DVec2; LEGS], position: DVec2) -> PoseScalars<f64> {
+        self.lanes(position.into(), &arms.map(Planar::from), self.computed).scalars
     }
 
     fn evaluate_plainly(&self, arms: &[DVec2; LEGS], position: DVec2) -> Result<PoseValues, f64> {

@@ -1,0 +1,27 @@
+//! # Kinefront: the best design near a given one
+//!
+//! A search finds designs that are good on a grid of poses. This crate finds the best design near one of them with every pose of the
+//! region as a constraint ([`LocalProblem::polish`]), what each requirement costs there ([`LocalProblem::prices`]), and what would have to
+//! be given up for a wished value of the objective ([`LocalProblem::relaxations`]). `docs/model.md` derives it in section 16.
+
+mod convex;
+mod multipliers;
+mod parameter;
+mod place;
+mod polish;
+mod prices;
+mod problem;
+mod relax;
+mod requirement;
+mod start;
+mod survey;
+
+pub use multipliers::{ActiveBound, Multipliers};
+pub use parameter::{Change, Parameter};
+pub use place::{Place, Spot};
+pub use polish::Polished;
+pub use prices::{PRICE_STEPS, Price, PriceStep, Prices, reported_place};
+pub use problem::{FreeVariable, LocalError, LocalProblem, LocalQuestion};
+pub use relax::{Relaxation, RelaxationOf};
+pub use requirement::{End, Requirement};
+pub use survey::Critical;

@@ -1,0 +1,219 @@
+//! What the active requirements and bounds of an optimum cost: multipliers by non-negative least squares, and the range that each price
+//! may have where they are not unique.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::convex::ConvexProgram;
+use super::problem::LocalProblem;
+use super::requirement::End;
+use super::survey::Critical;
+
+/// Requirements and bounds with no more slack than this are active.
+const ACTIVE: f64 = 2e-6;
+
+/// The same for one-sided prices, of which near requirements are part.
+const NEARLY_ACTIVE: f64 = 2e-5;
+
+/// Amount by which the multipliers of one-sided prices may miss the stationarity.
+const STATIONARY: f64 = 3e-4;
+
+/// Multipliers below this share of the largest one are 0.
+const NONE: f64 = 1e-8;
+
+/// Singular values of the normalised gradients below this share of the largest one leave the multipliers undetermined.
+const DEPENDENT: f64 = 1e-3;
+
+/// Gradients that differ by less than this, relative to their length, are one.
+const ALIKE: f64 = 1e-5;
+
+/// A bound of a variable at which a design stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActiveBound {
+    /// The place of the variable among those that are free.
+    pub variable: usize,
+    /// Which bound it is.
+    pub end: End,
+    /// Multiplier, at least 0.
+    pub multiplier: f64,
+}
+
+/// The multipliers of an optimum.
+#[derive(Debug, Clone)]
+pub struct Multipliers {
+    /// The active requirements at their critical poses, each with its multiplier.
+    pub active: Vec<(Critical, f64)>,
+    /// The active bounds.
+    pub bounds: Vec<ActiveBound>,
+    /// Largest element of what the multipliers leave of the gradient; 0 at an exact optimum.
+    pub residual: f64,
+    /// Whether other multipliers explain the optimum, too.
+    pub are_ambiguous: bool,
+    /// Gradients of the requirements and bounds that are nearly active, a column each, and the gradient of the objective.
+    nearly: (Vec<Critical>, Vec<(usize, End)>, DMatrix<f64>, DVector<f64>),
+}
+
+impl Multipliers {
+    /// Determines the multipliers of a design from its critical poses.
+    pub(crate) fn new(problem: &LocalProblem, unknowns: &[f64], survey: &[Critical]) -> Self {
+        let near: Vec<Critical> = survey.iter().filter(|critical| critical.slack <= NEARLY_ACTIVE).copied().collect();
+        let (gradient, rows) = problem.derivatives(unknowns, &near);
+        let mut kept: Vec<usize> = Vec::new();
+        for place in 0..near.len() {
+            let is_known = |other: &usize| {
+                let (a, b) = (rows.row(*other), rows.row(place));
+                near[*other].requirement.is_alike(near[place].requirement)
+                    && (near[*other].slack <= ACTIVE) == (near[place].slack <= ACTIVE)
+                    && (a - b).amax() <= ALIKE * a.amax().max(b.amax())
+            };
+            if !kept.iter().any(is_known) {
+                kept.push(place);
+            }
+        }
+        let count = unknowns.len();
+        let mut bounds = Vec::new();
+        for (variable, [lower, upper]) in problem.bounds().into_iter().enumerate() {
+            for (end, distance) in [(End::Lower, unknowns[variable] - lower), (End::Upper, upper - unknowns[variable])] {
+                if distance <= NEARLY_ACTIVE {
+                    bounds.push((variable, end, distance));
+                }
+            }
+        }
+        let mut columns = DMatrix::zeros(count, kept.len() + bounds.len());
+        for (column, place) in kept.iter().enumerate() {
+            columns.set_column(column, &rows.row(*place).transpose());
+        }
+        for (column, (variable, end, _)) in bounds.iter().enumerate() {
+            columns[(*variable, kept.len() + column)] = match end {
+                End::Lower => 1.0,
+                End::Upper => -1.0,
+            };
+        }
+        let slacks = kept.iter().map(|place| near[*place].slack).chain(bounds.iter().map(|(.., distance)| *distance));
+        let exact: Vec<usize> = slacks.enumerate().filter(|(_, slack)| *slack <= ACTIVE).map(|(place, _)| place).collect();
+        let (found, residual) = non_negative(&columns.select_columns(&exact), &gradient);
+        let mut multipliers = vec![0.0; columns.ncols()];
+        for (place, multiplier) in exact.iter().zip(found) {
+            multipliers[*place] = multiplier;
+        }
+        let are_ambiguous = is_dependent(&columns);
+        Self {
+            active: kept.iter().zip(&multipliers).map(|(place, multiplier)| (near[*place], *multiplier)).collect(),
+            bounds: bounds
+                .iter()
+                .zip(&multipliers[kept.len()..])
+                .map(|(&(variable, end, _), &multiplier)| ActiveBound { variable, end, multiplier })
+                .collect(),
+            residual,
+            are_ambiguous,
+            nearly: (
+                kept.iter().map(|place| near[*place]).collect(),
+                bounds.iter().map(|&(variable, end, _)| (variable, end)).collect(),
+                columns,
+                gradient,
+            ),
+        }
+    }
+
+    /// Returns the requirements and bounds that are nearly active, in the order in which [`Multipliers::range`] takes their effects.
+    pub(crate) fn nearly_active(&self) -> (&[Critical], &[(usize, End)]) {
+        (&self.nearly.0, &self.nearly.1)
+    }
+
+    /// Returns the sum of the multipliers times the effects of a parameter on the requirements and bounds that are nearly active.
+    pub(crate) fn sum(&self, effects: &[f64]) -> f64 {
+        let of_requirements = self.active.iter().map(|(_, multiplier)| multiplier);
+        let of_bounds = self.bounds.iter().map(|bound| &bound.multiplier);
+        of_requirements.chain(of_bounds).zip(effects).map(|(multiplier, effect)| multiplier * effect).sum()
+    }
+
+    /// Returns the least and the largest sum of multipliers times effects, over all multipliers that explain the optimum.
+    pub(crate) fn range(&self, effects: &[f64]) -> Option<[f64; 2]> {
+        let (_, _, columns, gradient) = &self.nearly;
+        let end = |sign: f64| {
+            let mut program = ConvexProgram::new(effects.len());
+            program.linear = DVector::from_iterator(effects.len(), effects.iter().map(|effect| sign * effect));
+            for unknown in 0..gradient.len() {
+                let row = columns.row(unknown).transpose();
+                program.at_least.push((row.clone(), gradient[unknown] - STATIONARY));
+                program.at_least.push((-row, -gradient[unknown] - STATIONARY));
+            }
+            (0..effects.len()).for_each(|multiplier| program.bound_below(multiplier, 0.0));
+            let solution = program.solve()?;
+            Some(solution.x.iter().zip(effects).map(|(multiplier, effect)| multiplier * effect).sum::<f64>())
+        };
+        Some([end(1.0)?, end(-1.0)?])
+    }
+}
+
+/// Returns the least squares solution of `columns · λ = gradient` with `λ ≥ 0`, and the largest element of the residual.
+fn non_negative(columns: &DMatrix<f64>, gradient: &DVector<f64>) -> (Vec<f64>, f64) {
+    let (rows, count) = columns.shape();
+    if count == 0 {
+        return (Vec::new(), gradient.amax());
+    }
+    let lengths: Vec<f64> = columns.column_iter().map(|column| column.norm().max(f64::MIN_POSITIVE)).collect();
+    // The residual is a variable of its own: squaring the gradients would lose half the digits.
+    let mut program = ConvexProgram::new(count + rows);
+    for row in 0..rows {
+        program.quadratic[(count + row, count + row)] = 1.0;
+        let mut equation = DVector::zeros(count + rows);
+        for column in 0..count {
+            equation[column] = columns[(row, column)] / lengths[column];
+        }
+        equation[count + row] = -1.0;
+        program.equal.push((equation, gradient[row]));
+    }
+    (0..count).for_each(|multiplier| program.bound_below(multiplier, 0.0));
+    let Some(solution) = program.solve() else {
+        return (vec![0.0; count], gradient.amax());
+    };
+    let mut found: Vec<f64> = solution.x.iter().take(count).map(|multiplier| multiplier.max(0.0)).collect();
+    let largest = found.iter().copied().fold(0.0, f64::max);
+    let support: Vec<usize> = (0..count).filter(|&place| found[place] > NONE * largest).collect();
+    // Those that are not 0 follow exactly from the equations, unless that makes one negative.
+    let scaled = DMatrix::from_fn(rows, support.len(), |row, column| columns[(row, support[column])] / lengths[support[column]]);
+    if let Ok(exact) = scaled.clone().svd(true, true).solve(gradient, 1e-10)
+        && exact.iter().all(|multiplier| *multiplier >= 0.0)
+    {
+        found.fill(0.0);
+        for (place, multiplier) in support.iter().zip(exact.iter()) {
+            found[*place] = *multiplier;
+        }
+    }
+    for (multiplier, length) in found.iter_mut().zip(&lengths) {
+        *multiplier /= length;
+    }
+    let left = columns * DVector::from_column_slice(&found) - gradient;
+    (found, left.amax())
+}
+
+/// Returns whether columns, made equally long, are nearly dependent.
+fn is_dependent(columns: &DMatrix<f64>) -> bool {
+    let mut scaled = columns.clone();
+    for mut column in scaled.column_iter_mut() {
+        let length = column.norm();
+        if length > 0.0 {
+            column /= length;
+        }
+    }
+    if scaled.ncols() > scaled.nrows() {
+        return true;
+    }
+    let values = scaled.singular_values();
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    values.iter().any(|value| *value < DEPENDENT * largest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gradient_within_a_cone_has_no_residual() {
+        let columns = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 2.0]);
+        let (found, residual) = non_negative(&columns, &DVector::from_vec(vec![3.0, 4.0]));
+        assert!(residual < 1e-9 && (found[0] - 3.0).abs() < 1e-9 && (found[1] - 2.0).abs() < 1e-9, "{found:?}");
+        let (_, residual) = non_negative(&columns, &DVector::from_vec(vec![-1.0, 2.0]));
+        assert!((residual - 1.0).abs() < 1e-9, "outside the cone, its nearest edge is missed");
+    }
+}

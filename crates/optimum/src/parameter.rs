@@ -1,0 +1,369 @@
+//! What a price is of: thresholds, material, actuators, region, travels, cross-sections and bounds.
+
+use glam::DVec2;
+use kinefront_model::evaluation::{PoseScalar, Quantity};
+use kinefront_model::mechanism::{CrossSection, DesignVariable, JointKind, Wall};
+use kinefront_model::polygon::Polygon;
+use kinefront_model::workspace::Region;
+
+use super::problem::{LocalProblem, LocalQuestion};
+use super::requirement::{End, Requirement, threshold_name};
+
+/// A number of a question that may be changed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Parameter {
+    /// `E`.
+    YoungsModulus,
+    /// `G`.
+    ShearModulus,
+    /// `E` and `G` together.
+    Moduli,
+    /// `ν`.
+    Density,
+    /// Yield strength.
+    YieldStrength,
+    /// Stiffness of the actuators.
+    ActuatorStiffness,
+    /// The limit of a scalar at each pose.
+    Threshold(PoseScalar),
+    /// A limit that is none of poses, by its place.
+    Limit(usize),
+    /// Radius of the disc.
+    WorkspaceRadius,
+    /// Width of the region, along `Ox`.
+    Width,
+    /// Height of the region, along `Oy`.
+    Height,
+    /// Rotation range.
+    RotationRange,
+    /// Start of the travel on the rails.
+    RailStart,
+    /// End of the travel on the rails.
+    RailEnd,
+    /// Start of the travel on the other guides.
+    GuideStart,
+    /// End of the travel on the other guides.
+    GuideEnd,
+    /// Shortest length of a telescopic leg.
+    TelescopicShortest,
+    /// Wall of the bars of the legs, as a share of their radius.
+    LegWall,
+    /// Wall of the bars of the platform.
+    PlatformWall,
+    /// A bound of a free variable, by its place.
+    Bound(usize, End),
+}
+
+/// How a parameter is changed by a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Change {
+    /// It is multiplied by the exponential of the step: a price is in per cent for 1 %.
+    Relative,
+    /// The step times `R` is added to a distance that is 0: a price is in per cent for 1 % of `R`.
+    OfBaseRadius,
+    /// The step \[rad\] is added to an angle.
+    Angle,
+}
+
+impl Parameter {
+    /// Returns the parameters of a problem that may have a price; bounds follow from the design.
+    pub(crate) fn all(problem: &LocalProblem) -> Vec<Parameter> {
+        let question = problem.question();
+        let settings = &question.settings;
+        let chain = problem.architecture().chain();
+        let mut all = vec![
+            Parameter::YoungsModulus,
+            Parameter::ShearModulus,
+            Parameter::Moduli,
+            Parameter::Density,
+            Parameter::ActuatorStiffness,
+        ];
+        let of_poses = problem.requirements().iter().filter_map(|requirement| match requirement {
+            Requirement::Scalar(scalar) if settings.thresholds.get(*scalar).is_some() => Some(Parameter::Threshold(*scalar)),
+            _ => None,
+        });
+        all.extend(of_poses);
+        let depends_on_yield = |scalar: &PoseScalar| *scalar == PoseScalar::SafetyFactor && settings.thresholds.get(*scalar).is_some();
+        if PoseScalar::OF_LOADS.iter().any(depends_on_yield) {
+            all.push(Parameter::YieldStrength);
+        }
+        let of_designs = problem.requirements().iter().filter_map(|requirement| match requirement {
+            Requirement::Quantity(place) => Some(Parameter::Limit(*place)),
+            _ => None,
+        });
+        all.extend(of_designs);
+        match question.workspace.region {
+            Region::Disc(_) if question.objective.quantity != Quantity::WorkspaceRadius => all.push(Parameter::WorkspaceRadius),
+            Region::Polygon(_) => all.extend([Parameter::Width, Parameter::Height]),
+            _ => {}
+        }
+        all.push(Parameter::RotationRange);
+        if chain.is_on_rails() {
+            all.extend([Parameter::RailStart, Parameter::RailEnd]);
+        }
+        if chain.name == "RPR" {
+            all.push(Parameter::TelescopicShortest);
+        } else if chain.joints[1..].contains(&JointKind::Prismatic) {
+            all.extend([Parameter::GuideStart, Parameter::GuideEnd]);
+        }
+        let is_ratio = |section: &CrossSection| {
+            matches!(section, CrossSection::Tube(Wall::Ratio(_)) | CrossSection::SquareTube(Wall::Ratio(_)))
+        };
+        if is_ratio(&settings.sections.legs) {
+            all.push(Parameter::LegWall);
+        }
+        if is_ratio(&settings.sections.platform) {
+            all.push(Parameter::PlatformWall);
+        }
+        all
+    }
+
+    /// Returns the name in results.
+    pub fn name(self, question: &LocalQuestion) -> String {
+        match self {
+            Parameter::YoungsModulus => "E".to_owned(),
+            Parameter::ShearModulus => "G".to_owned(),
+            Parameter::Moduli => "E_and_G".to_owned(),
+            Parameter::Density => "density".to_owned(),
+            Parameter::YieldStrength => "yield_strength".to_owned(),
+            Parameter::ActuatorStiffness => "K_act".to_owned(),
+            Parameter::Threshold(scalar) => threshold_name(scalar).to_owned(),
+            Parameter::Limit(place) => question.settings.limits[place].quantity.entry().key.to_owned(),
+            Parameter::WorkspaceRadius => "workspace_radius".to_owned(),
+            Parameter::Width => "width".to_owned(),
+            Parameter::Height => "height".to_owned(),
+            Parameter::RotationRange => "rotation_range".to_owned(),
+            Parameter::RailStart => "rail_start".to_owned(),
+            Parameter::RailEnd => "rail_end".to_owned(),
+            Parameter::GuideStart => "guide_start".to_owned(),
+            Parameter::GuideEnd => "guide_end".to_owned(),
+            Parameter::TelescopicShortest => "telescopic_shortest".to_owned(),
+            Parameter::LegWall => "wall_legs".to_owned(),
+            Parameter::PlatformWall => "wall_platform".to_owned(),
+            Parameter::Bound(place, end) => {
+                let side = match end {
+                    End::Lower => "lower",
+                    End::Upper => "upper",
+                };
+                format!("bounds.{}.{side}", question.variables[place].variable.key())
+            }
+        }
+    }
+
+    /// Returns the name for a person.
+    pub fn label(self, question: &LocalQuestion) -> String {
+        match self {
+            Parameter::YoungsModulus => "Young's modulus E".to_owned(),
+            Parameter::ShearModulus => "shear modulus G".to_owned(),
+            Parameter::Moduli => "E and G together".to_owned(),
+            Parameter::Density => "density".to_owned(),
+            Parameter::YieldStrength => "yield strength".to_owned(),
+            Parameter::ActuatorStiffness => "stiffness of the actuators".to_owned(),
+            Parameter::Threshold(scalar) => scalar.entry().quantity.label.to_owned(),
+            Parameter::Limit(place) => question.settings.limits[place].quantity.entry().label.to_owned(),
+            Parameter::WorkspaceRadius => "workspace radius R_w".to_owned(),
+            Parameter::Width => "width of the region".to_owned(),
+            Parameter::Height => "height of the region".to_owned(),
+            Parameter::RotationRange => "rotation range".to_owned(),
+            Parameter::RailStart => "start of the rails".to_owned(),
+            Parameter::RailEnd => "end of the rails".to_owned(),
+            Parameter::GuideStart => "start of the guides".to_owned(),
+            Parameter::GuideEnd => "end of the guides".to_owned(),
+            Parameter::TelescopicShortest => "shortest telescopic leg".to_owned(),
+            Parameter::LegWall => "wall of the leg tubes".to_owned(),
+            Parameter::PlatformWall => "wall of the platform tubes".to_owned(),
+            Parameter::Bound(place, end) => {
+                let side = match end {
+                    End::Lower => "lower",
+                    End::Upper => "upper",
+                };
+                format!("{side} bound of {}", question.variables[place].variable.symbol())
+            }
+        }
+    }
+
+    /// Returns the value in the unit of [`Parameter::unit`], if it has one: `E` and `G` together have none.
+    pub fn value(self, question: &LocalQuestion, actuator: JointKind) -> Option<f64> {
+        let settings = &question.settings;
+        let arrangement = settings.legs.geometry.arrangement();
+        let wall = |section: &CrossSection| section.wall_ratio(1.0);
+        Some(match self {
+            Parameter::YoungsModulus => settings.material.youngs_modulus,
+            Parameter::ShearModulus => settings.material.shear_modulus,
+            Parameter::Moduli => return None,
+            Parameter::Density => settings.material.density,
+            Parameter::YieldStrength => settings.material.yield_strength?,
+            Parameter::ActuatorStiffness => match actuator {
+                JointKind::Prismatic => settings.actuators.prismatic,
+                JointKind::Revolute => settings.actuators.revolute,
+            },
+            Parameter::Threshold(scalar) => settings.thresholds.get(scalar)?,
+            Parameter::Limit(place) => settings.limits[place].threshold(),
+            Parameter::WorkspaceRadius => question.workspace.region.inscribed_radius()?,
+            Parameter::Width => extent(&question.workspace.region)?.x,
+            Parameter::Height => extent(&question.workspace.region)?.y,
+            Parameter::RotationRange => question.workspace.rotation_range_deg,
+            Parameter::RailStart => arrangement.rail[0],
+            Parameter::RailEnd => arrangement.rail[1],
+            Parameter::GuideStart => arrangement.guide[0],
+            Parameter::GuideEnd => arrangement.guide[1],
+            Parameter::TelescopicShortest => settings.legs.telescopic_shortest,
+            Parameter::LegWall => wall(&settings.sections.legs),
+            Parameter::PlatformWall => wall(&settings.sections.platform),
+            Parameter::Bound(place, end) => question.variables[place].range[end as usize],
+        })
+    }
+
+    /// Returns the unit of the value.
+    pub fn unit(self, question: &LocalQuestion, actuator: JointKind) -> &'static str {
+        match self {
+            Parameter::YoungsModulus | Parameter::ShearModulus | Parameter::YieldStrength => "Pa",
+            Parameter::Density => "kg/m³",
+            Parameter::ActuatorStiffness if actuator == JointKind::Revolute => "N·m/rad",
+            Parameter::ActuatorStiffness => "N/m",
+            Parameter::Threshold(scalar) => scalar.entry().quantity.unit,
+            Parameter::Limit(place) => question.settings.limits[place].quantity.entry().unit,
+            Parameter::WorkspaceRadius | Parameter::Width | Parameter::Height => "m",
+            Parameter::RotationRange => "°",
+            Parameter::Bound(place, _) => question.variables[place].variable.unit(),
+            Parameter::Moduli
+            | Parameter::RailStart
+            | Parameter::RailEnd
+            | Parameter::GuideStart
+            | Parameter::GuideEnd
+            | Parameter::TelescopicShortest
+            | Parameter::LegWall
+            | Parameter::PlatformWall => "",
+        }
+    }
+
+    /// Returns how the parameter is changed.
+    pub fn change(self, question: &LocalQuestion, actuator: JointKind) -> Change {
+        if let Parameter::Bound(place, _) = self
+            && question.variables[place].variable.is_angle()
+        {
+            return Change::Angle;
+        }
+        match self.value(question, actuator) {
+            Some(0.0) => Change::OfBaseRadius,
+            _ => Change::Relative,
+        }
+    }
+
+    /// Returns whether less is asked for where the parameter is smaller: it is a requirement, not a property of the material.
+    pub fn is_requirement(self) -> bool {
+        matches!(
+            self,
+            Parameter::Threshold(_)
+                | Parameter::Limit(_)
+                | Parameter::WorkspaceRadius
+                | Parameter::Width
+                | Parameter::Height
+                | Parameter::RotationRange
+        )
+    }
+
+    /// Returns the question with the parameter changed by a step, for a design of base radius `base_radius` \[m\]; `None` if a step has no
+    /// meaning for it.
+    pub(crate) fn changed(self, question: &LocalQuestion, step: f64, base_radius: f64, actuator: JointKind) -> Option<LocalQuestion> {
+        let mut changed = question.clone();
+        let is_zero = self.change(question, actuator) == Change::OfBaseRadius;
+        let factor = libm::exp(step);
+        let settings = &mut changed.settings;
+        let arrange = |settings: &mut kinefront_model::evaluation::ModelSettings, change: fn(&mut kinefront_model::mechanism::Arrangement, f64)| {
+            let mut arrangement = *settings.legs.geometry.arrangement();
+            change(&mut arrangement, factor);
+            settings.legs.geometry = arrangement.into();
+        };
+        match self {
+            Parameter::YoungsModulus => settings.material.youngs_modulus *= factor,
+            Parameter::ShearModulus => settings.material.shear_modulus *= factor,
+            Parameter::Moduli => {
+                settings.material.youngs_modulus *= factor;
+                settings.material.shear_modulus *= factor;
+            }
+            Parameter::Density => settings.material.density *= factor,
+            Parameter::YieldStrength => {
+                settings.material.yield_strength = settings.material.yield_strength.map(|strength| strength * factor);
+            }
+            Parameter::ActuatorStiffness => match actuator {
+                JointKind::Prismatic => settings.actuators.prismatic *= factor,
+                JointKind::Revolute => settings.actuators.revolute *= factor,
+            },
+            Parameter::Threshold(scalar) => {
+                let limit = settings.thresholds.get(scalar)?;
+                let limit = if is_zero { step * base_radius } else { limit * factor };
+                settings.thresholds.set(scalar, Some(limit));
+            }
+            Parameter::Limit(place) => {
+                use kinefront_model::evaluation::Bound;
+                let bound = &mut settings.limits[place].bound;
+                *bound = match *bound {
+                    Bound::AtLeast(limit) => Bound::AtLeast(limit * factor),
+                    Bound::AtMost(limit) => Bound::AtMost(limit * factor),
+                };
+            }
+            Parameter::WorkspaceRadius | Parameter::Width | Parameter::Height => {
+                changed.workspace.region = resized(self, &question.workspace.region, factor);
+            }
+            Parameter::RotationRange => changed.workspace.rotation_range_deg *= factor,
+            // The start of a travel is a share of its length, as large as R, so that a step of a zero start has no other meaning.
+            Parameter::RailStart if is_zero => return None,
+            Parameter::GuideStart if is_zero => return None,
+            Parameter::RailStart => arrange(settings, |arrangement, factor| arrangement.rail[0] *= factor),
+            Parameter::RailEnd => arrange(settings, |arrangement, factor| arrangement.rail[1] *= factor),
+            Parameter::GuideStart => arrange(settings, |arrangement, factor| arrangement.guide[0] *= factor),
+            Parameter::GuideEnd => arrange(settings, |arrangement, factor| arrangement.guide[1] *= factor),
+            Parameter::TelescopicShortest => {
+                settings.legs.telescopic_shortest = (settings.legs.telescopic_shortest * factor).min(0.999);
+            }
+            Parameter::LegWall => settings.sections.legs = thicker(&settings.sections.legs, factor),
+            Parameter::PlatformWall => settings.sections.platform = thicker(&settings.sections.platform, factor),
+            Parameter::Bound(place, end) => {
+                let free = &mut changed.variables[place];
+                let bound = &mut free.range[end as usize];
+                *bound = if free.variable.is_angle() { *bound + step.to_degrees() } else { *bound * factor };
+            }
+        }
+        Some(changed)
+    }
+}
+
+/// Returns a section with another wall.
+fn thicker(section: &CrossSection, factor: f64) -> CrossSection {
+    match section {
+        CrossSection::Tube(Wall::Ratio(ratio)) => CrossSection::Tube(Wall::Ratio(ratio * factor)),
+        CrossSection::SquareTube(Wall::Ratio(ratio)) => CrossSection::SquareTube(Wall::Ratio(ratio * factor)),
+        other => other.clone(),
+    }
+}
+
+/// Returns the sides of the smallest rectangle that holds a polygon \[m\].
+fn extent(region: &Region) -> Option<DVec2> {
+    match region {
+        Region::Polygon(polygon) => {
+            let [low, high] = polygon.bounds();
+            Some(high - low)
+        }
+        _ => None,
+    }
+}
+
+fn resized(parameter: Parameter, region: &Region, factor: f64) -> Region {
+    let scale = match parameter {
+        Parameter::Width => DVec2::new(factor, 1.0),
+        Parameter::Height => DVec2::new(1.0, factor),
+        _ => DVec2::splat(factor),
+    };
+    let scaled = |polygon: &Polygon| polygon.mapped(|corner| corner * scale);
+    match region {
+        Region::Largest => Region::Largest,
+        Region::Disc(radius) => Region::Disc(radius * scale.x),
+        Region::Polygon(polygon) => Region::Polygon(scaled(polygon)),
+    }
+}
+
+/// Returns the variable of a bound.
+pub(crate) fn variable_of(question: &LocalQuestion, place: usize) -> DesignVariable {
+    question.variables[place].variable
+}

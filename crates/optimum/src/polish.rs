@@ -1,0 +1,383 @@
+//! The best design near a given one: a semi-infinite programme, in which every pose of the region is a constraint.
+//!
+//! The poses at which a requirement is nearest to being missed become constraints, a sequential quadratic programme finds the best design
+//! that keeps these, and its own critical poses are added, until none is missed.
+
+use kinefront_model::mechanism::Design;
+use nalgebra::{DMatrix, DVector};
+
+use super::convex::ConvexProgram;
+use super::multipliers::Multipliers;
+use super::problem::LocalProblem;
+use super::requirement::{NOWHERE, Requirement};
+use super::survey::{Critical, is_same};
+
+/// Largest number of times that critical poses are added.
+const ROUNDS: usize = 40;
+
+/// Largest number of steps with the same critical poses.
+const STEPS: usize = 40;
+
+/// Largest change of an unknown in a step at first.
+const TRUST: f64 = 0.1;
+
+/// Requirements that a polished design misses by no more than this hold.
+pub(crate) const MISSED: f64 = 1e-10;
+
+/// An optimum misses no requirement by more than this.
+const HELD: f64 = 1e-8;
+
+/// Changes of the unknowns that are no longer followed.
+const STILL: f64 = 1e-7;
+
+/// Half the difference by which derivatives are taken.
+pub(crate) const DIFFERENCE: f64 = 2e-6;
+
+/// Critical poses with more slack than this are forgotten.
+const SLACK: f64 = 0.4;
+
+/// Residual of the multipliers above which the search starts again from stronger designs.
+const STALLED: f64 = 1e-5;
+
+/// Increases of bars and lengths with which it starts again.
+const RESTARTS: [[f64; 2]; 3] = [[0.003, 0.002], [0.01, 0.006], [-0.004, 0.01]];
+
+/// A design that is the best near the one that it started from.
+#[derive(Debug, Clone)]
+pub struct Polished {
+    /// The design.
+    pub design: Design,
+    /// Home orientation \[rad\].
+    pub home: f64,
+    /// Value of the objective.
+    pub objective: f64,
+    /// Largest amount by which a requirement is missed at any pose, as a logarithm or a share of `R`.
+    pub missed: f64,
+    /// Where the requirements are nearest to being missed.
+    pub critical: Vec<Critical>,
+    /// What the active requirements and bounds cost.
+    pub multipliers: Multipliers,
+    pub(crate) unknowns: Vec<f64>,
+}
+
+impl Polished {
+    /// Returns whether the design is an optimum: it keeps every requirement, and its multipliers explain why it cannot be better.
+    pub fn is_optimal(&self) -> bool {
+        self.missed <= HELD && self.multipliers.residual <= 1e-4
+    }
+}
+
+impl LocalProblem {
+    /// Returns the best design near one with a home orientation \[rad\]; `None` if there is none that keeps the requirements.
+    pub fn polish(&self, design: &Design, home: f64) -> Option<Polished> {
+        self.polish_from(&self.unknowns(design, home))
+    }
+
+    /// Returns the best design near some unknowns.
+    pub(crate) fn polish_from(&self, start: &[f64]) -> Option<Polished> {
+        let mut best: Option<Polished> = None;
+        let mut from = start.to_vec();
+        for [bars, lengths] in std::iter::once([0.0; 2]).chain(RESTARTS) {
+            if let Some(found) = Exchange::new(self, &self.strengthened(&from, bars, lengths)).run() {
+                let key = |found: &Polished| (found.missed > HELD, self.minimised(&found.unknowns));
+                if best.as_ref().is_none_or(|best| key(&found) < key(best)) {
+                    from.clone_from(&found.unknowns);
+                    best = Some(found);
+                }
+            }
+            if best.as_ref().is_some_and(|best| best.missed <= HELD && best.multipliers.residual <= STALLED) {
+                break;
+            }
+        }
+        best.filter(|best| best.missed <= 1e-6)
+    }
+
+    /// Returns unknowns with thicker bars and larger lengths.
+    fn strengthened(&self, unknowns: &[f64], bars: f64, lengths: f64) -> Vec<f64> {
+        let mut changed = unknowns.to_vec();
+        for (value, free) in changed.iter_mut().zip(&self.question().variables) {
+            if free.variable.may_be_zero() {
+                *value += bars;
+            } else if !free.variable.is_angle() {
+                *value += lengths;
+            }
+        }
+        for (value, [lower, upper]) in changed.iter_mut().zip(self.bounds()) {
+            *value = value.clamp(lower, upper);
+        }
+        changed
+    }
+
+    /// Returns the values of critical requirements at their places for some unknowns.
+    pub(crate) fn values_of(&self, unknowns: &[f64], critical: &[Critical]) -> Vec<f64> {
+        match self.prepare(unknowns) {
+            Some(prepared) => critical
+                .iter()
+                .map(|critical| self.value(&prepared, critical.requirement, &critical.place))
+                .collect(),
+            None => vec![NOWHERE; critical.len()],
+        }
+    }
+
+    /// Returns the derivatives of the minimised value and of critical requirements with respect to the unknowns: a vector, and a row for
+    /// each requirement.
+    pub(crate) fn derivatives(&self, unknowns: &[f64], critical: &[Critical]) -> (DVector<f64>, DMatrix<f64>) {
+        let count = unknowns.len();
+        let mut gradient = DVector::zeros(count);
+        let mut rows = DMatrix::zeros(critical.len(), count);
+        for unknown in 0..count {
+            let moved = |step: f64| {
+                let mut moved = unknowns.to_vec();
+                moved[unknown] += step;
+                moved
+            };
+            let (below, above) = (moved(-DIFFERENCE), moved(DIFFERENCE));
+            let width = above[unknown] - below[unknown];
+            gradient[unknown] = (self.minimised(&above) - self.minimised(&below)) / width;
+            let (lower, upper) = (self.values_of(&below, critical), self.values_of(&above, critical));
+            for (row, (lower, upper)) in lower.iter().zip(&upper).enumerate() {
+                let is_known = *lower > NOWHERE && *upper > NOWHERE;
+                rows[(row, unknown)] = if is_known { (upper - lower) / width } else { 0.0 };
+            }
+        }
+        (gradient, rows)
+    }
+}
+
+/// A search for the best design near a start.
+struct Exchange<'a> {
+    problem: &'a LocalProblem,
+    unknowns: Vec<f64>,
+    bounds: Vec<[f64; 2]>,
+    critical: Vec<Critical>,
+    /// Approximation of the Hessian of the Lagrangian.
+    hessian: DMatrix<f64>,
+    /// Weight of the largest violation.
+    weight: f64,
+}
+
+/// A step of the quadratic programme.
+struct Step {
+    change: DVector<f64>,
+    multipliers: Vec<f64>,
+    /// Decrease of the merit that the programme promises.
+    promised: f64,
+}
+
+impl<'a> Exchange<'a> {
+    fn new(problem: &'a LocalProblem, start: &[f64]) -> Self {
+        let bounds = problem.bounds();
+        let unknowns: Vec<f64> = start.iter().zip(&bounds).map(|(value, [lower, upper])| value.clamp(*lower, *upper)).collect();
+        let count = unknowns.len();
+        Self {
+            problem,
+            unknowns,
+            bounds,
+            critical: Vec::new(),
+            hessian: DMatrix::identity(count, count),
+            weight: 20.0,
+        }
+    }
+
+    fn run(mut self) -> Option<Polished> {
+        let mut survey = self.survey()?;
+        for round in 0..ROUNDS {
+            self.adopt(&survey);
+            let trust = if round < 3 { TRUST } else { 0.5 * TRUST };
+            let before = self.unknowns.clone();
+            self.descend(trust);
+            let moved = before.iter().zip(&self.unknowns).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+            survey = self.survey()?;
+            let missed = missed(&survey);
+            if missed <= MISSED && (moved <= STILL || round > 12) {
+                break;
+            }
+        }
+        let missed = missed(&survey);
+        let problem = self.problem;
+        let prepared = problem.prepare(&self.unknowns)?;
+        let multipliers = Multipliers::new(problem, &self.unknowns, &survey);
+        Some(Polished {
+            design: prepared.design,
+            home: prepared.home,
+            objective: problem.objective(&self.unknowns),
+            missed,
+            critical: survey,
+            multipliers,
+            unknowns: self.unknowns,
+        })
+    }
+
+    fn survey(&self) -> Option<Vec<Critical>> {
+        let prepared = self.problem.prepare(&self.unknowns)?;
+        Some(self.problem.survey(&prepared))
+    }
+
+    /// Adds critical poses that are new, and forgets those that are far from being critical.
+    fn adopt(&mut self, survey: &[Critical]) {
+        let values = self.problem.values_of(&self.unknowns, &self.critical);
+        let mut kept: Vec<Critical> = Vec::new();
+        for (critical, slack) in self.critical.drain(..).zip(values) {
+            if slack < SLACK {
+                kept.push(Critical { slack, ..critical });
+            }
+        }
+        // Of many constraints, those with the least slack matter.
+        kept.sort_by(|a, b| a.slack.total_cmp(&b.slack));
+        kept.truncate(40);
+        for next in survey.iter().filter(|next| next.slack < SLACK) {
+            let is_known = |other: &Critical| other.requirement == next.requirement && is_identical(other, next);
+            if !kept.iter().any(is_known) {
+                kept.push(*next);
+            }
+        }
+        self.critical = kept;
+    }
+
+    /// Takes steps until none improves the design that keeps the critical poses.
+    fn descend(&mut self, first_trust: f64) {
+        let problem = self.problem;
+        let mut trust = first_trust;
+        let mut values = problem.values_of(&self.unknowns, &self.critical);
+        let (mut gradient, mut rows) = problem.derivatives(&self.unknowns, &self.critical);
+        for _ in 0..STEPS {
+            let Some(step) = self.step(&gradient, &rows, &values, trust) else {
+                trust *= 0.25;
+                if trust < 1e-9 {
+                    return;
+                }
+                continue;
+            };
+            let size = step.change.amax();
+            if size < 1e-10 {
+                return;
+            }
+            let merit = self.merit(&self.unknowns, &values);
+            let (mut changed, mut new_values) = self.tried(&step.change);
+            let mut gain = merit - self.merit(&changed, &new_values);
+            if gain < 0.1 * step.promised {
+                // The constraints bend: their values at the end of the step take the place of those at its beginning.
+                let bent: Vec<f64> = new_values
+                    .iter()
+                    .zip((&rows * &step.change).iter())
+                    .map(|(value, linear)| value - linear)
+                    .collect();
+                if let Some(second) = self.step(&gradient, &rows, &bent, trust) {
+                    let (again, values_again) = self.tried(&second.change);
+                    let gain_again = merit - self.merit(&again, &values_again);
+                    if gain_again > gain {
+                        (changed, new_values, gain) = (again, values_again, gain_again);
+                    }
+                }
+            }
+            let is_good = gain > 1e-4 * step.promised.max(0.0) && gain > 0.0;
+            if !is_good {
+                if size < 1e-8 || step.promised < 1e-13 {
+                    return;
+                }
+                trust = 0.3 * size.min(trust);
+                continue;
+            }
+            let (new_gradient, new_rows) = problem.derivatives(&changed, &self.critical);
+            let of_lagrangian = |gradient: &DVector<f64>, rows: &DMatrix<f64>| {
+                let multipliers = DVector::from_column_slice(&step.multipliers);
+                gradient - rows.transpose() * multipliers
+            };
+            let way = DVector::from_iterator(changed.len(), changed.iter().zip(&self.unknowns).map(|(new, old)| new - old));
+            let turned = of_lagrangian(&new_gradient, &new_rows) - of_lagrangian(&gradient, &rows);
+            self.bend(&way, turned);
+            if gain > 0.7 * step.promised && size > 0.8 * trust {
+                trust = (2.0 * trust).min(2.0 * first_trust);
+            }
+            (self.unknowns, values, gradient, rows) = (changed, new_values, new_gradient, new_rows);
+        }
+    }
+
+    /// Returns the unknowns after a change, and the values of the critical requirements there.
+    fn tried(&self, change: &DVector<f64>) -> (Vec<f64>, Vec<f64>) {
+        let moved = self.unknowns.iter().zip(change.iter()).zip(&self.bounds);
+        let moved: Vec<f64> = moved
+            .map(|((value, change), [lower, upper])| (value + change).clamp(*lower, *upper))
+            .collect();
+        let values = self.problem.values_of(&moved, &self.critical);
+        (moved, values)
+    }
+
+    /// Returns the minimised value, raised by the largest violation.
+    fn merit(&self, unknowns: &[f64], values: &[f64]) -> f64 {
+        let violation = values.iter().fold(0.0f64, |most, value| most.max(-value));
+        self.problem.minimised(unknowns) + self.weight * violation
+    }
+
+    /// Solves the quadratic programme about the unknowns. Where its constraints contradict each other, they are missed as little as
+    /// possible.
+    fn step(&mut self, gradient: &DVector<f64>, rows: &DMatrix<f64>, values: &[f64], trust: f64) -> Option<Step> {
+        let count = self.unknowns.len();
+        // The last variable is the largest violation.
+        let mut program = ConvexProgram::new(count + 1);
+        program.quadratic.view_mut((0, 0), (count, count)).copy_from(&self.hessian);
+        program.linear.rows_mut(0, count).copy_from(gradient);
+        program.linear[count] = self.weight;
+        for (row, value) in values.iter().enumerate() {
+            let mut row_of = DVector::zeros(count + 1);
+            row_of.rows_mut(0, count).copy_from(&rows.row(row).transpose());
+            row_of[count] = 1.0;
+            program.at_least.push((row_of, -value));
+        }
+        for unknown in 0..count {
+            let [lower, upper] = self.bounds[unknown].map(|bound| bound - self.unknowns[unknown]);
+            program.bound_below(unknown, lower.max(-trust));
+            program.bound_above(unknown, upper.min(trust));
+        }
+        program.bound_below(count, 0.0);
+        let solution = program.solve()?;
+        let change: DVector<f64> = solution.x.rows(0, count).into_owned();
+        let multipliers = solution.multipliers[..values.len()].to_vec();
+        let violation = values.iter().fold(0.0f64, |most, value| most.max(-value));
+        let quadratic = 0.5 * change.dot(&(&self.hessian * &change));
+        let promised = self.weight * (violation - solution.x[count].max(0.0)) - gradient.dot(&change) - quadratic;
+        let sum: f64 = multipliers.iter().sum();
+        if solution.x[count] > 1e-9 && sum > 0.99 * self.weight && self.weight < 1e6 {
+            self.weight *= 4.0;
+        }
+        Some(Step {
+            change,
+            multipliers,
+            promised,
+        })
+    }
+
+    /// Updates the approximation of the Hessian by the change of the gradient of the Lagrangian along a way, damped so that it stays
+    /// positive definite.
+    fn bend(&mut self, way: &DVector<f64>, turned: DVector<f64>) {
+        let image = &self.hessian * way;
+        let curvature = way.dot(&image);
+        if curvature < 1e-30 || way.amax() < 1e-9 {
+            return;
+        }
+        let along = way.dot(&turned);
+        let share = if along >= 0.2 * curvature {
+            1.0
+        } else {
+            0.8 * curvature / (curvature - along)
+        };
+        let turned = turned * share + &image * (1.0 - share);
+        let along = way.dot(&turned);
+        self.hessian += &turned * turned.transpose() / along - &image * image.transpose() / curvature;
+        self.hessian = 0.5 * (&self.hessian + self.hessian.transpose());
+    }
+}
+
+/// Returns the largest amount by which a requirement is missed.
+pub(crate) fn missed(critical: &[Critical]) -> f64 {
+    critical.iter().fold(0.0, |most, critical| most.max(-critical.slack))
+}
+
+/// Returns whether two critical poses of one requirement differ so little that one constraint stands for both.
+fn is_identical(a: &Critical, b: &Critical) -> bool {
+    is_same(&a.place, &b.place) && (a.slack - b.slack).abs() < 1e-11 || is_of_design(a.requirement)
+}
+
+fn is_of_design(requirement: Requirement) -> bool {
+    matches!(requirement, Requirement::Assembly)
+}

@@ -1,0 +1,528 @@
+//! A design as the unknown of a local problem: what may change, what is minimised, and what has to hold.
+
+use glam::DVec2;
+use kinefront_model::evaluation::{
+    Better, Bound, Model, ModelSettings, Objective, PoseScalar, Quantity, QuantityLimit,
+};
+use kinefront_model::mechanism::{AnyLeg, Architecture, Design, DesignVariable, JointKind, Leg};
+use kinefront_model::spatial::{LEGS, Rotation};
+use kinefront_model::workspace::{GridError, PoseEvaluator, WorkspaceSpec};
+
+use super::place::{Area, Place, Spots};
+use super::requirement::{End, Requirement};
+
+/// Least radius of a bar in a local problem \[m\]: its logarithm is an unknown.
+const THINNEST: f64 = 1e-9;
+
+/// Why a design has no local problem.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LocalError {
+    /// The first objective is not one that a local problem minimises.
+    Objective(Quantity),
+    /// The region is the largest disc, whose radius must be stated.
+    NoRadius,
+    /// A grid does not fit the workspace.
+    Grid(GridError),
+}
+
+impl std::fmt::Display for LocalError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            LocalError::Objective(quantity) => write!(
+                f,
+                "{} is the first objective; a local optimum is found for a mass, the height, the workspace radius, or the worst value of a \
+                 scalar over the poses",
+                quantity.entry().key
+            ),
+            LocalError::NoRadius => f.write_str("the region is the largest disc; its radius must be known"),
+            LocalError::Grid(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for LocalError {}
+
+impl From<GridError> for LocalError {
+    fn from(error: GridError) -> Self {
+        LocalError::Grid(error)
+    }
+}
+
+/// A variable that may change, and those that follow it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeVariable {
+    /// The variable.
+    pub variable: DesignVariable,
+    /// Smallest and largest value \[m or deg\].
+    pub range: [f64; 2],
+    /// Variables that are this one times a factor.
+    pub tied: Vec<(DesignVariable, f64)>,
+}
+
+/// What a local problem asks: the best design near a given one for a fixed region.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LocalQuestion {
+    /// The model with all requirements. Its workspace and its objectives are not used.
+    pub settings: ModelSettings,
+    /// The region, whose size is known; its centre, the rotation range, and the home orientation if it is prescribed.
+    pub workspace: WorkspaceSpec,
+    /// What is minimised or maximised.
+    pub objective: Objective,
+    /// The variables that may change; every other one keeps the value of the design.
+    pub variables: Vec<FreeVariable>,
+    /// Whether only what depends on the bars is required.
+    pub is_of_bars: bool,
+}
+
+impl LocalQuestion {
+    /// Requires that a quantity keeps at least the value that it has.
+    pub fn hold(&mut self, objective: Objective, value: f64) {
+        let better = objective.quantity.entry().better;
+        match objective.quantity {
+            Quantity::WorkspaceRadius => {}
+            Quantity::Worst(scalar) if better == objective.goal => self.settings.thresholds.set(scalar, Some(value)),
+            quantity => self.settings.limits.push(QuantityLimit {
+                quantity,
+                bound: match objective.goal {
+                    Better::Higher => Bound::AtLeast(value),
+                    Better::Lower => Bound::AtMost(value),
+                },
+            }),
+        }
+    }
+
+    /// Returns the same question with the bars alone free, for a home orientation \[deg\].
+    pub fn of_bars(&self, home_deg: f64) -> Self {
+        let is_bar = |free: &&FreeVariable| free.variable.may_be_zero();
+        Self {
+            variables: self.variables.iter().filter(is_bar).cloned().collect(),
+            workspace: WorkspaceSpec {
+                home_phi_deg: Some(home_deg),
+                ..self.workspace.clone()
+            },
+            is_of_bars: true,
+            ..self.clone()
+        }
+    }
+}
+
+/// What is minimised.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Goal {
+    /// The logarithm of a quantity of the design, with a sign.
+    Design(Quantity, f64),
+    /// The logarithm of the radius of the disc, with a sign; the radius is an unknown.
+    Radius(f64),
+    /// The logarithm of the limit of a scalar, with a sign; the limit is an unknown.
+    Level(PoseScalar, f64),
+}
+
+/// A [`LocalQuestion`], prepared for many designs of one architecture.
+#[derive(Debug, Clone)]
+pub struct LocalProblem {
+    pub(crate) question: LocalQuestion,
+    pub(crate) model: Model,
+    area: Area,
+    goal: Goal,
+    /// The design whose other variables are kept.
+    start: Design,
+    requirements: Vec<Requirement>,
+    spots: std::sync::Arc<Spots>,
+}
+
+/// A design of a local problem, prepared for many poses.
+pub(crate) struct Prepared {
+    pub design: Design,
+    /// Home orientation \[rad\].
+    pub home: f64,
+    pub area: Area,
+    half_range: f64,
+    centre: DVec2,
+    evaluator: Box<dyn PoseEvaluator>,
+    legs: [AnyLeg; LEGS],
+    limits: [[Option<[f64; 2]>; 3]; LEGS],
+    /// Limits of scalars, with the one that is an unknown.
+    level: Option<(PoseScalar, f64)>,
+}
+
+impl LocalProblem {
+    /// Prepares a question for the designs that have the architecture of `start`, and its values of all variables that are not free.
+    ///
+    /// # Errors
+    /// [`LocalError`] if the question is none.
+    pub fn new(question: LocalQuestion, start: &Design) -> Result<Self, LocalError> {
+        let sign = match question.objective.goal {
+            Better::Lower => 1.0,
+            Better::Higher => -1.0,
+        };
+        let goal = match question.objective.quantity {
+            quantity @ (Quantity::Mass | Quantity::LegsMass | Quantity::PlatformMass | Quantity::Height) => {
+                Goal::Design(quantity, sign)
+            }
+            Quantity::WorkspaceRadius => Goal::Radius(sign),
+            Quantity::Worst(scalar) if scalar.bounds_poses() => Goal::Level(scalar, sign),
+            other => return Err(LocalError::Objective(other)),
+        };
+        let area = Area::new(&question.workspace.region).ok_or(LocalError::NoRadius)?;
+        let model = Model::new(question.settings.clone())?;
+        let is_three_fold = matches!(area, Area::Disc(_)) && model.is_symmetric(start);
+        let mut problem = Self {
+            spots: std::sync::Arc::new(area.spots(is_three_fold)),
+            requirements: Vec::new(),
+            question,
+            model,
+            area,
+            goal,
+            start: *start,
+        };
+        problem.requirements = problem.all_requirements();
+        Ok(problem)
+    }
+
+    /// Returns the problem with another question of the same kind, for the same region but for its size.
+    pub(crate) fn with_question(&self, question: LocalQuestion) -> Result<Self, LocalError> {
+        let area = Area::new(&question.workspace.region).ok_or(LocalError::NoRadius)?;
+        let mut problem = Self {
+            model: Model::new(question.settings.clone())?,
+            area,
+            question,
+            ..self.clone()
+        };
+        problem.requirements = problem.all_requirements();
+        Ok(problem)
+    }
+
+    /// The architecture of the designs.
+    pub(crate) fn architecture(&self) -> Architecture {
+        self.start.architecture()
+    }
+
+    /// The question.
+    pub fn question(&self) -> &LocalQuestion {
+        &self.question
+    }
+
+    fn all_requirements(&self) -> Vec<Requirement> {
+        let settings = &self.question.settings;
+        let mut found = Vec::new();
+        let legs = [0, 1, 2].map(|leg| AnyLeg::new(&self.start, &settings.legs, leg));
+        if !self.question.is_of_bars {
+            for (leg, any) in legs.iter().enumerate() {
+                if self.architecture().has_working_modes() {
+                    found.push(Requirement::EndOfReach { leg });
+                }
+                for (joint, limits) in any.joint_limits().iter().enumerate() {
+                    if limits.is_some() {
+                        found.push(Requirement::Limit { leg, joint, end: End::Lower });
+                        found.push(Requirement::Limit { leg, joint, end: End::Upper });
+                    }
+                }
+            }
+            found.push(Requirement::Assembly);
+        }
+        let limited = settings.thresholds.iter().map(|(scalar, _)| scalar);
+        let level = match self.goal {
+            Goal::Level(scalar, _) => Some(scalar),
+            _ => None,
+        };
+        for scalar in limited.chain(level) {
+            let entry = scalar.entry();
+            let counts = self.model.has(&self.start, scalar) && (entry.is_of_bars || !self.question.is_of_bars);
+            let requirement = Requirement::Scalar(scalar);
+            if counts && scalar != PoseScalar::Reach && !found.contains(&requirement) {
+                found.push(requirement);
+            }
+        }
+        if settings.thresholds.get(PoseScalar::Dexterity).is_none_or(|least| least <= 0.0) {
+            found.push(Requirement::Determinant);
+        }
+        let of_designs = settings.limits.iter().enumerate();
+        found.extend(of_designs.filter_map(|(place, limit)| self.requirement_of(place, limit)));
+        found
+    }
+
+    /// Returns the requirement that a limit of the design as a whole is; `None` if it is of no design or not part of a local problem.
+    fn requirement_of(&self, place: usize, limit: &QuantityLimit) -> Option<Requirement> {
+        let is_known = match limit.quantity {
+            Quantity::Mass | Quantity::LegsMass | Quantity::PlatformMass | Quantity::Height => true,
+            Quantity::Worst(scalar) => scalar == PoseScalar::Footprint && matches!(limit.bound, Bound::AtMost(_)),
+            _ => false,
+        };
+        (is_known && limit.quantity.is_of(&self.start) && !self.question.is_of_bars).then_some(Requirement::Quantity(place))
+    }
+
+    /// Returns the quantities whose limits are not part of the problem, because they have no value at a pose.
+    pub fn left_out(&self) -> Vec<Quantity> {
+        let limits = self.question.settings.limits.iter().enumerate();
+        let left = limits.filter(|(place, limit)| {
+            limit.quantity != Quantity::WorkspaceRadius
+                && limit.quantity.is_of(&self.start)
+                && self.requirement_of(*place, limit).is_none()
+        });
+        left.map(|(_, limit)| limit.quantity).collect()
+    }
+
+    /// The requirements.
+    pub(crate) fn requirements(&self) -> &[Requirement] {
+        &self.requirements
+    }
+
+    pub(crate) fn spots(&self) -> &Spots {
+        &self.spots
+    }
+
+    /// Returns whether the home orientation is an unknown.
+    pub(crate) fn has_free_home(&self) -> bool {
+        self.question.workspace.home_phi_deg.is_none()
+    }
+
+    /// Returns the number of unknowns.
+    pub(crate) fn count(&self) -> usize {
+        let level = !matches!(self.goal, Goal::Design(..));
+        self.question.variables.len() + usize::from(self.has_free_home()) + usize::from(level)
+    }
+
+    /// Returns the place of the home orientation among the unknowns, if it is one.
+    fn home_place(&self) -> Option<usize> {
+        self.has_free_home().then_some(self.question.variables.len())
+    }
+
+    fn level_place(&self) -> usize {
+        self.question.variables.len() + usize::from(self.has_free_home())
+    }
+
+    /// Returns the unknowns of a design with a home orientation \[rad\].
+    pub(crate) fn unknowns(&self, design: &Design, home: f64) -> Vec<f64> {
+        let of_variable = |free: &FreeVariable| unknown(free.variable, design.value(free.variable));
+        let mut unknowns: Vec<f64> = self.question.variables.iter().map(of_variable).collect();
+        if self.has_free_home() {
+            unknowns.push(home);
+        }
+        match self.goal {
+            Goal::Design(..) => {}
+            Goal::Radius(_) => {
+                let radius = self.question.workspace.region.inscribed_radius().unwrap_or(1.0);
+                unknowns.push(libm::log(radius));
+            }
+            Goal::Level(scalar, _) => {
+                let stated = self.question.settings.thresholds.get(scalar).unwrap_or(1.0);
+                unknowns.push(libm::log(stated.max(f64::MIN_POSITIVE)));
+            }
+        }
+        unknowns
+    }
+
+    /// Returns the smallest and the largest value of each unknown.
+    pub(crate) fn bounds(&self) -> Vec<[f64; 2]> {
+        let of_variable = |free: &FreeVariable| free.range.map(|end| unknown(free.variable, end));
+        let mut bounds: Vec<[f64; 2]> = self.question.variables.iter().map(of_variable).collect();
+        bounds.resize(self.count(), [f64::NEG_INFINITY, f64::INFINITY]);
+        bounds
+    }
+
+    /// Returns the design of some unknowns; `None` if they are no design.
+    pub(crate) fn design(&self, unknowns: &[f64]) -> Option<Design> {
+        let mut design = self.start;
+        let mut values = design.values();
+        let given: Vec<(DesignVariable, f64)> = self
+            .question
+            .variables
+            .iter()
+            .zip(unknowns)
+            .flat_map(|(free, unknown)| {
+                let value = at_bound(known(free.variable, *unknown), free.range);
+                std::iter::once((free.variable, value))
+                    .chain(free.tied.iter().map(move |(variable, factor)| (*variable, value * factor)))
+            })
+            .collect();
+        for (variable, value) in &given {
+            if let Some(place) = values.get_mut(*variable as usize) {
+                *place = *value;
+            }
+        }
+        design = design.with_dimensions(values).ok()?;
+        let is_further = |variable: DesignVariable| variable as usize >= values.len();
+        for (variable, value) in given.into_iter().filter(|(variable, _)| is_further(*variable)) {
+            design = design.with(variable, value).ok()?;
+        }
+        Some(design)
+    }
+
+    /// Returns the value that is minimised: the logarithm of the objective, with the sign of its goal.
+    pub(crate) fn minimised(&self, unknowns: &[f64]) -> f64 {
+        match self.goal {
+            Goal::Design(quantity, sign) => {
+                let value = self.design(unknowns).and_then(|design| self.quantity(&design, quantity));
+                value.map_or(f64::INFINITY, |value| sign * libm::log(value))
+            }
+            Goal::Radius(sign) | Goal::Level(_, sign) => sign * unknowns[self.level_place()],
+        }
+    }
+
+    /// Returns the value of the objective.
+    pub(crate) fn objective(&self, unknowns: &[f64]) -> f64 {
+        let minimised = self.minimised(unknowns);
+        libm::exp(match self.question.objective.goal {
+            Better::Lower => minimised,
+            Better::Higher => -minimised,
+        })
+    }
+
+    /// Returns a quantity of a design as a whole.
+    fn quantity(&self, design: &Design, quantity: Quantity) -> Option<f64> {
+        match quantity {
+            Quantity::Mass => Some(self.model.mass(design)),
+            Quantity::LegsMass => Some(self.model.legs_mass(design)),
+            Quantity::PlatformMass => Some(self.model.platform_mass(design)),
+            Quantity::Height => Some(self.model.bodies_of(design).height()),
+            _ => None,
+        }
+    }
+
+    /// Prepares the design of some unknowns; `None` if they are no design.
+    pub(crate) fn prepare(&self, unknowns: &[f64]) -> Option<Prepared> {
+        let design = self.design(unknowns)?;
+        let legs = [0, 1, 2].map(|leg| AnyLeg::new(&design, &self.question.settings.legs, leg));
+        let mut evaluator = self.model.pose_evaluator(&design);
+        for requirement in &self.requirements {
+            match *requirement {
+                Requirement::Scalar(scalar) => evaluator.ask_for(scalar),
+                Requirement::Quantity(place) => {
+                    if let Quantity::Worst(scalar) = self.question.settings.limits[place].quantity {
+                        evaluator.ask_for(scalar);
+                    }
+                }
+                _ => {}
+            }
+        }
+        let home = match self.home_place() {
+            Some(place) => unknowns[place],
+            None => self.question.workspace.home_phi_deg.unwrap_or(0.0).to_radians(),
+        };
+        let level = match self.goal {
+            Goal::Level(scalar, _) => Some((scalar, libm::exp(unknowns[self.level_place()]))),
+            _ => None,
+        };
+        let area = match self.goal {
+            Goal::Radius(_) => Area::Disc(libm::exp(unknowns[self.level_place()])),
+            _ => self.area.clone(),
+        };
+        Some(Prepared {
+            design,
+            home,
+            area,
+            half_range: 0.5 * self.question.workspace.rotation_range_deg.to_radians(),
+            centre: self.question.workspace.centre,
+            evaluator,
+            limits: [0, 1, 2].map(|leg| legs[leg].joint_limits()),
+            legs,
+            level,
+        })
+    }
+
+    /// Returns the limit of a scalar, or 0 if there is none.
+    pub(crate) fn limit(&self, prepared: &Prepared, scalar: PoseScalar) -> f64 {
+        match prepared.level {
+            Some((leveled, level)) if leveled == scalar => level,
+            _ => self.question.settings.thresholds.get(scalar).unwrap_or(0.0),
+        }
+    }
+
+    /// Returns the excess of a quantity of the design as a whole over its limit, as a logarithm.
+    pub(crate) fn excess_of_quantity(&self, prepared: &Prepared, limit: &QuantityLimit) -> Option<f64> {
+        let value = self.quantity(&prepared.design, limit.quantity)?;
+        Some(excess(value, limit))
+    }
+}
+
+/// Returns by how much a value keeps a limit, as a logarithm.
+pub(crate) fn excess(value: f64, limit: &QuantityLimit) -> f64 {
+    match limit.bound {
+        Bound::AtLeast(least) => libm::log(value / least),
+        Bound::AtMost(most) => libm::log(most / value),
+    }
+}
+
+impl Prepared {
+    /// Returns the position of a place \[m\], and the arms in its orientation.
+    pub fn located(&self, place: &Place) -> (DVec2, [DVec2; LEGS]) {
+        let position = self.centre + self.area.position(place.spot);
+        (position, self.arms(place.turn))
+    }
+
+    /// Returns the arms in an orientation, a share of half the rotation range from the home orientation.
+    pub fn arms(&self, turn: f64) -> [DVec2; LEGS] {
+        self.evaluator.arms(&Rotation::new(self.orientation(turn)))
+    }
+
+    /// Returns an orientation \[rad\] from its share of half the rotation range.
+    pub fn orientation(&self, turn: f64) -> f64 {
+        self.home + turn * self.half_range
+    }
+
+    /// The evaluator of poses.
+    pub fn evaluator(&self) -> &dyn PoseEvaluator {
+        &*self.evaluator
+    }
+
+    pub fn centre(&self) -> DVec2 {
+        self.centre
+    }
+
+    /// Returns the distance of a joint from one of its limits \[m\], negative beyond it; `None` where the leg does not reach the pose.
+    pub fn distance_from_limit(&self, leg: usize, joint: usize, end: End, place: &Place) -> Option<f64> {
+        let (position, arms) = self.located(place);
+        let [lower, upper] = self.limits[leg][joint]?;
+        let (posture, _) = self.legs[leg].solve(position + arms[leg], arms[leg]).ok()?;
+        let value = self.legs[leg].joint_values(&posture)[joint];
+        Some(match end {
+            End::Lower => value - lower,
+            End::Upper => upper - value,
+        })
+    }
+
+    /// Returns the distance of a leg from the end of its reach \[m\], negative beyond it; `None` where a joint limit is nearer, so that the
+    /// end is not what is missed first.
+    pub fn distance_from_end(&self, leg: usize, place: &Place) -> Option<f64> {
+        let (position, arms) = self.located(place);
+        match self.legs[leg].solve(position + arms[leg], arms[leg]) {
+            Err(shortfall) => Some(shortfall.limit_margin),
+            Ok((_, Some(_))) => None,
+            Ok((posture, None)) => {
+                let values = self.legs[leg].joint_values(&posture);
+                let limits = self.limits[leg].iter().zip(values);
+                let distances = limits.filter_map(|(limits, value)| limits.map(|[lower, upper]| (value - lower).min(upper - value)));
+                let nearest = distances.fold(f64::INFINITY, f64::min);
+                Some(posture.chain.limit_margin).filter(|margin| *margin < nearest * (1.0 - 1e-9))
+            }
+        }
+    }
+
+    /// Kind of the actuators.
+    pub fn actuator(&self) -> JointKind {
+        self.design.architecture().actuator()
+    }
+}
+
+/// Returns the unknown that a variable is: the logarithm of a length, or an angle \[rad\].
+fn unknown(variable: DesignVariable, value: f64) -> f64 {
+    if variable.is_angle() {
+        value.to_radians()
+    } else {
+        libm::log(value.max(THINNEST))
+    }
+}
+
+/// Returns an end of a range in place of a value that differs from it by rounding alone.
+fn at_bound(value: f64, range: [f64; 2]) -> f64 {
+    let is_at = |end: &f64| (value - end).abs() <= 1e-12 * end.abs();
+    range.into_iter().find(is_at).unwrap_or(value)
+}
+
+fn known(variable: DesignVariable, unknown: f64) -> f64 {
+    if variable.is_angle() {
+        unknown.to_degrees()
+    } else {
+        libm::exp(unknown)
+    }
+}

@@ -1,0 +1,96 @@
+//! Home orientations from which a design is polished: those in which it comes nearest to keeping every requirement.
+
+use glam::DVec2;
+use kinefront_model::evaluation::PoseScalar;
+use kinefront_model::lanes::padded_length;
+use kinefront_model::mechanism::Design;
+use kinefront_model::spatial::Rotation;
+use kinefront_model::workspace::ValueColumns;
+
+use super::polish::Polished;
+use super::problem::{LocalProblem, Prepared};
+use super::requirement::{NOWHERE, Requirement};
+
+/// Orientations that are examined.
+const ORIENTATIONS: usize = 144;
+
+/// Home orientations from which a design is polished if none is given.
+const HOMES: usize = 3;
+
+impl LocalProblem {
+    /// Returns the best design near one: from a home orientation \[rad\], or from those in which it comes nearest to keeping the
+    /// requirements; `None` if there is none that keeps them.
+    pub fn best(&self, design: &Design, home: Option<f64>) -> Option<Polished> {
+        let homes = match home {
+            Some(home) => vec![home],
+            None => self.homes(design),
+        };
+        let found = homes.into_iter().filter_map(|home| self.polish(design, home));
+        let key = |found: &Polished| (!found.is_optimal(), self.minimised(&found.unknowns));
+        found.reduce(|best, next| if key(&next) < key(&best) { next } else { best })
+    }
+
+    /// Returns home orientations \[rad\] in which a design comes nearest to keeping the requirements, the best first.
+    pub fn homes(&self, design: &Design) -> Vec<f64> {
+        if !self.has_free_home() {
+            return vec![self.question().workspace.home_phi_deg.unwrap_or(0.0).to_radians()];
+        }
+        let Some(prepared) = self.prepare(&self.unknowns(design, 0.0)) else {
+            return Vec::new();
+        };
+        let worst = self.worst_of_orientations(&prepared);
+        let step = std::f64::consts::TAU / ORIENTATIONS as f64;
+        let reach = (0.5 * self.question().workspace.rotation_range_deg.to_radians() / step).round() as usize;
+        let of_window = |home: usize| {
+            let window = (0..=2 * reach).map(|k| worst[(home + ORIENTATIONS + k - reach.min(ORIENTATIONS)) % ORIENTATIONS]);
+            window.fold(f64::INFINITY, f64::min)
+        };
+        let windows: Vec<f64> = (0..ORIENTATIONS).map(of_window).collect();
+        let is_peak = |home: &usize| {
+            let (before, after) = ((home + ORIENTATIONS - 1) % ORIENTATIONS, (home + 1) % ORIENTATIONS);
+            windows[*home] >= windows[before] && windows[*home] > windows[after] && windows[*home] > NOWHERE
+        };
+        let mut peaks: Vec<usize> = (0..ORIENTATIONS).filter(is_peak).collect();
+        peaks.sort_by(|a, b| windows[*b].total_cmp(&windows[*a]).then(a.cmp(b)));
+        peaks.truncate(HOMES);
+        peaks.into_iter().map(|home| home as f64 * step).collect()
+    }
+
+    /// Returns the least value of any requirement over the region in each orientation.
+    fn worst_of_orientations(&self, prepared: &Prepared) -> Vec<f64> {
+        let spots = &self.spots().all;
+        let positions: Vec<DVec2> = spots.iter().map(|spot| prepared.centre() + prepared.area.position(*spot)).collect();
+        let length = padded_length(positions.len());
+        let column = |part: fn(&DVec2) -> f64| {
+            let mut column: Vec<f64> = positions.iter().map(part).collect();
+            column.resize(length, column[0]);
+            column
+        };
+        let (xs, ys) = (column(|position| position.x), column(|position| position.y));
+        let (margin, scale) = (self.margin(prepared), prepared.design.base_radius());
+        let of_scalars: Vec<Requirement> = self
+            .requirements()
+            .iter()
+            .filter(|requirement| matches!(requirement, Requirement::Scalar(_)))
+            .copied()
+            .collect();
+        let mut values = ValueColumns::default();
+        let mut worst = Vec::with_capacity(ORIENTATIONS);
+        for k in 0..ORIENTATIONS {
+            let angle = std::f64::consts::TAU * k as f64 / ORIENTATIONS as f64;
+            let arms = prepared.evaluator().arms(&Rotation::new(angle));
+            prepared.evaluator().evaluate_positions(&arms, &xs, &ys, &mut values);
+            let mut least = f64::INFINITY;
+            for index in 0..positions.len() {
+                least = least.min((values.column(PoseScalar::Reach)[index] - margin) / scale);
+                for requirement in &of_scalars {
+                    let scalar = |scalar: PoseScalar| values.column(scalar).get(index).copied().unwrap_or(f64::NAN);
+                    let value = self.of_scalars(prepared, *requirement, scalar);
+                    least = least.min(if value.is_nan() { NOWHERE } else { value });
+                }
+            }
+            worst.push(least.max(NOWHERE));
+        }
+        worst
+    }
+}

@@ -1,0 +1,236 @@
+//! Where a design is nearest to missing a requirement: the local minima over all poses of the region.
+
+use glam::DVec2;
+use kinefront_model::evaluation::{PoseScalar, Quantity};
+use kinefront_model::lanes::padded_length;
+use kinefront_model::workspace::ValueColumns;
+
+use super::place::{Area, Place, Spot, TURNS, turn};
+use super::problem::{LocalProblem, Prepared};
+use super::requirement::{NOWHERE, Requirement};
+
+/// A pose at which a requirement is nearest to being missed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Critical {
+    /// The requirement.
+    pub requirement: Requirement,
+    /// The pose; of no meaning for a requirement of the design as a whole.
+    pub place: Place,
+    /// By how much it holds there, as a logarithm or a share of `R`; negative where it does not.
+    pub slack: f64,
+}
+
+/// Minima that exceed the least one by more than this are left out.
+const NEAR: f64 = 0.1;
+
+/// Largest number of minima of one requirement that are refined.
+const MOST: usize = 12;
+
+/// Joint limits that exceed the nearest one by less than this share of `R` are examined too.
+const ALSO: f64 = 0.02;
+
+/// Accuracy of a place.
+const ACCURACY: f64 = 1e-8;
+
+/// Step from which the place of a minimum is refined, for both coordinates and the orientation.
+const FIRST_STEP: f64 = 0.08;
+
+/// Step from which the place of a minimum that is nearly known is refined.
+const NEXT_STEP: f64 = 1e-3;
+
+/// Places that are nearer to each other than this are one.
+const SAME: f64 = 1e-5;
+
+impl LocalProblem {
+    /// Returns the local minima of all requirements over the region.
+    pub(crate) fn survey(&self, prepared: &Prepared) -> Vec<Critical> {
+        let fields = Fields::new(self, prepared);
+        let mut found: Vec<Critical> = Vec::new();
+        for requirement in self.requirements() {
+            if requirement.is_of_reach() {
+                continue;
+            }
+            if !requirement.is_of_poses(self) {
+                let place = Place { spot: Spot::Inside([0.0; 2]), turn: 0.0 };
+                let slack = self.value(prepared, *requirement, &place);
+                found.push(Critical { requirement: *requirement, place, slack });
+                continue;
+            }
+            let value = |index: usize| self.of_scalars(prepared, *requirement, |scalar| fields.scalar(scalar, index));
+            for place in fields.minima(self, value) {
+                add(&mut found, self.refined(prepared, *requirement, place, FIRST_STEP));
+            }
+        }
+        if self.requirements().iter().any(|requirement| requirement.is_of_reach()) {
+            let (margin, scale) = (self.margin(prepared), prepared.design.base_radius());
+            let value = |index: usize| (fields.reach[index] - margin) / scale;
+            for place in fields.minima(self, value) {
+                for critical in self.limits_at(prepared, place) {
+                    add(&mut found, self.refined(prepared, critical.requirement, critical.place, FIRST_STEP));
+                }
+            }
+        }
+        found
+    }
+
+    /// Returns the requirements of g2 that are nearest at a place.
+    fn limits_at(&self, prepared: &Prepared, place: Place) -> Vec<Critical> {
+        let of_reach = self.requirements().iter().filter(|requirement| requirement.is_of_reach());
+        let at = |requirement: &Requirement| Critical {
+            requirement: *requirement,
+            place,
+            slack: self.value(prepared, *requirement, &place),
+        };
+        let all: Vec<Critical> = of_reach.map(at).filter(|critical| critical.slack > NOWHERE).collect();
+        let least = all.iter().fold(f64::INFINITY, |least, critical| least.min(critical.slack));
+        all.into_iter().filter(|critical| critical.slack <= least + ALSO).collect()
+    }
+
+    /// Returns the minimum of a requirement near a place, by steps along each coordinate that are halved where none helps.
+    pub(crate) fn refined(&self, prepared: &Prepared, requirement: Requirement, from: Place, first: f64) -> Critical {
+        let mut best = Critical {
+            requirement,
+            place: from,
+            slack: self.value(prepared, requirement, &from),
+        };
+        let freedoms = Area::freedoms(from.spot);
+        let mut step = first;
+        while step > ACCURACY {
+            let mut is_lower = false;
+            for freedom in 0..=freedoms {
+                for way in [-step, step] {
+                    let Some(place) = moved(prepared, best.place, freedom, freedoms, way) else {
+                        continue;
+                    };
+                    let slack = self.value(prepared, requirement, &place);
+                    if slack < best.slack {
+                        best = Critical { requirement, place, slack };
+                        is_lower = true;
+                    }
+                }
+            }
+            if !is_lower {
+                step *= 0.5;
+            }
+        }
+        best
+    }
+
+    /// Returns the minimum near one that was found for nearly the same design.
+    pub(crate) fn followed(&self, prepared: &Prepared, critical: &Critical) -> Critical {
+        self.refined(prepared, critical.requirement, critical.place, NEXT_STEP)
+    }
+}
+
+fn moved(prepared: &Prepared, place: Place, freedom: usize, freedoms: usize, step: f64) -> Option<Place> {
+    if freedom < freedoms {
+        let spot = prepared.area.moved(place.spot, freedom, step)?;
+        return Some(Place { spot, ..place });
+    }
+    let turn = (place.turn + step).clamp(-1.0, 1.0);
+    (turn != place.turn).then_some(Place { turn, ..place })
+}
+
+/// Adds a minimum unless it is one that was found before.
+fn add(found: &mut Vec<Critical>, next: Critical) {
+    let is_known = |other: &Critical| {
+        other.requirement == next.requirement && (is_same(&other.place, &next.place)) && (other.slack - next.slack).abs() < SAME
+    };
+    if !found.iter().any(is_known) {
+        found.push(next);
+    }
+}
+
+/// Returns whether two places are one.
+pub(crate) fn is_same(a: &Place, b: &Place) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() < SAME;
+    let spot = match (a.spot, b.spot) {
+        (Spot::Rim(a), Spot::Rim(b)) => near(libm::remainder(a - b, std::f64::consts::TAU), 0.0),
+        (Spot::Side(i, a), Spot::Side(j, b)) => i == j && near(a, b),
+        (Spot::Inside(a), Spot::Inside(b)) => near(a[0], b[0]) && near(a[1], b[1]),
+        _ => false,
+    };
+    spot && near(a.turn, b.turn)
+}
+
+/// The scalars at all spots in all orientations that are examined.
+struct Fields {
+    columns: Vec<ValueColumns>,
+    /// Distance from the joint limits and from the end of reach \[m\], orientation by orientation.
+    reach: Vec<f64>,
+    count: usize,
+}
+
+impl Fields {
+    fn new(problem: &LocalProblem, prepared: &Prepared) -> Self {
+        let spots = &problem.spots().all;
+        let positions: Vec<DVec2> = spots.iter().map(|spot| prepared.centre() + prepared.area.position(*spot)).collect();
+        let length = padded_length(positions.len());
+        let column = |part: fn(&DVec2) -> f64| {
+            let mut column: Vec<f64> = positions.iter().map(part).collect();
+            column.resize(length, column[0]);
+            column
+        };
+        let (xs, ys) = (column(|position| position.x), column(|position| position.y));
+        let columns: Vec<ValueColumns> = (0..TURNS)
+            .map(|index| {
+                let mut values = ValueColumns::default();
+                prepared.evaluator().evaluate_positions(&prepared.arms(turn(index)), &xs, &ys, &mut values);
+                values
+            })
+            .collect();
+        let count = positions.len();
+        let reach = columns.iter().flat_map(|values| values.column(PoseScalar::Reach)[..count].iter().copied());
+        Self {
+            reach: reach.collect(),
+            columns,
+            count,
+        }
+    }
+
+    fn scalar(&self, scalar: PoseScalar, index: usize) -> f64 {
+        let column = self.columns[index / self.count].column(scalar);
+        column.get(index % self.count).copied().unwrap_or(f64::NAN)
+    }
+
+    /// Returns the places at which a function has no higher value than at any neighbour, the lowest first.
+    fn minima(&self, problem: &LocalProblem, value: impl Fn(usize) -> f64) -> Vec<Place> {
+        let spots = problem.spots();
+        let values: Vec<f64> = (0..TURNS * self.count)
+            .map(|index| Some(value(index)).filter(|value| !value.is_nan()).unwrap_or(f64::INFINITY))
+            .collect();
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let is_minimum = |index: usize| {
+            let (own, turn, spot) = (values[index], index / self.count, index % self.count);
+            let around = [turn.checked_sub(1), Some(turn), Some(turn + 1).filter(|turn| *turn < TURNS)];
+            own <= least + NEAR
+                && own.is_finite()
+                && around.into_iter().flatten().all(|other| {
+                    let near = spots.neighbours[spot].iter().chain([&spot]);
+                    near.into_iter().all(|near| own <= values[other * self.count + near])
+                })
+        };
+        let mut minima: Vec<usize> = (0..values.len()).filter(|index| is_minimum(*index)).collect();
+        minima.sort_by(|a, b| values[*a].total_cmp(&values[*b]).then(a.cmp(b)));
+        minima.truncate(MOST);
+        let place = |index: usize| Place {
+            spot: spots.all[index % self.count],
+            turn: turn(index / self.count),
+        };
+        minima.into_iter().map(place).collect()
+    }
+}
+
+/// Returns the scalar that a requirement is on, if it is on one.
+pub(crate) fn scalar_of(problem: &LocalProblem, requirement: Requirement) -> Option<PoseScalar> {
+    match requirement {
+        Requirement::Scalar(scalar) => Some(scalar),
+        Requirement::Determinant => Some(PoseScalar::Determinant),
+        Requirement::Quantity(place) => match problem.question().settings.limits[place].quantity {
+            Quantity::Worst(scalar) => Some(scalar),
+            _ => None,
+        },
+        _ if requirement.is_of_reach() => Some(PoseScalar::Reach),
+        _ => None,
+    }
+}
