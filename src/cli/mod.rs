@@ -9,6 +9,7 @@ mod export;
 mod merge;
 mod optimize;
 mod pose;
+mod prices;
 mod progress;
 mod question;
 mod report;
@@ -20,7 +21,9 @@ mod study;
 mod subject;
 mod tables;
 mod task;
+mod why;
 mod wire;
+mod wish;
 
 pub use signals::keep_going_at_limits;
 
@@ -66,6 +69,12 @@ enum Command {
     Pose(pose::PoseArguments),
     /// Move a design along the motion of a study: speeds, forces, power and energy of its drives over time.
     Task(task::TaskArguments),
+    /// Tell what each requirement costs at a design: prices, and what a wished mass would take.
+    Prices(prices::PricesArguments),
+    /// Find the nearest design that has what is wished, verified and proved.
+    Wish(wish::WishArguments),
+    /// Tell why a wished point of a front cannot be had, and which requirement would have to give how much.
+    Why(why::WhyArguments),
     /// Write a recording of one design with its overlays and a tour of its workspace.
     Show(show::ShowArguments),
     /// Export a design for CAD, viewers and simulators, or the front of a run as a table.
@@ -204,6 +213,9 @@ fn run_command(command: Option<Command>) -> Result<Ending, Failure> {
         Some(Command::Certify(arguments)) => certify::run(&arguments),
         Some(Command::Pose(arguments)) => pose::run(&arguments),
         Some(Command::Task(arguments)) => task::run(&arguments),
+        Some(Command::Prices(arguments)) => prices::run(&arguments),
+        Some(Command::Wish(arguments)) => wish::run(&arguments),
+        Some(Command::Why(arguments)) => why::run(&arguments),
         Some(Command::Show(arguments)) => show::run(&arguments),
         Some(Command::Export(arguments)) => export::run(&arguments),
         Some(Command::Optimize(arguments)) => optimize::run(&arguments),

@@ -77,10 +77,7 @@ impl ConvexProgram {
         // The library has `A x + s = b` with `s` in a cone.
         let constraints = sparse(rows.len(), count, |row, column| -rows[row].0[column]);
         let sides: Vec<f64> = rows.iter().map(|(_, side)| -side).collect();
-        let cones: [SupportedConeT<f64>; 2] = [
-            ZeroConeT(self.equal.len()),
-            NonnegativeConeT(self.at_least.len()),
-        ];
+        let cones: [SupportedConeT<f64>; 2] = [ZeroConeT(self.equal.len()), NonnegativeConeT(self.at_least.len())];
         let settings = DefaultSettings {
             verbose: false,
             tol_gap_abs: TOLERANCE,
@@ -96,7 +93,10 @@ impl ConvexProgram {
             SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress
         );
         let x = DVector::from_vec(solver.solution.x.clone());
-        let multipliers: Vec<f64> = solver.solution.z[self.equal.len()..].iter().map(|z| z.max(0.0)).collect();
+        let multipliers: Vec<f64> = solver.solution.z[self.equal.len()..]
+            .iter()
+            .map(|z| z.max(0.0))
+            .collect();
         let is_finite = x.iter().chain(&multipliers).all(|number| number.is_finite());
         (found && is_finite).then_some(ConvexSolution { x, multipliers })
     }

@@ -55,7 +55,11 @@ pub struct Multipliers {
 impl Multipliers {
     /// Determines the multipliers of a design from its critical poses.
     pub(crate) fn new(problem: &LocalProblem, unknowns: &[f64], survey: &[Critical]) -> Self {
-        let near: Vec<Critical> = survey.iter().filter(|critical| critical.slack <= NEARLY_ACTIVE).copied().collect();
+        let near: Vec<Critical> = survey
+            .iter()
+            .filter(|critical| critical.slack <= NEARLY_ACTIVE)
+            .copied()
+            .collect();
         let (gradient, rows) = problem.derivatives(unknowns, &near);
         let mut kept: Vec<usize> = Vec::new();
         for place in 0..near.len() {
@@ -72,7 +76,10 @@ impl Multipliers {
         let count = unknowns.len();
         let mut bounds = Vec::new();
         for (variable, [lower, upper]) in problem.bounds().into_iter().enumerate() {
-            for (end, distance) in [(End::Lower, unknowns[variable] - lower), (End::Upper, upper - unknowns[variable])] {
+            for (end, distance) in [
+                (End::Lower, unknowns[variable] - lower),
+                (End::Upper, upper - unknowns[variable]),
+            ] {
                 if distance <= NEARLY_ACTIVE {
                     bounds.push((variable, end, distance));
                 }
@@ -88,8 +95,15 @@ impl Multipliers {
                 End::Upper => -1.0,
             };
         }
-        let slacks = kept.iter().map(|place| near[*place].slack).chain(bounds.iter().map(|(.., distance)| *distance));
-        let exact: Vec<usize> = slacks.enumerate().filter(|(_, slack)| *slack <= ACTIVE).map(|(place, _)| place).collect();
+        let slacks = kept
+            .iter()
+            .map(|place| near[*place].slack)
+            .chain(bounds.iter().map(|(.., distance)| *distance));
+        let exact: Vec<usize> = slacks
+            .enumerate()
+            .filter(|(_, slack)| *slack <= ACTIVE)
+            .map(|(place, _)| place)
+            .collect();
         let (found, residual) = non_negative(&columns.select_columns(&exact), &gradient);
         let mut multipliers = vec![0.0; columns.ncols()];
         for (place, multiplier) in exact.iter().zip(found) {
@@ -97,11 +111,19 @@ impl Multipliers {
         }
         let are_ambiguous = is_dependent(&columns);
         Self {
-            active: kept.iter().zip(&multipliers).map(|(place, multiplier)| (near[*place], *multiplier)).collect(),
+            active: kept
+                .iter()
+                .zip(&multipliers)
+                .map(|(place, multiplier)| (near[*place], *multiplier))
+                .collect(),
             bounds: bounds
                 .iter()
                 .zip(&multipliers[kept.len()..])
-                .map(|(&(variable, end, _), &multiplier)| ActiveBound { variable, end, multiplier })
+                .map(|(&(variable, end, _), &multiplier)| ActiveBound {
+                    variable,
+                    end,
+                    multiplier,
+                })
                 .collect(),
             residual,
             are_ambiguous,
@@ -123,7 +145,11 @@ impl Multipliers {
     pub(crate) fn sum(&self, effects: &[f64]) -> f64 {
         let of_requirements = self.active.iter().map(|(_, multiplier)| multiplier);
         let of_bounds = self.bounds.iter().map(|bound| &bound.multiplier);
-        of_requirements.chain(of_bounds).zip(effects).map(|(multiplier, effect)| multiplier * effect).sum()
+        of_requirements
+            .chain(of_bounds)
+            .zip(effects)
+            .map(|(multiplier, effect)| multiplier * effect)
+            .sum()
     }
 
     /// Returns the least and the largest sum of multipliers times effects, over all multipliers that explain the optimum.
@@ -139,7 +165,14 @@ impl Multipliers {
             }
             (0..effects.len()).for_each(|multiplier| program.bound_below(multiplier, 0.0));
             let solution = program.solve()?;
-            Some(solution.x.iter().zip(effects).map(|(multiplier, effect)| multiplier * effect).sum::<f64>())
+            Some(
+                solution
+                    .x
+                    .iter()
+                    .zip(effects)
+                    .map(|(multiplier, effect)| multiplier * effect)
+                    .sum::<f64>(),
+            )
         };
         Some([end(1.0)?, end(-1.0)?])
     }
@@ -151,7 +184,10 @@ fn non_negative(columns: &DMatrix<f64>, gradient: &DVector<f64>) -> (Vec<f64>, f
     if count == 0 {
         return (Vec::new(), gradient.amax());
     }
-    let lengths: Vec<f64> = columns.column_iter().map(|column| column.norm().max(f64::MIN_POSITIVE)).collect();
+    let lengths: Vec<f64> = columns
+        .column_iter()
+        .map(|column| column.norm().max(f64::MIN_POSITIVE))
+        .collect();
     // The residual is a variable of its own: squaring the gradients would lose half the digits.
     let mut program = ConvexProgram::new(count + rows);
     for row in 0..rows {
@@ -167,11 +203,18 @@ fn non_negative(columns: &DMatrix<f64>, gradient: &DVector<f64>) -> (Vec<f64>, f
     let Some(solution) = program.solve() else {
         return (vec![0.0; count], gradient.amax());
     };
-    let mut found: Vec<f64> = solution.x.iter().take(count).map(|multiplier| multiplier.max(0.0)).collect();
+    let mut found: Vec<f64> = solution
+        .x
+        .iter()
+        .take(count)
+        .map(|multiplier| multiplier.max(0.0))
+        .collect();
     let largest = found.iter().copied().fold(0.0, f64::max);
     let support: Vec<usize> = (0..count).filter(|&place| found[place] > NONE * largest).collect();
     // Those that are not 0 follow exactly from the equations, unless that makes one negative.
-    let scaled = DMatrix::from_fn(rows, support.len(), |row, column| columns[(row, support[column])] / lengths[support[column]]);
+    let scaled = DMatrix::from_fn(rows, support.len(), |row, column| {
+        columns[(row, support[column])] / lengths[support[column]]
+    });
     if let Ok(exact) = scaled.clone().svd(true, true).solve(gradient, 1e-10)
         && exact.iter().all(|multiplier| *multiplier >= 0.0)
     {
@@ -212,8 +255,14 @@ mod tests {
     fn a_gradient_within_a_cone_has_no_residual() {
         let columns = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 2.0]);
         let (found, residual) = non_negative(&columns, &DVector::from_vec(vec![3.0, 4.0]));
-        assert!(residual < 1e-9 && (found[0] - 3.0).abs() < 1e-9 && (found[1] - 2.0).abs() < 1e-9, "{found:?}");
+        assert!(
+            residual < 1e-9 && (found[0] - 3.0).abs() < 1e-9 && (found[1] - 2.0).abs() < 1e-9,
+            "{found:?}"
+        );
         let (_, residual) = non_negative(&columns, &DVector::from_vec(vec![-1.0, 2.0]));
-        assert!((residual - 1.0).abs() < 1e-9, "outside the cone, its nearest edge is missed");
+        assert!(
+            (residual - 1.0).abs() < 1e-9,
+            "outside the cone, its nearest edge is missed"
+        );
     }
 }

@@ -1,8 +1,8 @@
 //! What a price is of: thresholds, material, actuators, region, travels, cross-sections and bounds.
 
 use glam::DVec2;
-use kinefront_model::evaluation::{PoseScalar, Quantity};
-use kinefront_model::mechanism::{CrossSection, DesignVariable, JointKind, Wall};
+use kinefront_model::evaluation::{Bound, ModelSettings, PoseScalar, Quantity};
+use kinefront_model::mechanism::{Arrangement, CrossSection, JointKind, Wall};
 use kinefront_model::polygon::Polygon;
 use kinefront_model::workspace::Region;
 
@@ -78,22 +78,33 @@ impl Parameter {
             Parameter::Density,
             Parameter::ActuatorStiffness,
         ];
-        let of_poses = problem.requirements().iter().filter_map(|requirement| match requirement {
-            Requirement::Scalar(scalar) if settings.thresholds.get(*scalar).is_some() => Some(Parameter::Threshold(*scalar)),
-            _ => None,
-        });
+        let of_poses = problem
+            .requirements()
+            .iter()
+            .filter_map(|requirement| match requirement {
+                Requirement::Scalar(scalar) if settings.thresholds.get(*scalar).is_some() => {
+                    Some(Parameter::Threshold(*scalar))
+                }
+                _ => None,
+            });
         all.extend(of_poses);
-        let depends_on_yield = |scalar: &PoseScalar| *scalar == PoseScalar::SafetyFactor && settings.thresholds.get(*scalar).is_some();
+        let depends_on_yield =
+            |scalar: &PoseScalar| *scalar == PoseScalar::SafetyFactor && settings.thresholds.get(*scalar).is_some();
         if PoseScalar::OF_LOADS.iter().any(depends_on_yield) {
             all.push(Parameter::YieldStrength);
         }
-        let of_designs = problem.requirements().iter().filter_map(|requirement| match requirement {
-            Requirement::Quantity(place) => Some(Parameter::Limit(*place)),
-            _ => None,
-        });
+        let of_designs = problem
+            .requirements()
+            .iter()
+            .filter_map(|requirement| match requirement {
+                Requirement::Quantity(place) => Some(Parameter::Limit(*place)),
+                _ => None,
+            });
         all.extend(of_designs);
         match question.workspace.region {
-            Region::Disc(_) if question.objective.quantity != Quantity::WorkspaceRadius => all.push(Parameter::WorkspaceRadius),
+            Region::Disc(_) if question.objective.quantity != Quantity::WorkspaceRadius => {
+                all.push(Parameter::WorkspaceRadius)
+            }
             Region::Polygon(_) => all.extend([Parameter::Width, Parameter::Height]),
             _ => {}
         }
@@ -107,7 +118,10 @@ impl Parameter {
             all.extend([Parameter::GuideStart, Parameter::GuideEnd]);
         }
         let is_ratio = |section: &CrossSection| {
-            matches!(section, CrossSection::Tube(Wall::Ratio(_)) | CrossSection::SquareTube(Wall::Ratio(_)))
+            matches!(
+                section,
+                CrossSection::Tube(Wall::Ratio(_)) | CrossSection::SquareTube(Wall::Ratio(_))
+            )
         };
         if is_ratio(&settings.sections.legs) {
             all.push(Parameter::LegWall);
@@ -265,12 +279,18 @@ impl Parameter {
 
     /// Returns the question with the parameter changed by a step, for a design of base radius `base_radius` \[m\]; `None` if a step has no
     /// meaning for it.
-    pub(crate) fn changed(self, question: &LocalQuestion, step: f64, base_radius: f64, actuator: JointKind) -> Option<LocalQuestion> {
+    pub(crate) fn changed(
+        self,
+        question: &LocalQuestion,
+        step: f64,
+        base_radius: f64,
+        actuator: JointKind,
+    ) -> Option<LocalQuestion> {
         let mut changed = question.clone();
         let is_zero = self.change(question, actuator) == Change::OfBaseRadius;
         let factor = libm::exp(step);
         let settings = &mut changed.settings;
-        let arrange = |settings: &mut kinefront_model::evaluation::ModelSettings, change: fn(&mut kinefront_model::mechanism::Arrangement, f64)| {
+        let arrange = |settings: &mut ModelSettings, change: fn(&mut Arrangement, f64)| {
             let mut arrangement = *settings.legs.geometry.arrangement();
             change(&mut arrangement, factor);
             settings.legs.geometry = arrangement.into();
@@ -296,7 +316,6 @@ impl Parameter {
                 settings.thresholds.set(scalar, Some(limit));
             }
             Parameter::Limit(place) => {
-                use kinefront_model::evaluation::Bound;
                 let bound = &mut settings.limits[place].bound;
                 *bound = match *bound {
                     Bound::AtLeast(limit) => Bound::AtLeast(limit * factor),
@@ -322,7 +341,11 @@ impl Parameter {
             Parameter::Bound(place, end) => {
                 let free = &mut changed.variables[place];
                 let bound = &mut free.range[end as usize];
-                *bound = if free.variable.is_angle() { *bound + step.to_degrees() } else { *bound * factor };
+                *bound = if free.variable.is_angle() {
+                    *bound + step.to_degrees()
+                } else {
+                    *bound * factor
+                };
             }
         }
         Some(changed)
@@ -361,9 +384,4 @@ fn resized(parameter: Parameter, region: &Region, factor: f64) -> Region {
         Region::Disc(radius) => Region::Disc(radius * scale.x),
         Region::Polygon(polygon) => Region::Polygon(scaled(polygon)),
     }
-}
-
-/// Returns the variable of a bound.
-pub(crate) fn variable_of(question: &LocalQuestion, place: usize) -> DesignVariable {
-    question.variables[place].variable
 }

@@ -157,7 +157,9 @@ impl Spots {
         let near = |a: DVec2, b: DVec2| (0..turns).any(|turn| third(turn).rotate(a).distance(b) < reach);
         let neighbours = |place: usize| {
             let others = (0..positions.len()).filter(|&other| other != place);
-            others.filter(|&other| near(positions[place], positions[other])).collect()
+            others
+                .filter(|&other| near(positions[place], positions[other]))
+                .collect()
         };
         let neighbours = (0..positions.len()).map(neighbours).collect();
         Self { all, neighbours }

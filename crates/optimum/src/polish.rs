@@ -61,9 +61,14 @@ pub struct Polished {
 }
 
 impl Polished {
+    /// Returns whether the design keeps every requirement.
+    pub fn is_feasible(&self) -> bool {
+        self.missed <= HELD
+    }
+
     /// Returns whether the design is an optimum: it keeps every requirement, and its multipliers explain why it cannot be better.
     pub fn is_optimal(&self) -> bool {
-        self.missed <= HELD && self.multipliers.residual <= 1e-4
+        self.is_feasible() && self.multipliers.residual <= 1e-4
     }
 }
 
@@ -85,7 +90,10 @@ impl LocalProblem {
                     best = Some(found);
                 }
             }
-            if best.as_ref().is_some_and(|best| best.missed <= HELD && best.multipliers.residual <= STALLED) {
+            if best
+                .as_ref()
+                .is_some_and(|best| best.missed <= HELD && best.multipliers.residual <= STALLED)
+            {
                 break;
             }
         }
@@ -167,7 +175,11 @@ struct Step {
 impl<'a> Exchange<'a> {
     fn new(problem: &'a LocalProblem, start: &[f64]) -> Self {
         let bounds = problem.bounds();
-        let unknowns: Vec<f64> = start.iter().zip(&bounds).map(|(value, [lower, upper])| value.clamp(*lower, *upper)).collect();
+        let unknowns: Vec<f64> = start
+            .iter()
+            .zip(&bounds)
+            .map(|(value, [lower, upper])| value.clamp(*lower, *upper))
+            .collect();
         let count = unknowns.len();
         Self {
             problem,
@@ -186,7 +198,10 @@ impl<'a> Exchange<'a> {
             let trust = if round < 3 { TRUST } else { 0.5 * TRUST };
             let before = self.unknowns.clone();
             self.descend(trust);
-            let moved = before.iter().zip(&self.unknowns).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+            let moved = before
+                .iter()
+                .zip(&self.unknowns)
+                .fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
             survey = self.survey()?;
             let missed = missed(&survey);
             if missed <= MISSED && (moved <= STILL || round > 12) {
@@ -283,7 +298,10 @@ impl<'a> Exchange<'a> {
                 let multipliers = DVector::from_column_slice(&step.multipliers);
                 gradient - rows.transpose() * multipliers
             };
-            let way = DVector::from_iterator(changed.len(), changed.iter().zip(&self.unknowns).map(|(new, old)| new - old));
+            let way = DVector::from_iterator(
+                changed.len(),
+                changed.iter().zip(&self.unknowns).map(|(new, old)| new - old),
+            );
             let turned = of_lagrangian(&new_gradient, &new_rows) - of_lagrangian(&gradient, &rows);
             self.bend(&way, turned);
             if gain > 0.7 * step.promised && size > 0.8 * trust {
@@ -315,7 +333,10 @@ impl<'a> Exchange<'a> {
         let count = self.unknowns.len();
         // The last variable is the largest violation.
         let mut program = ConvexProgram::new(count + 1);
-        program.quadratic.view_mut((0, 0), (count, count)).copy_from(&self.hessian);
+        program
+            .quadratic
+            .view_mut((0, 0), (count, count))
+            .copy_from(&self.hessian);
         program.linear.rows_mut(0, count).copy_from(gradient);
         program.linear[count] = self.weight;
         for (row, value) in values.iter().enumerate() {

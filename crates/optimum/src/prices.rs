@@ -1,11 +1,13 @@
 //! Prices: by how much the objective of an optimum changes with each requirement, bound and property.
 
+use glam::DVec2;
 use kinefront_model::evaluation::Better;
 use kinefront_model::mechanism::{DesignVariable, JointKind};
+use kinefront_model::workspace::Region;
 
 use super::multipliers::Multipliers;
-use super::parameter::{Change, Parameter, variable_of};
-use super::place::Place;
+use super::parameter::{Change, Parameter};
+use super::place::{Area, Place, Spot};
 use super::polish::Polished;
 use super::problem::{LocalProblem, LocalQuestion};
 use super::requirement::{End, NOWHERE, Requirement};
@@ -67,7 +69,10 @@ impl LocalProblem {
     /// Returns the prices at an optimum. With `with_bars`, also those if the bars alone may change.
     pub fn prices(&self, polished: &Polished, with_bars: bool) -> Prices {
         let Some(prepared) = self.prepare(&polished.unknowns) else {
-            return Prices { prices: Vec::new(), of_dimensions: Vec::new() };
+            return Prices {
+                prices: Vec::new(),
+                of_dimensions: Vec::new(),
+            };
         };
         let actuator = prepared.actuator();
         let context = Context {
@@ -79,11 +84,23 @@ impl LocalProblem {
         let bars = with_bars.then(|| context.of_bars()).flatten();
         let mut parameters = Parameter::all(self);
         let (_, bounds) = polished.multipliers.nearly_active();
-        parameters.extend(bounds.iter().filter(|(place, _)| *place < self.question().variables.len()).map(|&(place, end)| Parameter::Bound(place, end)));
-        let mut prices: Vec<Price> = parameters.into_iter().filter_map(|parameter| context.price(parameter, bars.as_ref())).collect();
-        let of_radius = prices.iter().find(|price| price.parameter == Parameter::WorkspaceRadius).map(|price| price.price);
+        parameters.extend(
+            bounds
+                .iter()
+                .filter(|(place, _)| *place < self.question().variables.len())
+                .map(|&(place, end)| Parameter::Bound(place, end)),
+        );
+        let mut prices: Vec<Price> = parameters
+            .into_iter()
+            .filter_map(|parameter| context.price(parameter, bars.as_ref()))
+            .collect();
+        let of_radius = prices
+            .iter()
+            .find(|price| price.parameter == Parameter::WorkspaceRadius)
+            .map(|price| price.price);
         for price in &mut prices {
-            let radius = of_radius.filter(|radius| radius.abs() > 1e-9 && price.parameter != Parameter::WorkspaceRadius);
+            let radius =
+                of_radius.filter(|radius| radius.abs() > 1e-9 && price.parameter != Parameter::WorkspaceRadius);
             price.radius_price = radius.map(|radius| -price.price / radius);
         }
         Prices {
@@ -177,7 +194,10 @@ impl Context<'_> {
             Some(sign * (direct - bars.multipliers.sum(&effects)))
         });
         let (nearly, _) = multipliers.nearly_active();
-        let not_of_bars = nearly.iter().zip(&effects).filter(|(critical, _)| !critical.requirement.is_of_bars());
+        let not_of_bars = nearly
+            .iter()
+            .zip(&effects)
+            .filter(|(critical, _)| !critical.requirement.is_of_bars());
         let mut bars_cannot_repair = [false; 2];
         for (_, effect) in not_of_bars {
             bars_cannot_repair[0] |= *effect > NO_EFFECT;
@@ -221,7 +241,9 @@ impl Context<'_> {
         if change == Change::OfBaseRadius && matches!(parameter, Parameter::RailStart | Parameter::GuideStart) {
             let is_rail = parameter == Parameter::RailStart;
             let of_start = |critical: &Critical| match critical.requirement {
-                Requirement::Limit { joint, end: End::Lower, .. } if (joint == 0) == is_rail => -1.0,
+                Requirement::Limit {
+                    joint, end: End::Lower, ..
+                } if (joint == 0) == is_rail => -1.0,
                 _ => 0.0,
             };
             let effects = nearly.iter().map(of_start).chain(bounds.iter().map(|_| 0.0));
@@ -241,7 +263,11 @@ impl Context<'_> {
                 0.0
             }
         };
-        let effects = lower.iter().zip(&upper).map(of_requirement).chain(bounds.iter().map(|_| 0.0));
+        let effects = lower
+            .iter()
+            .zip(&upper)
+            .map(of_requirement)
+            .chain(bounds.iter().map(|_| 0.0));
         Some(((above - below) / width, effects.collect()))
     }
 
@@ -253,22 +279,39 @@ impl Context<'_> {
         }
         let problem = LocalProblem::new(question, &self.polished.design).ok()?;
         let unknowns = problem.unknowns(&self.polished.design, self.polished.home);
-        let of_bars = self.polished.critical.iter().filter(|critical| critical.requirement.is_of_bars());
+        let of_bars = self
+            .polished
+            .critical
+            .iter()
+            .filter(|critical| critical.requirement.is_of_bars());
         let critical: Vec<Critical> = of_bars.copied().collect();
         let multipliers = Multipliers::new(&problem, &unknowns, &critical);
-        Some(OfBars { problem, unknowns, multipliers })
+        Some(OfBars {
+            problem,
+            unknowns,
+            multipliers,
+        })
     }
 
     /// Returns the prices of the dimensions that are kept if the bars alone may change.
     fn of_dimensions(&self, bars: &OfBars) -> Vec<(DesignVariable, f64)> {
         let (nearly, bounds) = bars.multipliers.nearly_active();
-        let kept = self.problem.question.variables.iter().enumerate().filter(|(_, free)| !free.variable.may_be_zero());
+        let kept = self
+            .problem
+            .question
+            .variables
+            .iter()
+            .enumerate()
+            .filter(|(_, free)| !free.variable.may_be_zero());
         kept.filter_map(|(place, free)| {
             let at = |step: f64| {
                 let mut unknowns = self.polished.unknowns.clone();
                 unknowns[place] += step;
                 // The places of bars are those of the whole problem, whose unknowns are more.
-                (self.problem.minimised(&unknowns), self.problem.values_of(&unknowns, nearly))
+                (
+                    self.problem.minimised(&unknowns),
+                    self.problem.values_of(&unknowns, nearly),
+                )
             };
             let ((below, lower), (above, upper)) = (at(-EFFECT_STEP), at(EFFECT_STEP));
             let width = 2.0 * EFFECT_STEP;
@@ -290,7 +333,11 @@ impl Price {
             on_side.sort_by(|a, b| a.step.abs().total_cmp(&b.step.abs()));
             for found in on_side {
                 let linear = self.price * found.step;
-                let off = if linear == 0.0 { 0.0 } else { (found.change / linear - 1.0).abs() };
+                let off = if linear == 0.0 {
+                    0.0
+                } else {
+                    (found.change / linear - 1.0).abs()
+                };
                 if off >= 0.2 {
                     let share = (0.2 - before.1) / (off - before.1);
                     return Some(before.0 + share * (found.step - before.0));
@@ -305,11 +352,10 @@ impl Price {
 /// Returns the place of a critical pose as it is reported: share of the radius, angle \[rad\] and share of half the rotation range for a
 /// disc, shares of half the sides and of half the range for a polygon.
 pub fn reported_place(question: &LocalQuestion, place: &Place) -> [f64; 3] {
-    use super::place::{Area, Spot};
     let [first, second] = match place.spot {
         Spot::Rim(angle) => [1.0, angle],
-        Spot::Inside(at) if matches!(question.workspace.region, kinefront_model::workspace::Region::Disc(_)) => {
-            let at = glam::DVec2::from(at);
+        Spot::Inside(at) if matches!(question.workspace.region, Region::Disc(_)) => {
+            let at = DVec2::from(at);
             [at.length(), libm::atan2(at.y, at.x)]
         }
         Spot::Inside(at) => at,
@@ -322,9 +368,4 @@ pub fn reported_place(question: &LocalQuestion, place: &Place) -> [f64; 3] {
         },
     };
     [first, second, place.turn]
-}
-
-/// Returns whether a price is of a variable that the question names.
-pub(crate) fn is_bound_of(question: &LocalQuestion, parameter: Parameter, variable: DesignVariable) -> bool {
-    matches!(parameter, Parameter::Bound(place, _) if variable_of(question, place) == variable)
 }

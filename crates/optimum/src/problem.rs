@@ -9,6 +9,7 @@ use kinefront_model::spatial::{LEGS, Rotation};
 use kinefront_model::workspace::{GridError, PoseEvaluator, WorkspaceSpec};
 
 use super::place::{Area, Place, Spots};
+use super::polish::Polished;
 use super::requirement::{End, Requirement};
 
 /// Least radius of a bar in a local problem \[m\]: its logarithm is an unknown.
@@ -72,6 +73,8 @@ pub struct LocalQuestion {
     pub variables: Vec<FreeVariable>,
     /// Whether only what depends on the bars is required.
     pub is_of_bars: bool,
+    /// Slack that every requirement keeps, as a logarithm or a share of `R`.
+    pub slack: f64,
 }
 
 impl LocalQuestion {
@@ -213,8 +216,16 @@ impl LocalProblem {
                 }
                 for (joint, limits) in any.joint_limits().iter().enumerate() {
                     if limits.is_some() {
-                        found.push(Requirement::Limit { leg, joint, end: End::Lower });
-                        found.push(Requirement::Limit { leg, joint, end: End::Upper });
+                        found.push(Requirement::Limit {
+                            leg,
+                            joint,
+                            end: End::Lower,
+                        });
+                        found.push(Requirement::Limit {
+                            leg,
+                            joint,
+                            end: End::Upper,
+                        });
                     }
                 }
             }
@@ -233,7 +244,11 @@ impl LocalProblem {
                 found.push(requirement);
             }
         }
-        if settings.thresholds.get(PoseScalar::Dexterity).is_none_or(|least| least <= 0.0) {
+        if settings
+            .thresholds
+            .get(PoseScalar::Dexterity)
+            .is_none_or(|least| least <= 0.0)
+        {
             found.push(Requirement::Determinant);
         }
         let of_designs = settings.limits.iter().enumerate();
@@ -248,7 +263,8 @@ impl LocalProblem {
             Quantity::Worst(scalar) => scalar == PoseScalar::Footprint && matches!(limit.bound, Bound::AtMost(_)),
             _ => false,
         };
-        (is_known && limit.quantity.is_of(&self.start) && !self.question.is_of_bars).then_some(Requirement::Quantity(place))
+        (is_known && limit.quantity.is_of(&self.start) && !self.question.is_of_bars)
+            .then_some(Requirement::Quantity(place))
     }
 
     /// Returns the quantities whose limits are not part of the problem, because they have no value at a pose.
@@ -331,8 +347,11 @@ impl LocalProblem {
             .zip(unknowns)
             .flat_map(|(free, unknown)| {
                 let value = at_bound(known(free.variable, *unknown), free.range);
-                std::iter::once((free.variable, value))
-                    .chain(free.tied.iter().map(move |(variable, factor)| (*variable, value * factor)))
+                std::iter::once((free.variable, value)).chain(
+                    free.tied
+                        .iter()
+                        .map(move |(variable, factor)| (*variable, value * factor)),
+                )
             })
             .collect();
         for (variable, value) in &given {
@@ -352,7 +371,9 @@ impl LocalProblem {
     pub(crate) fn minimised(&self, unknowns: &[f64]) -> f64 {
         match self.goal {
             Goal::Design(quantity, sign) => {
-                let value = self.design(unknowns).and_then(|design| self.quantity(&design, quantity));
+                let value = self
+                    .design(unknowns)
+                    .and_then(|design| self.quantity(&design, quantity));
                 value.map_or(f64::INFINITY, |value| sign * libm::log(value))
             }
             Goal::Radius(sign) | Goal::Level(_, sign) => sign * unknowns[self.level_place()],
@@ -377,6 +398,30 @@ impl LocalProblem {
             Quantity::Height => Some(self.model.bodies_of(design).height()),
             _ => None,
         }
+    }
+
+    /// Returns whether less of the objective is better.
+    pub fn wants_less(&self) -> bool {
+        self.question.objective.goal == Better::Lower
+    }
+
+    /// Returns the mass of a design \[kg\].
+    pub fn mass_of(&self, design: &Design) -> f64 {
+        self.model.mass(design)
+    }
+
+    /// Returns the objective of a design, if it is a quantity of the design as a whole.
+    pub fn objective_of(&self, design: &Design) -> Option<f64> {
+        self.quantity(design, self.question.objective.quantity)
+    }
+
+    /// Returns the pose of a place of an optimum: x \[m\], y \[m\] and the orientation \[deg\].
+    pub fn pose(&self, polished: &Polished, place: &Place) -> [f64; 3] {
+        let Some(prepared) = self.prepare(&polished.unknowns) else {
+            return [0.0; 3];
+        };
+        let (position, _) = prepared.located(place);
+        [position.x, position.y, prepared.orientation(place.turn).to_degrees()]
     }
 
     /// Prepares the design of some unknowns; `None` if they are no design.
@@ -491,7 +536,8 @@ impl Prepared {
             Ok((posture, None)) => {
                 let values = self.legs[leg].joint_values(&posture);
                 let limits = self.limits[leg].iter().zip(values);
-                let distances = limits.filter_map(|(limits, value)| limits.map(|[lower, upper]| (value - lower).min(upper - value)));
+                let distances = limits
+                    .filter_map(|(limits, value)| limits.map(|[lower, upper]| (value - lower).min(upper - value)));
                 let nearest = distances.fold(f64::INFINITY, f64::min);
                 Some(posture.chain.limit_margin).filter(|margin| *margin < nearest * (1.0 - 1e-9))
             }

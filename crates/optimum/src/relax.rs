@@ -58,9 +58,16 @@ impl LocalProblem {
             let weights = [(price.parameter, way_of(self.question(), price.parameter))];
             let rate = price.price * weights[0].1 * self.goal_sign();
             let linear = deficit / rate;
-            found.extend(self.relaxed(polished, RelaxationOf::Single(price.parameter), &weights, linear, deficit));
+            found.extend(self.relaxed(
+                polished,
+                RelaxationOf::Single(price.parameter),
+                &weights,
+                linear,
+                deficit,
+            ));
         }
-        let is_threshold = |price: &Price| matches!(price.parameter, Parameter::Threshold(_)) && is_relative(price, self.question());
+        let is_threshold =
+            |price: &Price| matches!(price.parameter, Parameter::Threshold(_)) && is_relative(price, self.question());
         let thresholds: Vec<(Parameter, f64)> = prices
             .iter()
             .filter(|price| is_threshold(price))
@@ -72,10 +79,20 @@ impl LocalProblem {
             .map(|price| price.price * way_of(self.question(), price.parameter) * self.goal_sign())
             .sum();
         if thresholds.len() > 1 && rate.abs() > FREE {
-            found.extend(self.relaxed(polished, RelaxationOf::AllThresholds, &thresholds, deficit / rate, deficit));
+            found.extend(self.relaxed(
+                polished,
+                RelaxationOf::AllThresholds,
+                &thresholds,
+                deficit / rate,
+                deficit,
+            ));
         }
         let in_norm = |price: &&Price| is_threshold(price) || price.parameter == Parameter::RotationRange;
-        let squares: f64 = prices.iter().filter(in_norm).map(|price| price.price * price.price).sum();
+        let squares: f64 = prices
+            .iter()
+            .filter(in_norm)
+            .map(|price| price.price * price.price)
+            .sum();
         let norm = squares.sqrt();
         if norm > FREE {
             let weights: Vec<(Parameter, f64)> = prices
@@ -202,7 +219,11 @@ fn way_of(question: &LocalQuestion, parameter: Parameter) -> f64 {
 fn is_relative(price: &Price, question: &LocalQuestion) -> bool {
     match price.parameter {
         Parameter::Threshold(PoseScalar::Clearance | PoseScalar::Reach) => false,
-        Parameter::Threshold(scalar) => question.settings.thresholds.get(scalar).is_some_and(|limit| limit > 0.0),
+        Parameter::Threshold(scalar) => question
+            .settings
+            .thresholds
+            .get(scalar)
+            .is_some_and(|limit| limit > 0.0),
         _ => true,
     }
 }

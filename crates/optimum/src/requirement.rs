@@ -87,7 +87,11 @@ impl Requirement {
             Requirement::EndOfReach { leg } => format!("reach_and_limits:end_of_reach:leg{}", leg + 1),
             Requirement::Scalar(scalar) => threshold_name(scalar).to_owned(),
             Requirement::Determinant => "determinant_sign".to_owned(),
-            Requirement::Quantity(place) => problem.question().settings.limits[place].quantity.entry().key.to_owned(),
+            Requirement::Quantity(place) => problem.question().settings.limits[place]
+                .quantity
+                .entry()
+                .key
+                .to_owned(),
             Requirement::Assembly => "assembly".to_owned(),
         }
     }
@@ -151,7 +155,11 @@ impl LocalProblem {
                 self.of_scalars(prepared, requirement, |scalar| scalars[scalar])
             }
         };
-        if value.is_nan() { NOWHERE } else { value.max(NOWHERE) }
+        if value.is_nan() {
+            NOWHERE
+        } else {
+            (value - self.question().slack).max(NOWHERE)
+        }
     }
 
     fn scalars(&self, prepared: &Prepared, place: &Place) -> PoseScalars<f64> {

@@ -42,7 +42,8 @@ impl LocalProblem {
         let step = std::f64::consts::TAU / ORIENTATIONS as f64;
         let reach = (0.5 * self.question().workspace.rotation_range_deg.to_radians() / step).round() as usize;
         let of_window = |home: usize| {
-            let window = (0..=2 * reach).map(|k| worst[(home + ORIENTATIONS + k - reach.min(ORIENTATIONS)) % ORIENTATIONS]);
+            let window =
+                (0..=2 * reach).map(|k| worst[(home + ORIENTATIONS + k - reach.min(ORIENTATIONS)) % ORIENTATIONS]);
             window.fold(f64::INFINITY, f64::min)
         };
         let windows: Vec<f64> = (0..ORIENTATIONS).map(of_window).collect();
@@ -59,7 +60,10 @@ impl LocalProblem {
     /// Returns the least value of any requirement over the region in each orientation.
     fn worst_of_orientations(&self, prepared: &Prepared) -> Vec<f64> {
         let spots = &self.spots().all;
-        let positions: Vec<DVec2> = spots.iter().map(|spot| prepared.centre() + prepared.area.position(*spot)).collect();
+        let positions: Vec<DVec2> = spots
+            .iter()
+            .map(|spot| prepared.centre() + prepared.area.position(*spot))
+            .collect();
         let length = padded_length(positions.len());
         let column = |part: fn(&DVec2) -> f64| {
             let mut column: Vec<f64> = positions.iter().map(part).collect();

@@ -1,7 +1,7 @@
 //! Where a design is nearest to missing a requirement: the local minima over all poses of the region.
 
 use glam::DVec2;
-use kinefront_model::evaluation::{PoseScalar, Quantity};
+use kinefront_model::evaluation::PoseScalar;
 use kinefront_model::lanes::padded_length;
 use kinefront_model::workspace::ValueColumns;
 
@@ -35,9 +35,6 @@ const ACCURACY: f64 = 1e-8;
 /// Step from which the place of a minimum is refined, for both coordinates and the orientation.
 const FIRST_STEP: f64 = 0.08;
 
-/// Step from which the place of a minimum that is nearly known is refined.
-const NEXT_STEP: f64 = 1e-3;
-
 /// Places that are nearer to each other than this are one.
 const SAME: f64 = 1e-5;
 
@@ -51,9 +48,16 @@ impl LocalProblem {
                 continue;
             }
             if !requirement.is_of_poses(self) {
-                let place = Place { spot: Spot::Inside([0.0; 2]), turn: 0.0 };
+                let place = Place {
+                    spot: Spot::Inside([0.0; 2]),
+                    turn: 0.0,
+                };
                 let slack = self.value(prepared, *requirement, &place);
-                found.push(Critical { requirement: *requirement, place, slack });
+                found.push(Critical {
+                    requirement: *requirement,
+                    place,
+                    slack,
+                });
                 continue;
             }
             let value = |index: usize| self.of_scalars(prepared, *requirement, |scalar| fields.scalar(scalar, index));
@@ -66,7 +70,10 @@ impl LocalProblem {
             let value = |index: usize| (fields.reach[index] - margin) / scale;
             for place in fields.minima(self, value) {
                 for critical in self.limits_at(prepared, place) {
-                    add(&mut found, self.refined(prepared, critical.requirement, critical.place, FIRST_STEP));
+                    add(
+                        &mut found,
+                        self.refined(prepared, critical.requirement, critical.place, FIRST_STEP),
+                    );
                 }
             }
         }
@@ -75,15 +82,22 @@ impl LocalProblem {
 
     /// Returns the requirements of g2 that are nearest at a place.
     fn limits_at(&self, prepared: &Prepared, place: Place) -> Vec<Critical> {
-        let of_reach = self.requirements().iter().filter(|requirement| requirement.is_of_reach());
+        let of_reach = self
+            .requirements()
+            .iter()
+            .filter(|requirement| requirement.is_of_reach());
         let at = |requirement: &Requirement| Critical {
             requirement: *requirement,
             place,
             slack: self.value(prepared, *requirement, &place),
         };
         let all: Vec<Critical> = of_reach.map(at).filter(|critical| critical.slack > NOWHERE).collect();
-        let least = all.iter().fold(f64::INFINITY, |least, critical| least.min(critical.slack));
-        all.into_iter().filter(|critical| critical.slack <= least + ALSO).collect()
+        let least = all
+            .iter()
+            .fold(f64::INFINITY, |least, critical| least.min(critical.slack));
+        all.into_iter()
+            .filter(|critical| critical.slack <= least + ALSO)
+            .collect()
     }
 
     /// Returns the minimum of a requirement near a place, by steps along each coordinate that are halved where none helps.
@@ -104,7 +118,11 @@ impl LocalProblem {
                     };
                     let slack = self.value(prepared, requirement, &place);
                     if slack < best.slack {
-                        best = Critical { requirement, place, slack };
+                        best = Critical {
+                            requirement,
+                            place,
+                            slack,
+                        };
                         is_lower = true;
                     }
                 }
@@ -114,11 +132,6 @@ impl LocalProblem {
             }
         }
         best
-    }
-
-    /// Returns the minimum near one that was found for nearly the same design.
-    pub(crate) fn followed(&self, prepared: &Prepared, critical: &Critical) -> Critical {
-        self.refined(prepared, critical.requirement, critical.place, NEXT_STEP)
     }
 }
 
@@ -134,7 +147,9 @@ fn moved(prepared: &Prepared, place: Place, freedom: usize, freedoms: usize, ste
 /// Adds a minimum unless it is one that was found before.
 fn add(found: &mut Vec<Critical>, next: Critical) {
     let is_known = |other: &Critical| {
-        other.requirement == next.requirement && (is_same(&other.place, &next.place)) && (other.slack - next.slack).abs() < SAME
+        other.requirement == next.requirement
+            && (is_same(&other.place, &next.place))
+            && (other.slack - next.slack).abs() < SAME
     };
     if !found.iter().any(is_known) {
         found.push(next);
@@ -164,7 +179,10 @@ struct Fields {
 impl Fields {
     fn new(problem: &LocalProblem, prepared: &Prepared) -> Self {
         let spots = &problem.spots().all;
-        let positions: Vec<DVec2> = spots.iter().map(|spot| prepared.centre() + prepared.area.position(*spot)).collect();
+        let positions: Vec<DVec2> = spots
+            .iter()
+            .map(|spot| prepared.centre() + prepared.area.position(*spot))
+            .collect();
         let length = padded_length(positions.len());
         let column = |part: fn(&DVec2) -> f64| {
             let mut column: Vec<f64> = positions.iter().map(part).collect();
@@ -175,12 +193,16 @@ impl Fields {
         let columns: Vec<ValueColumns> = (0..TURNS)
             .map(|index| {
                 let mut values = ValueColumns::default();
-                prepared.evaluator().evaluate_positions(&prepared.arms(turn(index)), &xs, &ys, &mut values);
+                prepared
+                    .evaluator()
+                    .evaluate_positions(&prepared.arms(turn(index)), &xs, &ys, &mut values);
                 values
             })
             .collect();
         let count = positions.len();
-        let reach = columns.iter().flat_map(|values| values.column(PoseScalar::Reach)[..count].iter().copied());
+        let reach = columns
+            .iter()
+            .flat_map(|values| values.column(PoseScalar::Reach)[..count].iter().copied());
         Self {
             reach: reach.collect(),
             columns,
@@ -197,12 +219,20 @@ impl Fields {
     fn minima(&self, problem: &LocalProblem, value: impl Fn(usize) -> f64) -> Vec<Place> {
         let spots = problem.spots();
         let values: Vec<f64> = (0..TURNS * self.count)
-            .map(|index| Some(value(index)).filter(|value| !value.is_nan()).unwrap_or(f64::INFINITY))
+            .map(|index| {
+                Some(value(index))
+                    .filter(|value| !value.is_nan())
+                    .unwrap_or(f64::INFINITY)
+            })
             .collect();
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         let is_minimum = |index: usize| {
             let (own, turn, spot) = (values[index], index / self.count, index % self.count);
-            let around = [turn.checked_sub(1), Some(turn), Some(turn + 1).filter(|turn| *turn < TURNS)];
+            let around = [
+                turn.checked_sub(1),
+                Some(turn),
+                Some(turn + 1).filter(|turn| *turn < TURNS),
+            ];
             own <= least + NEAR
                 && own.is_finite()
                 && around.into_iter().flatten().all(|other| {
@@ -218,19 +248,5 @@ impl Fields {
             turn: turn(index / self.count),
         };
         minima.into_iter().map(place).collect()
-    }
-}
-
-/// Returns the scalar that a requirement is on, if it is on one.
-pub(crate) fn scalar_of(problem: &LocalProblem, requirement: Requirement) -> Option<PoseScalar> {
-    match requirement {
-        Requirement::Scalar(scalar) => Some(scalar),
-        Requirement::Determinant => Some(PoseScalar::Determinant),
-        Requirement::Quantity(place) => match problem.question().settings.limits[place].quantity {
-            Quantity::Worst(scalar) => Some(scalar),
-            _ => None,
-        },
-        _ if requirement.is_of_reach() => Some(PoseScalar::Reach),
-        _ => None,
     }
 }

@@ -29,6 +29,7 @@ mod control;
 mod durable;
 mod events;
 mod front;
+mod local;
 mod overrides;
 mod prepared;
 mod problem;
@@ -50,6 +51,10 @@ pub use control::RunControl;
 pub use durable::{WriteError, open_regular, read_regular, replace, write_whole};
 pub use events::{Batch, EndReason, Event, GenerationSummary, RunSummary, RunTimes, Started, Subscriber, front_marks};
 pub use front::{FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
+pub use local::{
+    ActiveJson, Condition, ConditionError, Drivers, DriversOptions, InactiveJson, LocalDesign, LocalFault, PriceJson,
+    RelaxationJson, WhyNotJson, Wish, WishFault, WishOutcome,
+};
 pub use overrides::Overrides;
 pub use prepared::PreparedStudy;
 pub use problem::DesignProblem;

@@ -12,6 +12,7 @@ use kinefront_model::evaluation::{
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, DesignError, DesignVariable, WorkingMode};
 use kinefront_model::workspace::GridError;
 use kinefront_optimize::{Candidate, Objectives, Outcome, Problem, Target, Variable};
+use kinefront_optimum::FreeVariable;
 
 /// Variables that are sized.
 const BARS: [DesignVariable; 2] = [DesignVariable::LegBarRadius, DesignVariable::PlatformBarRadius];
@@ -317,6 +318,33 @@ impl DesignProblem {
             }
         }
         found
+    }
+
+    /// Returns the variables of an architecture that range freely between their bounds, each with those that are tied to it.
+    pub(super) fn free_variables(&self, architecture: Architecture) -> Vec<FreeVariable> {
+        let tied_to = |variable: DesignVariable| {
+            let ties = DESIGN_VARIABLES.into_iter().zip(&self.ties);
+            ties.filter_map(|(tied, tie)| tie.filter(|tie| tie.source == variable).map(|tie| (tied, tie.factor)))
+                .collect()
+        };
+        let dimensions = DESIGN_VARIABLES
+            .into_iter()
+            .filter(|variable| self.is_free(*variable))
+            .map(|variable| FreeVariable {
+                variable,
+                range: self.ranges[variable as usize],
+                tied: tied_to(variable),
+            });
+        let further = self
+            .further
+            .iter()
+            .filter(|(variable, [lower, upper])| architecture.has(*variable) && lower < upper);
+        let further = further.map(|&(variable, range)| FreeVariable {
+            variable,
+            range,
+            tied: Vec::new(),
+        });
+        dimensions.chain(further).collect()
     }
 
     /// Whether a dimension has a range of its own.

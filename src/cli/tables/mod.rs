@@ -1,7 +1,9 @@
 //! Result tables for the terminal.
 
+mod drivers;
 mod motion;
 
+pub use drivers::{drivers, wish};
 pub use motion::{dynamics, task};
 
 use super::wire::CertificateJson;

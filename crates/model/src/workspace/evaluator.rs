@@ -97,7 +97,8 @@ impl<L: Leg> PoseEvaluator for PoseChecker<L> {
     }
 
     fn evaluate_beyond_limits(&self, arms: &[DVec2; LEGS], position: DVec2) -> PoseScalars<f64> {
-        self.lanes(position.into(), &arms.map(Planar::from), self.computed).scalars
+        self.lanes(position.into(), &arms.map(Planar::from), self.computed)
+            .scalars
     }
 
     fn evaluate_plainly(&self, arms: &[DVec2; LEGS], position: DVec2) -> Result<PoseValues, f64> {

@@ -1,0 +1,137 @@
+//! A design of a study as a local problem: the best design near it, what each requirement costs, wishes, and why a wish cannot be had.
+
+mod drivers;
+mod why;
+mod wish;
+
+pub use drivers::{ActiveJson, Drivers, DriversOptions, InactiveJson, PriceJson, RelaxationJson, WhyNotJson};
+pub use wish::{Condition, ConditionError, Wish, WishFault, WishOutcome};
+
+use glam::DVec2;
+use kinefront_model::evaluation::{Bound, Evaluation, GridChoice, Objective, Quantity};
+use kinefront_model::mechanism::Design;
+use kinefront_model::workspace::{Region, WorkspaceSpec};
+use kinefront_optimum::{LocalError, LocalProblem, LocalQuestion, Polished};
+
+use super::DesignProblem;
+
+/// Why there is no local problem of a design.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LocalFault {
+    /// The question is none.
+    #[error(transparent)]
+    Question(#[from] LocalError),
+    /// An objective that is to keep its value has none, because the design is infeasible.
+    #[error("the design is infeasible, so that its {0} is not known; state it, or name a design of a front")]
+    Unknown(&'static str),
+    /// No design near the given one keeps every requirement.
+    #[error("no design near {0} keeps every requirement at every pose of the region")]
+    Infeasible(Box<Design>),
+}
+
+/// A design with its local problem.
+#[derive(Debug, Clone)]
+pub struct LocalDesign {
+    /// The problem.
+    pub problem: LocalProblem,
+    /// The design as it was given.
+    pub design: Design,
+    /// Home orientation of the given design \[rad\], if it has one on the grid.
+    pub home: Option<f64>,
+}
+
+impl DesignProblem {
+    /// Returns the local problem of a design: the first objective is improved, the other objectives keep the values that the design has on
+    /// the fine grid. `radius` takes the place of its workspace radius \[m\].
+    ///
+    /// # Errors
+    /// [`LocalFault`] if an objective is not known, or is none of a local problem.
+    pub fn local(&self, design: &Design, radius: Option<f64>) -> Result<LocalDesign, LocalFault> {
+        self.local_of(&self.model().evaluate(design, GridChoice::Fine), radius)
+    }
+
+    /// Returns the local problem of a design that was evaluated.
+    ///
+    /// # Errors
+    /// As [`DesignProblem::local`].
+    pub fn local_of(&self, evaluation: &Evaluation, radius: Option<f64>) -> Result<LocalDesign, LocalFault> {
+        let settings = self.model().settings();
+        let is_feasible = evaluation.is_feasible();
+        let value = |quantity: Quantity| match (quantity, radius) {
+            (Quantity::WorkspaceRadius, Some(radius)) => Some(radius),
+            // A quantity of the design as a whole does not depend on any pose.
+            (Quantity::Mass, _) => Some(self.model().mass(&evaluation.design)),
+            _ => evaluation.quantities.get(quantity).filter(|_| is_feasible),
+        };
+        let region = match &settings.workspace.region {
+            Region::Largest => Region::Disc(
+                self.held_radius()
+                    .or_else(|| value(Quantity::WorkspaceRadius).filter(|radius| *radius > 0.0))
+                    .ok_or(LocalFault::Unknown("workspace radius"))?,
+            ),
+            region => region.clone(),
+        };
+        let Some((first, others)) = settings.objectives.split_first() else {
+            return Err(LocalFault::Unknown("objective"));
+        };
+        let mut question = LocalQuestion {
+            workspace: WorkspaceSpec {
+                region,
+                ..settings.workspace.clone()
+            },
+            objective: *first,
+            variables: self.free_variables(evaluation.design.architecture()),
+            is_of_bars: false,
+            slack: 0.0,
+            settings: settings.clone(),
+        };
+        for objective in others {
+            hold(&mut question, objective, value(objective.quantity))?;
+        }
+        Ok(LocalDesign {
+            problem: LocalProblem::new(question, &evaluation.design)?,
+            design: evaluation.design,
+            home: evaluation.home_phi_deg.map(f64::to_radians),
+        })
+    }
+
+    /// Returns the workspace radius that is a limit, where it is no objective \[m\].
+    fn held_radius(&self) -> Option<f64> {
+        let settings = self.model().settings();
+        let is_objective = settings
+            .objectives
+            .iter()
+            .any(|objective| objective.quantity == Quantity::WorkspaceRadius);
+        let of_limit = settings.limits.iter().find_map(|limit| match limit.bound {
+            Bound::AtLeast(radius) if limit.quantity == Quantity::WorkspaceRadius => Some(radius),
+            _ => None,
+        });
+        of_limit.filter(|_| !is_objective)
+    }
+}
+
+fn hold(question: &mut LocalQuestion, objective: &Objective, value: Option<f64>) -> Result<(), LocalFault> {
+    let value = value.ok_or(LocalFault::Unknown(objective.quantity.entry().label))?;
+    question.hold(*objective, value);
+    Ok(())
+}
+
+impl LocalDesign {
+    /// Returns the best design near the given one.
+    ///
+    /// # Errors
+    /// [`LocalFault::Infeasible`] if none keeps every requirement.
+    pub fn best(&self) -> Result<Polished, LocalFault> {
+        let near = self.home.and_then(|home| self.problem.polish(&self.design, home));
+        let found = match near.filter(Polished::is_optimal) {
+            Some(found) => Some(found),
+            None => self.problem.best(&self.design, None),
+        };
+        found.ok_or_else(|| LocalFault::Infeasible(Box::new(self.design)))
+    }
+
+    /// The centre of the region \[m\].
+    pub fn centre(&self) -> DVec2 {
+        self.problem.question().workspace.centre
+    }
+}

@@ -1,0 +1,75 @@
+//! Why a point of the objectives cannot be had: the best design near the front for it, and what each requirement would have to give.
+
+use kinefront_model::evaluation::{Evaluation, GridChoice, Quantity};
+use kinefront_model::mechanism::{Architecture, Design};
+use kinefront_optimum::Polished;
+
+use super::{Drivers, DriversOptions, LocalDesign, LocalFault};
+use crate::DesignProblem;
+
+/// Designs of an architecture from which the best one for a point is looked for: those whose radius is nearest.
+const NEAREST: usize = 3;
+
+impl DesignProblem {
+    /// Returns why a value of the first objective cannot be had with a workspace radius \[m\] (or for the region of the study), or that it
+    /// can: `why_not` of the answer has a deficit that is not negative then. `designs` are those of a front.
+    ///
+    /// # Errors
+    /// [`LocalFault`] if no design near the front holds the radius.
+    pub fn why(&self, designs: &[Design], radius: Option<f64>, wished: f64) -> Result<Drivers, LocalFault> {
+        let mut best: Option<(LocalDesign, Polished)> = None;
+        let mut fault = LocalFault::Unknown("workspace radius");
+        for evaluation in self.nearest(designs, radius) {
+            let found = self.local_of(&evaluation, radius).and_then(|local| {
+                let polished = local.best()?;
+                Ok((local, polished))
+            });
+            match found {
+                Ok((local, polished)) if polished.is_feasible() => {
+                    let sign = if local.problem.wants_less() { 1.0 } else { -1.0 };
+                    if best
+                        .as_ref()
+                        .is_none_or(|(_, other)| sign * polished.objective < sign * other.objective)
+                    {
+                        best = Some((local, polished));
+                    }
+                }
+                Ok(_) => fault = LocalFault::Infeasible(Box::new(evaluation.design)),
+                Err(error) => fault = error,
+            }
+        }
+        let (local, polished) = best.ok_or(fault)?;
+        let options = DriversOptions {
+            wish: Some(wished),
+            ..DriversOptions::default()
+        };
+        Ok(local.drivers_of(&local.problem, &polished, options))
+    }
+
+    /// Returns evaluations of the designs of each architecture whose radius is nearest.
+    fn nearest(&self, designs: &[Design], radius: Option<f64>) -> Vec<Evaluation> {
+        let mut evaluated: Vec<(f64, Evaluation)> = designs
+            .iter()
+            .map(|design| self.model().evaluate(design, GridChoice::Reference))
+            .filter(Evaluation::is_feasible)
+            .map(|evaluation| {
+                let distance = match radius {
+                    Some(radius) => (evaluation.workspace_radius() - radius).abs(),
+                    None => evaluation.quantities.get(Quantity::Mass).unwrap_or(0.0),
+                };
+                (distance, evaluation)
+            })
+            .collect();
+        evaluated.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let of = |architecture: &Architecture| {
+            let architecture = *architecture;
+            let own = evaluated
+                .iter()
+                .filter(move |(_, evaluation)| evaluation.design.architecture() == architecture);
+            own.take(NEAREST)
+                .map(|(_, evaluation)| evaluation.clone())
+                .collect::<Vec<_>>()
+        };
+        Architecture::ALL.iter().flat_map(of).collect()
+    }
+}

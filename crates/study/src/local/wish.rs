@@ -1,0 +1,320 @@
+//! A wish: the nearest design of which some quantities have other values.
+
+use std::str::FromStr;
+
+use kinefront_model::evaluation::{Better, Bound, Evaluation, GridChoice, PoseScalar, Quantity, QuantityLimit};
+use kinefront_model::mechanism::Design;
+use kinefront_model::workspace::Region;
+use kinefront_optimum::{LocalProblem, LocalQuestion, Polished};
+
+use super::{LocalDesign, LocalFault};
+use crate::{DesignProblem, FrontMember, FrontProver};
+
+/// Part of a wish up to which the largest one that can be had is determined.
+const RESOLUTION: f64 = 1.0 / 64.0;
+
+/// Slack that a design for the fine grid keeps, so that rounding misses no requirement.
+const ROOM: f64 = 2e-7;
+
+/// A condition of a wish.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Condition(pub QuantityLimit);
+
+/// Why a text is no condition.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ConditionError {
+    /// There is no comparison.
+    #[error("`{0}` is no condition; write a quantity, >= or <=, and a number, as in \"k_xy_n_per_m >= 1.2e6\"")]
+    Form(String),
+    /// The quantity is unknown.
+    #[error(
+        "`{0}` is no quantity; quantities are the keys of `objectives` and `constraints`, as mass_kg, workspace_radius_m, k_xy_n_per_m"
+    )]
+    Quantity(String),
+    /// The number is none.
+    #[error("`{0}` is not a number above 0")]
+    Number(String),
+}
+
+impl FromStr for Condition {
+    type Err = ConditionError;
+
+    fn from_str(text: &str) -> Result<Self, ConditionError> {
+        let (key, bound, number) = match (text.split_once(">="), text.split_once("<=")) {
+            (Some((key, number)), None) => (key, Bound::AtLeast as fn(f64) -> Bound, number),
+            (None, Some((key, number))) => (key, Bound::AtMost as fn(f64) -> Bound, number),
+            _ => return Err(ConditionError::Form(text.to_owned())),
+        };
+        let key = key.trim();
+        let quantity = Quantity::find(key).ok_or_else(|| ConditionError::Quantity(key.to_owned()))?;
+        let value = number
+            .trim()
+            .parse::<f64>()
+            .ok()
+            .filter(|value| value.is_finite() && *value > 0.0);
+        let value = value.ok_or_else(|| ConditionError::Number(number.trim().to_owned()))?;
+        Ok(Self(QuantityLimit {
+            quantity,
+            bound: bound(value),
+        }))
+    }
+}
+
+impl std::fmt::Display for Condition {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (sign, value) = match self.0.bound {
+            Bound::AtLeast(value) => (">=", value),
+            Bound::AtMost(value) => ("<=", value),
+        };
+        write!(f, "{} {sign} {value}", self.0.quantity.entry().key)
+    }
+}
+
+/// What a person wishes of a design.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Wish {
+    /// Values that quantities are to have.
+    pub conditions: Vec<Condition>,
+    /// Quantities that are not to become worse.
+    pub keep: Vec<Quantity>,
+}
+
+/// What became of a wish.
+#[derive(Debug, Clone)]
+pub struct WishOutcome {
+    /// The design as it was given, on the fine grid.
+    pub before: Evaluation,
+    /// The nearest design that satisfies the wish, verified and proved; or, if none does, the one that comes nearest.
+    pub found: FrontMember,
+    /// Whether the given design satisfies the wish already.
+    pub was_true: bool,
+    /// The conditions that cannot be had, each with the value that can be had instead; empty if the wish is granted.
+    pub unmet: Vec<(Condition, f64)>,
+    /// Quantities of the wish that are not part of a local problem; they are compared at the end alone.
+    pub left_out: Vec<Quantity>,
+}
+
+/// Why a wish has no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum WishFault {
+    /// There is no local problem.
+    #[error(transparent)]
+    Local(#[from] LocalFault),
+    /// The design is infeasible.
+    #[error("the design is infeasible; a wish starts from a design that is feasible on the fine grid")]
+    Infeasible,
+    /// The design that was found does not hold on the fine grid.
+    #[error("the nearest design, {0}, does not hold on the fine grid")]
+    NotVerified(Box<Design>),
+}
+
+impl DesignProblem {
+    /// Answers a wish: of the designs that satisfy it, the one whose first objective is best and whose other objectives are those of the
+    /// given design, verified on the fine grid and proved. It is found by following the optimum from the given design, so that it is the
+    /// nearest one of its architecture.
+    ///
+    /// # Errors
+    /// [`WishFault`] if the design is infeasible, or if its question has no local problem.
+    pub fn grant(&self, design: &Design, wish: &Wish) -> Result<WishOutcome, WishFault> {
+        let before = self
+            .model()
+            .clone()
+            .with_all_quantities()
+            .evaluate(design, GridChoice::Fine);
+        if !before.is_feasible() {
+            return Err(WishFault::Infeasible);
+        }
+        let kept = wish.keep.iter().filter_map(|quantity| kept(&before, *quantity));
+        let conditions: Vec<Condition> = wish.conditions.iter().copied().chain(kept).collect();
+        let holds = |evaluation: &Evaluation, condition: &Condition| {
+            let value = evaluation.quantities.get(condition.0.quantity);
+            value.is_some_and(|value| condition.0.margin(value) >= -1e-6)
+        };
+        if conditions.iter().all(|condition| holds(&before, condition)) {
+            let found = self.proved(before.clone());
+            return Ok(WishOutcome {
+                found,
+                before,
+                was_true: true,
+                unmet: Vec::new(),
+                left_out: Vec::new(),
+            });
+        }
+        let local = self.local_of(&before, None)?;
+        let target = Target {
+            local: &local,
+            before: &before,
+            conditions: &conditions,
+        };
+        let (polished, problem) = target.nearest()?;
+        let at_grid = self
+            .for_fine_grid(&problem, &polished)
+            .ok_or_else(|| WishFault::NotVerified(Box::new(polished.design)))?;
+        let found = self
+            .model()
+            .clone()
+            .with_all_quantities()
+            .evaluate(&at_grid, GridChoice::Fine);
+        if !found.is_feasible() {
+            return Err(WishFault::NotVerified(Box::new(at_grid)));
+        }
+        let unmet = conditions.iter().filter(|condition| !holds(&found, condition));
+        let unmet = unmet.filter_map(|condition| Some((*condition, found.quantities.get(condition.0.quantity)?)));
+        Ok(WishOutcome {
+            unmet: unmet.collect(),
+            left_out: problem.left_out(),
+            found: self.proved(found),
+            was_true: false,
+            before,
+        })
+    }
+
+    /// Returns an optimum again with a home orientation of the fine grid, and with a little room for rounding.
+    pub(crate) fn for_fine_grid(&self, problem: &LocalProblem, polished: &Polished) -> Option<Design> {
+        let grid = &self.model().settings().fine_grid;
+        let step = grid.phi_step_deg();
+        let home = polished.home.to_degrees() / step;
+        let near = match problem.question().workspace.home_phi_deg {
+            Some(home) => vec![home],
+            None => vec![home.floor() * step, home.ceil() * step],
+        };
+        let of_home = |home: f64| {
+            let mut question = problem.question().clone();
+            question.workspace.home_phi_deg = Some(home);
+            question.slack = ROOM;
+            if let Region::Disc(radius) = &mut question.workspace.region {
+                // The grid may miss a step of its resolution.
+                *radius += polished.design.base_radius()
+                    / grid.ray_steps() as f64
+                    / f64::from(1u32 << grid.halvings().min(30));
+            }
+            let fixed = LocalProblem::new(question, &polished.design).ok()?;
+            fixed
+                .polish(&polished.design, home.to_radians())
+                .filter(Polished::is_feasible)
+        };
+        let sign = if problem.wants_less() { 1.0 } else { -1.0 };
+        let found = near.into_iter().filter_map(of_home);
+        let best = found.reduce(|best, next| {
+            if sign * next.objective < sign * best.objective {
+                next
+            } else {
+                best
+            }
+        });
+        best.map(|best| best.design)
+    }
+
+    /// Proves a design that was evaluated on the fine grid.
+    fn proved(&self, evaluation: Evaluation) -> FrontMember {
+        let member = FrontMember {
+            id: 0,
+            generation: 0,
+            reference_radius: evaluation.workspace_radius(),
+            evaluation,
+            certified: None,
+        };
+        let goes_on = || true;
+        let prover = FrontProver::new(self, &goes_on);
+        let proved = prover.prove(std::slice::from_ref(&member));
+        proved
+            .first()
+            .and_then(|proved| proved.reported().cloned())
+            .unwrap_or(member)
+    }
+}
+
+/// Returns the condition that a quantity does not become worse.
+fn kept(evaluation: &Evaluation, quantity: Quantity) -> Option<Condition> {
+    let value = evaluation.quantities.get(quantity)?;
+    let bound = match quantity.entry().better {
+        Better::Higher => Bound::AtLeast(value),
+        Better::Lower => Bound::AtMost(value),
+    };
+    Some(Condition(QuantityLimit { quantity, bound }))
+}
+
+/// A wish, on the way from a design.
+struct Target<'a> {
+    local: &'a LocalDesign,
+    before: &'a Evaluation,
+    conditions: &'a [Condition],
+}
+
+impl Target<'_> {
+    /// Returns the optimum that satisfies the wish, or as large a part of it as possible.
+    fn nearest(&self) -> Result<(Polished, LocalProblem), LocalFault> {
+        let start = self.local.best()?;
+        let at = |part: f64, from: &Polished| -> Option<(Polished, LocalProblem)> {
+            let problem = LocalProblem::new(self.question(part), &from.design).ok()?;
+            let found = problem.polish(&from.design, from.home).filter(Polished::is_feasible)?;
+            Some((found, problem))
+        };
+        if let Some(found) = at(1.0, &start) {
+            return Ok(found);
+        }
+        // The whole wish is approached from what the design has.
+        let (mut had, mut part, mut step) = (at(0.0, &start), 0.0, 0.25);
+        while step > RESOLUTION && part < 1.0 {
+            let from = had.as_ref().map_or(&start, |(found, _)| found);
+            match at((part + step).min(1.0), from) {
+                Some(found) => {
+                    part = (part + step).min(1.0);
+                    had = Some(found);
+                }
+                None => step *= 0.5,
+            }
+        }
+        had.ok_or_else(|| LocalFault::Infeasible(Box::new(self.local.design)))
+    }
+
+    /// Returns the question with a part of the wish, from the values that the design has (0) to those that are wished for (1).
+    fn question(&self, part: f64) -> LocalQuestion {
+        let mut question = self.local.problem.question().clone();
+        let first = question.objective.quantity;
+        for Condition(limit) in self.conditions {
+            let (quantity, wished) = (limit.quantity, limit.threshold());
+            let had = self.before.quantities.get(quantity).unwrap_or(wished);
+            // What the design has already is asked for as it is wished.
+            let value = match limit.margin(had) >= 0.0 {
+                true => wished,
+                false => had * (wished / had).powf(part),
+            };
+            let (is_at_least, is_of_disc) = (
+                matches!(limit.bound, Bound::AtLeast(_)),
+                matches!(question.workspace.region, Region::Disc(_)),
+            );
+            match quantity {
+                // It is improved as far as possible, and compared at the end.
+                quantity if quantity == first => {}
+                Quantity::WorkspaceRadius if is_at_least && is_of_disc => {
+                    question.workspace.region = Region::Disc(value);
+                }
+                Quantity::Worst(scalar)
+                    if scalar.bounds_poses() && is_at_least == (scalar.entry().quantity.better == Better::Higher) =>
+                {
+                    let stated = self.stricter(&question, scalar, value);
+                    question.settings.thresholds.set(scalar, Some(stated));
+                }
+                _ => question.settings.limits.push(QuantityLimit {
+                    quantity,
+                    bound: if is_at_least {
+                        Bound::AtLeast(value)
+                    } else {
+                        Bound::AtMost(value)
+                    },
+                }),
+            }
+        }
+        question
+    }
+
+    /// Returns the stricter of a value and of the limit that the study states, so that a wish never breaks the study.
+    fn stricter(&self, question: &LocalQuestion, scalar: PoseScalar, value: f64) -> f64 {
+        let stated = question.settings.thresholds.get(scalar).unwrap_or(value);
+        match scalar.entry().quantity.better {
+            Better::Higher => value.max(stated),
+            Better::Lower => value.min(stated),
+        }
+    }
+}

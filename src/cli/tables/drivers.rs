@@ -1,0 +1,166 @@
+//! Tables of what drives the mass of a design, and of wishes.
+
+use kinefront_model::evaluation::Quantity;
+use kinefront_scene::text::number;
+use kinefront_study::{Drivers, PriceJson, WhyNotJson, WishOutcome};
+
+use super::table;
+use crate::cli::wish::{proof, word};
+
+/// Prices below this are told as free.
+const FREE: f64 = 1e-4;
+
+/// Formats what drives the objective of a design.
+pub fn drivers(heading: &str, drivers: &Drivers) -> String {
+    let quantity = Quantity::find(drivers.objective);
+    let (name, unit) = quantity.map_or(("objective", ""), |quantity| {
+        (quantity.entry().short, quantity.entry().unit)
+    });
+    let mut facts = table([heading, ""], &[]);
+    facts.add_row(["best design near it".to_owned(), drivers.design.clone()]);
+    facts.add_row(["home orientation".to_owned(), format!("{:.3}°", drivers.home_phi_deg)]);
+    facts.add_row([
+        name.to_owned(),
+        format!(
+            "{} {unit}; the given design has {} {unit} ({:+.3} %)",
+            number(drivers.polished_value),
+            number(drivers.value),
+            100.0 * drivers.excess
+        ),
+    ]);
+    let mut text = facts.to_string();
+    if !drivers.prices.is_empty() {
+        let mut sorted: Vec<&PriceJson> = drivers
+            .prices
+            .iter()
+            .filter(|price| price.price.abs() >= FREE || price.kink)
+            .collect();
+        sorted.sort_by(|a, b| b.price.abs().total_cmp(&a.price.abs()));
+        let costs = format!("+1 % costs {name}");
+        let mut prices = table(
+            ["driver", "value", &costs, &format!("in {unit}"), "bars alone", "remark"],
+            &[1, 2, 3, 4],
+        );
+        for price in sorted {
+            prices.add_row([
+                price.label.clone(),
+                price
+                    .value
+                    .map_or(String::new(), |value| format!("{} {}", number(value), price.unit)),
+                if price.kink {
+                    format!("{:+.3} … {:+.3} %", price.below, price.above)
+                } else {
+                    format!("{:+.3} %", price.price)
+                },
+                format!("{:+.4}", 0.01 * price.price * drivers.polished_value),
+                price.bars_only.map_or(String::new(), |price| format!("{price:+.3} %")),
+                remark(price),
+            ]);
+        }
+        text = format!("{text}\n{prices}");
+        let free: Vec<&str> = drivers
+            .prices
+            .iter()
+            .filter(|price| price.price.abs() < FREE && !price.kink && price.is_requirement)
+            .map(|price| price.label.as_str())
+            .collect();
+        if !free.is_empty() {
+            text = format!("{text}\npractically free: {}", free.join(", "));
+        }
+    }
+    if !drivers.inactive.is_empty() {
+        let mut slack = table(["not active", "may rise by"], &[1]);
+        for inactive in &drivers.inactive {
+            slack.add_row([inactive.constraint.clone(), format!("{:.2} %", 100.0 * inactive.slack)]);
+        }
+        text = format!("{text}\n{slack}");
+    }
+    if let Some(why) = &drivers.why_not {
+        text = format!("{text}\n{}", why_not(why, name, unit));
+    }
+    for warning in &drivers.warnings {
+        text = format!("{text}\nnote: {warning}");
+    }
+    text
+}
+
+fn remark(price: &PriceJson) -> String {
+    match price.bars_cannot_repair.as_slice() {
+        [] => String::new(),
+        [way] => format!("{way}: bars cannot repair it"),
+        _ => "bars cannot repair it".to_owned(),
+    }
+}
+
+fn why_not(why: &WhyNotJson, name: &str, unit: &str) -> String {
+    if why.log_deficit >= 0.0 {
+        return format!(
+            "{} {unit} can be had: the best design near the front has no more.",
+            number(why.wished)
+        );
+    }
+    let header = format!("for {} {unit}", number(why.wished));
+    let mut relaxations = table(
+        [
+            &header,
+            "times (by its price)",
+            "times (solved)",
+            &format!("{name} then"),
+        ],
+        &[1, 2, 3],
+    );
+    for relaxation in &why.relaxations {
+        relaxations.add_row([
+            relaxation.parameter.clone(),
+            relaxation
+                .linear
+                .filter(|factor| (1e-3..1e3).contains(factor))
+                .map_or("–".to_owned(), |factor| format!("{factor:.4}")),
+            relaxation
+                .needed
+                .map_or("cannot".to_owned(), |factor| format!("{factor:.4}")),
+            format!("{} {unit}", number(relaxation.objective)),
+        ]);
+    }
+    relaxations.to_string()
+}
+
+/// Formats what became of a wish.
+pub fn wish(heading: &str, outcome: &WishOutcome, shown: &[Quantity]) -> String {
+    let found = &outcome.found.evaluation;
+    let mut facts = table([heading, "before", "after", "change"], &[1, 2, 3]);
+    for quantity in shown {
+        let entry = quantity.entry();
+        let [before, after] = [&outcome.before, found].map(|evaluation| evaluation.quantities.get(*quantity));
+        let text =
+            |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{} {}", number(value), entry.unit));
+        let change = match (before, after) {
+            (Some(before), Some(after)) if before != 0.0 => format!("{:+.2} %", 100.0 * (after / before - 1.0)),
+            _ => String::new(),
+        };
+        facts.add_row([entry.label.to_owned(), text(before), text(after), change]);
+    }
+    let proved = outcome
+        .found
+        .certified
+        .as_ref()
+        .map_or("nothing is proved about its workspace".to_owned(), |certified| {
+            format!("its workspace is {}", proof(certified))
+        });
+    let mut text = format!("{facts}\n{}: {}; {proved}", word(outcome), found.design);
+    for (condition, value) in &outcome.unmet {
+        let entry = condition.0.quantity.entry();
+        text = format!(
+            "{text}\n{condition} cannot be had: {} {} is what remains",
+            number(*value),
+            entry.unit
+        );
+    }
+    for quantity in &outcome.left_out {
+        text = format!(
+            "{text}\nnote: the limit of {} was compared at the end alone",
+            quantity.entry().key
+        );
+    }
+    text
+}
