@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use super::convex::ConvexProgram;
 use super::multipliers::Multipliers;
 use super::problem::LocalProblem;
-use super::requirement::{NOWHERE, Requirement};
+use super::requirement::{Kind, NOWHERE, Requirement};
 use super::survey::{Critical, is_same};
 
 /// Largest number of times that critical poses are added.
@@ -30,6 +30,18 @@ const HELD: f64 = 1e-8;
 /// Changes of the unknowns that are no longer followed.
 const STILL: f64 = 1e-7;
 
+/// The same where the requirements keep some slack, which a last change may use.
+const ENOUGH: f64 = 1e-3;
+
+/// Largest weight of the violations.
+const HEAVIEST: f64 = 2e3;
+
+/// Amount by which a design may miss a requirement that is still near to one that holds.
+const HOPELESS: f64 = 1e-2;
+
+/// Rounds without an improvement after which the search ends.
+const PATIENCE: usize = 10;
+
 /// Half the difference by which derivatives are taken.
 pub(crate) const DIFFERENCE: f64 = 2e-6;
 
@@ -38,6 +50,9 @@ const SLACK: f64 = 0.4;
 
 /// Residual of the multipliers above which the search starts again from stronger designs.
 const STALLED: f64 = 1e-5;
+
+/// The same where some slack is asked for.
+const QUICKLY_STALLED: f64 = 3e-2;
 
 /// Increases of bars and lengths with which it starts again.
 const RESTARTS: [[f64; 2]; 3] = [[0.003, 0.002], [0.01, 0.006], [-0.004, 0.01]];
@@ -53,6 +68,8 @@ pub struct Polished {
     pub objective: f64,
     /// Largest amount by which a requirement is missed at any pose, as a logarithm or a share of `R`.
     pub missed: f64,
+    /// Amount by which requirements may be missed, because of rounding or of the slack that is asked for.
+    allowed: f64,
     /// Where the requirements are nearest to being missed.
     pub critical: Vec<Critical>,
     /// What the active requirements and bounds cost.
@@ -61,9 +78,9 @@ pub struct Polished {
 }
 
 impl Polished {
-    /// Returns whether the design keeps every requirement.
+    /// Returns whether the design keeps every requirement; of a slack that is asked for, half is enough.
     pub fn is_feasible(&self) -> bool {
-        self.missed <= HELD
+        self.missed <= self.allowed
     }
 
     /// Returns whether the design is an optimum: it keeps every requirement, and its multipliers explain why it cannot be better.
@@ -82,22 +99,28 @@ impl LocalProblem {
     pub(crate) fn polish_from(&self, start: &[f64]) -> Option<Polished> {
         let mut best: Option<Polished> = None;
         let mut from = start.to_vec();
+        let stalled = if self.question().slack > 0.0 {
+            QUICKLY_STALLED
+        } else {
+            STALLED
+        };
         for [bars, lengths] in std::iter::once([0.0; 2]).chain(RESTARTS) {
             if let Some(found) = Exchange::new(self, &self.strengthened(&from, bars, lengths)).run() {
-                let key = |found: &Polished| (found.missed > HELD, self.minimised(&found.unknowns));
+                let key = |found: &Polished| (!found.is_feasible(), self.minimised(&found.unknowns));
                 if best.as_ref().is_none_or(|best| key(&found) < key(best)) {
                     from.clone_from(&found.unknowns);
                     best = Some(found);
                 }
             }
-            if best
-                .as_ref()
-                .is_some_and(|best| best.missed <= HELD && best.multipliers.residual <= STALLED)
-            {
+            // Nothing near a design that misses a requirement by much is likely to hold, and a design that is an optimum needs no other.
+            let is_enough = best.as_ref().is_none_or(|best| {
+                best.missed > HOPELESS || best.is_feasible() && best.multipliers.residual <= stalled
+            });
+            if is_enough {
                 break;
             }
         }
-        best.filter(|best| best.missed <= 1e-6)
+        best.filter(|best| best.missed <= best.allowed.max(1e-6))
     }
 
     /// Returns unknowns with thicker bars and larger lengths.
@@ -133,6 +156,7 @@ impl LocalProblem {
         let count = unknowns.len();
         let mut gradient = DVector::zeros(count);
         let mut rows = DMatrix::zeros(critical.len(), count);
+        let here = self.values_of(unknowns, critical);
         for unknown in 0..count {
             let moved = |step: f64| {
                 let mut moved = unknowns.to_vec();
@@ -144,8 +168,13 @@ impl LocalProblem {
             gradient[unknown] = (self.minimised(&above) - self.minimised(&below)) / width;
             let (lower, upper) = (self.values_of(&below, critical), self.values_of(&above, critical));
             for (row, (lower, upper)) in lower.iter().zip(&upper).enumerate() {
-                let is_known = *lower > NOWHERE && *upper > NOWHERE;
-                rows[(row, unknown)] = if is_known { (upper - lower) / width } else { 0.0 };
+                // At the end of reach, a requirement has a value on one side alone.
+                rows[(row, unknown)] = match (*lower > NOWHERE, *upper > NOWHERE) {
+                    (true, true) => (upper - lower) / width,
+                    (true, false) => (here[row] - lower) / DIFFERENCE,
+                    (false, true) => (upper - here[row]) / DIFFERENCE,
+                    (false, false) => 0.0,
+                };
             }
         }
         (gradient, rows)
@@ -160,8 +189,10 @@ struct Exchange<'a> {
     critical: Vec<Critical>,
     /// Approximation of the Hessian of the Lagrangian.
     hessian: DMatrix<f64>,
-    /// Weight of the largest violation.
+    /// Weight of the violations.
     weight: f64,
+    /// The kinds of requirements that there are.
+    kinds: Vec<Kind>,
 }
 
 /// A step of the quadratic programme.
@@ -181,6 +212,12 @@ impl<'a> Exchange<'a> {
             .map(|(value, [lower, upper])| value.clamp(*lower, *upper))
             .collect();
         let count = unknowns.len();
+        let mut kinds: Vec<Kind> = Vec::new();
+        for requirement in problem.requirements() {
+            if !kinds.contains(&requirement.kind()) {
+                kinds.push(requirement.kind());
+            }
+        }
         Self {
             problem,
             unknowns,
@@ -188,11 +225,14 @@ impl<'a> Exchange<'a> {
             critical: Vec::new(),
             hessian: DMatrix::identity(count, count),
             weight: 20.0,
+            kinds,
         }
     }
 
     fn run(mut self) -> Option<Polished> {
         let mut survey = self.survey()?;
+        let slack = self.problem.question().slack;
+        let (mut least_missed, mut improved) = (f64::INFINITY, 0);
         for round in 0..ROUNDS {
             self.adopt(&survey);
             let trust = if round < 3 { TRUST } else { 0.5 * TRUST };
@@ -204,7 +244,12 @@ impl<'a> Exchange<'a> {
                 .fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
             survey = self.survey()?;
             let missed = missed(&survey);
-            if missed <= MISSED && (moved <= STILL || round > 12) {
+            if missed < 0.7 * least_missed {
+                (least_missed, improved) = (missed, round);
+            }
+            let is_stuck = moved <= 1e-12 && round > 0 || missed > 1e-6 && round > improved + PATIENCE;
+            let is_enough = slack > 0.0 && missed <= 0.5 * slack && moved <= ENOUGH;
+            if missed <= MISSED && (moved <= STILL || round > 12) || is_enough || is_stuck {
                 break;
             }
         }
@@ -217,6 +262,7 @@ impl<'a> Exchange<'a> {
             home: prepared.home,
             objective: problem.objective(&self.unknowns),
             missed,
+            allowed: HELD.max(0.5 * slack),
             critical: survey,
             multipliers,
             unknowns: self.unknowns,
@@ -233,14 +279,14 @@ impl<'a> Exchange<'a> {
         let values = self.problem.values_of(&self.unknowns, &self.critical);
         let mut kept: Vec<Critical> = Vec::new();
         for (critical, slack) in self.critical.drain(..).zip(values) {
-            if slack < SLACK {
+            if slack < SLACK && slack > NOWHERE {
                 kept.push(Critical { slack, ..critical });
             }
         }
         // Of many constraints, those with the least slack matter.
         kept.sort_by(|a, b| a.slack.total_cmp(&b.slack));
         kept.truncate(40);
-        for next in survey.iter().filter(|next| next.slack < SLACK) {
+        for next in survey.iter().filter(|next| next.slack < SLACK && next.slack > NOWHERE) {
             let is_known = |other: &Critical| other.requirement == next.requirement && is_identical(other, next);
             if !kept.iter().any(is_known) {
                 kept.push(*next);
@@ -321,9 +367,25 @@ impl<'a> Exchange<'a> {
         (moved, values)
     }
 
-    /// Returns the minimised value, raised by the largest violation.
+    /// Returns the largest violation of each kind of requirement.
+    fn violations(&self, values: &[f64]) -> Vec<f64> {
+        let mut violations = vec![0.0f64; self.kinds.len()];
+        for (critical, value) in self.critical.iter().zip(values) {
+            let violation: &mut f64 = &mut violations[self.kind(critical)];
+            *violation = violation.max(-value);
+        }
+        violations
+    }
+
+    fn kind(&self, critical: &Critical) -> usize {
+        let kind = critical.requirement.kind();
+        self.kinds.iter().position(|other| *other == kind).unwrap_or(0)
+    }
+
+    /// Returns the minimised value, raised by the largest violation of each kind of requirement: if the largest of all counted alone,
+    /// one requirement that is far from holding would let the others go.
     fn merit(&self, unknowns: &[f64], values: &[f64]) -> f64 {
-        let violation = values.iter().fold(0.0f64, |most, value| most.max(-value));
+        let violation: f64 = self.violations(values).iter().sum();
         self.problem.minimised(unknowns) + self.weight * violation
     }
 
@@ -331,18 +393,19 @@ impl<'a> Exchange<'a> {
     /// possible.
     fn step(&mut self, gradient: &DVector<f64>, rows: &DMatrix<f64>, values: &[f64], trust: f64) -> Option<Step> {
         let count = self.unknowns.len();
-        // The last variable is the largest violation.
-        let mut program = ConvexProgram::new(count + 1);
+        // The last variables are the largest violation of each kind.
+        let kinds = self.kinds.len();
+        let mut program = ConvexProgram::new(count + kinds);
         program
             .quadratic
             .view_mut((0, 0), (count, count))
             .copy_from(&self.hessian);
         program.linear.rows_mut(0, count).copy_from(gradient);
-        program.linear[count] = self.weight;
+        program.linear.rows_mut(count, kinds).fill(self.weight);
         for (row, value) in values.iter().enumerate() {
-            let mut row_of = DVector::zeros(count + 1);
+            let mut row_of = DVector::zeros(count + kinds);
             row_of.rows_mut(0, count).copy_from(&rows.row(row).transpose());
-            row_of[count] = 1.0;
+            row_of[count + self.kind(&self.critical[row])] = 1.0;
             program.at_least.push((row_of, -value));
         }
         for unknown in 0..count {
@@ -350,16 +413,21 @@ impl<'a> Exchange<'a> {
             program.bound_below(unknown, lower.max(-trust));
             program.bound_above(unknown, upper.min(trust));
         }
-        program.bound_below(count, 0.0);
+        (count..count + kinds).for_each(|violation| program.bound_below(violation, 0.0));
         let solution = program.solve()?;
         let change: DVector<f64> = solution.x.rows(0, count).into_owned();
         let multipliers = solution.multipliers[..values.len()].to_vec();
-        let violation = values.iter().fold(0.0f64, |most, value| most.max(-value));
+        let left: f64 = solution
+            .x
+            .rows(count, kinds)
+            .iter()
+            .map(|violation| violation.max(0.0))
+            .sum();
+        let violation: f64 = self.violations(values).iter().sum();
         let quadratic = 0.5 * change.dot(&(&self.hessian * &change));
-        let promised = self.weight * (violation - solution.x[count].max(0.0)) - gradient.dot(&change) - quadratic;
-        let sum: f64 = multipliers.iter().sum();
-        if solution.x[count] > 1e-9 && sum > 0.99 * self.weight && self.weight < 1e6 {
-            self.weight *= 4.0;
+        let promised = self.weight * (violation - left) - gradient.dot(&change) - quadratic;
+        if left > 1e-9 && self.weight < HEAVIEST {
+            self.weight *= 2.0;
         }
         Some(Step {
             change,

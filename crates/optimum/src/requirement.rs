@@ -47,7 +47,24 @@ pub enum Requirement {
     Assembly,
 }
 
+/// Requirements of one kind are missed together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// g2.
+    Reach,
+    /// Any other requirement.
+    Other(Requirement),
+}
+
 impl Requirement {
+    /// Returns the kind.
+    pub(crate) fn kind(self) -> Kind {
+        match self {
+            Requirement::Limit { .. } | Requirement::EndOfReach { .. } => Kind::Reach,
+            other => Kind::Other(other),
+        }
+    }
+
     /// Returns whether the requirement has a value at each pose.
     pub(crate) fn is_of_poses(self, problem: &LocalProblem) -> bool {
         match self {

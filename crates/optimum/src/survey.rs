@@ -35,6 +35,9 @@ const ACCURACY: f64 = 1e-8;
 /// Step from which the place of a minimum is refined, for both coordinates and the orientation.
 const FIRST_STEP: f64 = 0.08;
 
+/// Steps after which the place of a minimum is no longer refined: along a valley that is not parallel to a coordinate, steps stay short.
+const PATIENCE: usize = 200;
+
 /// Places that are nearer to each other than this are one.
 const SAME: f64 = 1e-5;
 
@@ -109,7 +112,9 @@ impl LocalProblem {
         };
         let freedoms = Area::freedoms(from.spot);
         let mut step = first;
-        while step > ACCURACY {
+        let mut left = PATIENCE;
+        while step > ACCURACY && left > 0 {
+            left -= 1;
             let mut is_lower = false;
             for freedom in 0..=freedoms {
                 for way in [-step, step] {
@@ -117,7 +122,8 @@ impl LocalProblem {
                         continue;
                     };
                     let slack = self.value(prepared, requirement, &place);
-                    if slack < best.slack {
+                    // Where the requirement has no value, another one is missed.
+                    if slack < best.slack && slack > NOWHERE {
                         best = Critical {
                             requirement,
                             place,

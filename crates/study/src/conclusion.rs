@@ -170,7 +170,7 @@ impl<'a> Settling<'a> {
             });
             let verifying = Instant::now();
             let candidates = &self.candidates;
-            let verify = |&place: &usize| goes_on().then(|| problem.verify(&candidates[place].row.design));
+            let verify = |&place: &usize| goes_on().then(|| problem.verify_improved(&candidates[place].row.design));
             let evaluations: Option<Vec<Evaluation>> = pool.install(|| part.par_iter().map(verify).collect());
             let mut members = Vec::new();
             for (&place, evaluation) in part.iter().zip(evaluations?) {

@@ -284,6 +284,19 @@ impl DesignProblem {
         }
     }
 
+    /// Verifies the best design near one that a search found, or that design itself if no better one holds on the fine grid.
+    pub fn verify_improved(&self, design: &Design) -> Evaluation {
+        let found = self.evaluate_design(design);
+        let improved = Some(&found)
+            .filter(|found| found.is_feasible())
+            .and_then(|found| self.improved(found));
+        let better = improved.map(|improved| self.model.evaluate(&improved, GridChoice::Fine));
+        match better {
+            Some(better) if better.is_feasible() && better.objectives[0] <= found.objectives[0] => better,
+            _ => self.verify(design),
+        }
+    }
+
     /// Returns designs near one that misses a requirement by little, in the order in which they are tried, each with the relative increase
     /// of its dimensions: with ever thicker bars; for a prescribed region then ever larger as a whole, and with the next bar of a list.
     pub(super) fn strengthened(&self, design: &Design) -> Vec<(Design, f64)> {

@@ -1,6 +1,7 @@
 //! A design of a study as a local problem: the best design near it, what each requirement costs, wishes, and why a wish cannot be had.
 
 mod drivers;
+mod grid;
 mod why;
 mod wish;
 

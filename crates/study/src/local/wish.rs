@@ -2,6 +2,7 @@
 
 use std::str::FromStr;
 
+use kinefront_model::certify::CertifyOptions;
 use kinefront_model::evaluation::{Better, Bound, Evaluation, GridChoice, PoseScalar, Quantity, QuantityLimit};
 use kinefront_model::mechanism::Design;
 use kinefront_model::workspace::Region;
@@ -13,8 +14,8 @@ use crate::{DesignProblem, FrontMember, FrontProver};
 /// Part of a wish up to which the largest one that can be had is determined.
 const RESOLUTION: f64 = 1.0 / 64.0;
 
-/// Slack that a design for the fine grid keeps, so that rounding misses no requirement.
-const ROOM: f64 = 2e-7;
+/// Relative increase of the radius of a disc, so that the radius that is proved is still the one that is wished for.
+const PROOF: f64 = CertifyOptions::TOLERANCE;
 
 /// A condition of a wish.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -148,7 +149,7 @@ impl DesignProblem {
         };
         let (polished, problem) = target.nearest()?;
         let at_grid = self
-            .for_fine_grid(&problem, &polished)
+            .for_fine_grid(&problem, &polished, PROOF)
             .ok_or_else(|| WishFault::NotVerified(Box::new(polished.design)))?;
         let found = self
             .model()
@@ -167,42 +168,6 @@ impl DesignProblem {
             was_true: false,
             before,
         })
-    }
-
-    /// Returns an optimum again with a home orientation of the fine grid, and with a little room for rounding.
-    pub(crate) fn for_fine_grid(&self, problem: &LocalProblem, polished: &Polished) -> Option<Design> {
-        let grid = &self.model().settings().fine_grid;
-        let step = grid.phi_step_deg();
-        let home = polished.home.to_degrees() / step;
-        let near = match problem.question().workspace.home_phi_deg {
-            Some(home) => vec![home],
-            None => vec![home.floor() * step, home.ceil() * step],
-        };
-        let of_home = |home: f64| {
-            let mut question = problem.question().clone();
-            question.workspace.home_phi_deg = Some(home);
-            question.slack = ROOM;
-            if let Region::Disc(radius) = &mut question.workspace.region {
-                // The grid may miss a step of its resolution.
-                *radius += polished.design.base_radius()
-                    / grid.ray_steps() as f64
-                    / f64::from(1u32 << grid.halvings().min(30));
-            }
-            let fixed = LocalProblem::new(question, &polished.design).ok()?;
-            fixed
-                .polish(&polished.design, home.to_radians())
-                .filter(Polished::is_feasible)
-        };
-        let sign = if problem.wants_less() { 1.0 } else { -1.0 };
-        let found = near.into_iter().filter_map(of_home);
-        let best = found.reduce(|best, next| {
-            if sign * next.objective < sign * best.objective {
-                next
-            } else {
-                best
-            }
-        });
-        best.map(|best| best.design)
     }
 
     /// Proves a design that was evaluated on the fine grid.
