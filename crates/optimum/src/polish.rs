@@ -33,6 +33,9 @@ const STILL: f64 = 1e-7;
 /// The same where the requirements keep some slack, which a last change may use.
 const ENOUGH: f64 = 1e-3;
 
+/// Least weight of the violations.
+const LIGHTEST: f64 = 20.0;
+
 /// Largest weight of the violations.
 const HEAVIEST: f64 = 2e3;
 
@@ -46,7 +49,7 @@ const PATIENCE: usize = 10;
 pub(crate) const DIFFERENCE: f64 = 2e-6;
 
 /// Critical poses with more slack than this are forgotten.
-const SLACK: f64 = 0.4;
+const SLACK: f64 = 0.25;
 
 /// Residual of the multipliers above which the search starts again from stronger designs.
 const STALLED: f64 = 1e-5;
@@ -191,6 +194,8 @@ struct Exchange<'a> {
     hessian: DMatrix<f64>,
     /// Weight of the violations.
     weight: f64,
+    /// Sum of the multipliers of the last step.
+    pressure: f64,
     /// The kinds of requirements that there are.
     kinds: Vec<Kind>,
 }
@@ -224,7 +229,8 @@ impl<'a> Exchange<'a> {
             bounds,
             critical: Vec::new(),
             hessian: DMatrix::identity(count, count),
-            weight: 20.0,
+            weight: LIGHTEST,
+            pressure: 0.0,
             kinds,
         }
     }
@@ -235,6 +241,8 @@ impl<'a> Exchange<'a> {
         let (mut least_missed, mut improved) = (f64::INFINITY, 0);
         for round in 0..ROUNDS {
             self.adopt(&survey);
+            // Near the optimum, a heavy weight would drown the decrease of what is minimised in rounding.
+            self.weight = (2.0 * self.pressure).clamp(LIGHTEST, HEAVIEST);
             let trust = if round < 3 { TRUST } else { 0.5 * TRUST };
             let before = self.unknowns.clone();
             self.descend(trust);
@@ -299,6 +307,8 @@ impl<'a> Exchange<'a> {
     fn descend(&mut self, first_trust: f64) {
         let problem = self.problem;
         let mut trust = first_trust;
+        // What is followed no further leaves less than the slack.
+        let smallest = if problem.question().slack > 0.0 { 1e-6 } else { 1e-10 };
         let mut values = problem.values_of(&self.unknowns, &self.critical);
         let (mut gradient, mut rows) = problem.derivatives(&self.unknowns, &self.critical);
         for _ in 0..STEPS {
@@ -310,7 +320,7 @@ impl<'a> Exchange<'a> {
                 continue;
             };
             let size = step.change.amax();
-            if size < 1e-10 {
+            if size < smallest {
                 return;
             }
             let merit = self.merit(&self.unknowns, &values);
@@ -339,6 +349,7 @@ impl<'a> Exchange<'a> {
                 trust = 0.3 * size.min(trust);
                 continue;
             }
+            self.pressure = step.multipliers.iter().sum();
             let (new_gradient, new_rows) = problem.derivatives(&changed, &self.critical);
             let of_lagrangian = |gradient: &DVector<f64>, rows: &DMatrix<f64>| {
                 let multipliers = DVector::from_column_slice(&step.multipliers);

@@ -291,9 +291,15 @@ impl DesignProblem {
             .filter(|found| found.is_feasible())
             .and_then(|found| self.improved(found));
         let better = improved.map(|improved| self.model.evaluate(&improved, GridChoice::Fine));
-        match better {
-            Some(better) if better.is_feasible() && better.objectives[0] <= found.objectives[0] => better,
-            _ => self.verify(design),
+        match better.filter(Evaluation::is_feasible) {
+            // It may be worse in the first objective, because its other objectives hold between the poses of the grid, too.
+            Some(better) if self.model.settings().objectives.len() > 1 => better,
+            Some(better) => {
+                let verified = self.verify(design);
+                let is_lighter = verified.is_feasible() && verified.objectives[0] < better.objectives[0];
+                if is_lighter { verified } else { better }
+            }
+            None => self.verify(design),
         }
     }
 

@@ -17,33 +17,18 @@ impl DesignProblem {
         let grid = &self.model().settings().fine_grid;
         let step = grid.phi_step_deg();
         let home = polished.home.to_degrees() / step;
-        let near = match problem.question().workspace.home_phi_deg {
-            Some(home) => vec![home],
-            None => vec![home.floor() * step, home.ceil() * step],
-        };
+        // The nearest orientation of the grid: the other neighbour is lighter by a millionth at most.
+        let home = problem.question().workspace.home_phi_deg.unwrap_or(home.round() * step);
         let resolution = 1.0 / (grid.ray_steps() as f64 * f64::from(1u32 << grid.halvings().min(30)));
-        let of_home = |home: f64| {
-            let mut question = problem.question().clone();
-            question.workspace.home_phi_deg = Some(home);
-            question.slack = ROOM;
-            if let Region::Disc(radius) = &mut question.workspace.region {
-                *radius = *radius * (1.0 + increase) + resolution * polished.design.base_radius();
-            }
-            let fixed = LocalProblem::new(question, &polished.design).ok()?;
-            fixed
-                .polish(&polished.design, home.to_radians())
-                .filter(Polished::is_feasible)
-        };
-        let sign = if problem.wants_less() { 1.0 } else { -1.0 };
-        let found = near.into_iter().filter_map(of_home);
-        let best = found.reduce(|best, next| {
-            if sign * next.objective < sign * best.objective {
-                next
-            } else {
-                best
-            }
-        });
-        best.map(|best| best.design)
+        let mut question = problem.question().clone();
+        question.workspace.home_phi_deg = Some(home);
+        question.slack = ROOM;
+        if let Region::Disc(radius) = &mut question.workspace.region {
+            *radius = *radius * (1.0 + increase) + resolution * polished.design.base_radius();
+        }
+        let fixed = LocalProblem::new(question, &polished.design).ok()?;
+        let found = fixed.polish(&polished.design, home.to_radians())?;
+        Some(found.design).filter(|_| found.is_feasible())
     }
 
     /// Returns the best design near one that was evaluated on a grid, for the fine grid; `None` if its question has no local problem, or
