@@ -94,32 +94,33 @@ impl Area {
 
     /// Returns spots that cover the region, with the neighbours of each. Of a disc that looks alike after a third of a turn, a sector is
     /// covered.
-    pub fn spots(&self, is_three_fold: bool) -> Spots {
+    pub fn spots(&self, is_three_fold: bool, density: Density) -> Spots {
+        let [directions, rings, per_side] = [DIRECTIONS, RINGS, PER_SIDE].map(|count| count * density.times());
         let mut spots = Vec::new();
         match self {
             Area::Disc(_) => {
-                let count = if is_three_fold { DIRECTIONS / 3 } else { DIRECTIONS };
-                let angle = |k: usize| std::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
+                let count = if is_three_fold { directions / 3 } else { directions };
+                let angle = |k: usize| std::f64::consts::TAU * k as f64 / directions as f64;
                 spots.extend((0..count).map(|k| Spot::Rim(angle(k))));
-                for ring in (1..RINGS).rev() {
-                    let share = ring as f64 / RINGS as f64;
+                for ring in (1..rings).rev() {
+                    let share = ring as f64 / rings as f64;
                     spots.extend((0..count).map(|k| Spot::Inside((unit(angle(k)) * share).to_array())));
                 }
                 spots.push(Spot::Inside([0.0; 2]));
             }
             Area::Polygon(polygon, half) => {
                 for side in 0..polygon.corners().len() {
-                    spots.extend((0..PER_SIDE).map(|k| Spot::Side(side, k as f64 / PER_SIDE as f64)));
+                    spots.extend((0..per_side).map(|k| Spot::Side(side, k as f64 / per_side as f64)));
                 }
-                let inside = polygon.lattice(PER_SIDE);
+                let inside = polygon.lattice(per_side);
                 spots.extend(inside.into_iter().map(|at| Spot::Inside((at / *half).to_array())));
             }
         }
         let reach = match self {
-            Area::Disc(radius) => *radius * DISC_SPACING,
-            Area::Polygon(_, half) => 2.0 * half.max_element() * POLYGON_SPACING / PER_SIDE as f64,
+            Area::Disc(radius) => *radius * DISC_SPACING / density.times() as f64,
+            Area::Polygon(_, half) => 2.0 * half.max_element() * POLYGON_SPACING / per_side as f64,
         };
-        Spots::new(self, spots, reach, is_three_fold)
+        Spots::new(self, spots, reach, is_three_fold, density)
     }
 }
 
@@ -138,8 +139,26 @@ const PER_SIDE: usize = 12;
 /// Spots of a polygon that are nearer to each other than this multiple of their spacing are neighbours.
 const POLYGON_SPACING: f64 = 1.5;
 
-/// Orientations that are examined, from one end of the rotation range to the other.
-pub(crate) const TURNS: usize = 9;
+/// Steps of the orientations that are examined, from one end of the rotation range to the other.
+const TURNS: usize = 8;
+
+/// How densely a region is examined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Density {
+    /// While a design changes.
+    Coarse,
+    /// To confirm that it holds: a pocket near a serial singularity is narrow.
+    Fine,
+}
+
+impl Density {
+    fn times(self) -> usize {
+        match self {
+            Density::Coarse => 1,
+            Density::Fine => 2,
+        }
+    }
+}
 
 /// Spots that cover a region.
 #[derive(Debug, Clone)]
@@ -147,10 +166,12 @@ pub(crate) struct Spots {
     pub all: Vec<Spot>,
     /// Of each spot, the places of its neighbours.
     pub neighbours: Vec<Vec<usize>>,
+    /// Orientations, as shares of half the rotation range.
+    pub turns: Vec<f64>,
 }
 
 impl Spots {
-    fn new(area: &Area, all: Vec<Spot>, reach: f64, is_three_fold: bool) -> Self {
+    fn new(area: &Area, all: Vec<Spot>, reach: f64, is_three_fold: bool, density: Density) -> Self {
         let positions: Vec<DVec2> = all.iter().map(|spot| area.position(*spot)).collect();
         let turns = if is_three_fold { 3 } else { 1 };
         let third = |turn: usize| unit(std::f64::consts::TAU * turn as f64 / 3.0);
@@ -162,11 +183,10 @@ impl Spots {
                 .collect()
         };
         let neighbours = (0..positions.len()).map(neighbours).collect();
-        Self { all, neighbours }
+        let steps = TURNS * density.times();
+        let turns = (0..=steps)
+            .map(|index| 2.0 * index as f64 / steps as f64 - 1.0)
+            .collect();
+        Self { all, neighbours, turns }
     }
-}
-
-/// Returns the orientation of one of the [`TURNS`], as a share of half the rotation range.
-pub(crate) fn turn(index: usize) -> f64 {
-    2.0 * index as f64 / (TURNS - 1) as f64 - 1.0
 }

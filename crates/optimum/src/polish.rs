@@ -8,9 +8,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::convex::ConvexProgram;
 use super::multipliers::Multipliers;
+use super::place::Density;
 use super::problem::LocalProblem;
 use super::requirement::{Kind, NOWHERE, Requirement};
-use super::survey::{Critical, is_same};
+use super::survey::{Critical, add, is_same};
 
 /// Largest number of times that critical poses are added.
 const ROUNDS: usize = 40;
@@ -20,6 +21,28 @@ const STEPS: usize = 40;
 
 /// Largest change of an unknown in a step at first.
 const TRUST: f64 = 0.1;
+
+/// Largest change of an unknown from one set of critical poses to the next.
+const WIDEST: f64 = 0.5;
+
+/// Violation and change of the unknowns in a round, below which a search is about to end.
+const SLOW: f64 = 1e-5;
+
+/// Residual of the multipliers at which a search has reached its end.
+const EXPLAINED: f64 = 1e-6;
+
+/// Number of times that the Hessian is determined anew.
+const RENEWALS: usize = 8;
+
+/// Half the difference of the unknowns by which the Hessian is determined.
+const BEND: f64 = 1e-4;
+
+/// Least and largest curvature.
+const FLATTEST: f64 = 1e-3;
+const STEEPEST: f64 = 1e6;
+
+/// Slack below which a critical pose is followed from one design to the next, and step by which it is.
+const FOLLOWED: f64 = 0.02;
 
 /// Requirements that a polished design misses by no more than this hold.
 pub(crate) const MISSED: f64 = 1e-10;
@@ -189,6 +212,8 @@ struct Exchange<'a> {
     problem: &'a LocalProblem,
     unknowns: Vec<f64>,
     bounds: Vec<[f64; 2]>,
+    /// Bounds of the unknowns in a round.
+    reach: Vec<[f64; 2]>,
     critical: Vec<Critical>,
     /// Approximation of the Hessian of the Lagrangian.
     hessian: DMatrix<f64>,
@@ -226,6 +251,7 @@ impl<'a> Exchange<'a> {
         Self {
             problem,
             unknowns,
+            reach: bounds.clone(),
             bounds,
             critical: Vec::new(),
             hessian: DMatrix::identity(count, count),
@@ -236,26 +262,52 @@ impl<'a> Exchange<'a> {
     }
 
     fn run(mut self) -> Option<Polished> {
-        let mut survey = self.survey()?;
+        let mut survey = self.survey(Density::Coarse)?;
         let slack = self.problem.question().slack;
+        let mut renewed = 0;
+        let mut span = TRUST;
         let (mut least_missed, mut improved) = (f64::INFINITY, 0);
         for round in 0..ROUNDS {
             self.adopt(&survey);
             // Near the optimum, a heavy weight would drown the decrease of what is minimised in rounding.
             self.weight = (2.0 * self.pressure).clamp(LIGHTEST, HEAVIEST);
-            let trust = if round < 3 { TRUST } else { 0.5 * TRUST };
+            let known = missed(&survey);
             let before = self.unknowns.clone();
-            self.descend(trust);
+            self.reach = self
+                .unknowns
+                .iter()
+                .zip(&self.bounds)
+                .map(|(value, [lower, upper])| [lower.max(value - span), upper.min(value + span)])
+                .collect();
+            self.descend(TRUST.min(span));
             let moved = before
                 .iter()
                 .zip(&self.unknowns)
                 .fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
-            survey = self.survey()?;
+            survey = self.survey(Density::Coarse)?;
+            if missed(&survey) <= SLOW {
+                survey = self.survey(Density::Fine)?;
+            }
             let missed = missed(&survey);
+            // Poses that are not known yet were missed: the next round goes less far.
+            span = if missed > (2.0 * known).max(0.05) {
+                0.5 * span
+            } else {
+                (1.5 * span).min(WIDEST)
+            };
             if missed < 0.7 * least_missed {
                 (least_missed, improved) = (missed, round);
             }
             let is_stuck = moved <= 1e-12 && round > 0 || missed > 1e-6 && round > improved + PATIENCE;
+            // The approximation of the curvature may have grown so steep that steps stay short.
+            if missed <= SLOW && moved <= SLOW && renewed < RENEWALS {
+                let found = Multipliers::new(self.problem, &self.unknowns, &survey);
+                if found.residual > EXPLAINED {
+                    self.renew_hessian(&found);
+                    renewed += 1;
+                    continue;
+                }
+            }
             let is_enough = slack > 0.0 && missed <= 0.5 * slack && moved <= ENOUGH;
             if missed <= MISSED && (moved <= STILL || round > 12) || is_enough || is_stuck {
                 break;
@@ -277,9 +329,21 @@ impl<'a> Exchange<'a> {
         })
     }
 
-    fn survey(&self) -> Option<Vec<Critical>> {
+    /// Returns the critical poses of the design: those that spots of the region lead to, and those that earlier designs lead to, which
+    /// may lie between the spots.
+    fn survey(&self, density: Density) -> Option<Vec<Critical>> {
         let prepared = self.problem.prepare(&self.unknowns)?;
-        Some(self.problem.survey(&prepared))
+        let mut found = self.problem.survey(&prepared, density);
+        for critical in &self.critical {
+            let slack = self.problem.value(&prepared, critical.requirement, &critical.place);
+            if critical.requirement.is_of_poses(self.problem) && slack < FOLLOWED && slack > NOWHERE {
+                let next = self
+                    .problem
+                    .refined(&prepared, critical.requirement, critical.place, FOLLOWED);
+                add(&mut found, next);
+            }
+        }
+        Some(found)
     }
 
     /// Adds critical poses that are new, and forgets those that are far from being critical.
@@ -370,7 +434,7 @@ impl<'a> Exchange<'a> {
 
     /// Returns the unknowns after a change, and the values of the critical requirements there.
     fn tried(&self, change: &DVector<f64>) -> (Vec<f64>, Vec<f64>) {
-        let moved = self.unknowns.iter().zip(change.iter()).zip(&self.bounds);
+        let moved = self.unknowns.iter().zip(change.iter()).zip(&self.reach);
         let moved: Vec<f64> = moved
             .map(|((value, change), [lower, upper])| (value + change).clamp(*lower, *upper))
             .collect();
@@ -420,7 +484,7 @@ impl<'a> Exchange<'a> {
             program.at_least.push((row_of, -value));
         }
         for unknown in 0..count {
-            let [lower, upper] = self.bounds[unknown].map(|bound| bound - self.unknowns[unknown]);
+            let [lower, upper] = self.reach[unknown].map(|bound| bound - self.unknowns[unknown]);
             program.bound_below(unknown, lower.max(-trust));
             program.bound_above(unknown, upper.min(trust));
         }
@@ -445,6 +509,34 @@ impl<'a> Exchange<'a> {
             multipliers,
             promised,
         })
+    }
+
+    /// Determines the Hessian of the Lagrangian by differences, made positive definite.
+    fn renew_hessian(&mut self, multipliers: &Multipliers) {
+        let count = self.unknowns.len();
+        let critical: Vec<Critical> = multipliers.active.iter().map(|(critical, _)| *critical).collect();
+        let weights = DVector::from_iterator(
+            critical.len(),
+            multipliers.active.iter().map(|(_, multiplier)| *multiplier),
+        );
+        let of_lagrangian = |unknowns: &[f64]| {
+            let (gradient, rows) = self.problem.derivatives(unknowns, &critical);
+            gradient - rows.transpose() * &weights
+        };
+        let mut hessian = DMatrix::zeros(count, count);
+        for unknown in 0..count {
+            let at = |step: f64| {
+                let mut moved = self.unknowns.clone();
+                moved[unknown] += step;
+                of_lagrangian(&moved)
+            };
+            hessian.set_column(unknown, &((at(BEND) - at(-BEND)) / (2.0 * BEND)));
+        }
+        let mut found = (0.5 * (&hessian + hessian.transpose())).symmetric_eigen();
+        for value in found.eigenvalues.iter_mut() {
+            *value = value.abs().clamp(FLATTEST, STEEPEST);
+        }
+        self.hessian = found.recompose();
     }
 
     /// Updates the approximation of the Hessian by the change of the gradient of the Lagrangian along a way, damped so that it stays

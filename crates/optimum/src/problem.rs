@@ -1,5 +1,7 @@
 //! A design as the unknown of a local problem: what may change, what is minimised, and what has to hold.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use kinefront_model::evaluation::{
     Better, Bound, Model, ModelSettings, Objective, PoseScalar, Quantity, QuantityLimit,
@@ -8,7 +10,7 @@ use kinefront_model::mechanism::{AnyLeg, Architecture, Design, DesignVariable, J
 use kinefront_model::spatial::{LEGS, Rotation};
 use kinefront_model::workspace::{GridError, PoseEvaluator, WorkspaceSpec};
 
-use super::place::{Area, Place, Spots};
+use super::place::{Area, Density, Place, Spots};
 use super::polish::Polished;
 use super::requirement::{End, Requirement};
 
@@ -130,7 +132,7 @@ pub struct LocalProblem {
     /// The design whose other variables are kept.
     start: Design,
     requirements: Vec<Requirement>,
-    spots: std::sync::Arc<Spots>,
+    spots: [Arc<Spots>; 2],
 }
 
 /// A design of a local problem, prepared for many poses.
@@ -170,7 +172,7 @@ impl LocalProblem {
         let model = Model::new(question.settings.clone())?;
         let is_three_fold = matches!(area, Area::Disc(_)) && model.is_symmetric(start);
         let mut problem = Self {
-            spots: std::sync::Arc::new(area.spots(is_three_fold)),
+            spots: [Density::Coarse, Density::Fine].map(|density| Arc::new(area.spots(is_three_fold, density))),
             requirements: Vec::new(),
             question,
             model,
@@ -283,8 +285,9 @@ impl LocalProblem {
         &self.requirements
     }
 
-    pub(crate) fn spots(&self) -> &Spots {
-        &self.spots
+    /// Spots that cover the region.
+    pub(crate) fn spots(&self, density: Density) -> &Spots {
+        &self.spots[density as usize]
     }
 
     /// Returns whether the home orientation is an unknown.
@@ -398,6 +401,15 @@ impl LocalProblem {
             Quantity::Height => Some(self.model.bodies_of(design).height()),
             _ => None,
         }
+    }
+
+    /// Returns the design that is similar to one, within the bounds; `None` if it is no design.
+    pub fn scaled(&self, design: &Design, factor: f64) -> Option<Design> {
+        let mut free = self.question.variables.iter().filter(|free| !free.variable.is_angle());
+        free.try_fold(*design, |design, free| {
+            let scaled = (design.value(free.variable) * factor).clamp(free.range[0], free.range[1]);
+            design.with(free.variable, scaled).ok()
+        })
     }
 
     /// Returns whether less of the objective is better.

@@ -2,7 +2,7 @@
 
 use kinefront_model::evaluation::{Better, Bound, MarginUnit, PoseScalar, PoseScalars, Quantity};
 
-use super::place::Place;
+use super::place::{Density, Place};
 use super::problem::{LocalProblem, Prepared, excess};
 
 /// Value of a requirement at a pose where it has none.
@@ -216,7 +216,7 @@ impl LocalProblem {
     /// Returns the sign of `det A` at a spot of the region in the home orientation.
     fn sign(&self, prepared: &Prepared) -> f64 {
         let anywhere = Place {
-            spot: self.spots().all[0],
+            spot: self.spots(Density::Coarse).all[0],
             turn: 0.0,
         };
         let determinant = self.scalars(prepared, &anywhere)[PoseScalar::Determinant];

@@ -7,6 +7,7 @@ use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Rotation;
 use kinefront_model::workspace::ValueColumns;
 
+use super::place::Density;
 use super::polish::Polished;
 use super::problem::{LocalProblem, Prepared};
 use super::requirement::{NOWHERE, Requirement};
@@ -59,7 +60,7 @@ impl LocalProblem {
 
     /// Returns the least value of any requirement over the region in each orientation.
     fn worst_of_orientations(&self, prepared: &Prepared) -> Vec<f64> {
-        let spots = &self.spots().all;
+        let spots = &self.spots(Density::Coarse).all;
         let positions: Vec<DVec2> = spots
             .iter()
             .map(|spot| prepared.centre() + prepared.area.position(*spot))

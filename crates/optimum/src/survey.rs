@@ -5,7 +5,7 @@ use kinefront_model::evaluation::PoseScalar;
 use kinefront_model::lanes::padded_length;
 use kinefront_model::workspace::ValueColumns;
 
-use super::place::{Area, Place, Spot, TURNS, turn};
+use super::place::{Area, Density, Place, Spot, Spots};
 use super::problem::{LocalProblem, Prepared};
 use super::requirement::{NOWHERE, Requirement};
 
@@ -43,8 +43,8 @@ const SAME: f64 = 1e-5;
 
 impl LocalProblem {
     /// Returns the local minima of all requirements over the region.
-    pub(crate) fn survey(&self, prepared: &Prepared) -> Vec<Critical> {
-        let fields = Fields::new(self, prepared);
+    pub(crate) fn survey(&self, prepared: &Prepared, density: Density) -> Vec<Critical> {
+        let fields = Fields::new(self.spots(density), prepared);
         let mut found: Vec<Critical> = Vec::new();
         for requirement in self.requirements() {
             if requirement.is_of_reach() {
@@ -64,14 +64,14 @@ impl LocalProblem {
                 continue;
             }
             let value = |index: usize| self.of_scalars(prepared, *requirement, |scalar| fields.scalar(scalar, index));
-            for place in fields.minima(self, value) {
+            for place in fields.minima(value) {
                 add(&mut found, self.refined(prepared, *requirement, place, FIRST_STEP));
             }
         }
         if self.requirements().iter().any(|requirement| requirement.is_of_reach()) {
             let (margin, scale) = (self.margin(prepared), prepared.design.base_radius());
             let value = |index: usize| (fields.reach[index] - margin) / scale;
-            for place in fields.minima(self, value) {
+            for place in fields.minima(value) {
                 for critical in self.limits_at(prepared, place) {
                     add(
                         &mut found,
@@ -151,7 +151,7 @@ fn moved(prepared: &Prepared, place: Place, freedom: usize, freedoms: usize, ste
 }
 
 /// Adds a minimum unless it is one that was found before.
-fn add(found: &mut Vec<Critical>, next: Critical) {
+pub(crate) fn add(found: &mut Vec<Critical>, next: Critical) {
     let is_known = |other: &Critical| {
         other.requirement == next.requirement
             && (is_same(&other.place, &next.place))
@@ -175,17 +175,18 @@ pub(crate) fn is_same(a: &Place, b: &Place) -> bool {
 }
 
 /// The scalars at all spots in all orientations that are examined.
-struct Fields {
+struct Fields<'a> {
+    spots: &'a Spots,
     columns: Vec<ValueColumns>,
     /// Distance from the joint limits and from the end of reach \[m\], orientation by orientation.
     reach: Vec<f64>,
     count: usize,
 }
 
-impl Fields {
-    fn new(problem: &LocalProblem, prepared: &Prepared) -> Self {
-        let spots = &problem.spots().all;
+impl<'a> Fields<'a> {
+    fn new(spots: &'a Spots, prepared: &Prepared) -> Self {
         let positions: Vec<DVec2> = spots
+            .all
             .iter()
             .map(|spot| prepared.centre() + prepared.area.position(*spot))
             .collect();
@@ -196,12 +197,14 @@ impl Fields {
             column
         };
         let (xs, ys) = (column(|position| position.x), column(|position| position.y));
-        let columns: Vec<ValueColumns> = (0..TURNS)
-            .map(|index| {
+        let columns: Vec<ValueColumns> = spots
+            .turns
+            .iter()
+            .map(|turn| {
                 let mut values = ValueColumns::default();
                 prepared
                     .evaluator()
-                    .evaluate_positions(&prepared.arms(turn(index)), &xs, &ys, &mut values);
+                    .evaluate_positions(&prepared.arms(*turn), &xs, &ys, &mut values);
                 values
             })
             .collect();
@@ -211,6 +214,7 @@ impl Fields {
             .flat_map(|values| values.column(PoseScalar::Reach)[..count].iter().copied());
         Self {
             reach: reach.collect(),
+            spots,
             columns,
             count,
         }
@@ -222,9 +226,10 @@ impl Fields {
     }
 
     /// Returns the places at which a function has no higher value than at any neighbour, the lowest first.
-    fn minima(&self, problem: &LocalProblem, value: impl Fn(usize) -> f64) -> Vec<Place> {
-        let spots = problem.spots();
-        let values: Vec<f64> = (0..TURNS * self.count)
+    fn minima(&self, value: impl Fn(usize) -> f64) -> Vec<Place> {
+        let spots = self.spots;
+        let turns = spots.turns.len();
+        let values: Vec<f64> = (0..turns * self.count)
             .map(|index| {
                 Some(value(index))
                     .filter(|value| !value.is_nan())
@@ -237,7 +242,7 @@ impl Fields {
             let around = [
                 turn.checked_sub(1),
                 Some(turn),
-                Some(turn + 1).filter(|turn| *turn < TURNS),
+                Some(turn + 1).filter(|turn| *turn < turns),
             ];
             own <= least + NEAR
                 && own.is_finite()
@@ -251,7 +256,7 @@ impl Fields {
         minima.truncate(MOST);
         let place = |index: usize| Place {
             spot: spots.all[index % self.count],
-            turn: turn(index / self.count),
+            turn: spots.turns[index / self.count],
         };
         minima.into_iter().map(place).collect()
     }

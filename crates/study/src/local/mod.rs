@@ -39,6 +39,8 @@ pub struct LocalDesign {
     pub design: Design,
     /// Home orientation of the given design \[rad\], if it has one on the grid.
     pub home: Option<f64>,
+    /// The radius that is kept divided by that of the given design; 1 if the latter is not known.
+    scale: f64,
 }
 
 impl DesignProblem {
@@ -93,6 +95,10 @@ impl DesignProblem {
             problem: LocalProblem::new(question, &evaluation.design)?,
             design: evaluation.design,
             home: evaluation.home_phi_deg.map(f64::to_radians),
+            scale: match (radius, evaluation.workspace_radius()) {
+                (Some(radius), own) if own > 0.0 => radius / own,
+                _ => 1.0,
+            },
         })
     }
 
@@ -123,11 +129,15 @@ impl LocalDesign {
     /// # Errors
     /// [`LocalFault::Infeasible`] if none keeps every requirement.
     pub fn best(&self) -> Result<Polished, LocalFault> {
-        let near = self.home.and_then(|home| self.problem.polish(&self.design, home));
-        let found = match near.filter(Polished::is_optimal) {
-            Some(found) => Some(found),
-            None => self.problem.best(&self.design, None),
-        };
+        // A similar design has the radius that is kept, unless bounds are in the way.
+        let starts = [self.problem.scaled(&self.design, self.scale), Some(self.design)];
+        let from_home = |start: Design| self.home.and_then(|home| self.problem.polish(&start, home));
+        let near = starts
+            .into_iter()
+            .flatten()
+            .filter_map(from_home)
+            .find(Polished::is_optimal);
+        let found = near.or_else(|| self.problem.best(&self.design, None));
         found.ok_or_else(|| LocalFault::Infeasible(Box::new(self.design)))
     }
 
