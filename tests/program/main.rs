@@ -2,6 +2,7 @@
 
 mod commands;
 mod damage;
+mod drivers;
 mod exports;
 mod faults;
 mod handed_over;

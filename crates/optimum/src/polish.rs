@@ -285,7 +285,8 @@ impl<'a> Exchange<'a> {
                 .zip(&self.unknowns)
                 .fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
             survey = self.survey(Density::Coarse)?;
-            if missed(&survey) <= SLOW {
+            // A design for a grid is examined on that grid afterwards.
+            if missed(&survey) <= SLOW && slack == 0.0 {
                 survey = self.survey(Density::Fine)?;
             }
             let missed = missed(&survey);

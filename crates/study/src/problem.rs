@@ -6,8 +6,8 @@
 
 use super::{Study, Tie};
 use kinefront_model::evaluation::{
-    Better, Bound, Evaluation, GridChoice, Model, Objective, PoseScalar, Quantity, QuantityLimit, SizingRanges,
-    WorkspaceTarget,
+    Better, Bound, Evaluation, GridChoice, Model, ModelSettings, Objective, PoseScalar, Quantity, QuantityLimit,
+    SizingRanges, Thresholds, WorkspaceTarget,
 };
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, DesignError, DesignVariable, WorkingMode};
 use kinefront_model::workspace::GridError;
@@ -22,6 +22,9 @@ const INCREASES: [f64; 5] = [1e-4, 2e-4, 3e-4, 5e-4, 1e-3];
 
 /// Relative increases of the dimensions of a design that misses a requirement somewhere in a prescribed region.
 const REGION_INCREASES: [f64; 7] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2];
+
+/// Relative amount by which the other objectives of an improved design may be worse.
+const KEPT: f64 = 1e-3;
 
 /// Variables that change when a design is scaled.
 const LENGTHS: [DesignVariable; 3] = [
@@ -291,9 +294,14 @@ impl DesignProblem {
             .filter(|found| found.is_feasible())
             .and_then(|found| self.improved(found));
         let better = improved.map(|improved| self.model.evaluate(&improved, GridChoice::Fine));
-        match better.filter(Evaluation::is_feasible) {
-            // It may be worse in the first objective, because its other objectives hold between the poses of the grid, too.
-            Some(better) if self.model.settings().objectives.len() > 1 => better,
+        // The evaluation selects the home orientation by the requirements alone, so that an objective over poses may become worse.
+        let keeps_others = |better: &Evaluation| {
+            let mut others = better.objectives.iter().zip(&found.objectives).skip(1);
+            others.all(|(better, had)| *better <= had + KEPT * had.abs())
+        };
+        match better.filter(|better| better.is_feasible() && keeps_others(better)) {
+            // It may be worse in the first objective, because it holds the others between the poses of the grid, too.
+            Some(better) if better.objectives.len() > 1 => better,
             Some(better) => {
                 let verified = self.verify(design);
                 let is_lighter = verified.is_feasible() && verified.objectives[0] < better.objectives[0];
@@ -301,6 +309,18 @@ impl DesignProblem {
             }
             None => self.verify(design),
         }
+    }
+
+    /// Returns the problem with other limits of the scalars at each pose.
+    pub(super) fn with_thresholds(&self, thresholds: Thresholds) -> Result<Self, GridError> {
+        let settings = ModelSettings {
+            thresholds,
+            ..self.model.settings().clone()
+        };
+        Ok(Self {
+            model: Model::new(settings)?,
+            ..self.clone()
+        })
     }
 
     /// Returns designs near one that misses a requirement by little, in the order in which they are tried, each with the relative increase

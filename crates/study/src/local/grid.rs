@@ -35,6 +35,15 @@ impl DesignProblem {
     /// if no design near it holds.
     pub(crate) fn improved(&self, evaluation: &Evaluation) -> Option<Design> {
         let local = self.local_of(evaluation, None).ok()?;
+        // An objective that the local problem does not know would be given up.
+        let left_out = local.problem.left_out();
+        let objectives = &self.model().settings().objectives;
+        if objectives
+            .iter()
+            .any(|objective| left_out.contains(&objective.quantity))
+        {
+            return None;
+        }
         let mut question = local.problem.question().clone();
         question.slack = ROOM;
         let problem = LocalProblem::new(question, &evaluation.design).ok()?;

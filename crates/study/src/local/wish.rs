@@ -151,7 +151,11 @@ impl DesignProblem {
         let at_grid = self
             .for_fine_grid(&problem, &polished, PROOF)
             .ok_or_else(|| WishFault::NotVerified(Box::new(polished.design)))?;
-        let found = self
+        // The home orientation is selected by the requirements, of which the wish is one.
+        let wished = self
+            .with_thresholds(problem.question().settings.thresholds)
+            .map_err(|error| WishFault::Local(LocalFault::Question(error.into())))?;
+        let found = wished
             .model()
             .clone()
             .with_all_quantities()
@@ -164,7 +168,7 @@ impl DesignProblem {
         Ok(WishOutcome {
             unmet: unmet.collect(),
             left_out: problem.left_out(),
-            found: self.proved(found),
+            found: wished.proved(found),
             was_true: false,
             before,
         })
