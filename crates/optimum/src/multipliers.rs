@@ -48,8 +48,18 @@ pub struct Multipliers {
     pub residual: f64,
     /// Whether other multipliers explain the optimum, too.
     pub are_ambiguous: bool,
-    /// Gradients of the requirements and bounds that are nearly active, a column each, and the gradient of the objective.
-    nearly: (Vec<Critical>, Vec<(usize, End)>, DMatrix<f64>, DVector<f64>),
+    nearly: NearlyActive,
+}
+
+/// The requirements and bounds that are nearly active.
+#[derive(Debug, Clone)]
+struct NearlyActive {
+    critical: Vec<Critical>,
+    bounds: Vec<(usize, End)>,
+    /// Their gradients, a column each.
+    columns: DMatrix<f64>,
+    /// Gradient of what is minimised.
+    gradient: DVector<f64>,
 }
 
 impl Multipliers {
@@ -127,18 +137,18 @@ impl Multipliers {
                 .collect(),
             residual,
             are_ambiguous,
-            nearly: (
-                kept.iter().map(|place| near[*place]).collect(),
-                bounds.iter().map(|&(variable, end, _)| (variable, end)).collect(),
+            nearly: NearlyActive {
+                critical: kept.iter().map(|place| near[*place]).collect(),
+                bounds: bounds.iter().map(|&(variable, end, _)| (variable, end)).collect(),
                 columns,
                 gradient,
-            ),
+            },
         }
     }
 
     /// Returns the requirements and bounds that are nearly active, in the order in which [`Multipliers::range`] takes their effects.
     pub(crate) fn nearly_active(&self) -> (&[Critical], &[(usize, End)]) {
-        (&self.nearly.0, &self.nearly.1)
+        (&self.nearly.critical, &self.nearly.bounds)
     }
 
     /// Returns the sum of the multipliers times the effects of a parameter on the requirements and bounds that are nearly active.
@@ -154,7 +164,7 @@ impl Multipliers {
 
     /// Returns the least and the largest sum of multipliers times effects, over all multipliers that explain the optimum.
     pub(crate) fn range(&self, effects: &[f64]) -> Option<[f64; 2]> {
-        let (_, _, columns, gradient) = &self.nearly;
+        let NearlyActive { columns, gradient, .. } = &self.nearly;
         let end = |sign: f64| {
             let mut program = ConvexProgram::new(effects.len());
             program.linear = DVector::from_iterator(effects.len(), effects.iter().map(|effect| sign * effect));

@@ -303,7 +303,7 @@ impl Context<'_> {
             .iter()
             .enumerate()
             .filter(|(_, free)| !free.variable.may_be_zero());
-        kept.filter_map(|(place, free)| {
+        kept.map(|(place, free)| {
             let at = |step: f64| {
                 let mut unknowns = self.polished.unknowns.clone();
                 unknowns[place] += step;
@@ -318,7 +318,7 @@ impl Context<'_> {
             let effects = lower.iter().zip(&upper).map(|(lower, upper)| (upper - lower) / width);
             let effects: Vec<f64> = effects.chain(bounds.iter().map(|_| 0.0)).collect();
             let price = (above - below) / width - bars.multipliers.sum(&effects);
-            Some((free.variable, self.problem.goal_sign() * price))
+            (free.variable, self.problem.goal_sign() * price)
         })
         .collect()
     }

@@ -196,6 +196,10 @@ impl LocalProblem {
         requirement: Requirement,
         value: impl Fn(PoseScalar) -> f64,
     ) -> f64 {
+        // The inverse kinematics has no solution.
+        if value(PoseScalar::Determinant).is_nan() {
+            return f64::NAN;
+        }
         match requirement {
             Requirement::Scalar(scalar) => {
                 let limit = self.limit(prepared, scalar);

@@ -2,6 +2,7 @@
 
 mod choose;
 mod compare;
+mod drivers;
 mod front;
 mod inspector;
 mod layers;
@@ -130,6 +131,8 @@ panels! {
     /// The inspector of the selected design.
     #[serde(alias = "Design")]
     Inspector = inspector: inspector::Inspector, "Inspector", Design;
+    /// What drives the mass of the selected design.
+    Drivers = drivers: drivers::DriversPanel, "Drivers", Design;
     /// Decision support, and the filter.
     Choose = choose: choose::ChoosePanel, "Choose", Design;
     /// The pose of the selected design.

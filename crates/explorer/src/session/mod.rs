@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 pub use self::selection::MarkedCounts;
 use super::data::{DesignOrigin, Document, History, Named, Selected};
 use super::files::Purpose;
-use super::threads::{Answer, Known, Running, SceneThread, Wake, Writing};
+use super::threads::{Answer, DriversAnswer, DriversThread, Known, Running, SceneThread, Wake, Writing};
 use super::{Filter, FrontEntry, Row, Store, StudyEditor};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model, Quantity};
 use kinefront_model::spatial::Pose;
@@ -118,6 +118,7 @@ pub struct Session {
     generation_times: Vec<Duration>,
     references: Vec<ReferenceMark>,
     scene: SceneThread,
+    drivers: DriversThread,
     answer: Answer,
     requested: u64,
     /// Number of the last failed request whose message was shown.
@@ -158,6 +159,7 @@ impl Session {
             generations: Vec::new(),
             generation_times: Vec::new(),
             scene: SceneThread::start(scene, move || waking())?,
+            drivers: DriversThread::new(Arc::clone(&wake)),
             answer: Answer::default(),
             requested: 0,
             failure_shown: None,
@@ -354,6 +356,13 @@ impl Session {
             .known
             .as_ref()
             .filter(|known| known.evaluation.design == selected.design)
+    }
+
+    /// Returns what drives the mass of the selected design, once that and its evaluation on the fine grid are known.
+    pub fn drivers(&mut self) -> Option<Arc<DriversAnswer>> {
+        let known = self.known().filter(|known| known.verified)?;
+        let evaluation = Arc::clone(&known.evaluation);
+        self.drivers.ask(&self.as_run, &evaluation)
     }
 
     /// Returns the fields that have values for the selected design, or all without one.

@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
+mod drivers;
 mod intake;
+mod mailbox;
 mod run;
 mod scene;
 
+pub use drivers::{DriversAnswer, DriversThread};
 pub use intake::{Intake, RunMessages};
 pub use run::{Running, Writing};
 pub use scene::{Answer, Known, Request, SceneThread};

@@ -94,62 +94,6 @@ pub struct Answer {
     pub trouble: Option<(u64, String)>,
 }
 
-/// Holds at most one item; a later item replaces an earlier one.
-struct Mailbox<T> {
-    state: Mutex<(Option<T>, bool)>,
-    changed: Condvar,
-}
-
-impl<T> Mailbox<T> {
-    fn new() -> Self {
-        Self {
-            state: Mutex::new((None, false)),
-            changed: Condvar::new(),
-        }
-    }
-
-    fn put(&self, thing: T) {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner).0 = Some(thing);
-        self.changed.notify_all();
-    }
-
-    fn close(&self) {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner).1 = true;
-        self.changed.notify_all();
-    }
-
-    /// Whether it is open and holds no item.
-    fn is_idle(&self) -> bool {
-        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.0.is_none() && !state.1
-    }
-
-    /// Waits for an item for at most `time`.
-    fn wait(&self, time: Duration) -> Option<T> {
-        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        let empty = |state: &mut (Option<T>, bool)| state.0.is_none() && !state.1;
-        let (mut state, _) = self
-            .changed
-            .wait_timeout_while(state, time, empty)
-            .unwrap_or_else(PoisonError::into_inner);
-        state.0.take()
-    }
-
-    /// Waits for an item; returns `None` once the mailbox is closed.
-    fn take(&self) -> Option<T> {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        loop {
-            if state.1 {
-                return None;
-            }
-            if let Some(thing) = state.0.take() {
-                return Some(thing);
-            }
-            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
-        }
-    }
-}
-
 struct Shared {
     requests: Mailbox<(u64, Request)>,
     to_verify: Mailbox<(Arc<PreparedStudy>, Known)>,

@@ -32,7 +32,8 @@ fn session() -> Session {
     });
     for _ in 0..2000 {
         session.update();
-        if session.known().is_some_and(|known| known.verified) && session.is_drawn() {
+        let has_prices = session.drivers().is_some();
+        if has_prices && session.known().is_some_and(|known| known.verified) && session.is_drawn() {
             return session;
         }
         std::thread::sleep(std::time::Duration::from_millis(10));

@@ -143,7 +143,7 @@ impl ValueColumns {
     }
 
     /// Returns the column of a scalar, which is empty if it was not computed. Where joints are beyond their limits, the values continue
-    /// as functions of the pose; where the inverse kinematics has no solution, they are no numbers.
+    /// as functions of the pose; where the inverse kinematics has no solution, the determinant is not a number.
     pub fn column(&self, scalar: PoseScalar) -> &[f64] {
         &self.scalars[scalar]
     }

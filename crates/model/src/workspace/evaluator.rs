@@ -36,9 +36,9 @@ pub trait PoseEvaluator: Sync {
     /// The limit margin of a position that is not reached.
     fn evaluate_position(&self, arms: &[DVec2; LEGS], position: DVec2) -> Result<PoseValues, f64>;
 
-    /// Returns the values at one position \[m\], also where joints are beyond their limits: a function that continues there, for
-    /// methods that approach the limits from both sides. A value that was not computed has no meaning, and none is a number where the
-    /// inverse kinematics has no solution.
+    /// Returns the values at one position \[m\], also where joints are beyond their limits: functions that continue there, for methods
+    /// that approach the limits from both sides. A value that was not computed has no meaning; where the inverse kinematics has no
+    /// solution, the determinant is not a number, and the distance from the limits alone has a meaning.
     fn evaluate_beyond_limits(&self, arms: &[DVec2; LEGS], position: DVec2) -> PoseScalars<f64>;
 
     /// Returns the values at one position \[m\] by the closed form as it is defined, with which the others are compared.

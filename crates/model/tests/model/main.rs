@@ -1,6 +1,7 @@
 //! The model against identities and independent values: joints, Jacobians, stiffness, cross-sections, clearance, workspace, sizing.
 
 mod assembly;
+mod beyond;
 mod certify;
 mod clearance;
 mod dynamics;
