@@ -10,11 +10,12 @@
 //! Only the latest request is processed: while a slider is dragged, intermediate requests are skipped.
 
 use crate::AnyError;
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::Duration;
 
 use super::Wake;
+use super::mailbox::Mailbox;
 use kinefront_model::evaluation::{Evaluation, GridChoice};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
