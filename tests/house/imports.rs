@@ -13,6 +13,7 @@ const CRATES: [&str; 11] = [
     "crates/export/src",
     "crates/model/src",
     "crates/optimize/src",
+    "crates/optimum/src",
     "crates/recording/src",
     "crates/report/src",
     "crates/scene/src",

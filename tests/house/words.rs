@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::sources::{dependencies, files, read, root};
 
-const CORE: [&str; 2] = ["crates/model/src", "crates/optimize/src"];
+const CORE: [&str; 3] = ["crates/model/src", "crates/optimize/src", "crates/optimum/src"];
 
 /// The modules of the model that are written once for all architectures and for all instruction sets.
 const PHYSICS: [&str; 8] = [
@@ -65,6 +65,7 @@ fn the_core_crates_depend_on_numbers_alone() {
             "optimize",
             &["libm", "nalgebra", "rand_chacha", "rand_core", "serde", "sobol_burley"],
         ),
+        ("optimum", &["clarabel", "glam", "kinefront-model", "libm", "nalgebra"]),
     ] {
         for dependency in dependencies(&format!("crates/{name}")) {
             let is_allowed = allowed.contains(&dependency.as_str());

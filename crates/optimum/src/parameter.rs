@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use kinefront_model::evaluation::{Bound, ModelSettings, PoseScalar, Quantity};
-use kinefront_model::mechanism::{Arrangement, CrossSection, JointKind, Wall};
+use kinefront_model::mechanism::{Arrangement, CrossSection, JointKind, MemberKind, Wall};
 use kinefront_model::polygon::Polygon;
 use kinefront_model::workspace::Region;
 
@@ -112,7 +112,7 @@ impl Parameter {
         if chain.is_on_rails() {
             all.extend([Parameter::RailStart, Parameter::RailEnd]);
         }
-        if chain.name == "RPR" {
+        if chain.distal == MemberKind::TelescopicLeg {
             all.push(Parameter::TelescopicShortest);
         } else if chain.joints[1..].contains(&JointKind::Prismatic) {
             all.extend([Parameter::GuideStart, Parameter::GuideEnd]);

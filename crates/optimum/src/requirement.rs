@@ -1,6 +1,7 @@
 //! What has to hold at a pose, as a number that is not negative where it does.
 
 use kinefront_model::evaluation::{Better, Bound, MarginUnit, PoseScalar, PoseScalars, Quantity};
+use kinefront_model::mechanism::MemberKind;
 
 use super::place::{Density, Place};
 use super::problem::{LocalProblem, Prepared, excess};
@@ -91,11 +92,12 @@ impl Requirement {
         match self {
             Requirement::Limit { leg, joint, end } => {
                 let chain = problem.architecture().chain();
-                let word = match (joint, chain.name, end) {
+                let is_telescopic = chain.distal == MemberKind::TelescopicLeg;
+                let word = match (joint, is_telescopic, end) {
                     (0, _, End::Lower) => "rail_start",
                     (0, _, End::Upper) => "rail_end",
-                    (1, "RPR", End::Lower) => "shortest",
-                    (1, "RPR", End::Upper) => "longest",
+                    (1, true, End::Lower) => "shortest",
+                    (1, true, End::Upper) => "longest",
                     (_, _, End::Lower) => "guide_start",
                     (_, _, End::Upper) => "guide_end",
                 };

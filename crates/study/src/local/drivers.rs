@@ -271,7 +271,7 @@ fn inactive(problem: &LocalProblem, critical: &[Critical]) -> Vec<InactiveJson> 
         let slack = match critical.requirement {
             Requirement::Scalar(PoseScalar::Dexterity) => (1.0 + 2.0 * critical.slack).max(0.0).sqrt() - 1.0,
             Requirement::Scalar(PoseScalar::Clearance) => critical.slack,
-            Requirement::Scalar(_) | Requirement::Quantity(_) => critical.slack.min(700.0).exp() - 1.0,
+            Requirement::Scalar(_) | Requirement::Quantity(_) => libm::exp(critical.slack.min(700.0)) - 1.0,
             _ => critical.slack,
         };
         match found.iter_mut().find(|(other, _)| *other == name) {
@@ -287,7 +287,7 @@ fn inactive(problem: &LocalProblem, critical: &[Critical]) -> Vec<InactiveJson> 
 }
 
 fn why_not(problem: &LocalProblem, polished: &Polished, prices: &[Price], wished: f64) -> WhyNotJson {
-    let log_deficit = (wished / polished.objective).ln() * if problem.wants_less() { 1.0 } else { -1.0 };
+    let log_deficit = libm::log(wished / polished.objective) * if problem.wants_less() { 1.0 } else { -1.0 };
     let relaxations = match log_deficit < 0.0 {
         true => problem.relaxations(polished, prices, wished),
         false => Vec::new(),

@@ -247,7 +247,7 @@ impl Target<'_> {
             // What the design has already is asked for as it is wished.
             let value = match limit.margin(had) >= 0.0 {
                 true => wished,
-                false => had * (wished / had).powf(part),
+                false => had * libm::pow(wished / had, part),
             };
             let (is_at_least, is_of_disc) = (
                 matches!(limit.bound, Bound::AtLeast(_)),
