@@ -164,8 +164,11 @@ fn pose_tells_joints_and_stiffness() {
     assert_eq!(found["B"].as_array().expect("a list").len(), 3);
     assert_eq!(found["stiffness"].as_array().expect("a list").len(), 6);
     let k = |i: usize, j: usize| found["stiffness"][i][j].as_f64().expect("a number");
-    assert_eq!(k(2, 2), found["k_z"].as_f64().expect("a number"));
-    assert_eq!(k(5, 5), found["k_phi_z"].as_f64().expect("a number"));
+    // The values and the matrix come from two forms, whose last digits may differ.
+    for (place, key) in [(2, "k_z"), (5, "k_phi_z")] {
+        let value = found[key].as_f64().expect("a number");
+        assert!((k(place, place) / value - 1.0).abs() < 1e-14, "{key}");
+    }
     assert_eq!(k(0, 5), k(5, 0));
     assert_eq!(k(0, 2), 0.0);
 

@@ -375,7 +375,7 @@ fn any_path_and_a_pipe_will_do() {
         .and_then(|line| line.split(',').next())
         .expect("an id");
     let row = || {
-        let mut row = odd.join("designs.csv").into_os_string();
+        let mut row = odd.join("front.csv").into_os_string();
         row.push(format!("#{id}"));
         row
     };
