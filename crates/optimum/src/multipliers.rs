@@ -191,6 +191,9 @@ impl Multipliers {
 /// Returns the least squares solution of `columns · λ = gradient` with `λ ≥ 0`, and the largest element of the residual.
 fn non_negative(columns: &DMatrix<f64>, gradient: &DVector<f64>) -> (Vec<f64>, f64) {
     let (rows, count) = columns.shape();
+    if !columns.iter().chain(gradient).all(|number| number.is_finite()) {
+        return (vec![0.0; count], f64::MAX);
+    }
     if count == 0 {
         return (Vec::new(), gradient.amax());
     }
@@ -225,7 +228,8 @@ fn non_negative(columns: &DMatrix<f64>, gradient: &DVector<f64>) -> (Vec<f64>, f
     let scaled = DMatrix::from_fn(rows, support.len(), |row, column| {
         columns[(row, support[column])] / lengths[support[column]]
     });
-    if let Ok(exact) = scaled.clone().svd(true, true).solve(gradient, 1e-10)
+    if !support.is_empty()
+        && let Ok(exact) = scaled.clone().svd(true, true).solve(gradient, 1e-10)
         && exact.iter().all(|multiplier| *multiplier >= 0.0)
     {
         found.fill(0.0);
@@ -242,6 +246,9 @@ fn non_negative(columns: &DMatrix<f64>, gradient: &DVector<f64>) -> (Vec<f64>, f
 
 /// Returns whether columns, made equally long, are nearly dependent.
 fn is_dependent(columns: &DMatrix<f64>) -> bool {
+    if columns.is_empty() || !columns.iter().all(|number| number.is_finite()) {
+        return false;
+    }
     let mut scaled = columns.clone();
     for mut column in scaled.column_iter_mut() {
         let length = column.norm();
@@ -260,6 +267,19 @@ fn is_dependent(columns: &DMatrix<f64>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_design_without_active_requirements_has_no_multipliers() {
+        let none = DMatrix::zeros(2, 0);
+        assert!(!is_dependent(&none));
+        let gradient = DVector::from_vec(vec![3.0, -4.0]);
+        assert_eq!(non_negative(&none, &gradient), (Vec::new(), 4.0));
+        let away = DMatrix::from_row_slice(2, 1, &[-1.0, 0.0]);
+        let (found, residual) = non_negative(&away, &gradient);
+        assert!(found[0] < 1e-6 && (residual - 4.0).abs() < 1e-6);
+        let broken = DMatrix::from_row_slice(2, 1, &[f64::NAN, 0.0]);
+        assert_eq!(non_negative(&broken, &gradient).0, vec![0.0]);
+    }
 
     #[test]
     fn a_gradient_within_a_cone_has_no_residual() {

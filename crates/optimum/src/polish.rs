@@ -469,6 +469,9 @@ impl<'a> Exchange<'a> {
     /// possible.
     fn step(&mut self, gradient: &DVector<f64>, rows: &DMatrix<f64>, values: &[f64], trust: f64) -> Option<Step> {
         let count = self.unknowns.len();
+        if !gradient.iter().chain(rows.iter()).all(|number| number.is_finite()) {
+            return None;
+        }
         // The last variables are the largest violation of each kind.
         let kinds = self.kinds.len();
         let mut program = ConvexProgram::new(count + kinds);
@@ -532,6 +535,9 @@ impl<'a> Exchange<'a> {
                 of_lagrangian(&moved)
             };
             hessian.set_column(unknown, &((at(BEND) - at(-BEND)) / (2.0 * BEND)));
+        }
+        if !hessian.iter().all(|number: &f64| number.is_finite()) {
+            return;
         }
         let mut found = (0.5 * (&hessian + hessian.transpose())).symmetric_eigen();
         for value in found.eigenvalues.iter_mut() {
