@@ -8,7 +8,7 @@ use syn::visit::Visit;
 use super::sources::{dependencies, files, read, root};
 
 /// The folders of sources, each of one crate.
-const CRATES: [&str; 11] = [
+const CRATES: [&str; 12] = [
     "crates/explorer/src",
     "crates/export/src",
     "crates/model/src",

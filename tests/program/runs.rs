@@ -120,8 +120,8 @@ fn a_front_with_pockets_is_proved() {
     assert_eq!((proofs.proved + proofs.open, proofs.open), (front.len(), 0));
     let thickened = proofs.refuted.iter().filter_map(|refuted| refuted.thickened.as_ref());
     let ids: Vec<usize> = thickened.clone().map(|thickened| thickened.id).collect();
-    // Designs that were improved hold between the poses of the grid, too: few are refuted. Those instead are no designs of the search.
-    assert!(proofs.refuted.len() < 20 && ids.iter().all(|id| *id >= 1500), "{ids:?}");
+    // Designs that are reported instead of refuted or improved ones are no designs of the search.
+    assert!(ids.len() > 5 && ids.iter().all(|id| *id >= 1500), "{ids:?}");
     let improved = front.iter().filter(|entry| entry.id >= 1500).count();
     assert!(
         2 * improved > front.len(),
