@@ -15,6 +15,7 @@ mod relax;
 mod requirement;
 mod start;
 mod survey;
+mod value;
 
 pub use multipliers::{ActiveBound, Multipliers};
 pub use parameter::{Change, Parameter};

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::convex::ConvexProgram;
 use super::multipliers::Multipliers;
-use super::place::Density;
+use super::place::{Density, Place};
 use super::problem::LocalProblem;
 use super::requirement::{Kind, NOWHERE, Requirement};
 use super::survey::{Critical, add, is_same};
@@ -119,6 +119,15 @@ impl LocalProblem {
     /// Returns the best design near one with a home orientation \[rad\]; `None` if there is none that keeps the requirements.
     pub fn polish(&self, design: &Design, home: f64) -> Option<Polished> {
         self.polish_from(&self.unknowns(design, home))
+    }
+
+    /// Returns the pose of a place of an optimum: x \[m\], y \[m\] and the orientation \[deg\].
+    pub fn pose(&self, polished: &Polished, place: &Place) -> [f64; 3] {
+        let Some(prepared) = self.prepare(&polished.unknowns) else {
+            return [0.0; 3];
+        };
+        let (position, _) = prepared.located(place);
+        [position.x, position.y, prepared.orientation(place.turn).to_degrees()]
     }
 
     /// Returns the best design near some unknowns.

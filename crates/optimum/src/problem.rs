@@ -11,7 +11,6 @@ use kinefront_model::spatial::{LEGS, Rotation};
 use kinefront_model::workspace::{GridError, PoseEvaluator, WorkspaceSpec};
 
 use super::place::{Area, Density, Place, Spots};
-use super::polish::Polished;
 use super::requirement::{End, Requirement};
 
 /// Least radius of a bar in a local problem \[m\]: its logarithm is an unknown.
@@ -425,15 +424,6 @@ impl LocalProblem {
     /// Returns the objective of a design, if it is a quantity of the design as a whole.
     pub fn objective_of(&self, design: &Design) -> Option<f64> {
         self.quantity(design, self.question.objective.quantity)
-    }
-
-    /// Returns the pose of a place of an optimum: x \[m\], y \[m\] and the orientation \[deg\].
-    pub fn pose(&self, polished: &Polished, place: &Place) -> [f64; 3] {
-        let Some(prepared) = self.prepare(&polished.unknowns) else {
-            return [0.0; 3];
-        };
-        let (position, _) = prepared.located(place);
-        [position.x, position.y, prepared.orientation(place.turn).to_degrees()]
     }
 
     /// Prepares the design of some unknowns; `None` if they are no design.
