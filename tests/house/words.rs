@@ -65,7 +65,10 @@ fn the_core_crates_depend_on_numbers_alone() {
             "optimize",
             &["libm", "nalgebra", "rand_chacha", "rand_core", "serde", "sobol_burley"],
         ),
-        ("optimum", &["clarabel", "glam", "kinefront-model", "libm", "nalgebra"]),
+        (
+            "optimum",
+            &["clarabel", "glam", "kinefront-model", "libm", "nalgebra", "thiserror"],
+        ),
     ] {
         for dependency in dependencies(&format!("crates/{name}")) {
             let is_allowed = allowed.contains(&dependency.as_str());

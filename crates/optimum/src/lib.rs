@@ -5,10 +5,13 @@
 //! be given up for a wished value of the objective ([`LocalProblem::relaxations`]). `docs/model.md` derives it in section 16.
 
 mod convex;
+mod exchange;
 mod multipliers;
 mod parameter;
 mod place;
 mod polish;
+mod polished;
+mod prepared;
 mod prices;
 mod problem;
 mod relax;
@@ -17,12 +20,11 @@ mod start;
 mod survey;
 mod value;
 
-pub use multipliers::{ActiveBound, Multipliers};
+pub use multipliers::Multipliers;
 pub use parameter::{Change, Parameter};
 pub use place::{Place, Spot};
-pub use polish::Polished;
+pub use polished::Polished;
 pub use prices::{PRICE_STEPS, Price, PriceStep, Prices, reported_place};
 pub use problem::{FreeVariable, LocalError, LocalProblem, LocalQuestion};
 pub use relax::{Relaxation, RelaxationOf};
-pub use requirement::{End, Requirement};
-pub use survey::Critical;
+pub use requirement::{Critical, End, Requirement};

@@ -5,17 +5,16 @@ use nalgebra::{DMatrix, DVector};
 
 use super::convex::ConvexProgram;
 use super::problem::LocalProblem;
-use super::requirement::End;
-use super::survey::Critical;
-
-/// Requirements and bounds with no more slack than this are active.
-const ACTIVE: f64 = 2e-6;
+use super::requirement::{ACTIVE, Critical, End};
 
 /// The same for one-sided prices, of which near requirements are part.
 const NEARLY_ACTIVE: f64 = 2e-5;
 
 /// Amount by which the multipliers of one-sided prices may miss the stationarity.
 const STATIONARY: f64 = 3e-4;
+
+/// Residual above which multipliers explain nothing.
+const UNEXPLAINED: f64 = 1e-4;
 
 /// Multipliers below this share of the largest one are 0.
 const NONE: f64 = 1e-8;
@@ -26,40 +25,23 @@ const DEPENDENT: f64 = 1e-3;
 /// Gradients that differ by less than this, relative to their length, are one.
 const ALIKE: f64 = 1e-5;
 
-/// A bound of a variable at which a design stands.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ActiveBound {
-    /// The place of the variable among those that are free.
-    pub variable: usize,
-    /// Which bound it is.
-    pub end: End,
-    /// Multiplier, at least 0.
-    pub multiplier: f64,
-}
-
 /// The multipliers of an optimum.
 #[derive(Debug, Clone)]
 pub struct Multipliers {
-    /// The active requirements at their critical poses, each with its multiplier.
-    pub active: Vec<(Critical, f64)>,
-    /// The active bounds.
-    pub bounds: Vec<ActiveBound>,
+    /// The requirements that are nearly active, at their critical poses.
+    critical: Vec<Critical>,
+    /// The bounds at which the design stands, or nearly so: the place of the variable among those that are free, and the end.
+    bounds: Vec<(usize, End)>,
+    /// Multipliers of the requirements and then of the bounds, at least 0; 0 for what is not quite active.
+    values: Vec<f64>,
+    /// Gradients of the requirements and then of the bounds, a column each.
+    columns: DMatrix<f64>,
+    /// Gradient of what is minimised.
+    gradient: DVector<f64>,
     /// Largest element of what the multipliers leave of the gradient; 0 at an exact optimum.
     pub residual: f64,
     /// Whether other multipliers explain the optimum, too.
     pub are_ambiguous: bool,
-    nearly: NearlyActive,
-}
-
-/// The requirements and bounds that are nearly active.
-#[derive(Debug, Clone)]
-struct NearlyActive {
-    critical: Vec<Critical>,
-    bounds: Vec<(usize, End)>,
-    /// Their gradients, a column each.
-    columns: DMatrix<f64>,
-    /// Gradient of what is minimised.
-    gradient: DVector<f64>,
 }
 
 impl Multipliers {
@@ -76,7 +58,7 @@ impl Multipliers {
             let is_known = |other: &usize| {
                 let (a, b) = (rows.row(*other), rows.row(place));
                 near[*other].requirement.is_alike(near[place].requirement)
-                    && (near[*other].slack <= ACTIVE) == (near[place].slack <= ACTIVE)
+                    && near[*other].is_active() == near[place].is_active()
                     && (a - b).amax() <= ALIKE * a.amax().max(b.amax())
             };
             if !kept.iter().any(is_known) {
@@ -100,10 +82,7 @@ impl Multipliers {
             columns.set_column(column, &rows.row(*place).transpose());
         }
         for (column, (variable, end, _)) in bounds.iter().enumerate() {
-            columns[(*variable, kept.len() + column)] = match end {
-                End::Lower => 1.0,
-                End::Upper => -1.0,
-            };
+            columns[(*variable, kept.len() + column)] = end.sign();
         }
         let slacks = kept
             .iter()
@@ -115,56 +94,49 @@ impl Multipliers {
             .map(|(place, _)| place)
             .collect();
         let (found, residual) = non_negative(&columns.select_columns(&exact), &gradient);
-        let mut multipliers = vec![0.0; columns.ncols()];
+        let mut values = vec![0.0; columns.ncols()];
         for (place, multiplier) in exact.iter().zip(found) {
-            multipliers[*place] = multiplier;
+            values[*place] = multiplier;
         }
-        let are_ambiguous = is_dependent(&columns);
         Self {
-            active: kept
-                .iter()
-                .zip(&multipliers)
-                .map(|(place, multiplier)| (near[*place], *multiplier))
-                .collect(),
-            bounds: bounds
-                .iter()
-                .zip(&multipliers[kept.len()..])
-                .map(|(&(variable, end, _), &multiplier)| ActiveBound {
-                    variable,
-                    end,
-                    multiplier,
-                })
-                .collect(),
+            critical: kept.iter().map(|place| near[*place]).collect(),
+            bounds: bounds.iter().map(|&(variable, end, _)| (variable, end)).collect(),
+            values,
+            are_ambiguous: is_dependent(&columns),
+            columns,
+            gradient,
             residual,
-            are_ambiguous,
-            nearly: NearlyActive {
-                critical: kept.iter().map(|place| near[*place]).collect(),
-                bounds: bounds.iter().map(|&(variable, end, _)| (variable, end)).collect(),
-                columns,
-                gradient,
-            },
         }
+    }
+
+    /// Returns whether the multipliers explain why a design cannot be better; otherwise there are no prices.
+    pub fn explain(&self) -> bool {
+        self.residual <= UNEXPLAINED
+    }
+
+    /// Returns the active requirements at their critical poses, each with its multiplier.
+    pub fn active(&self) -> impl Iterator<Item = (&Critical, f64)> {
+        self.critical_with_values().filter(|(critical, _)| critical.is_active())
+    }
+
+    /// Returns the requirements that are nearly active, each with its multiplier.
+    pub(crate) fn critical_with_values(&self) -> impl Iterator<Item = (&Critical, f64)> {
+        self.critical.iter().zip(self.values.iter().copied())
     }
 
     /// Returns the requirements and bounds that are nearly active, in the order in which [`Multipliers::range`] takes their effects.
     pub(crate) fn nearly_active(&self) -> (&[Critical], &[(usize, End)]) {
-        (&self.nearly.critical, &self.nearly.bounds)
+        (&self.critical, &self.bounds)
     }
 
     /// Returns the sum of the multipliers times the effects of a parameter on the requirements and bounds that are nearly active.
     pub(crate) fn sum(&self, effects: &[f64]) -> f64 {
-        let of_requirements = self.active.iter().map(|(_, multiplier)| multiplier);
-        let of_bounds = self.bounds.iter().map(|bound| &bound.multiplier);
-        of_requirements
-            .chain(of_bounds)
-            .zip(effects)
-            .map(|(multiplier, effect)| multiplier * effect)
-            .sum()
+        dot(self.values.iter(), effects)
     }
 
     /// Returns the least and the largest sum of multipliers times effects, over all multipliers that explain the optimum.
     pub(crate) fn range(&self, effects: &[f64]) -> Option<[f64; 2]> {
-        let NearlyActive { columns, gradient, .. } = &self.nearly;
+        let Self { columns, gradient, .. } = self;
         let end = |sign: f64| {
             let mut program = ConvexProgram::new(effects.len());
             program.linear = DVector::from_iterator(effects.len(), effects.iter().map(|effect| sign * effect));
@@ -174,18 +146,17 @@ impl Multipliers {
                 program.at_least.push((-row, -gradient[unknown] - STATIONARY));
             }
             (0..effects.len()).for_each(|multiplier| program.bound_below(multiplier, 0.0));
-            let solution = program.solve()?;
-            Some(
-                solution
-                    .x
-                    .iter()
-                    .zip(effects)
-                    .map(|(multiplier, effect)| multiplier * effect)
-                    .sum::<f64>(),
-            )
+            Some(dot(program.solve()?.x.iter(), effects))
         };
         Some([end(1.0)?, end(-1.0)?])
     }
+}
+
+fn dot<'a>(multipliers: impl Iterator<Item = &'a f64>, effects: &[f64]) -> f64 {
+    multipliers
+        .zip(effects)
+        .map(|(multiplier, effect)| multiplier * effect)
+        .sum()
 }
 
 /// Returns the least squares solution of `columns · λ = gradient` with `λ ≥ 0`, and the largest element of the residual.

@@ -88,9 +88,7 @@ impl Parameter {
                 _ => None,
             });
         all.extend(of_poses);
-        let depends_on_yield =
-            |scalar: &PoseScalar| *scalar == PoseScalar::SafetyFactor && settings.thresholds.get(*scalar).is_some();
-        if PoseScalar::OF_LOADS.iter().any(depends_on_yield) {
+        if settings.thresholds.get(PoseScalar::SafetyFactor).is_some() {
             all.push(Parameter::YieldStrength);
         }
         let of_designs = problem
@@ -155,11 +153,7 @@ impl Parameter {
             Parameter::LegWall => "wall_legs".to_owned(),
             Parameter::PlatformWall => "wall_platform".to_owned(),
             Parameter::Bound(place, end) => {
-                let side = match end {
-                    End::Lower => "lower",
-                    End::Upper => "upper",
-                };
-                format!("bounds.{}.{side}", question.variables[place].variable.key())
+                format!("bounds.{}.{}", question.variables[place].variable.key(), end.name())
             }
         }
     }
@@ -187,11 +181,11 @@ impl Parameter {
             Parameter::LegWall => "wall of the leg tubes".to_owned(),
             Parameter::PlatformWall => "wall of the platform tubes".to_owned(),
             Parameter::Bound(place, end) => {
-                let side = match end {
-                    End::Lower => "lower",
-                    End::Upper => "upper",
-                };
-                format!("{side} bound of {}", question.variables[place].variable.symbol())
+                format!(
+                    "{} bound of {}",
+                    end.name(),
+                    question.variables[place].variable.symbol()
+                )
             }
         }
     }

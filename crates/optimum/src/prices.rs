@@ -1,17 +1,15 @@
 //! Prices: by how much the objective of an optimum changes with each requirement, bound and property.
 
 use glam::DVec2;
-use kinefront_model::evaluation::Better;
 use kinefront_model::mechanism::{DesignVariable, JointKind};
 use kinefront_model::workspace::Region;
 
 use super::multipliers::Multipliers;
 use super::parameter::{Change, Parameter};
 use super::place::{Area, Place, Spot};
-use super::polish::Polished;
+use super::polished::Polished;
 use super::problem::{LocalProblem, LocalQuestion};
-use super::requirement::{End, NOWHERE, Requirement};
-use super::survey::Critical;
+use super::requirement::{Critical, End, NOWHERE, Requirement};
 
 /// Half the step of a parameter by which the effects on the requirements are determined.
 const EFFECT_STEP: f64 = 2e-5;
@@ -41,8 +39,6 @@ pub struct Price {
     pub bars_only: Option<f64>,
     /// Ways in which the bars cannot repair what a change of the parameter does to a requirement: where it falls, and where it rises.
     pub bars_cannot_repair: [bool; 2],
-    /// Whether the optimum lies at a kink.
-    pub is_kink: bool,
     /// Changes of the logarithm of the objective for some steps of the parameter, each with the design optimised again.
     pub steps: Vec<PriceStep>,
 }
@@ -68,17 +64,10 @@ pub struct Prices {
 impl LocalProblem {
     /// Returns the prices at an optimum. With `with_bars`, also those if the bars alone may change.
     pub fn prices(&self, polished: &Polished, with_bars: bool) -> Prices {
-        let Some(prepared) = self.prepare(&polished.unknowns) else {
-            return Prices {
-                prices: Vec::new(),
-                of_dimensions: Vec::new(),
-            };
-        };
-        let actuator = prepared.actuator();
         let context = Context {
             problem: self,
             polished,
-            actuator,
+            actuator: polished.design.architecture().actuator(),
             base_radius: polished.design.base_radius(),
         };
         let bars = with_bars.then(|| context.of_bars()).flatten();
@@ -118,7 +107,7 @@ impl LocalProblem {
             on_side.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
             let mut from = polished.clone();
             for step in on_side {
-                let Some(next) = self.after(&from, parameter, step) else {
+                let Some(next) = self.after(&from, &[(parameter, 1.0)], step) else {
                     break;
                 };
                 let change = self.log_of(&next) - self.log_of(polished);
@@ -132,24 +121,19 @@ impl LocalProblem {
         found
     }
 
-    /// Returns the optimum for a parameter changed by a step, starting from another optimum.
-    pub(crate) fn after(&self, from: &Polished, parameter: Parameter, step: f64) -> Option<Polished> {
+    /// Returns the optimum for parameters that are changed by a step times the weight of each, starting from another optimum.
+    pub(crate) fn after(&self, from: &Polished, weights: &[(Parameter, f64)], step: f64) -> Option<Polished> {
         let actuator = from.design.architecture().actuator();
-        let question = parameter.changed(&self.question, step, from.design.base_radius(), actuator)?;
+        let change = |question: LocalQuestion, (parameter, weight): &(Parameter, f64)| {
+            parameter.changed(&question, weight * step, from.design.base_radius(), actuator)
+        };
+        let question = weights.iter().try_fold(self.question.clone(), change)?;
         self.with_question(question).ok()?.polish_from(&from.unknowns)
     }
 
     /// Returns the logarithm of the objective of an optimum.
     pub(crate) fn log_of(&self, polished: &Polished) -> f64 {
         libm::log(polished.objective)
-    }
-
-    /// Returns the sign with which the logarithm of the objective is minimised.
-    pub(crate) fn goal_sign(&self) -> f64 {
-        match self.question().objective.goal {
-            Better::Lower => 1.0,
-            Better::Higher => -1.0,
-        }
     }
 }
 
@@ -210,7 +194,6 @@ impl Context<'_> {
             radius_price: None,
             bars_only: of_bars.filter(|_| !matches!(parameter, Parameter::Bound(..))),
             bars_cannot_repair,
-            is_kink: one_sided[0] != one_sided[1],
             steps: Vec::new(),
         })
     }
@@ -228,11 +211,7 @@ impl Context<'_> {
         if let Parameter::Bound(place, end) = parameter {
             let of_bound = |(variable, side): &(usize, End)| {
                 let is_it = *variable == place && *side == end;
-                match end {
-                    _ if !is_it => 0.0,
-                    End::Lower => -1.0,
-                    End::Upper => 1.0,
-                }
+                if is_it { -end.sign() } else { 0.0 }
             };
             let effects = nearly.iter().map(|_| 0.0).chain(bounds.iter().map(of_bound));
             return Some((0.0, effects.collect()));
@@ -325,6 +304,11 @@ impl Context<'_> {
 }
 
 impl Price {
+    /// Returns whether the optimum lies at a kink.
+    pub fn is_kink(&self) -> bool {
+        self.one_sided[0] != self.one_sided[1]
+    }
+
     /// Returns the steps, down and up, at which the linear price is off by 20 %, where the changes after finite steps show them.
     pub fn off_by_20_percent(&self) -> [Option<f64>; 2] {
         [-1.0, 1.0].map(|side| {

@@ -1,53 +1,36 @@
 //! A design as the unknown of a local problem: what may change, what is minimised, and what has to hold.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use glam::DVec2;
 use kinefront_model::evaluation::{
     Better, Bound, Model, ModelSettings, Objective, PoseScalar, Quantity, QuantityLimit,
 };
-use kinefront_model::mechanism::{AnyLeg, Architecture, Design, DesignVariable, JointKind, Leg};
-use kinefront_model::spatial::{LEGS, Rotation};
-use kinefront_model::workspace::{GridError, PoseEvaluator, WorkspaceSpec};
+use kinefront_model::mechanism::{AnyLeg, Architecture, Design, DesignVariable, Leg};
+use kinefront_model::workspace::{GridError, WorkspaceSpec};
 
-use super::place::{Area, Density, Place, Spots};
+use super::place::{Area, Density, Spots};
+use super::prepared::Prepared;
 use super::requirement::{End, Requirement};
 
 /// Least radius of a bar in a local problem \[m\]: its logarithm is an unknown.
 const THINNEST: f64 = 1e-9;
 
 /// Why a design has no local problem.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LocalError {
     /// The first objective is not one that a local problem minimises.
+    #[error(
+        "{} is the first objective; a local optimum is found for a mass, the height, the workspace radius, or the worst value of a scalar \
+         over the poses",
+        .0.entry().key
+    )]
     Objective(Quantity),
     /// The region is the largest disc, whose radius must be stated.
+    #[error("the region is the largest disc; its radius must be known")]
     NoRadius,
     /// A grid does not fit the workspace.
-    Grid(GridError),
-}
-
-impl std::fmt::Display for LocalError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            LocalError::Objective(quantity) => write!(
-                f,
-                "{} is the first objective; a local optimum is found for a mass, the height, the workspace radius, or the worst value of a \
-                 scalar over the poses",
-                quantity.entry().key
-            ),
-            LocalError::NoRadius => f.write_str("the region is the largest disc; its radius must be known"),
-            LocalError::Grid(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for LocalError {}
-
-impl From<GridError> for LocalError {
-    fn from(error: GridError) -> Self {
-        LocalError::Grid(error)
-    }
+    #[error(transparent)]
+    Grid(#[from] GridError),
 }
 
 /// A variable that may change, and those that follow it.
@@ -110,15 +93,15 @@ impl LocalQuestion {
     }
 }
 
-/// What is minimised.
+/// What is minimised or maximised, by its logarithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Goal {
-    /// The logarithm of a quantity of the design, with a sign.
-    Design(Quantity, f64),
-    /// The logarithm of the radius of the disc, with a sign; the radius is an unknown.
-    Radius(f64),
-    /// The logarithm of the limit of a scalar, with a sign; the limit is an unknown.
-    Level(PoseScalar, f64),
+    /// A quantity of the design.
+    Design(Quantity),
+    /// The radius of the disc, which is an unknown.
+    Radius,
+    /// The limit of a scalar, which is an unknown.
+    Level(PoseScalar),
 }
 
 /// A [`LocalQuestion`], prepared for many designs of one architecture.
@@ -131,22 +114,9 @@ pub struct LocalProblem {
     /// The design whose other variables are kept.
     start: Design,
     requirements: Vec<Requirement>,
-    spots: [Arc<Spots>; 2],
-}
-
-/// A design of a local problem, prepared for many poses.
-pub(crate) struct Prepared {
-    pub design: Design,
-    /// Home orientation \[rad\].
-    pub home: f64,
-    pub area: Area,
-    half_range: f64,
-    centre: DVec2,
-    evaluator: Box<dyn PoseEvaluator>,
-    legs: [AnyLeg; LEGS],
-    limits: [[Option<[f64; 2]>; 3]; LEGS],
-    /// Limits of scalars, with the one that is an unknown.
-    level: Option<(PoseScalar, f64)>,
+    is_three_fold: bool,
+    /// Spots that cover the region, for each [`Density`], once they are asked for.
+    spots: Arc<[OnceLock<Spots>; 2]>,
 }
 
 impl LocalProblem {
@@ -155,23 +125,20 @@ impl LocalProblem {
     /// # Errors
     /// [`LocalError`] if the question is none.
     pub fn new(question: LocalQuestion, start: &Design) -> Result<Self, LocalError> {
-        let sign = match question.objective.goal {
-            Better::Lower => 1.0,
-            Better::Higher => -1.0,
-        };
         let goal = match question.objective.quantity {
             quantity @ (Quantity::Mass | Quantity::LegsMass | Quantity::PlatformMass | Quantity::Height) => {
-                Goal::Design(quantity, sign)
+                Goal::Design(quantity)
             }
-            Quantity::WorkspaceRadius => Goal::Radius(sign),
-            Quantity::Worst(scalar) if scalar.bounds_poses() => Goal::Level(scalar, sign),
+            Quantity::WorkspaceRadius => Goal::Radius,
+            Quantity::Worst(scalar) if scalar.bounds_poses() => Goal::Level(scalar),
             other => return Err(LocalError::Objective(other)),
         };
         let area = Area::new(&question.workspace.region).ok_or(LocalError::NoRadius)?;
         let model = Model::new(question.settings.clone())?;
         let is_three_fold = matches!(area, Area::Disc(_)) && model.is_symmetric(start);
         let mut problem = Self {
-            spots: [Density::Coarse, Density::Fine].map(|density| Arc::new(area.spots(is_three_fold, density))),
+            spots: Arc::default(),
+            is_three_fold,
             requirements: Vec::new(),
             question,
             model,
@@ -183,8 +150,11 @@ impl LocalProblem {
         Ok(problem)
     }
 
-    /// Returns the problem with another question of the same kind, for the same region but for its size.
-    pub(crate) fn with_question(&self, question: LocalQuestion) -> Result<Self, LocalError> {
+    /// Returns the problem with another question: of the same objective, and for the same region but for its size.
+    ///
+    /// # Errors
+    /// As [`LocalProblem::new`].
+    pub fn with_question(&self, question: LocalQuestion) -> Result<Self, LocalError> {
         let area = Area::new(&question.workspace.region).ok_or(LocalError::NoRadius)?;
         let mut problem = Self {
             model: Model::new(question.settings.clone())?,
@@ -234,7 +204,7 @@ impl LocalProblem {
         }
         let limited = settings.thresholds.iter().map(|(scalar, _)| scalar);
         let level = match self.goal {
-            Goal::Level(scalar, _) => Some(scalar),
+            Goal::Level(scalar) => Some(scalar),
             _ => None,
         };
         for scalar in limited.chain(level) {
@@ -286,7 +256,7 @@ impl LocalProblem {
 
     /// Spots that cover the region.
     pub(crate) fn spots(&self, density: Density) -> &Spots {
-        &self.spots[density as usize]
+        self.spots[density as usize].get_or_init(|| self.area.spots(self.is_three_fold, density))
     }
 
     /// Returns whether the home orientation is an unknown.
@@ -318,11 +288,11 @@ impl LocalProblem {
         }
         match self.goal {
             Goal::Design(..) => {}
-            Goal::Radius(_) => {
+            Goal::Radius => {
                 let radius = self.question.workspace.region.inscribed_radius().unwrap_or(1.0);
                 unknowns.push(libm::log(radius));
             }
-            Goal::Level(scalar, _) => {
+            Goal::Level(scalar) => {
                 let stated = self.question.settings.thresholds.get(scalar).unwrap_or(1.0);
                 unknowns.push(libm::log(stated.max(f64::MIN_POSITIVE)));
             }
@@ -371,24 +341,26 @@ impl LocalProblem {
 
     /// Returns the value that is minimised: the logarithm of the objective, with the sign of its goal.
     pub(crate) fn minimised(&self, unknowns: &[f64]) -> f64 {
-        match self.goal {
-            Goal::Design(quantity, sign) => {
-                let value = self
-                    .design(unknowns)
-                    .and_then(|design| self.quantity(&design, quantity));
-                value.map_or(f64::INFINITY, |value| sign * libm::log(value))
+        let logarithm = match self.goal {
+            Goal::Design(quantity) => {
+                let design = self.design(unknowns);
+                let value = design.and_then(|design| self.quantity(&design, quantity));
+                let Some(value) = value else { return f64::INFINITY };
+                libm::log(value)
             }
-            Goal::Radius(sign) | Goal::Level(_, sign) => sign * unknowns[self.level_place()],
-        }
+            Goal::Radius | Goal::Level(_) => unknowns[self.level_place()],
+        };
+        self.goal_sign() * logarithm
+    }
+
+    /// Returns the sign with which the logarithm of the objective is minimised: 1 if less is better.
+    pub fn goal_sign(&self) -> f64 {
+        -self.question.objective.goal.sign()
     }
 
     /// Returns the value of the objective.
     pub(crate) fn objective(&self, unknowns: &[f64]) -> f64 {
-        let minimised = self.minimised(unknowns);
-        libm::exp(match self.question.objective.goal {
-            Better::Lower => minimised,
-            Better::Higher => -minimised,
-        })
+        libm::exp(self.goal_sign() * self.minimised(unknowns))
     }
 
     /// Returns a quantity of a design as a whole.
@@ -409,11 +381,6 @@ impl LocalProblem {
             let scaled = (design.value(free.variable) * factor).clamp(free.range[0], free.range[1]);
             design.with(free.variable, scaled).ok()
         })
-    }
-
-    /// Returns whether less of the objective is better.
-    pub fn wants_less(&self) -> bool {
-        self.question.objective.goal == Better::Lower
     }
 
     /// Returns the mass of a design \[kg\].
@@ -447,11 +414,11 @@ impl LocalProblem {
             None => self.question.workspace.home_phi_deg.unwrap_or(0.0).to_radians(),
         };
         let level = match self.goal {
-            Goal::Level(scalar, _) => Some((scalar, libm::exp(unknowns[self.level_place()]))),
+            Goal::Level(scalar) => Some((scalar, libm::exp(unknowns[self.level_place()]))),
             _ => None,
         };
         let area = match self.goal {
-            Goal::Radius(_) => Area::Disc(libm::exp(unknowns[self.level_place()])),
+            Goal::Radius => Area::Disc(libm::exp(unknowns[self.level_place()])),
             _ => self.area.clone(),
         };
         Some(Prepared {
@@ -487,68 +454,6 @@ pub(crate) fn excess(value: f64, limit: &QuantityLimit) -> f64 {
     match limit.bound {
         Bound::AtLeast(least) => libm::log(value / least),
         Bound::AtMost(most) => libm::log(most / value),
-    }
-}
-
-impl Prepared {
-    /// Returns the position of a place \[m\], and the arms in its orientation.
-    pub fn located(&self, place: &Place) -> (DVec2, [DVec2; LEGS]) {
-        let position = self.centre + self.area.position(place.spot);
-        (position, self.arms(place.turn))
-    }
-
-    /// Returns the arms in an orientation, a share of half the rotation range from the home orientation.
-    pub fn arms(&self, turn: f64) -> [DVec2; LEGS] {
-        self.evaluator.arms(&Rotation::new(self.orientation(turn)))
-    }
-
-    /// Returns an orientation \[rad\] from its share of half the rotation range.
-    pub fn orientation(&self, turn: f64) -> f64 {
-        self.home + turn * self.half_range
-    }
-
-    /// The evaluator of poses.
-    pub fn evaluator(&self) -> &dyn PoseEvaluator {
-        &*self.evaluator
-    }
-
-    pub fn centre(&self) -> DVec2 {
-        self.centre
-    }
-
-    /// Returns the distance of a joint from one of its limits \[m\], negative beyond it; `None` where the leg does not reach the pose.
-    pub fn distance_from_limit(&self, leg: usize, joint: usize, end: End, place: &Place) -> Option<f64> {
-        let (position, arms) = self.located(place);
-        let [lower, upper] = self.limits[leg][joint]?;
-        let (posture, _) = self.legs[leg].solve(position + arms[leg], arms[leg]).ok()?;
-        let value = self.legs[leg].joint_values(&posture)[joint];
-        Some(match end {
-            End::Lower => value - lower,
-            End::Upper => upper - value,
-        })
-    }
-
-    /// Returns the distance of a leg from the end of its reach \[m\], negative beyond it; `None` where a joint limit is nearer, so that the
-    /// end is not what is missed first.
-    pub fn distance_from_end(&self, leg: usize, place: &Place) -> Option<f64> {
-        let (position, arms) = self.located(place);
-        match self.legs[leg].solve(position + arms[leg], arms[leg]) {
-            Err(shortfall) => Some(shortfall.limit_margin),
-            Ok((_, Some(_))) => None,
-            Ok((posture, None)) => {
-                let values = self.legs[leg].joint_values(&posture);
-                let limits = self.limits[leg].iter().zip(values);
-                let distances = limits
-                    .filter_map(|(limits, value)| limits.map(|[lower, upper]| (value - lower).min(upper - value)));
-                let nearest = distances.fold(f64::INFINITY, f64::min);
-                Some(posture.chain.limit_margin).filter(|margin| *margin < nearest * (1.0 - 1e-9))
-            }
-        }
-    }
-
-    /// Kind of the actuators.
-    pub fn actuator(&self) -> JointKind {
-        self.design.architecture().actuator()
     }
 }
 

@@ -4,7 +4,7 @@ use kinefront_model::evaluation::{Better, Bound, PoseScalar};
 use kinefront_model::mechanism::Design;
 
 use super::parameter::Parameter;
-use super::polish::Polished;
+use super::polished::Polished;
 use super::prices::Price;
 use super::problem::{LocalProblem, LocalQuestion};
 
@@ -16,6 +16,9 @@ const STEP: f64 = 0.5;
 
 /// Accuracy of the logarithm of the objective.
 const ACCURACY: f64 = 1e-7;
+
+/// Largest number of secants.
+const SECANTS: usize = 30;
 
 /// Prices below this leave a requirement out.
 const FREE: f64 = 1e-9;
@@ -51,134 +54,61 @@ pub struct Relaxation {
 impl LocalProblem {
     /// Returns what each requirement with a price, and all together, would have to give for a wished value of the objective.
     pub fn relaxations(&self, polished: &Polished, prices: &[Price], wished: f64) -> Vec<Relaxation> {
-        let deficit = self.goal_sign() * (libm::log(wished) - self.log_of(polished));
-        let is_priced = |price: &&Price| price.parameter.is_requirement() && price.price.abs() > FREE;
-        let mut found: Vec<Relaxation> = Vec::new();
-        for price in prices.iter().filter(is_priced) {
-            let weights = [(price.parameter, way_of(self.question(), price.parameter))];
-            let rate = price.price * weights[0].1 * self.goal_sign();
-            let linear = deficit / rate;
-            found.extend(self.relaxed(
-                polished,
-                RelaxationOf::Single(price.parameter),
-                &weights,
-                linear,
-                deficit,
-            ));
-        }
-        let is_threshold =
-            |price: &Price| matches!(price.parameter, Parameter::Threshold(_)) && is_relative(price, self.question());
-        let thresholds: Vec<(Parameter, f64)> = prices
+        let way = |price: &Price| (price.parameter, way_of(self.question(), price.parameter));
+        let single = prices
             .iter()
-            .filter(|price| is_threshold(price))
-            .map(|price| (price.parameter, way_of(self.question(), price.parameter)))
-            .collect();
-        let rate: f64 = prices
+            .filter(|price| price.parameter.is_requirement() && price.price.abs() > FREE)
+            .map(|price| (RelaxationOf::Single(price.parameter), vec![way(price)]));
+        let thresholds = prices.iter().filter(|price| is_factor(price, self.question()));
+        let all: Vec<(Parameter, f64)> = thresholds.clone().map(way).collect();
+        let all = (all.len() > 1).then_some((RelaxationOf::AllThresholds, all));
+        let rotation = prices
             .iter()
-            .filter(|price| is_threshold(price))
-            .map(|price| price.price * way_of(self.question(), price.parameter) * self.goal_sign())
-            .sum();
-        if thresholds.len() > 1 && rate.abs() > FREE {
-            found.extend(self.relaxed(
-                polished,
-                RelaxationOf::AllThresholds,
-                &thresholds,
-                deficit / rate,
-                deficit,
-            ));
-        }
-        let in_norm = |price: &&Price| is_threshold(price) || price.parameter == Parameter::RotationRange;
-        let squares: f64 = prices
+            .filter(|price| price.parameter == Parameter::RotationRange);
+        let in_norm: Vec<&Price> = thresholds.chain(rotation).collect();
+        let norm = in_norm
             .iter()
-            .filter(in_norm)
             .map(|price| price.price * price.price)
-            .sum();
-        let norm = squares.sqrt();
-        if norm > FREE {
-            let weights: Vec<(Parameter, f64)> = prices
-                .iter()
-                .filter(in_norm)
-                .map(|price| (price.parameter, -self.goal_sign() * price.price / norm))
-                .collect();
-            found.extend(self.relaxed(polished, RelaxationOf::LeastNorm, &weights, deficit / -norm, deficit));
-        }
-        found
+            .sum::<f64>()
+            .sqrt();
+        let share = |price: &&Price| (price.parameter, -self.goal_sign() * price.price / norm.max(FREE));
+        let least = (RelaxationOf::LeastNorm, in_norm.iter().map(share).collect());
+        single
+            .chain(all)
+            .chain([least])
+            .filter_map(|(of, weights)| {
+                let price = |parameter: Parameter| prices.iter().find(|price| price.parameter == parameter);
+                let rates = weights
+                    .iter()
+                    .filter_map(|(parameter, weight)| Some(price(*parameter)?.price * weight));
+                let rate = self.goal_sign() * rates.sum::<f64>();
+                (rate.abs() > FREE).then(|| self.relaxed(polished, of, &weights, rate, wished))
+            })
+            .collect()
     }
 
     /// Solves for the change at which the objective has its wished value: `weights` are the changes of the logarithms of the parameters
-    /// for a change of 1, and `linear` is the change by the prices.
+    /// for a change of 1, and `rate` is the change of the minimised logarithm by the prices.
     fn relaxed(
         &self,
         polished: &Polished,
         of: RelaxationOf,
         weights: &[(Parameter, f64)],
-        linear: f64,
-        deficit: f64,
-    ) -> Option<Relaxation> {
-        let start = self.log_of(polished);
-        // The way to the wish, at most to the factor of 20.
-        let short = |found: &Polished| self.goal_sign() * (self.log_of(found) - start) - deficit;
-        let to = |from: &Polished, change: f64| self.after_all(from, weights, change);
-        let (mut near, mut near_short) = ((0.0, polished.clone()), -deficit);
-        let mut far: Option<((f64, Polished), f64)> = None;
-        let mut change = linear.clamp(0.0, STEP);
-        while far.is_none() && near.0 < MOST {
-            let Some(next) = to(&near.1, change).filter(Polished::is_optimal) else {
-                // A step that fails is tried shorter.
-                let shorter = 0.5 * (change - near.0);
-                if shorter < 1e-3 {
-                    break;
-                }
-                change = near.0 + shorter;
-                continue;
-            };
-            let next_short = short(&next);
-            if next_short <= ACCURACY {
-                far = Some(((change, next), next_short));
-                break;
-            }
-            let is_free = (near_short - next_short).abs() < 1e-9 && change - near.0 > 0.4;
-            (near, near_short) = ((change, next), next_short);
-            if is_free {
-                break;
-            }
-            let rate = -deficit - near_short;
-            let guess = if rate > 1e-12 { near.0 * -deficit / rate } else { MOST };
-            change = guess.clamp(near.0 + 0.02, near.0 + STEP).min(MOST);
-        }
-        if let Some((mut beyond, mut beyond_short)) = far {
-            for _ in 0..30 {
-                if beyond_short.abs() <= ACCURACY {
-                    break;
-                }
-                let share = near_short / (near_short - beyond_short);
-                let middle = near.0 + share.clamp(0.02, 0.98) * (beyond.0 - near.0);
-                let Some(next) = to(&beyond.1, middle).filter(Polished::is_optimal) else {
-                    break;
-                };
-                let next_short = short(&next);
-                if next_short > 0.0 {
-                    (near, near_short) = ((middle, next), next_short);
-                } else {
-                    (beyond, beyond_short) = ((middle, next), next_short);
-                }
-                if near_short <= ACCURACY {
-                    (beyond, beyond_short) = (near.clone(), near_short);
-                }
-            }
-            return Some(self.result(of, weights, linear, Some(beyond.0), &beyond.1));
-        }
-        Some(self.result(of, weights, linear, None, &near.1))
-    }
-
-    fn result(
-        &self,
-        of: RelaxationOf,
-        weights: &[(Parameter, f64)],
-        linear: f64,
-        needed: Option<f64>,
-        found: &Polished,
+        rate: f64,
+        wished: f64,
     ) -> Relaxation {
+        let way = Way {
+            problem: self,
+            weights,
+            wished,
+        };
+        let linear = -way.short(polished) / rate;
+        let (near, beyond) = way.bracket(polished, linear);
+        let is_enough = beyond.is_some();
+        let at = match beyond {
+            Some(beyond) => way.narrowed(near, beyond),
+            None => near,
+        };
         // A factor is that of the parameter itself; of several, that of a requirement from below.
         let sign = match of {
             RelaxationOf::Single(_) => weights[0].1,
@@ -187,22 +117,103 @@ impl LocalProblem {
         let factor = |change: f64| libm::exp(sign * change);
         Relaxation {
             linear: Some(factor(linear)).filter(|factor| factor.is_finite() && *factor > 0.0),
-            needed: needed.map(factor),
-            objective: found.objective,
-            design: found.design,
-            home: found.home,
+            needed: is_enough.then(|| factor(at.change)),
+            objective: at.found.objective,
+            design: at.found.design,
+            home: at.found.home,
             of,
         }
     }
+}
 
-    /// Returns the optimum with several parameters changed.
-    fn after_all(&self, from: &Polished, weights: &[(Parameter, f64)], change: f64) -> Option<Polished> {
-        let actuator = from.design.architecture().actuator();
-        let mut question = self.question.clone();
-        for (parameter, weight) in weights {
-            question = parameter.changed(&question, weight * change, from.design.base_radius(), actuator)?;
+/// The optima on the way to a wished value of the objective.
+struct Way<'a> {
+    problem: &'a LocalProblem,
+    /// The parameters that change, each with the change of its logarithm for a change of 1.
+    weights: &'a [(Parameter, f64)],
+    wished: f64,
+}
+
+/// An optimum on the way.
+struct Point {
+    change: f64,
+    found: Polished,
+    /// Logarithm by which the minimised value exceeds the wished one.
+    short: f64,
+}
+
+impl Way<'_> {
+    fn short(&self, found: &Polished) -> f64 {
+        self.problem.goal_sign() * (self.problem.log_of(found) - libm::log(self.wished))
+    }
+
+    fn point(&self, from: &Polished, change: f64) -> Option<Point> {
+        let found = self
+            .problem
+            .after(from, self.weights, change)
+            .filter(Polished::is_optimal)?;
+        Some(Point {
+            change,
+            short: self.short(&found),
+            found,
+        })
+    }
+
+    /// Follows the optimum until it has the wished value, at most to a factor of 20: returns the last one that does not have it, and the
+    /// first one that does. `linear` is the change that the prices promise.
+    fn bracket(&self, start: &Polished, linear: f64) -> (Point, Option<Point>) {
+        let deficit = self.short(start);
+        let mut near = Point {
+            change: 0.0,
+            found: start.clone(),
+            short: deficit,
+        };
+        let mut change = linear.clamp(0.0, STEP);
+        while near.change < MOST {
+            let Some(next) = self.point(&near.found, change) else {
+                // A step that fails is tried shorter.
+                let shorter = 0.5 * (change - near.change);
+                if shorter < 1e-3 {
+                    break;
+                }
+                change = near.change + shorter;
+                continue;
+            };
+            if next.short <= ACCURACY {
+                return (near, Some(next));
+            }
+            // The requirement is no longer active.
+            let is_free = (near.short - next.short).abs() < 1e-9 && next.change - near.change > 0.4;
+            near = next;
+            if is_free {
+                break;
+            }
+            let gained = deficit - near.short;
+            let guess = if gained > 1e-12 {
+                near.change * deficit / gained
+            } else {
+                MOST
+            };
+            change = guess.clamp(near.change + 0.02, near.change + STEP).min(MOST);
         }
-        self.with_question(question).ok()?.polish_from(&from.unknowns)
+        (near, None)
+    }
+
+    /// Returns the optimum that has the wished value, by secants between two that enclose it.
+    fn narrowed(&self, mut near: Point, mut beyond: Point) -> Point {
+        for _ in 0..SECANTS {
+            if beyond.short.abs() <= ACCURACY {
+                break;
+            }
+            let share = near.short / (near.short - beyond.short);
+            let middle = near.change + share.clamp(0.02, 0.98) * (beyond.change - near.change);
+            match self.point(&beyond.found, middle) {
+                Some(next) if next.short > ACCURACY => near = next,
+                Some(next) => beyond = next,
+                None => break,
+            }
+        }
+        beyond
     }
 }
 
@@ -216,7 +227,8 @@ fn way_of(question: &LocalQuestion, parameter: Parameter) -> f64 {
     if better_is_higher { -1.0 } else { 1.0 }
 }
 
-fn is_relative(price: &Price, question: &LocalQuestion) -> bool {
+/// Returns whether a price is of the limit of a scalar that a factor changes: not of a distance, and not of 0.
+fn is_factor(price: &Price, question: &LocalQuestion) -> bool {
     match price.parameter {
         Parameter::Threshold(PoseScalar::Clearance | PoseScalar::Reach) => false,
         Parameter::Threshold(scalar) => question
@@ -224,6 +236,6 @@ fn is_relative(price: &Price, question: &LocalQuestion) -> bool {
             .thresholds
             .get(scalar)
             .is_some_and(|limit| limit > 0.0),
-        _ => true,
+        _ => false,
     }
 }

@@ -2,6 +2,8 @@
 
 use kinefront_model::evaluation::PoseScalar;
 
+use super::place::Place;
+
 /// Value of a requirement at a pose where it has none.
 pub(crate) const NOWHERE: f64 = -50.0;
 
@@ -50,12 +52,31 @@ pub(crate) enum Kind {
     Other(Requirement),
 }
 
+impl End {
+    /// Returns the name of the end, as of the bounds of a variable.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            End::Lower => "lower",
+            End::Upper => "upper",
+        }
+    }
+
+    /// Returns the sign of what keeps a value off the end: 1 for the smallest value.
+    pub(crate) fn sign(self) -> f64 {
+        match self {
+            End::Lower => 1.0,
+            End::Upper => -1.0,
+        }
+    }
+}
+
 impl Requirement {
     /// Returns the kind.
     pub(crate) fn kind(self) -> Kind {
-        match self {
-            Requirement::Limit { .. } | Requirement::EndOfReach { .. } => Kind::Reach,
-            other => Kind::Other(other),
+        if self.is_of_reach() {
+            Kind::Reach
+        } else {
+            Kind::Other(self)
         }
     }
 
@@ -87,6 +108,27 @@ impl Requirement {
         }
     }
 }
+
+/// A pose at which a requirement is nearest to being missed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Critical {
+    /// The requirement.
+    pub requirement: Requirement,
+    /// The pose; of no meaning for a requirement of the design as a whole.
+    pub place: Place,
+    /// By how much it holds there, as a logarithm or a share of `R`; negative where it does not.
+    pub slack: f64,
+}
+
+impl Critical {
+    /// Returns whether the requirement is active at the pose.
+    pub fn is_active(&self) -> bool {
+        self.slack <= ACTIVE
+    }
+}
+
+/// Requirements and bounds with no more slack than this are active.
+pub(crate) const ACTIVE: f64 = 2e-6;
 
 /// Returns the name of the limit of a scalar as a parameter.
 pub(crate) fn threshold_name(scalar: PoseScalar) -> &'static str {

@@ -1,16 +1,15 @@
 //! Home orientations from which a design is polished: those in which it comes nearest to keeping every requirement.
 
-use glam::DVec2;
 use kinefront_model::evaluation::PoseScalar;
-use kinefront_model::lanes::padded_length;
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Rotation;
-use kinefront_model::workspace::ValueColumns;
 
 use super::place::Density;
-use super::polish::Polished;
-use super::problem::{LocalProblem, Prepared};
+use super::polished::Polished;
+use super::prepared::Prepared;
+use super::problem::LocalProblem;
 use super::requirement::{NOWHERE, Requirement};
+use super::survey::Fields;
 
 /// Orientations that are examined.
 const ORIENTATIONS: usize = 144;
@@ -60,42 +59,23 @@ impl LocalProblem {
 
     /// Returns the least value of any requirement over the region in each orientation.
     fn worst_of_orientations(&self, prepared: &Prepared) -> Vec<f64> {
-        let spots = &self.spots(Density::Coarse).all;
-        let positions: Vec<DVec2> = spots
-            .iter()
-            .map(|spot| prepared.centre() + prepared.area.position(*spot))
-            .collect();
-        let length = padded_length(positions.len());
-        let column = |part: fn(&DVec2) -> f64| {
-            let mut column: Vec<f64> = positions.iter().map(part).collect();
-            column.resize(length, column[0]);
-            column
+        let angle = |k: usize| std::f64::consts::TAU * k as f64 / ORIENTATIONS as f64;
+        let arms = (0..ORIENTATIONS).map(|k| prepared.evaluator().arms(&Rotation::new(angle(k))));
+        let fields = Fields::new(self.spots(Density::Coarse), prepared, arms);
+        let of_scalars = |requirement: &&Requirement| matches!(requirement, Requirement::Scalar(_));
+        let of_pose = |index: usize| {
+            let value = |scalar: PoseScalar| fields.scalar(scalar, index);
+            let reach = self.reach(prepared, value(PoseScalar::Reach));
+            let scalars = self.requirements().iter().filter(of_scalars);
+            let values = scalars.map(|requirement| self.of_scalars(prepared, *requirement, value));
+            values.fold(reach, |least, value| {
+                least.min(if value.is_nan() { NOWHERE } else { value })
+            })
         };
-        let (xs, ys) = (column(|position| position.x), column(|position| position.y));
-        let (margin, scale) = (self.margin(prepared), prepared.design.base_radius());
-        let of_scalars: Vec<Requirement> = self
-            .requirements()
-            .iter()
-            .filter(|requirement| matches!(requirement, Requirement::Scalar(_)))
-            .copied()
-            .collect();
-        let mut values = ValueColumns::default();
-        let mut worst = Vec::with_capacity(ORIENTATIONS);
-        for k in 0..ORIENTATIONS {
-            let angle = std::f64::consts::TAU * k as f64 / ORIENTATIONS as f64;
-            let arms = prepared.evaluator().arms(&Rotation::new(angle));
-            prepared.evaluator().evaluate_positions(&arms, &xs, &ys, &mut values);
-            let mut least = f64::INFINITY;
-            for index in 0..positions.len() {
-                least = least.min((values.column(PoseScalar::Reach)[index] - margin) / scale);
-                for requirement in &of_scalars {
-                    let scalar = |scalar: PoseScalar| values.column(scalar).get(index).copied().unwrap_or(f64::NAN);
-                    let value = self.of_scalars(prepared, *requirement, scalar);
-                    least = least.min(if value.is_nan() { NOWHERE } else { value });
-                }
-            }
-            worst.push(least.max(NOWHERE));
-        }
-        worst
+        let of_orientation = |k: usize| {
+            let poses = k * fields.count()..(k + 1) * fields.count();
+            poses.map(of_pose).fold(f64::INFINITY, f64::min).max(NOWHERE)
+        };
+        (0..ORIENTATIONS).map(of_orientation).collect()
     }
 }

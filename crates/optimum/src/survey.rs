@@ -3,22 +3,13 @@
 use glam::DVec2;
 use kinefront_model::evaluation::PoseScalar;
 use kinefront_model::lanes::padded_length;
+use kinefront_model::spatial::LEGS;
 use kinefront_model::workspace::ValueColumns;
 
 use super::place::{Area, Density, Place, Spot, Spots};
-use super::problem::{LocalProblem, Prepared};
-use super::requirement::{NOWHERE, Requirement};
-
-/// A pose at which a requirement is nearest to being missed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Critical {
-    /// The requirement.
-    pub requirement: Requirement,
-    /// The pose; of no meaning for a requirement of the design as a whole.
-    pub place: Place,
-    /// By how much it holds there, as a logarithm or a share of `R`; negative where it does not.
-    pub slack: f64,
-}
+use super::prepared::Prepared;
+use super::problem::LocalProblem;
+use super::requirement::{Critical, NOWHERE, Requirement};
 
 /// Minima that exceed the least one by more than this are left out.
 const NEAR: f64 = 0.1;
@@ -44,7 +35,8 @@ const SAME: f64 = 1e-5;
 impl LocalProblem {
     /// Returns the local minima of all requirements over the region.
     pub(crate) fn survey(&self, prepared: &Prepared, density: Density) -> Vec<Critical> {
-        let fields = Fields::new(self.spots(density), prepared);
+        let spots = self.spots(density);
+        let fields = Fields::new(spots, prepared, spots.turns.iter().map(|turn| prepared.arms(*turn)));
         let mut found: Vec<Critical> = Vec::new();
         for requirement in self.requirements() {
             if requirement.is_of_reach() {
@@ -69,8 +61,7 @@ impl LocalProblem {
             }
         }
         if self.requirements().iter().any(|requirement| requirement.is_of_reach()) {
-            let (margin, scale) = (self.margin(prepared), prepared.design.base_radius());
-            let value = |index: usize| (fields.reach[index] - margin) / scale;
+            let value = |index: usize| self.reach(prepared, fields.scalar(PoseScalar::Reach, index));
             for place in fields.minima(value) {
                 for critical in self.limits_at(prepared, place) {
                     add(
@@ -154,7 +145,7 @@ fn moved(prepared: &Prepared, place: Place, freedom: usize, freedoms: usize, ste
 pub(crate) fn add(found: &mut Vec<Critical>, next: Critical) {
     let is_known = |other: &Critical| {
         other.requirement == next.requirement
-            && (is_same(&other.place, &next.place))
+            && is_same(&other.place, &next.place)
             && (other.slack - next.slack).abs() < SAME
     };
     if !found.iter().any(is_known) {
@@ -174,62 +165,50 @@ pub(crate) fn is_same(a: &Place, b: &Place) -> bool {
     spot && near(a.turn, b.turn)
 }
 
-/// The scalars at all spots in all orientations that are examined.
-struct Fields<'a> {
+/// The scalars at all spots in some orientations.
+pub(crate) struct Fields<'a> {
     spots: &'a Spots,
     columns: Vec<ValueColumns>,
-    /// Distance from the joint limits and from the end of reach \[m\], orientation by orientation.
-    reach: Vec<f64>,
-    count: usize,
 }
 
 impl<'a> Fields<'a> {
-    fn new(spots: &'a Spots, prepared: &Prepared) -> Self {
-        let positions: Vec<DVec2> = spots
+    /// Evaluates the spots for the arms of each orientation.
+    pub fn new(spots: &'a Spots, prepared: &Prepared, orientations: impl Iterator<Item = [DVec2; LEGS]>) -> Self {
+        let positions = spots
             .all
             .iter()
-            .map(|spot| prepared.centre() + prepared.area.position(*spot))
-            .collect();
-        let length = padded_length(positions.len());
-        let column = |part: fn(&DVec2) -> f64| {
-            let mut column: Vec<f64> = positions.iter().map(part).collect();
-            column.resize(length, column[0]);
-            column
+            .map(|spot| prepared.centre + prepared.area.position(*spot));
+        let (mut xs, mut ys): (Vec<f64>, Vec<f64>) = positions.map(|position| (position.x, position.y)).unzip();
+        for column in [&mut xs, &mut ys] {
+            column.resize(padded_length(column.len()), column[0]);
+        }
+        let of_orientation = |arms: [DVec2; LEGS]| {
+            let mut values = ValueColumns::default();
+            prepared.evaluator().evaluate_positions(&arms, &xs, &ys, &mut values);
+            values
         };
-        let (xs, ys) = (column(|position| position.x), column(|position| position.y));
-        let columns: Vec<ValueColumns> = spots
-            .turns
-            .iter()
-            .map(|turn| {
-                let mut values = ValueColumns::default();
-                prepared
-                    .evaluator()
-                    .evaluate_positions(&prepared.arms(*turn), &xs, &ys, &mut values);
-                values
-            })
-            .collect();
-        let count = positions.len();
-        let reach = columns
-            .iter()
-            .flat_map(|values| values.column(PoseScalar::Reach)[..count].iter().copied());
         Self {
-            reach: reach.collect(),
             spots,
-            columns,
-            count,
+            columns: orientations.map(of_orientation).collect(),
         }
     }
 
-    fn scalar(&self, scalar: PoseScalar, index: usize) -> f64 {
-        let column = self.columns[index / self.count].column(scalar);
-        column.get(index % self.count).copied().unwrap_or(f64::NAN)
+    /// Number of spots in each orientation.
+    pub fn count(&self) -> usize {
+        self.spots.all.len()
+    }
+
+    /// Returns a scalar at one of the poses, which are counted orientation by orientation; NaN if it was not computed.
+    pub fn scalar(&self, scalar: PoseScalar, index: usize) -> f64 {
+        let column = self.columns[index / self.count()].column(scalar);
+        column.get(index % self.count()).copied().unwrap_or(f64::NAN)
     }
 
     /// Returns the places at which a function has no higher value than at any neighbour, the lowest first.
     fn minima(&self, value: impl Fn(usize) -> f64) -> Vec<Place> {
         let spots = self.spots;
         let turns = spots.turns.len();
-        let values: Vec<f64> = (0..turns * self.count)
+        let values: Vec<f64> = (0..turns * self.count())
             .map(|index| {
                 Some(value(index))
                     .filter(|value| !value.is_nan())
@@ -238,7 +217,7 @@ impl<'a> Fields<'a> {
             .collect();
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         let is_minimum = |index: usize| {
-            let (own, turn, spot) = (values[index], index / self.count, index % self.count);
+            let (own, turn, spot) = (values[index], index / self.count(), index % self.count());
             let around = [
                 turn.checked_sub(1),
                 Some(turn),
@@ -248,15 +227,15 @@ impl<'a> Fields<'a> {
                 && own.is_finite()
                 && around.into_iter().flatten().all(|other| {
                     let near = spots.neighbours[spot].iter().chain([&spot]);
-                    near.into_iter().all(|near| own <= values[other * self.count + near])
+                    near.into_iter().all(|near| own <= values[other * self.count() + near])
                 })
         };
         let mut minima: Vec<usize> = (0..values.len()).filter(|index| is_minimum(*index)).collect();
         minima.sort_by(|a, b| values[*a].total_cmp(&values[*b]).then(a.cmp(b)));
         minima.truncate(MOST);
         let place = |index: usize| Place {
-            spot: spots.all[index % self.count],
-            turn: spots.turns[index / self.count],
+            spot: spots.all[index % self.count()],
+            turn: spots.turns[index / self.count()],
         };
         minima.into_iter().map(place).collect()
     }

@@ -1,11 +1,16 @@
 //! By how much a requirement holds, as a number that is not negative where it does.
 
-use kinefront_model::evaluation::{Better, Bound, MarginUnit, PoseScalar, PoseScalars, Quantity};
+use kinefront_model::evaluation::{Better, MarginUnit, PoseScalar, PoseScalars, Quantity};
 use kinefront_model::mechanism::MemberKind;
+use nalgebra::{DMatrix, DVector};
 
 use super::place::{Density, Place};
-use super::problem::{LocalProblem, Prepared, excess};
-use super::requirement::{End, NOWHERE, Requirement, threshold_name};
+use super::prepared::Prepared;
+use super::problem::{LocalProblem, excess};
+use super::requirement::{Critical, End, NOWHERE, Requirement, threshold_name};
+
+/// Half the difference by which derivatives are taken.
+const DIFFERENCE: f64 = 2e-6;
 
 /// Value of a requirement that another one of the same leg hides.
 const FAR: f64 = 1.0;
@@ -55,26 +60,22 @@ impl LocalProblem {
     /// Returns the value of a requirement at a place: not negative where it holds, [`NOWHERE`] where it has none. A requirement of the
     /// design as a whole has the same value at every place.
     pub(crate) fn value(&self, prepared: &Prepared, requirement: Requirement, place: &Place) -> f64 {
-        let scale = prepared.design.base_radius();
         let value = match requirement {
             Requirement::Limit { leg, joint, end } => prepared
                 .distance_from_limit(leg, joint, end, place)
-                .map_or(NOWHERE, |distance| (distance - self.margin(prepared)) / scale),
+                .map_or(NOWHERE, |distance| self.reach(prepared, distance)),
             Requirement::EndOfReach { leg } => prepared
                 .distance_from_end(leg, place)
-                .map_or(FAR, |distance| (distance - self.margin(prepared)) / scale),
+                .map_or(FAR, |distance| self.reach(prepared, distance)),
             Requirement::Assembly => {
                 let assembly = self.model.assembly(&prepared.design);
-                (assembly.value - assembly.threshold) / scale
+                (assembly.value - assembly.threshold) / prepared.design.base_radius()
             }
-            Requirement::Quantity(index) => {
+            Requirement::Quantity(index) if !requirement.is_of_poses(self) => {
                 let limit = &self.question().settings.limits[index];
-                match limit.quantity {
-                    Quantity::Worst(scalar) => excess(self.scalars(prepared, place)[scalar], limit),
-                    _ => self.excess_of_quantity(prepared, limit).unwrap_or(NOWHERE),
-                }
+                self.excess_of_quantity(prepared, limit).unwrap_or(NOWHERE)
             }
-            Requirement::Scalar(_) | Requirement::Determinant => {
+            Requirement::Scalar(_) | Requirement::Determinant | Requirement::Quantity(_) => {
                 let scalars = self.scalars(prepared, place);
                 self.of_scalars(prepared, requirement, |scalar| scalars[scalar])
             }
@@ -91,9 +92,9 @@ impl LocalProblem {
         prepared.evaluator().evaluate_beyond_limits(&arms, position)
     }
 
-    /// Returns the distance from joint limits and from the end of reach that is required \[m\].
-    pub(crate) fn margin(&self, prepared: &Prepared) -> f64 {
-        self.limit(prepared, PoseScalar::Reach)
+    /// Returns the value of g2 for a distance from a joint limit or from the end of reach \[m\].
+    pub(crate) fn reach(&self, prepared: &Prepared, distance: f64) -> f64 {
+        (distance - self.limit(prepared, PoseScalar::Reach)) / prepared.design.base_radius()
     }
 
     /// Returns the value of a requirement on a scalar from the scalars of the pose.
@@ -115,8 +116,8 @@ impl LocalProblem {
             Requirement::Determinant => value(PoseScalar::Determinant) * self.sign(prepared),
             Requirement::Quantity(index) => {
                 let limit = &self.question().settings.limits[index];
-                match (limit.quantity, limit.bound) {
-                    (Quantity::Worst(scalar), Bound::AtMost(_) | Bound::AtLeast(_)) => excess(value(scalar), limit),
+                match limit.quantity {
+                    Quantity::Worst(scalar) => excess(value(scalar), limit),
                     _ => NOWHERE,
                 }
             }
@@ -132,6 +133,47 @@ impl LocalProblem {
         };
         let determinant = self.scalars(prepared, &anywhere)[PoseScalar::Determinant];
         if determinant < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// Returns the values of critical requirements at their places for some unknowns.
+    pub(crate) fn values_of(&self, unknowns: &[f64], critical: &[Critical]) -> Vec<f64> {
+        match self.prepare(unknowns) {
+            Some(prepared) => critical
+                .iter()
+                .map(|critical| self.value(&prepared, critical.requirement, &critical.place))
+                .collect(),
+            None => vec![NOWHERE; critical.len()],
+        }
+    }
+
+    /// Returns the derivatives of the minimised value and of critical requirements with respect to the unknowns: a vector, and a row for
+    /// each requirement.
+    pub(crate) fn derivatives(&self, unknowns: &[f64], critical: &[Critical]) -> (DVector<f64>, DMatrix<f64>) {
+        let count = unknowns.len();
+        let mut gradient = DVector::zeros(count);
+        let mut rows = DMatrix::zeros(critical.len(), count);
+        let here = self.values_of(unknowns, critical);
+        for unknown in 0..count {
+            let moved = |step: f64| {
+                let mut moved = unknowns.to_vec();
+                moved[unknown] += step;
+                moved
+            };
+            let (below, above) = (moved(-DIFFERENCE), moved(DIFFERENCE));
+            let width = above[unknown] - below[unknown];
+            gradient[unknown] = (self.minimised(&above) - self.minimised(&below)) / width;
+            let (lower, upper) = (self.values_of(&below, critical), self.values_of(&above, critical));
+            for (row, (lower, upper)) in lower.iter().zip(&upper).enumerate() {
+                // At the end of reach, a requirement has a value on one side alone.
+                rows[(row, unknown)] = match (*lower > NOWHERE, *upper > NOWHERE) {
+                    (true, true) => (upper - lower) / width,
+                    (true, false) => (here[row] - lower) / DIFFERENCE,
+                    (false, true) => (upper - here[row]) / DIFFERENCE,
+                    (false, false) => 0.0,
+                };
+            }
+        }
+        (gradient, rows)
     }
 }
 

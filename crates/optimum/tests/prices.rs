@@ -220,7 +220,7 @@ fn a_convex_kink_has_two_prices() {
     assert!((found.objective - 2.085360).abs() < 2e-6, "{}", found.objective);
     let prices = problem.prices(&found, false);
     let radius = price(&problem, &prices, "workspace_radius");
-    assert!(radius.is_kink);
+    assert!(radius.is_kink());
     let [below, above] = radius.one_sided;
     assert!(
         (below - 0.2153).abs() < 3e-3 && (above - 1.9889).abs() < 3e-3,

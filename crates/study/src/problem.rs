@@ -23,9 +23,6 @@ const INCREASES: [f64; 5] = [1e-4, 2e-4, 3e-4, 5e-4, 1e-3];
 /// Relative increases of the dimensions of a design that misses a requirement somewhere in a prescribed region.
 const REGION_INCREASES: [f64; 7] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2];
 
-/// Relative amount by which the other objectives of an improved design may be worse.
-const KEPT: f64 = 1e-3;
-
 /// Variables that change when a design is scaled.
 const LENGTHS: [DesignVariable; 3] = [
     DesignVariable::BaseRadius,
@@ -284,30 +281,6 @@ impl DesignProblem {
         match resized.map(|design| self.model.evaluate(&design, GridChoice::Fine)) {
             Some(resized) if resized.is_feasible() => resized,
             _ => evaluation,
-        }
-    }
-
-    /// Verifies the best design near one that a search found, or that design itself if no better one holds on the fine grid.
-    pub fn verify_improved(&self, design: &Design) -> Evaluation {
-        let found = self.evaluate_design(design);
-        let improved = Some(&found)
-            .filter(|found| found.is_feasible())
-            .and_then(|found| self.improved(found));
-        let better = improved.map(|improved| self.model.evaluate(&improved, GridChoice::Fine));
-        // The evaluation selects the home orientation by the requirements alone, so that an objective over poses may become worse.
-        let keeps_others = |better: &Evaluation| {
-            let mut others = better.objectives.iter().zip(&found.objectives).skip(1);
-            others.all(|(better, had)| *better <= had + KEPT * had.abs())
-        };
-        match better.filter(|better| better.is_feasible() && keeps_others(better)) {
-            // It may be worse in the first objective, because it holds the others between the poses of the grid, too.
-            Some(better) if better.objectives.len() > 1 => better,
-            Some(better) => {
-                let verified = self.verify(design);
-                let is_lighter = verified.is_feasible() && verified.objectives[0] < better.objectives[0];
-                if is_lighter { verified } else { better }
-            }
-            None => self.verify(design),
         }
     }
 

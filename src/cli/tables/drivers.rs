@@ -12,10 +12,7 @@ const FREE: f64 = 1e-4;
 
 /// Formats what drives the objective of a design.
 pub fn drivers(heading: &str, drivers: &Drivers) -> String {
-    let quantity = Quantity::find(drivers.objective);
-    let (name, unit) = quantity.map_or(("objective", ""), |quantity| {
-        (quantity.entry().short, quantity.entry().unit)
-    });
+    let (name, unit) = drivers.objective_name();
     let mut facts = table([heading, ""], &[]);
     facts.add_row(["best design near it".to_owned(), drivers.design.clone()]);
     facts.add_row(["home orientation".to_owned(), format!("{:.3}°", drivers.home_phi_deg)]);
@@ -30,18 +27,12 @@ pub fn drivers(heading: &str, drivers: &Drivers) -> String {
     ]);
     let mut text = facts.to_string();
     if !drivers.prices.is_empty() {
-        let mut sorted: Vec<&PriceJson> = drivers
-            .prices
-            .iter()
-            .filter(|price| price.price.abs() >= FREE || price.kink)
-            .collect();
-        sorted.sort_by(|a, b| b.price.abs().total_cmp(&a.price.abs()));
         let costs = format!("+1 % costs {name}");
         let mut prices = table(
             ["driver", "value", &costs, &format!("in {unit}"), "bars alone", "remark"],
             &[1, 2, 3, 4],
         );
-        for price in sorted {
+        for price in drivers.dear(FREE) {
             prices.add_row([
                 price.label.clone(),
                 price
@@ -58,12 +49,7 @@ pub fn drivers(heading: &str, drivers: &Drivers) -> String {
             ]);
         }
         text = format!("{text}\n{prices}");
-        let free: Vec<&str> = drivers
-            .prices
-            .iter()
-            .filter(|price| price.price.abs() < FREE && !price.kink && price.is_requirement)
-            .map(|price| price.label.as_str())
-            .collect();
+        let free = drivers.free(FREE);
         if !free.is_empty() {
             text = format!("{text}\npractically free: {}", free.join(", "));
         }

@@ -1,7 +1,6 @@
 //! The drivers panel: what each requirement, bound and property of the material costs at the selected design.
 
 use egui::{Align2, Color32, FontId, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, WidgetType, vec2};
-use kinefront_model::evaluation::Quantity;
 use kinefront_model::spatial::Pose;
 use kinefront_scene::text::number;
 use kinefront_study::{Drivers, PriceJson};
@@ -44,10 +43,7 @@ impl DriversPanel {
 }
 
 fn show(ui: &mut Ui, session: &mut Session, name: &str, drivers: &Drivers) {
-    let quantity = Quantity::find(drivers.objective);
-    let (objective, unit) = quantity.map_or(("objective", ""), |quantity| {
-        (quantity.entry().short, quantity.entry().unit)
-    });
+    let (objective, unit) = drivers.objective_name();
     ui.label(RichText::new(format!("{name}: what 1 % more of each costs in {objective}")).strong());
     let excess = 100.0 * drivers.excess;
     ui.weak(if excess.abs() < 0.005 {
@@ -61,8 +57,7 @@ fn show(ui: &mut Ui, session: &mut Session, name: &str, drivers: &Drivers) {
             number(drivers.polished_value)
         )
     });
-    let mut prices: Vec<&PriceJson> = drivers.prices.iter().filter(|price| is_dear(price)).collect();
-    prices.sort_by(|a, b| b.price.abs().total_cmp(&a.price.abs()));
+    let prices = drivers.dear(FREE);
     let largest = prices.iter().fold(0.0f64, |most, price| most.max(price.price.abs()));
     ui.add_space(4.0);
     for price in prices {
@@ -74,11 +69,7 @@ fn show(ui: &mut Ui, session: &mut Session, name: &str, drivers: &Drivers) {
     }
     ui.add_space(6.0);
     ui.weak("Outlines are the prices with the bars alone. Click a bar to see the pose that pays it.");
-    let free = drivers
-        .prices
-        .iter()
-        .filter(|price| price.is_requirement && !is_dear(price));
-    let free: Vec<&str> = free.map(|price| price.label.as_str()).collect();
+    let free = drivers.free(FREE);
     if !free.is_empty() {
         ui.label(format!("Practically free: {}.", free.join(", ")));
     }
@@ -96,10 +87,6 @@ fn show(ui: &mut Ui, session: &mut Session, name: &str, drivers: &Drivers) {
     for warning in &drivers.warnings {
         ui.colored_label(theme::bad(ui), warning);
     }
-}
-
-fn is_dear(price: &PriceJson) -> bool {
-    price.price.abs() >= FREE || price.kink
 }
 
 /// Draws a price as a bar, to the right if more costs mass, to the left if it saves mass; returns whether it was clicked.

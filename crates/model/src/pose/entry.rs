@@ -23,7 +23,7 @@ pub enum Better {
 
 impl Better {
     /// Returns the factor with which smaller values are worse.
-    pub(crate) const fn sign(self) -> f64 {
+    pub const fn sign(self) -> f64 {
         match self {
             Better::Higher => 1.0,
             Better::Lower => -1.0,

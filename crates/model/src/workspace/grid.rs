@@ -133,6 +133,11 @@ impl Grid {
         self.halvings
     }
 
+    /// Returns the length to which the end of a ray is determined, for steps of a length `step` along it.
+    pub fn resolution(&self, step: f64) -> f64 {
+        step / f64::from(1u32 << self.halvings.min(30))
+    }
+
     /// Returns the number of steps from a home orientation to the end of its window, `Δφ/2` away.
     ///
     /// # Errors

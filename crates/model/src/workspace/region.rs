@@ -134,7 +134,7 @@ impl Region {
 
 /// Returns the radius of the rim on which a disc is examined.
 fn rim(radius: f64, step: f64, grid: &Grid) -> f64 {
-    let resolution = step / f64::from(1u32 << grid.halvings().min(30));
+    let resolution = grid.resolution(step);
     if resolution <= COARSE * radius {
         return radius;
     }

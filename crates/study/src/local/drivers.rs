@@ -3,7 +3,7 @@
 use kinefront_model::evaluation::{PoseScalar, Quantity};
 use kinefront_model::mechanism::JointKind;
 use kinefront_optimum::{
-    Critical, LocalProblem, PRICE_STEPS, Polished, Price, RelaxationOf, Requirement, reported_place,
+    Critical, LocalProblem, PRICE_STEPS, Polished, Price, Relaxation, RelaxationOf, Requirement, reported_place,
 };
 use serde::Serialize;
 
@@ -148,12 +148,6 @@ pub struct RelaxationJson {
     pub home_phi_deg: f64,
 }
 
-/// Slack with which a requirement counts as active.
-const ACTIVE: f64 = 2e-6;
-
-/// Residual above which multipliers give no prices.
-const UNEXPLAINED: f64 = 1e-4;
-
 impl LocalDesign {
     /// Determines what drives the objective of the design.
     ///
@@ -181,7 +175,7 @@ impl LocalDesign {
             .iter()
             .map(|quantity| format!("the limit of {} is not part of the prices", quantity.entry().key))
             .collect();
-        let is_explained = polished.multipliers.residual <= UNEXPLAINED;
+        let is_explained = polished.multipliers.explain();
         if !is_explained {
             warnings.push(format!(
                 "no optimum was found near the design: the multipliers leave {:.1e} of the gradient, so there are no prices",
@@ -198,35 +192,58 @@ impl LocalDesign {
             }
         }
         let why_not = options.wish.map(|wished| why_not(problem, polished, &found, wished));
-        let is_mass = objective.quantity == Quantity::Mass;
-        let mass = |design| problem.mass_of(design);
-        let value = if is_mass {
-            mass(&self.design)
-        } else {
-            problem.objective_of(&self.design).unwrap_or(polished.objective)
-        };
+        let value = problem.objective_of(&self.design).unwrap_or(polished.objective);
         Drivers {
             design: polished.design.to_string(),
             objective: objective.quantity.entry().key,
             value,
             polished_value: polished.objective,
-            mass_kg: mass(&self.design),
-            polished_mass_kg: mass(&polished.design),
+            mass_kg: problem.mass_of(&self.design),
+            polished_mass_kg: problem.mass_of(&polished.design),
             excess: value / polished.objective - 1.0,
             home_phi_deg: polished.home.to_degrees().rem_euclid(360.0),
             residual: polished.multipliers.residual,
             active: polished
                 .multipliers
-                .active
-                .iter()
-                .filter(|(critical, _)| critical.slack <= ACTIVE)
-                .map(|(critical, multiplier)| active(problem, polished, critical, *multiplier))
+                .active()
+                .map(|(critical, multiplier)| active(problem, polished, critical, multiplier))
                 .collect(),
             prices: found.iter().map(|price| price_json(problem, price, actuator)).collect(),
             inactive: inactive(problem, &polished.critical),
             why_not,
             warnings,
         }
+    }
+}
+
+impl Drivers {
+    /// Returns the prices of at least `free` \[% for 1 %\], and those at kinks, the largest first.
+    pub fn dear(&self, free: f64) -> Vec<&PriceJson> {
+        let mut dear: Vec<&PriceJson> = self.prices.iter().filter(|price| price.is_dear(free)).collect();
+        dear.sort_by(|a, b| b.price.abs().total_cmp(&a.price.abs()));
+        dear
+    }
+
+    /// Returns the names of the requirements that cost less.
+    pub fn free(&self, free: f64) -> Vec<&str> {
+        let cheap = self
+            .prices
+            .iter()
+            .filter(|price| price.is_requirement && !price.is_dear(free));
+        cheap.map(|price| price.label.as_str()).collect()
+    }
+
+    /// Returns the name of the objective where there is little room, and its unit.
+    pub fn objective_name(&self) -> (&'static str, &'static str) {
+        Quantity::find(self.objective).map_or(("objective", ""), |quantity| {
+            (quantity.entry().short, quantity.entry().unit)
+        })
+    }
+}
+
+impl PriceJson {
+    fn is_dear(&self, free: f64) -> bool {
+        self.price.abs() >= free || self.kink
     }
 }
 
@@ -257,42 +274,47 @@ fn price_json(problem: &LocalProblem, price: &Price, actuator: JointKind) -> Pri
         bars_cannot_repair: ways.filter(|(_, cannot)| *cannot).map(|(way, _)| way).collect(),
         steps: price.steps.iter().map(|step| [step.step, step.change]).collect(),
         off_by_20_percent: (!price.steps.is_empty()).then(|| price.off_by_20_percent()),
-        kink: price.is_kink,
+        kink: price.is_kink(),
         is_requirement: parameter.is_requirement(),
     }
 }
 
 /// Returns the requirements that are not active, each with its least slack.
 fn inactive(problem: &LocalProblem, critical: &[Critical]) -> Vec<InactiveJson> {
-    let mut found: Vec<(String, f64)> = Vec::new();
-    for critical in critical {
+    let name = |critical: &Critical| {
         let name = critical.requirement.name(problem);
-        let name = name.split(":leg").next().unwrap_or_default().to_owned();
+        name.split(":leg").next().unwrap_or_default().to_owned()
+    };
+    let active: Vec<String> = critical
+        .iter()
+        .filter(|critical| critical.is_active())
+        .map(name)
+        .collect();
+    let mut found: Vec<InactiveJson> = Vec::new();
+    for critical in critical {
+        let constraint = name(critical);
         let slack = match critical.requirement {
             Requirement::Scalar(PoseScalar::Dexterity) => (1.0 + 2.0 * critical.slack).max(0.0).sqrt() - 1.0,
             Requirement::Scalar(PoseScalar::Clearance) => critical.slack,
             Requirement::Scalar(_) | Requirement::Quantity(_) => libm::exp(critical.slack.min(700.0)) - 1.0,
             _ => critical.slack,
         };
-        match found.iter_mut().find(|(other, _)| *other == name) {
-            Some((_, least)) => *least = least.min(slack),
-            None => found.push((name, slack)),
+        match found.iter_mut().find(|other| other.constraint == constraint) {
+            Some(other) => other.slack = other.slack.min(slack),
+            None if active.contains(&constraint) => {}
+            None => found.push(InactiveJson { constraint, slack }),
         }
     }
     found
-        .into_iter()
-        .filter(|(_, slack)| *slack > ACTIVE)
-        .map(|(constraint, slack)| InactiveJson { constraint, slack })
-        .collect()
 }
 
 fn why_not(problem: &LocalProblem, polished: &Polished, prices: &[Price], wished: f64) -> WhyNotJson {
-    let log_deficit = libm::log(wished / polished.objective) * if problem.wants_less() { 1.0 } else { -1.0 };
+    let log_deficit = problem.goal_sign() * libm::log(wished / polished.objective);
     let relaxations = match log_deficit < 0.0 {
         true => problem.relaxations(polished, prices, wished),
         false => Vec::new(),
     };
-    let of = |relaxation: &kinefront_optimum::Relaxation| RelaxationJson {
+    let of = |relaxation: &Relaxation| RelaxationJson {
         parameter: match &relaxation.of {
             RelaxationOf::Single(parameter) => parameter.name(problem.question()),
             RelaxationOf::AllThresholds => "all_thresholds".to_owned(),

@@ -8,8 +8,7 @@ mod wish;
 pub use drivers::{ActiveJson, Drivers, DriversOptions, InactiveJson, PriceJson, RelaxationJson, WhyNotJson};
 pub use wish::{Condition, ConditionError, Wish, WishFault, WishOutcome};
 
-use glam::DVec2;
-use kinefront_model::evaluation::{Bound, Evaluation, GridChoice, Objective, Quantity};
+use kinefront_model::evaluation::{Bound, Evaluation, GridChoice, Quantity};
 use kinefront_model::mechanism::Design;
 use kinefront_model::workspace::{Region, WorkspaceSpec};
 use kinefront_optimum::{LocalError, LocalProblem, LocalQuestion, Polished};
@@ -89,7 +88,9 @@ impl DesignProblem {
             settings: settings.clone(),
         };
         for objective in others {
-            hold(&mut question, objective, value(objective.quantity))?;
+            let quantity = objective.quantity;
+            let held = value(quantity).ok_or(LocalFault::Unknown(quantity.entry().label))?;
+            question.hold(*objective, held);
         }
         Ok(LocalDesign {
             problem: LocalProblem::new(question, &evaluation.design)?,
@@ -117,12 +118,6 @@ impl DesignProblem {
     }
 }
 
-fn hold(question: &mut LocalQuestion, objective: &Objective, value: Option<f64>) -> Result<(), LocalFault> {
-    let value = value.ok_or(LocalFault::Unknown(objective.quantity.entry().label))?;
-    question.hold(*objective, value);
-    Ok(())
-}
-
 impl LocalDesign {
     /// Returns the best design near the given one.
     ///
@@ -139,10 +134,5 @@ impl LocalDesign {
             .find(Polished::is_optimal);
         let found = near.or_else(|| self.problem.best(&self.design, None));
         found.ok_or_else(|| LocalFault::Infeasible(Box::new(self.design)))
-    }
-
-    /// The centre of the region \[m\].
-    pub fn centre(&self) -> DVec2 {
-        self.problem.question().workspace.centre
     }
 }

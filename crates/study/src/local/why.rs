@@ -26,7 +26,7 @@ impl DesignProblem {
             });
             match found {
                 Ok((local, polished)) if polished.is_feasible() => {
-                    let sign = if local.problem.wants_less() { 1.0 } else { -1.0 };
+                    let sign = local.problem.goal_sign();
                     if best
                         .as_ref()
                         .is_none_or(|(_, other)| sign * polished.objective < sign * other.objective)

@@ -1,0 +1,438 @@
+//! The search for the best design near a start: critical poses are exchanged, and a sequential quadratic programme keeps them.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::convex::ConvexProgram;
+use super::multipliers::Multipliers;
+use super::place::Density;
+use super::polished::Polished;
+use super::problem::LocalProblem;
+use super::requirement::{Critical, Kind, NOWHERE};
+use super::survey::{add, is_same};
+
+/// Largest number of times that critical poses are added.
+const ROUNDS: usize = 40;
+
+/// Largest number of steps with the same critical poses.
+const STEPS: usize = 40;
+
+/// Largest change of an unknown in a step at first.
+const TRUST: f64 = 0.1;
+
+/// Largest change of an unknown from one set of critical poses to the next.
+const WIDEST: f64 = 0.5;
+
+/// Violation and change of the unknowns in a round, below which a search is about to end.
+const SLOW: f64 = 1e-5;
+
+/// Residual of the multipliers at which a search has reached its end.
+const EXPLAINED: f64 = 1e-6;
+
+/// Number of times that the Hessian is determined anew.
+const RENEWALS: usize = 8;
+
+/// Half the difference of the unknowns by which the Hessian is determined.
+const BEND: f64 = 1e-4;
+
+/// Least and largest curvature.
+const FLATTEST: f64 = 1e-3;
+const STEEPEST: f64 = 1e6;
+
+/// Slack below which a critical pose is followed from one design to the next, and step by which it is.
+const FOLLOWED: f64 = 0.02;
+
+/// Two critical poses at one place whose slacks differ by less than this are one constraint.
+const IDENTICAL: f64 = 1e-11;
+
+/// Violation at which a search is exact.
+const MISSED: f64 = 1e-10;
+
+/// An optimum misses no requirement by more than this.
+const HELD: f64 = 1e-8;
+
+/// Changes of the unknowns that are no longer followed.
+const STILL: f64 = 1e-7;
+
+/// The same where the requirements keep some slack, which a last change may use.
+const ENOUGH: f64 = 1e-3;
+
+/// Least weight of the violations.
+const LIGHTEST: f64 = 20.0;
+
+/// Largest weight of the violations.
+const HEAVIEST: f64 = 2e3;
+
+/// Rounds without an improvement after which the search ends.
+const PATIENCE: usize = 10;
+
+/// Critical poses with more slack than this are forgotten.
+const SLACK: f64 = 0.25;
+
+/// A search for the best design near a start.
+pub(crate) struct Exchange<'a> {
+    problem: &'a LocalProblem,
+    unknowns: Vec<f64>,
+    bounds: Vec<[f64; 2]>,
+    /// Bounds of the unknowns in a round.
+    reach: Vec<[f64; 2]>,
+    critical: Vec<Critical>,
+    /// Approximation of the Hessian of the Lagrangian.
+    hessian: DMatrix<f64>,
+    /// Weight of the violations.
+    weight: f64,
+    /// Sum of the multipliers of the last step.
+    pressure: f64,
+    /// The kinds of requirements that there are.
+    kinds: Vec<Kind>,
+}
+
+/// A step of the quadratic programme.
+struct Step {
+    change: DVector<f64>,
+    multipliers: Vec<f64>,
+    /// Decrease of the merit that the programme promises.
+    promised: f64,
+}
+
+impl<'a> Exchange<'a> {
+    pub fn new(problem: &'a LocalProblem, start: &[f64]) -> Self {
+        let bounds = problem.bounds();
+        let unknowns: Vec<f64> = start
+            .iter()
+            .zip(&bounds)
+            .map(|(value, [lower, upper])| value.clamp(*lower, *upper))
+            .collect();
+        let count = unknowns.len();
+        let mut kinds: Vec<Kind> = Vec::new();
+        for requirement in problem.requirements() {
+            if !kinds.contains(&requirement.kind()) {
+                kinds.push(requirement.kind());
+            }
+        }
+        Self {
+            problem,
+            unknowns,
+            reach: bounds.clone(),
+            bounds,
+            critical: Vec::new(),
+            hessian: DMatrix::identity(count, count),
+            weight: LIGHTEST,
+            pressure: 0.0,
+            kinds,
+        }
+    }
+
+    pub fn run(mut self) -> Option<Polished> {
+        let mut survey = self.survey(Density::Coarse)?;
+        let slack = self.problem.question().slack;
+        let mut renewed = 0;
+        let mut span = TRUST;
+        let (mut least_missed, mut improved) = (f64::INFINITY, 0);
+        for round in 0..ROUNDS {
+            self.adopt(&survey);
+            // Near the optimum, a heavy weight would drown the decrease of what is minimised in rounding.
+            self.weight = (2.0 * self.pressure).clamp(LIGHTEST, HEAVIEST);
+            let known = missed(&survey);
+            let before = self.unknowns.clone();
+            self.reach = self
+                .unknowns
+                .iter()
+                .zip(&self.bounds)
+                .map(|(value, [lower, upper])| [lower.max(value - span), upper.min(value + span)])
+                .collect();
+            self.descend(TRUST.min(span));
+            let moved = before
+                .iter()
+                .zip(&self.unknowns)
+                .fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+            survey = self.survey(Density::Coarse)?;
+            // A design for a grid is examined on that grid afterwards.
+            if missed(&survey) <= SLOW && slack == 0.0 {
+                survey = self.survey(Density::Fine)?;
+            }
+            let missed = missed(&survey);
+            // Poses that are not known yet were missed: the next round goes less far.
+            span = if missed > (2.0 * known).max(0.05) {
+                0.5 * span
+            } else {
+                (1.5 * span).min(WIDEST)
+            };
+            if missed < 0.7 * least_missed {
+                (least_missed, improved) = (missed, round);
+            }
+            let is_stuck = moved <= 1e-12 && round > 0 || missed > 1e-6 && round > improved + PATIENCE;
+            // The approximation of the curvature may have grown so steep that steps stay short.
+            if missed <= SLOW && moved <= SLOW && renewed < RENEWALS {
+                let found = Multipliers::new(self.problem, &self.unknowns, &survey);
+                if found.residual > EXPLAINED {
+                    self.renew_hessian(&found);
+                    renewed += 1;
+                    continue;
+                }
+            }
+            let is_enough = slack > 0.0 && missed <= 0.5 * slack && moved <= ENOUGH;
+            if missed <= MISSED && (moved <= STILL || round > 12) || is_enough || is_stuck {
+                break;
+            }
+        }
+        let missed = missed(&survey);
+        let problem = self.problem;
+        let prepared = problem.prepare(&self.unknowns)?;
+        let multipliers = Multipliers::new(problem, &self.unknowns, &survey);
+        Some(Polished {
+            design: prepared.design,
+            home: prepared.home,
+            objective: problem.objective(&self.unknowns),
+            missed,
+            allowed: HELD.max(0.5 * slack),
+            critical: survey,
+            multipliers,
+            unknowns: self.unknowns,
+        })
+    }
+
+    /// Returns the critical poses of the design: those that spots of the region lead to, and those that earlier designs lead to, which
+    /// may lie between the spots.
+    fn survey(&self, density: Density) -> Option<Vec<Critical>> {
+        let prepared = self.problem.prepare(&self.unknowns)?;
+        let mut found = self.problem.survey(&prepared, density);
+        for critical in &self.critical {
+            let slack = self.problem.value(&prepared, critical.requirement, &critical.place);
+            if critical.requirement.is_of_poses(self.problem) && slack < FOLLOWED && slack > NOWHERE {
+                let next = self
+                    .problem
+                    .refined(&prepared, critical.requirement, critical.place, FOLLOWED);
+                add(&mut found, next);
+            }
+        }
+        Some(found)
+    }
+
+    /// Adds critical poses that are new, and forgets those that are far from being critical.
+    fn adopt(&mut self, survey: &[Critical]) {
+        let values = self.problem.values_of(&self.unknowns, &self.critical);
+        let mut kept: Vec<Critical> = Vec::new();
+        for (critical, slack) in self.critical.drain(..).zip(values) {
+            if slack < SLACK && slack > NOWHERE {
+                kept.push(Critical { slack, ..critical });
+            }
+        }
+        // Of many constraints, those with the least slack matter.
+        kept.sort_by(|a, b| a.slack.total_cmp(&b.slack));
+        kept.truncate(40);
+        for next in survey.iter().filter(|next| next.slack < SLACK && next.slack > NOWHERE) {
+            let is_of_poses = next.requirement.is_of_poses(self.problem);
+            let is_known = |other: &Critical| {
+                let is_identical = is_same(&other.place, &next.place) && (other.slack - next.slack).abs() < IDENTICAL;
+                other.requirement == next.requirement && (is_identical || !is_of_poses)
+            };
+            if !kept.iter().any(is_known) {
+                kept.push(*next);
+            }
+        }
+        self.critical = kept;
+    }
+
+    /// Takes steps until none improves the design that keeps the critical poses.
+    fn descend(&mut self, first_trust: f64) {
+        let problem = self.problem;
+        let mut trust = first_trust;
+        // What is followed no further leaves less than the slack.
+        let smallest = if problem.question().slack > 0.0 { 1e-6 } else { 1e-10 };
+        let mut values = problem.values_of(&self.unknowns, &self.critical);
+        let (mut gradient, mut rows) = problem.derivatives(&self.unknowns, &self.critical);
+        for _ in 0..STEPS {
+            let Some(step) = self.step(&gradient, &rows, &values, trust) else {
+                trust *= 0.25;
+                if trust < 1e-9 {
+                    return;
+                }
+                continue;
+            };
+            let size = step.change.amax();
+            if size < smallest {
+                return;
+            }
+            let merit = self.merit(&self.unknowns, &values);
+            let (mut changed, mut new_values) = self.tried(&step.change);
+            let mut gain = merit - self.merit(&changed, &new_values);
+            if gain < 0.1 * step.promised {
+                // The constraints bend: their values at the end of the step take the place of those at its beginning.
+                let bent: Vec<f64> = new_values
+                    .iter()
+                    .zip((&rows * &step.change).iter())
+                    .map(|(value, linear)| value - linear)
+                    .collect();
+                if let Some(second) = self.step(&gradient, &rows, &bent, trust) {
+                    let (again, values_again) = self.tried(&second.change);
+                    let gain_again = merit - self.merit(&again, &values_again);
+                    if gain_again > gain {
+                        (changed, new_values, gain) = (again, values_again, gain_again);
+                    }
+                }
+            }
+            let is_good = gain > 1e-4 * step.promised.max(0.0) && gain > 0.0;
+            if !is_good {
+                if size < 1e-8 || step.promised < 1e-13 {
+                    return;
+                }
+                trust = 0.3 * size.min(trust);
+                continue;
+            }
+            self.pressure = step.multipliers.iter().sum();
+            let (new_gradient, new_rows) = problem.derivatives(&changed, &self.critical);
+            let of_lagrangian = |gradient: &DVector<f64>, rows: &DMatrix<f64>| {
+                let multipliers = DVector::from_column_slice(&step.multipliers);
+                gradient - rows.transpose() * multipliers
+            };
+            let way = DVector::from_iterator(
+                changed.len(),
+                changed.iter().zip(&self.unknowns).map(|(new, old)| new - old),
+            );
+            let turned = of_lagrangian(&new_gradient, &new_rows) - of_lagrangian(&gradient, &rows);
+            self.bend(&way, turned);
+            if gain > 0.7 * step.promised && size > 0.8 * trust {
+                trust = (2.0 * trust).min(2.0 * first_trust);
+            }
+            (self.unknowns, values, gradient, rows) = (changed, new_values, new_gradient, new_rows);
+        }
+    }
+
+    /// Returns the unknowns after a change, and the values of the critical requirements there.
+    fn tried(&self, change: &DVector<f64>) -> (Vec<f64>, Vec<f64>) {
+        let moved = self.unknowns.iter().zip(change.iter()).zip(&self.reach);
+        let moved: Vec<f64> = moved
+            .map(|((value, change), [lower, upper])| (value + change).clamp(*lower, *upper))
+            .collect();
+        let values = self.problem.values_of(&moved, &self.critical);
+        (moved, values)
+    }
+
+    /// Returns the largest violation of each kind of requirement.
+    fn violations(&self, values: &[f64]) -> Vec<f64> {
+        let mut violations = vec![0.0f64; self.kinds.len()];
+        for (critical, value) in self.critical.iter().zip(values) {
+            let violation: &mut f64 = &mut violations[self.kind(critical)];
+            *violation = violation.max(-value);
+        }
+        violations
+    }
+
+    fn kind(&self, critical: &Critical) -> usize {
+        let kind = critical.requirement.kind();
+        self.kinds.iter().position(|other| *other == kind).unwrap_or(0)
+    }
+
+    /// Returns the minimised value, raised by the largest violation of each kind of requirement: if the largest of all counted alone,
+    /// one requirement that is far from holding would let the others go.
+    fn merit(&self, unknowns: &[f64], values: &[f64]) -> f64 {
+        let violation: f64 = self.violations(values).iter().sum();
+        self.problem.minimised(unknowns) + self.weight * violation
+    }
+
+    /// Solves the quadratic programme about the unknowns. Where its constraints contradict each other, they are missed as little as
+    /// possible.
+    fn step(&mut self, gradient: &DVector<f64>, rows: &DMatrix<f64>, values: &[f64], trust: f64) -> Option<Step> {
+        let count = self.unknowns.len();
+        if !gradient.iter().chain(rows.iter()).all(|number| number.is_finite()) {
+            return None;
+        }
+        // The last variables are the largest violation of each kind.
+        let kinds = self.kinds.len();
+        let mut program = ConvexProgram::new(count + kinds);
+        program
+            .quadratic
+            .view_mut((0, 0), (count, count))
+            .copy_from(&self.hessian);
+        program.linear.rows_mut(0, count).copy_from(gradient);
+        program.linear.rows_mut(count, kinds).fill(self.weight);
+        for (row, value) in values.iter().enumerate() {
+            let mut row_of = DVector::zeros(count + kinds);
+            row_of.rows_mut(0, count).copy_from(&rows.row(row).transpose());
+            row_of[count + self.kind(&self.critical[row])] = 1.0;
+            program.at_least.push((row_of, -value));
+        }
+        for unknown in 0..count {
+            let [lower, upper] = self.reach[unknown].map(|bound| bound - self.unknowns[unknown]);
+            program.bound_below(unknown, lower.max(-trust));
+            program.bound_above(unknown, upper.min(trust));
+        }
+        (count..count + kinds).for_each(|violation| program.bound_below(violation, 0.0));
+        let solution = program.solve()?;
+        let change: DVector<f64> = solution.x.rows(0, count).into_owned();
+        let multipliers = solution.multipliers[..values.len()].to_vec();
+        let left: f64 = solution
+            .x
+            .rows(count, kinds)
+            .iter()
+            .map(|violation| violation.max(0.0))
+            .sum();
+        let violation: f64 = self.violations(values).iter().sum();
+        let quadratic = 0.5 * change.dot(&(&self.hessian * &change));
+        let promised = self.weight * (violation - left) - gradient.dot(&change) - quadratic;
+        if left > 1e-9 && self.weight < HEAVIEST {
+            self.weight *= 2.0;
+        }
+        Some(Step {
+            change,
+            multipliers,
+            promised,
+        })
+    }
+
+    /// Determines the Hessian of the Lagrangian by differences, made positive definite.
+    fn renew_hessian(&mut self, multipliers: &Multipliers) {
+        let count = self.unknowns.len();
+        let (critical, weights): (Vec<Critical>, Vec<f64>) = multipliers
+            .critical_with_values()
+            .map(|(critical, multiplier)| (*critical, multiplier))
+            .unzip();
+        let weights = DVector::from_vec(weights);
+        let of_lagrangian = |unknowns: &[f64]| {
+            let (gradient, rows) = self.problem.derivatives(unknowns, &critical);
+            gradient - rows.transpose() * &weights
+        };
+        let mut hessian = DMatrix::zeros(count, count);
+        for unknown in 0..count {
+            let at = |step: f64| {
+                let mut moved = self.unknowns.clone();
+                moved[unknown] += step;
+                of_lagrangian(&moved)
+            };
+            hessian.set_column(unknown, &((at(BEND) - at(-BEND)) / (2.0 * BEND)));
+        }
+        if !hessian.iter().all(|number: &f64| number.is_finite()) {
+            return;
+        }
+        let mut found = (0.5 * (&hessian + hessian.transpose())).symmetric_eigen();
+        for value in found.eigenvalues.iter_mut() {
+            *value = value.abs().clamp(FLATTEST, STEEPEST);
+        }
+        self.hessian = found.recompose();
+    }
+
+    /// Updates the approximation of the Hessian by the change of the gradient of the Lagrangian along a way, damped so that it stays
+    /// positive definite.
+    fn bend(&mut self, way: &DVector<f64>, turned: DVector<f64>) {
+        let image = &self.hessian * way;
+        let curvature = way.dot(&image);
+        if curvature < 1e-30 || way.amax() < 1e-9 {
+            return;
+        }
+        let along = way.dot(&turned);
+        let share = if along >= 0.2 * curvature {
+            1.0
+        } else {
+            0.8 * curvature / (curvature - along)
+        };
+        let turned = turned * share + &image * (1.0 - share);
+        let along = way.dot(&turned);
+        self.hessian += &turned * turned.transpose() / along - &image * image.transpose() / curvature;
+        self.hessian = 0.5 * (&self.hessian + self.hessian.transpose());
+    }
+}
+
+/// Returns the largest amount by which a requirement is missed.
+fn missed(critical: &[Critical]) -> f64 {
+    critical.iter().fold(0.0, |most, critical| most.max(-critical.slack))
+}
