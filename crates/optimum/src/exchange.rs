@@ -22,6 +22,9 @@ const TRUST: f64 = 0.1;
 /// Largest change of an unknown from one set of critical poses to the next.
 const WIDEST: f64 = 0.5;
 
+/// Violation beyond which a round is taken back, if it was not there before.
+const ASTRAY: f64 = 1.0;
+
 /// Violation and change of the unknowns in a round, below which a search is about to end.
 const SLOW: f64 = 1e-5;
 
@@ -133,7 +136,7 @@ impl<'a> Exchange<'a> {
             // Near the optimum, a heavy weight would drown the decrease of what is minimised in rounding.
             self.weight = (2.0 * self.pressure).clamp(LIGHTEST, HEAVIEST);
             let known = missed(&survey);
-            let before = self.unknowns.clone();
+            let (before, hessian, pressure) = (self.unknowns.clone(), self.hessian.clone(), self.pressure);
             self.reach = self
                 .unknowns
                 .iter()
@@ -145,7 +148,14 @@ impl<'a> Exchange<'a> {
                 .iter()
                 .zip(&self.unknowns)
                 .fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
-            survey = self.survey(Density::Coarse)?;
+            let found = self.survey(Density::Coarse)?;
+            if missed(&found) > (2.0 * known).max(ASTRAY) {
+                // The design went past a singularity that was not known: nothing there leads back.
+                (self.unknowns, self.hessian, self.pressure) = (before, hessian, pressure);
+                span *= 0.5;
+                continue;
+            }
+            survey = found;
             // A design for a grid is examined on that grid afterwards.
             if missed(&survey) <= SLOW && slack == 0.0 {
                 survey = self.survey(Density::Fine)?;
