@@ -1,5 +1,6 @@
 //! A design of a study.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use pyo3::prelude::*;
@@ -8,11 +9,11 @@ use pyo3::types::{PyBytes, PyDict, PyString};
 use kinefront_export::{EvaluationJson, ExportSubject, Format, export};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design};
 use kinefront_model::spatial::Pose;
-use kinefront_study::PreparedStudy;
+use kinefront_study::{DriversOptions, PreparedStudy};
 
 use crate::convert::{from_serializable, grid_choice};
 use crate::errors::{InputError, of_design};
-use crate::poses;
+use crate::{local, poses};
 
 /// A design of a study.
 #[pyclass(name = "Design", module = "kinefront", frozen)]
@@ -67,6 +68,33 @@ impl PyDesign {
     /// Evaluates the design at poses, an array of shape (n, 3) with x and y in metres and phi in radians.
     fn poses<'py>(&self, py: Python<'py>, poses: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
         poses::evaluate(py, self.shared.model(), &self.design, poses)
+    }
+
+    /// Returns what drives the first objective of the study at the best design near this one, as `kinefront prices --json` does: the
+    /// active requirements with their poses, and the change of the objective in per cent for 1 % of each parameter.
+    ///
+    /// `held` states values of other objectives by their keys, such as `{"workspace_radius_m": 1.2}`, in place of those of the design.
+    /// `bars_only` keeps the geometry; `steps` optimizes again after finite steps; `wish` asks what each requirement would have to give
+    /// for this value of the objective.
+    #[pyo3(signature = (*, held=BTreeMap::new(), bars_only=false, steps=false, wish=None))]
+    fn prices<'py>(
+        &self,
+        py: Python<'py>,
+        held: BTreeMap<String, f64>,
+        bars_only: bool,
+        steps: bool,
+        wish: Option<f64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let options = DriversOptions { bars_only, steps, wish };
+        local::prices(py, self.shared.study(), &self.design, &held, options)
+    }
+
+    /// Returns the nearest design that has what is wished for, verified and proved, as `kinefront wish --json` does.
+    ///
+    /// `conditions` are texts such as `"k_xy_n_per_m >= 1.2e6"`; the quantities of `keep` are not to become worse.
+    #[pyo3(signature = (conditions, *, keep=Vec::new()))]
+    fn wish<'py>(&self, py: Python<'py>, conditions: Vec<String>, keep: Vec<String>) -> PyResult<Bound<'py, PyAny>> {
+        local::wish(py, self.shared.study(), &self.design, &conditions, &keep)
     }
 
     /// Writes the design in a format of other programs: a text, or bytes for glTF.

@@ -7,6 +7,7 @@ mod convert;
 mod design;
 mod designs;
 mod errors;
+mod local;
 mod poses;
 mod run;
 mod search;

@@ -1,5 +1,6 @@
 //! Studies.
 
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -16,7 +17,7 @@ use crate::design::PyDesign;
 use crate::errors::{InputError, of_design, of_study};
 use crate::run::PyRun;
 use crate::table::PyTable;
-use crate::{designs, poses, search};
+use crate::{designs, local, poses, search};
 
 /// Number of designs that are evaluated between two looks at the signals, such as Ctrl-C.
 const CHUNK: usize = 512;
@@ -248,6 +249,27 @@ impl PyStudy {
             return Err(InputError::new_err("expected one design"));
         };
         poses::evaluate(py, self.shared.model(), &design, poses)
+    }
+
+    /// Returns why the first objective cannot have the value `wished`, as `kinefront why --json` does: what each requirement would have to
+    /// give for it, or that it can be had.
+    ///
+    /// `designs` are those of a front; `held` states wished values of other objectives by their keys, such as
+    /// `{"workspace_radius_m": 1.2}`.
+    #[pyo3(signature = (designs, wished, *, held=BTreeMap::new()))]
+    fn why<'py>(
+        &self,
+        py: Python<'py>,
+        designs: &Bound<'py, PyAny>,
+        wished: f64,
+        held: BTreeMap<String, f64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if !(wished.is_finite() && wished > 0.0) {
+            let words = format!("the wished value is {wished}; it must be a number above 0");
+            return Err(InputError::new_err(words));
+        }
+        let designs = designs::read(self.study(), designs)?;
+        local::why(py, self.study(), &designs, wished, &held)
     }
 
     /// Search for the front of the study; returns a `Run`.

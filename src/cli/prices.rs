@@ -1,8 +1,11 @@
-//! The command `kinefront prices`: what each requirement of a study costs at a design.
+//! The command `kinefront prices`: what each requirement of a study costs at a design, or along a front.
 
 use std::io::Write;
 
-use kinefront_study::{DesignProblem, DriversOptions};
+use kinefront_model::evaluation::{Evaluation, GridChoice, Quantity};
+use kinefront_study::{Column, DesignProblem, Drivers, DriversAlong, DriversOptions, PriceJson, Row, Study, TableRow};
+use miette::miette;
+use serde::Serialize;
 
 use super::subject::SubjectArguments;
 use super::{Ending, Failure, tables, to_json};
@@ -11,7 +14,10 @@ use super::{Ending, Failure, tables, to_json};
 #[command(after_help = "\
 The design is first made the best one near it, with every pose of the region as a constraint and a continuous home orientation. A price
 is the change of the first objective in per cent for 1 % of a requirement; the other objectives, as the workspace radius, keep the
-values of the design. A requirement that costs nothing there is listed with the amount by which it may rise.")]
+values of the design. A requirement that costs nothing there is listed with the amount by which it may rise.
+
+Without #ID, the prices of all designs of the table are determined: what drives the first objective along the front, in sentences; with
+--csv, the table of the designs with a column price_* for each parameter.")]
 pub struct PricesArguments {
     #[command(flatten)]
     subject: SubjectArguments,
@@ -27,18 +33,52 @@ pub struct PricesArguments {
     /// Tell what each requirement would have to give for this mass in kilograms, or this value of the first objective.
     #[arg(long, value_name = "KG")]
     wish_mass: Option<f64>,
+    /// Print the designs of a front with their prices as CSV.
+    #[arg(long, conflicts_with = "json")]
+    csv: bool,
     /// Print the result as one JSON object.
     #[arg(long)]
     json: bool,
 }
 
+/// The output of `kinefront prices TABLE --json` for an architecture.
+#[derive(Debug, Serialize)]
+struct AlongJson<'a> {
+    architecture: String,
+    /// Key of the quantity along which the designs are ordered.
+    along: &'static str,
+    sentences: Vec<String>,
+    designs: Vec<DesignJson<'a>>,
+    /// Number of designs that have no prices.
+    without_prices: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct DesignJson<'a> {
+    id: usize,
+    at: f64,
+    drivers: &'a Drivers,
+}
+
 pub fn run(arguments: &PricesArguments) -> Result<Ending, Failure> {
-    let (study, design, heading) = arguments.subject.read().map_err(Failure::Input)?;
     for (key, value) in [("--radius", arguments.radius), ("--wish-mass", arguments.wish_mass)] {
         above_zero(key, value)?;
     }
+    if !arguments.subject.is_design() {
+        return along_front(arguments);
+    }
+    if arguments.csv {
+        let words = "--csv prints the designs of a front; name the table without #ID";
+        return Err(Failure::Input(miette!("{words}")));
+    }
+    let (study, design, heading) = arguments.subject.read().map_err(Failure::Input)?;
     let problem = DesignProblem::new(&study).map_err(Failure::runtime)?;
-    let local = problem.local(&design, arguments.radius).map_err(Failure::input)?;
+    let held: Vec<(Quantity, f64)> = arguments
+        .radius
+        .map(|radius| (Quantity::WorkspaceRadius, radius))
+        .into_iter()
+        .collect();
+    let local = problem.local(&design, &held).map_err(Failure::input)?;
     let options = DriversOptions {
         bars_only: arguments.bars_only,
         steps: arguments.steps,
@@ -52,6 +92,96 @@ pub fn run(arguments: &PricesArguments) -> Result<Ending, Failure> {
         writeln!(out, "{}", tables::drivers(&heading, &drivers))?;
     }
     Ok(Ending::Done)
+}
+
+/// Determines the prices of all designs of a table.
+fn along_front(arguments: &PricesArguments) -> Result<Ending, Failure> {
+    let is_asked = arguments.bars_only || arguments.steps;
+    if is_asked || arguments.radius.is_some() || arguments.wish_mass.is_some() {
+        let words = "--radius, --bars-only, --steps and --wish-mass are for one design; name it as TABLE#ID";
+        return Err(Failure::Input(miette!("{words}")));
+    }
+    let (study, designs) = arguments.subject.read_table().map_err(Failure::Input)?;
+    let problem = DesignProblem::new(&study).map_err(Failure::runtime)?;
+    let (ids, evaluations): (Vec<usize>, Vec<Evaluation>) = designs
+        .iter()
+        .map(|(id, design)| (*id, problem.model().evaluate(design, GridChoice::Fine)))
+        .unzip();
+    let along = problem.drivers_along(&evaluations);
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        let all: Vec<AlongJson<'_>> = along.iter().map(|along| along_json(along, &ids)).collect();
+        writeln!(out, "{}", to_json(&all).map_err(Failure::Runtime)?)?;
+    } else if arguments.csv {
+        write_table(&study, &along, &ids, &evaluations, out)?;
+    } else {
+        for along in &along {
+            writeln!(out, "{}", tables::drivers_along(along))?;
+        }
+    }
+    Ok(Ending::Done)
+}
+
+fn along_json<'a>(along: &'a DriversAlong, ids: &[usize]) -> AlongJson<'a> {
+    AlongJson {
+        architecture: along.architecture.to_string(),
+        along: along.along.entry().key,
+        sentences: along.sentences(),
+        designs: along
+            .designs
+            .iter()
+            .map(|(index, at, drivers)| DesignJson {
+                id: ids[*index],
+                at: *at,
+                drivers,
+            })
+            .collect(),
+        without_prices: along.without,
+    }
+}
+
+/// Writes the designs in the order of the table, each with the price of each parameter; a parameter that has none is an empty cell.
+fn write_table(
+    study: &Study,
+    along: &[DriversAlong],
+    ids: &[usize],
+    evaluations: &[Evaluation],
+    out: impl Write,
+) -> Result<(), Failure> {
+    let mut parameters: Vec<&str> = Vec::new();
+    let mut drivers: Vec<Option<&Drivers>> = vec![None; evaluations.len()];
+    for (index, _, of_design) in along.iter().flat_map(|along| &along.designs) {
+        drivers[*index] = Some(of_design);
+        for price in &of_design.prices {
+            if !parameters.contains(&price.parameter.as_str()) {
+                parameters.push(&price.parameter);
+            }
+        }
+    }
+    let columns: Vec<Column> = Column::of_designs(study).collect();
+    let names = columns.iter().map(|column| column.name());
+    let names = names.chain(parameters.iter().map(|parameter| format!("price_{parameter}").into()));
+    let mut table = csv::Writer::from_writer(out);
+    let failed = |error: csv::Error| Failure::from(std::io::Error::from(error));
+    table.write_record(names.map(|name| name.to_string())).map_err(failed)?;
+    for (place, evaluation) in evaluations.iter().enumerate() {
+        let row = TableRow {
+            id: ids[place],
+            row: Row::new(0, evaluation),
+            reference_radius: None,
+            certified: None,
+        };
+        let price = |parameter: &&str| {
+            let mut prices = drivers[place].into_iter().flat_map(|drivers| &drivers.prices);
+            let own = prices.find(|price| price.parameter == **parameter);
+            own.map_or(String::new(), |own: &PriceJson| own.price.to_string())
+        };
+        let cells = columns.iter().map(|column| column.cell(&row).to_string());
+        table
+            .write_record(cells.chain(parameters.iter().map(price)))
+            .map_err(failed)?;
+    }
+    Ok(table.flush()?)
 }
 
 /// Refuses a number of an argument that is not above 0.

@@ -12,6 +12,7 @@ use kinefront_study::{
 use miette::miette;
 
 use super::progress::Progress;
+use super::why::hindrances;
 use super::{Ending, Failure, say, tables};
 
 /// Capacity of the channel to the progress display; the run waits while it is full.
@@ -184,6 +185,14 @@ fn tell(
                 path.display(),
                 path.display()
             )?;
+        }
+        let is_hindered = last.is_some_and(|last| last.feasible == 0);
+        // What stands in the way is told beside the run: that it cannot be told makes no run fail.
+        if is_hindered
+            && is_written
+            && let Ok(found) = hindrances(&path.join("designs.csv"), study)
+        {
+            writeln!(out, "No design is feasible.\n{}", tables::hindrances(&found))?;
         }
     }
     Ok(())

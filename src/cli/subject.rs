@@ -46,15 +46,31 @@ impl SubjectArguments {
             miette!("`{row}` does not specify a row; expected TABLE#ID, as in run/front.csv#12")
         })?;
         let row = row.display();
-        let study = match &self.study {
-            Some(study) => load_study(Some(study))?,
-            None => match run_of(table)? {
-                Some(run) => run.study().clone(),
-                None => study_beside(table)?,
-            },
-        };
+        let study = study_of(table, self.study.as_deref())?;
         let design = find_design(table, &study, &id).wrap_err_with(|| format!("cannot read {row}"))?;
         Ok((study, design, format!("{}, design #{id}", study_name(table))))
+    }
+
+    /// Reads the study and all designs of a table, each with its id.
+    pub fn read_table(&self) -> Result<(Study, Vec<(usize, Design)>)> {
+        let table = Path::new(self.row.as_deref().unwrap_or_default());
+        let study = study_of(table, self.study.as_deref())?;
+        let designs = read_designs(table, &study).into_diagnostic()?;
+        if designs.is_empty() {
+            return Err(miette!("{} has no designs", table.display()));
+        }
+        Ok((study, designs))
+    }
+}
+
+/// Reads the study that is named, or else that of a table: the run's, the one beside the table, or the paper's.
+pub fn study_of(table: &Path, named: Option<&OsStr>) -> Result<Study> {
+    if named.is_some() {
+        return load_study(named);
+    }
+    match run_of(table)? {
+        Some(run) => Ok(run.study().clone()),
+        None => study_beside(table),
     }
 }
 

@@ -1,32 +1,40 @@
-//! The command `kinefront why`: why a point above the front cannot be had.
+//! The command `kinefront why`: why a point beyond the front cannot be had, or why no design is feasible.
 
 use std::ffi::OsString;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use kinefront_model::evaluation::Quantity;
 use kinefront_model::mechanism::Design;
-use kinefront_study::{DesignProblem, read_designs};
-use miette::miette;
+use kinefront_scene::text::quantity as quantity_text;
+use kinefront_study::{DesignProblem, Hindrance, Study, read_designs, read_table};
+use miette::{Result, miette};
 
 use super::prices::above_zero;
-use super::subject::{run_of, study_beside};
-use super::{Ending, Failure, load_study, tables, to_json};
+use super::subject::study_of;
+use super::{Ending, Failure, tables, to_json};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Of each architecture, the designs of the front whose radius is nearest are made the best ones for the wished radius. If the lightest of
-them is still too heavy, each requirement is relaxed until the wished mass is reached, alone and together with the others; the factor
-is solved for, not extrapolated.")]
+Of each architecture, the designs of the front whose other objectives are nearest are made the best ones for the wished values of these.
+If the lightest of them is still too heavy, each requirement is relaxed until the wished mass is reached, alone and together with the others; the factor
+is solved for, not extrapolated.
+
+Without --mass, the table is that of a run that found no feasible design, as run/designs.csv: each requirement is told with the nearest
+value of it that can be had while all others are kept.")]
 pub struct WhyArguments {
-    /// Table of a front, as run/front.csv.
+    /// Table of a front, as run/front.csv; without --mass, of any designs, as run/designs.csv.
     #[arg(value_name = "TABLE")]
     table: PathBuf,
     /// Wished mass in kilograms, or value of the first objective.
     #[arg(long, value_name = "KG")]
-    mass: f64,
+    mass: Option<f64>,
     /// Wished workspace radius in metres; not for a study that prescribes the region.
     #[arg(long, value_name = "R")]
     radius: Option<f64>,
+    /// Wished value of another objective, as in k_xy_n_per_m=1.2e6; may be repeated [default: that of the nearest design].
+    #[arg(long, value_name = "QUANTITY=VALUE")]
+    at: Vec<String>,
     /// Study file, or name of a built-in study [default: study.toml in the folder of the table, else paper].
     #[arg(long, value_name = "FILE")]
     study: Option<OsString>,
@@ -35,50 +43,121 @@ pub struct WhyArguments {
     json: bool,
 }
 
-pub fn run(arguments: &WhyArguments) -> Result<Ending, Failure> {
-    above_zero("--mass", Some(arguments.mass))?;
+pub fn run(arguments: &WhyArguments) -> std::result::Result<Ending, Failure> {
+    above_zero("--mass", arguments.mass)?;
     above_zero("--radius", arguments.radius)?;
     let table = &arguments.table;
-    let study = match &arguments.study {
-        Some(study) => load_study(Some(study)),
-        None => match run_of(table).map_err(Failure::Input)? {
-            Some(run) => Ok(run.study().clone()),
-            None => study_beside(table),
-        },
+    let study = study_of(table, arguments.study.as_deref()).map_err(Failure::Input)?;
+    let Some(mass) = arguments.mass else {
+        return tell_hindrances(arguments, &study);
     };
-    let study = study.map_err(Failure::Input)?;
-    let is_prescribed = study.workspace.region.is_prescribed();
-    match arguments.radius {
-        Some(_) if is_prescribed => {
-            return Err(Failure::Input(miette!(
-                "the study prescribes the region; omit --radius"
-            )));
-        }
-        None if !is_prescribed => {
-            return Err(Failure::Input(miette!(
-                "a point of this study has a workspace radius; add --radius, in metres"
-            )));
-        }
-        _ => {}
-    }
+    let held = held(arguments, &study).map_err(Failure::Input)?;
     let designs = read_designs(table, &study).map_err(Failure::input)?;
     let designs: Vec<Design> = designs.into_iter().map(|(_, design)| design).collect();
     if designs.is_empty() {
         return Err(Failure::Input(miette!("{} has no designs", table.display())));
     }
     let problem = DesignProblem::new(&study).map_err(Failure::runtime)?;
-    let drivers = problem
-        .why(&designs, arguments.radius, arguments.mass)
-        .map_err(Failure::input)?;
+    let drivers = problem.why(&designs, &held, mass).map_err(Failure::input)?;
     let mut out = std::io::stdout().lock();
     if arguments.json {
         writeln!(out, "{}", to_json(&drivers).map_err(Failure::Runtime)?)?;
     } else {
-        let heading = match arguments.radius {
-            Some(radius) => format!("the best design for R_w = {radius} m"),
-            None => "the best design for the region".to_owned(),
+        let heading = match held.as_slice() {
+            [] => "the best design for the region".to_owned(),
+            held => {
+                let values = held.iter().map(|(quantity, value)| quantity_text(*quantity, *value));
+                format!("the best design for {}", values.collect::<Vec<_>>().join(", "))
+            }
         };
         writeln!(out, "{}", tables::drivers(&heading, &drivers))?;
     }
     Ok(Ending::Done)
+}
+
+/// Tells what stands in the way of a study of which no design is feasible.
+fn tell_hindrances(arguments: &WhyArguments, study: &Study) -> std::result::Result<Ending, Failure> {
+    if arguments.radius.is_some() || !arguments.at.is_empty() {
+        let words = "--radius and --at are of a point beyond the front; add --mass";
+        return Err(Failure::Input(miette!("{words}")));
+    }
+    let found = hindrances(&arguments.table, study)?;
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        writeln!(out, "{}", to_json(&found).map_err(Failure::Runtime)?)?;
+    } else {
+        writeln!(out, "{}", tables::hindrances(&found))?;
+    }
+    Ok(Ending::Done)
+}
+
+/// Returns what stands in the way of the designs of a table.
+pub fn hindrances(table: &Path, study: &Study) -> std::result::Result<Vec<Hindrance>, Failure> {
+    let rows = read_table(table, study).map_err(Failure::input)?.rows;
+    let designs: Vec<(f64, Design)> = rows
+        .iter()
+        .map(|entry| (entry.row.violation, entry.row.design))
+        .collect();
+    if designs.is_empty() {
+        return Err(Failure::Input(miette!("{} has no designs", table.display())));
+    }
+    if let Some(feasible) = rows.iter().find(|entry| entry.row.is_feasible()) {
+        let (id, table) = (feasible.id, table.display());
+        let words =
+            format!("design #{id} of {table} is feasible, so that nothing is in the way of all designs; add --mass");
+        return Err(Failure::Input(miette!("{words}")));
+    }
+    let problem = DesignProblem::new(study).map_err(Failure::runtime)?;
+    Ok(problem.hindrances(&designs))
+}
+
+/// Returns the wished values of the objectives after the first one.
+fn held(arguments: &WhyArguments, study: &Study) -> Result<Vec<(Quantity, f64)>> {
+    let others: Vec<Quantity> = study
+        .objectives()
+        .iter()
+        .skip(1)
+        .map(|objective| objective.quantity)
+        .collect();
+    let has_radius = others.contains(&Quantity::WorkspaceRadius);
+    let mut held: Vec<(Quantity, f64)> = Vec::new();
+    match arguments.radius {
+        Some(radius) if has_radius => held.push((Quantity::WorkspaceRadius, radius)),
+        Some(_) => {
+            return Err(miette!(
+                "the workspace radius is no objective of the study; omit --radius"
+            ));
+        }
+        None => {}
+    }
+    for text in &arguments.at {
+        let (quantity, value) = read_point(text, &others)?;
+        if held.iter().any(|(other, _)| *other == quantity) {
+            return Err(miette!("{} is stated twice; state it once", quantity.entry().key));
+        }
+        held.push((quantity, value));
+    }
+    if has_radius && !held.iter().any(|(quantity, _)| *quantity == Quantity::WorkspaceRadius) {
+        return Err(miette!(
+            "a point of this study has a workspace radius; add --radius, in metres"
+        ));
+    }
+    Ok(held)
+}
+
+/// Reads the value of an objective, as in `k_xy_n_per_m=1.2e6`.
+fn read_point(text: &str, others: &[Quantity]) -> Result<(Quantity, f64)> {
+    let stated = text.split_once('=').and_then(|(key, value)| {
+        let value = value.trim().parse::<f64>().ok()?;
+        let quantity = others.iter().find(|other| other.entry().key == key.trim())?;
+        Some((*quantity, value)).filter(|_| value.is_finite() && value > 0.0)
+    });
+    stated.ok_or_else(|| {
+        let keys: Vec<&str> = others.iter().map(|other| other.entry().key).collect();
+        let known = match keys.as_slice() {
+            [] => "the study has one objective, so that there is nothing to state".to_owned(),
+            keys => format!("the objectives beside the first one are {}", keys.join(", ")),
+        };
+        miette!("--at `{text}` is not QUANTITY=VALUE with an objective of the study and a number above 0; {known}")
+    })
 }

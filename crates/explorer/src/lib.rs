@@ -29,13 +29,13 @@ mod threads;
 mod viewer;
 
 pub use app::{AtEndSignals, Explorer, InitialContent, Script, ScriptError, run};
-pub use data::{DesignOrigin, Document, Filter, FilterError, FrontEntry, History, Named, Selected, Store};
+pub use data::{DesignOrigin, Document, Filter, FilterError, FrontEntry, History, Named, Selected, Store, Wished};
 pub use files::{OpenError, Opened, Purpose, open};
 pub use kinefront_study::Row;
 pub use panels::scatter::{ScatterAxis, axes};
 pub use panels::{Panel, Panels};
 pub use pointing::{Description, Pointed, describe};
-pub use session::{MOST_PINS, MarkedCounts, Notice, Phase, ReferenceMark, Session, ViewState};
+pub use session::{MOST_PINS, MarkedCounts, Notice, Phase, ReferenceMark, Session, ViewState, WhyPoint};
 pub use study_editor::StudyEditor;
 pub use theme::dress;
 pub use threads::{Intake, Known, RunMessages, Wake};

@@ -13,6 +13,11 @@ pub const SELECTED: Color32 = Color32::from_rgb(255, 70, 60);
 /// Ground of the button of the main action of a panel, whose text is white.
 pub const PRIMARY: Color32 = Color32::from_rgb(20, 92, 190);
 
+/// Makes the button of the main action of a panel.
+pub fn primary(text: &str) -> Button<'_> {
+    Button::new(egui::RichText::new(text).color(Color32::WHITE).strong()).fill(PRIMARY)
+}
+
 /// Smallest contrast of text with its background, as the WCAG requires at level AA.
 const LEGIBLE: f64 = 4.5;
 

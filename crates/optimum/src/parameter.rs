@@ -54,6 +54,23 @@ pub enum Parameter {
     Bound(usize, End),
 }
 
+/// What a parameter is part of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ParameterKind {
+    /// A limit of what a design must have: at each pose, or as a whole.
+    Limit,
+    /// The size of the region, or the rotation range.
+    Region,
+    /// The range in which a guide or a telescopic leg moves.
+    Travel,
+    /// A bound of a design variable.
+    Bound,
+    /// The wall of a cross-section.
+    Section,
+    /// The material, or the stiffness of the actuators.
+    Material,
+}
+
 /// How a parameter is changed by a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Change {
@@ -258,17 +275,32 @@ impl Parameter {
         }
     }
 
+    /// Returns what the parameter is part of.
+    pub fn kind(self) -> ParameterKind {
+        match self {
+            Parameter::Threshold(_) | Parameter::Limit(_) => ParameterKind::Limit,
+            Parameter::WorkspaceRadius | Parameter::Width | Parameter::Height | Parameter::RotationRange => {
+                ParameterKind::Region
+            }
+            Parameter::RailStart
+            | Parameter::RailEnd
+            | Parameter::GuideStart
+            | Parameter::GuideEnd
+            | Parameter::TelescopicShortest => ParameterKind::Travel,
+            Parameter::Bound(..) => ParameterKind::Bound,
+            Parameter::LegWall | Parameter::PlatformWall => ParameterKind::Section,
+            Parameter::YoungsModulus
+            | Parameter::ShearModulus
+            | Parameter::Moduli
+            | Parameter::Density
+            | Parameter::YieldStrength
+            | Parameter::ActuatorStiffness => ParameterKind::Material,
+        }
+    }
+
     /// Returns whether less is asked for where the parameter is smaller: it is a requirement, not a property of the material.
     pub fn is_requirement(self) -> bool {
-        matches!(
-            self,
-            Parameter::Threshold(_)
-                | Parameter::Limit(_)
-                | Parameter::WorkspaceRadius
-                | Parameter::Width
-                | Parameter::Height
-                | Parameter::RotationRange
-        )
+        matches!(self.kind(), ParameterKind::Limit | ParameterKind::Region)
     }
 
     /// Returns the question with the parameter changed by a step, for a design of base radius `base_radius` \[m\]; `None` if a step has no

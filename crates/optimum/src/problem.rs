@@ -171,6 +171,11 @@ impl LocalProblem {
         self.start.architecture()
     }
 
+    /// The design whose other variables are kept.
+    pub fn start(&self) -> &Design {
+        &self.start
+    }
+
     /// The question.
     pub fn question(&self) -> &LocalQuestion {
         &self.question

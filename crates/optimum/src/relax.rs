@@ -9,7 +9,7 @@ use super::prices::Price;
 use super::problem::{LocalProblem, LocalQuestion};
 
 /// Largest change of the logarithm of a requirement: a factor of 20.
-const MOST: f64 = 2.995_732_273_553_991;
+pub(crate) const MOST: f64 = 2.995_732_273_553_991;
 
 /// Largest change of the logarithm of a requirement from one optimum to the next.
 const STEP: f64 = 0.5;
@@ -218,7 +218,7 @@ impl Way<'_> {
 }
 
 /// Returns the change of the logarithm of a parameter that asks for less: −1 for a requirement from below, 1 for one from above.
-fn way_of(question: &LocalQuestion, parameter: Parameter) -> f64 {
+pub(crate) fn way_of(question: &LocalQuestion, parameter: Parameter) -> f64 {
     let better_is_higher = match parameter {
         Parameter::Threshold(scalar) => scalar.entry().quantity.better == Better::Higher,
         Parameter::Limit(place) => matches!(question.settings.limits[place].bound, Bound::AtLeast(_)),

@@ -17,7 +17,7 @@ const SEEDS: u64 = 300;
 fn study() -> Study {
     let text = "name = \"tiny\"\n[grid.reference]\nphi_step_deg = 10\ndirections = 3\nray_steps = 6\nhalvings = 2\n\
                 [grid.fine]\nphi_step_deg = 10\ndirections = 6\nray_steps = 10\nhalvings = 2\n\
-                [optimizer]\nevaluations = 300\nthreads = 2\nseed = 3\n";
+                [optimizer]\nevaluations = 300\nthreads = 2\nseed = 3\nfront_designs = 8\n";
     Study::parse(text, "tiny").expect("a valid study")
 }
 

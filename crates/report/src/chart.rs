@@ -95,6 +95,8 @@ pub(super) enum Mark {
     Rings,
     /// Crosses.
     Crosses,
+    /// The area between the points and 0; a later series is drawn over an earlier one.
+    Area,
 }
 
 /// A series of points that are drawn alike.
@@ -119,7 +121,7 @@ pub(super) struct Chart {
     pub notes: Vec<([f64; 2], String)>,
     /// Whether the legend is in the upper left corner rather than in the lower right one.
     pub legend_above: bool,
-    /// Number of designs that lie beyond the end of the horizontal axis.
+    /// Number of designs that lie beyond an end of an axis.
     pub beyond: usize,
 }
 
@@ -127,6 +129,9 @@ pub(super) struct Chart {
 const SIZE: (u32, u32) = (640, 430);
 /// Drawing steps per unit: the plotting library rounds coordinates to integers.
 const FINE: u32 = 4;
+
+/// Opacity of an area, so that the grid is visible through it.
+const AREA_OPACITY: f64 = 0.85;
 
 const INK: RGBColor = RGBColor(40, 44, 52);
 const GRID: RGBColor = RGBColor(226, 229, 234);
@@ -281,8 +286,14 @@ impl Chart {
                 }
             }};
         }
+        if series.mark == Mark::Area {
+            let style = color.mix(AREA_OPACITY).filled();
+            let drawn = chart.draw_series(AreaSeries::new(points.iter().copied(), 0.0, color.mix(AREA_OPACITY)))?;
+            let corners = move |(x, y)| Rectangle::new([(x, y - 5 * step), (x + 18 * step, y + 5 * step)], style);
+            drawn.label(&series.name).legend(corners);
+        }
         match series.mark {
-            Mark::Line | Mark::ThinLine => {}
+            Mark::Line | Mark::ThinLine | Mark::Area => {}
             Mark::DottedLine => marks!(Circle, 2, color.filled()),
             Mark::Dots => marks!(Circle, 3, color.filled()),
             Mark::Rings => marks!(Circle, 6, color.stroke_width(2 * FINE)),

@@ -8,26 +8,15 @@ use kinefront_model::evaluation::{Constraint, Evaluation, Scale, Thresholds};
 use kinefront_model::mechanism::{Architecture, DesignVariable};
 use kinefront_scene::palette;
 use kinefront_scene::text::short;
+use kinefront_study::{Column, DriversAlong, ParameterKind, PriceCurve, stacked, usual_range};
 
 /// Colours of the values that the source of a reference design states, and of those that this model computes.
 const STATED: [u8; 3] = [200, 40, 40];
 const MODELLED: [u8; 3] = [20, 20, 20];
 /// Colour of MOGA-II (reimplementation).
 const GREY: [u8; 3] = [150, 150, 150];
-/// Colours of the design variables, of searches, and of the alternative assumptions, distinguishable on white.
-const COLORS: [[u8; 3]; 11] = [
-    [0, 0, 0],
-    [0, 114, 178],
-    [213, 94, 0],
-    [0, 158, 115],
-    [204, 121, 167],
-    [230, 159, 0],
-    [86, 180, 233],
-    [120, 94, 240],
-    [154, 99, 36],
-    [100, 143, 20],
-    [70, 90, 110],
-];
+/// Colour of the study as it is stated, among its variations.
+const BLACK: [u8; 3] = [0, 0, 0];
 
 /// Draws all figures in the order of the page.
 pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
@@ -38,6 +27,7 @@ pub(super) fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
         _ => figures.pairs(report)?,
     }
     figures.along_fronts(report)?;
+    figures.drivers(report)?;
     let alone = || report.fronts.alone.iter().map(|(architecture, _)| *architecture);
     if let Some(cost) = ClearanceCost::of(&report.study, &report.variations) {
         for architecture in alone() {
@@ -65,7 +55,7 @@ impl Figures {
         })?;
         let beyond = match chart.beyond {
             0 => String::new(),
-            count => format!(" Designs beyond the end of the axis: {count}."),
+            count => format!(" Designs beyond an end of the axis: {count}."),
         };
         let caption = format!("{words}.{beyond}");
         self.0.push(Figure {
@@ -80,7 +70,7 @@ impl Figures {
     /// The best value of the only objective over the evaluations of each search.
     fn progress(&mut self, report: &Report) -> Result<(), ReportError> {
         let question = &report.question;
-        let series = question.progress.iter().zip(COLORS.into_iter().skip(1).cycle());
+        let series = question.progress.iter().zip(palette::SERIES.into_iter().cycle());
         let series: Vec<Series> = series
             .map(|((name, points), color)| Series {
                 name: if question.progress.len() > 1 {
@@ -159,6 +149,35 @@ impl Figures {
         Ok(())
     }
 
+    /// The prices along each front.
+    fn drivers(&mut self, report: &Report) -> Result<(), ReportError> {
+        for along in report.drivers.iter().filter(|along| along.designs.len() > 1) {
+            let (architecture, slug) = (along.architecture, slug(along.architecture.name()));
+            for (kind, words, chart) in [
+                (
+                    "prices-limits",
+                    "Prices of the limits, one on top of the other,",
+                    prices(along, &[ParameterKind::Limit], Mark::Area),
+                ),
+                (
+                    "prices-bounds",
+                    "Prices of the region, the travels and the bounds",
+                    prices(
+                        along,
+                        &[ParameterKind::Region, ParameterKind::Travel, ParameterKind::Bound],
+                        Mark::Line,
+                    ),
+                ),
+            ] {
+                let words = format!("{words} along the front of the {architecture}");
+                if !chart.series.is_empty() {
+                    self.add(Topic::Drivers, format!("{kind}-{slug}"), words, chart)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// The design variables and the active constraints along each front.
     fn along_fronts(&mut self, report: &Report) -> Result<(), ReportError> {
         for (architecture, trends) in &report.trends {
@@ -189,6 +208,48 @@ impl Figures {
             }
         }
         Ok(())
+    }
+}
+
+/// Least price that a figure shows \[% for 1 %\].
+const SHOWN: f64 = 0.02;
+
+/// Creates a chart of the prices of the limits along a front, each area on top of those of the others, or of those of the region, the
+/// travels and the bounds, as lines.
+fn prices(along: &DriversAlong, kinds: &[ParameterKind], mark: Mark) -> Chart {
+    let mut curves = along.curves(kinds);
+    curves.retain(|curve| curve.largest() >= SHOWN);
+    if mark == Mark::Area {
+        curves = stacked(&curves);
+    }
+    let [low, high] = usual_range(&curves);
+    let is_beyond = |curve: &PriceCurve, place: usize| !(low..=high).contains(&curve.points[place][1]);
+    let beyond = (0..along.designs.len()).filter(|place| curves.iter().any(|curve| is_beyond(curve, *place)));
+    let beyond = beyond.count();
+    let coloured = curves.into_iter().zip(palette::SERIES.into_iter().cycle());
+    let mut series: Vec<Series> = coloured
+        .map(|(curve, color)| Series {
+            name: curve.label,
+            color,
+            mark,
+            points: curve
+                .points
+                .iter()
+                .map(|[at, price]| [*at, price.clamp(low, high)])
+                .collect(),
+        })
+        .collect();
+    // The highest area is drawn first, so that the lower ones cover it.
+    series.reverse();
+    let x = ChartAxis::about(Column::Quantity(along.along).title(), values(&series, 0));
+    let y = ChartAxis {
+        label: "price [% for 1 %]".into(),
+        range: [low, high],
+        logarithmic: false,
+    };
+    Chart {
+        beyond,
+        ..Chart::new(x, y, series)
     }
 }
 
@@ -347,7 +408,7 @@ fn along(report: &Report, trends: &[&Trend]) -> Chart {
     let x = ChartAxis::from_zero_if_near(report.question.label(report.question.compared()), values(0));
     let y = ChartAxis::from_zero("[m]", values(1));
     let mut series = Vec::new();
-    for (trend, color) in trends.iter().zip(COLORS.into_iter().skip(1)) {
+    for (trend, color) in trends.iter().zip(palette::SERIES) {
         series.push(Series {
             name: trend.variable.symbol().to_owned(),
             color,
@@ -443,7 +504,7 @@ fn sensitivity(report: &Report, architecture: Architecture) -> Chart {
     let series = report
         .variations
         .iter()
-        .zip(COLORS.iter().cycle())
+        .zip(std::iter::once(&BLACK).chain(&palette::SERIES).cycle())
         .filter_map(|(variation, &color)| {
             // All variations of the random seed share one legend entry.
             let name = match (variation.is_chance(), chance) {

@@ -97,6 +97,9 @@ impl Front {
     }
 }
 
+/// Largest number of designs of a front of which prices are determined.
+const PRICED: usize = 24;
+
 /// Fronts of several searches, pooled.
 #[derive(Debug, Clone)]
 pub struct Fronts {
@@ -134,6 +137,22 @@ impl Fronts {
         for front in alone.chain([&mut self.together]) {
             front.certify(study, problem);
         }
+    }
+
+    /// Returns the designs of which prices are determined: some of those that are shown of each front, evenly spread.
+    pub fn priced(&self) -> Vec<Evaluation> {
+        let some = |(_, front): &(Architecture, Front)| {
+            let objectives: Vec<Objectives> = front
+                .shown()
+                .map(|member| DesignProblem::outcome(member).objectives)
+                .collect();
+            let places = spread(&objectives, PRICED);
+            places
+                .into_iter()
+                .map(|place| front.shown[place].clone())
+                .collect::<Vec<_>>()
+        };
+        self.alone.iter().flat_map(some).collect()
     }
 
     /// Returns the front of an architecture.

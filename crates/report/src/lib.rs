@@ -34,7 +34,7 @@ use question::Question;
 
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Architecture;
-use kinefront_study::{AlgorithmName, DesignProblem, Study};
+use kinefront_study::{AlgorithmName, DesignProblem, DriversAlong, Study};
 
 /// Options of a report.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,6 +71,8 @@ enum Topic {
     Bars,
     /// Active constraints along a front.
     Active,
+    /// Prices along a front.
+    Drivers,
     /// Fronts with and without a required clearance.
     Clearance,
     /// Fronts under alternative assumptions.
@@ -112,6 +114,8 @@ pub struct Report {
     moga2: Option<SearchFronts>,
     references: Vec<EvaluatedReference>,
     trends: Vec<(Architecture, Vec<Trend>)>,
+    /// What drives the first objective along the front of each architecture.
+    drivers: Vec<DriversAlong>,
     variations: Vec<Variation>,
     question: Question,
     figures: Vec<Figure>,
@@ -230,6 +234,8 @@ impl Report {
         let trends: Vec<_> = with_trends
             .map(|(architecture, front)| (*architecture, trends(front, &study.bounds, along)))
             .collect();
+        tell("determining prices along the fronts");
+        let drivers = problem.drivers_along(&fronts.priced());
         let variations = match options.sensitivity {
             Some(evaluations) => assumptions::search_alternatives(&study, evaluations, tell)?,
             None => Vec::new(),
@@ -245,6 +251,7 @@ impl Report {
             moga2: moga2_fronts,
             references,
             trends,
+            drivers,
             variations,
             question,
             figures: Vec::new(),

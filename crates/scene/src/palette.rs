@@ -1,4 +1,4 @@
-//! The colours of architectures, parts, constraints and clearances in every view, as red, green and blue.
+//! The colours of architectures, parts, constraints, clearances and series in every view, as red, green and blue.
 
 use std::sync::LazyLock;
 
@@ -8,6 +8,20 @@ use kinefront_model::mechanism::Architecture;
 
 /// Contour at a field's threshold, and its mark in the legend.
 pub const THRESHOLD: [u8; 3] = [255, 70, 200];
+
+/// Colours of the series of a chart, which can be told apart on a light and on a dark ground.
+pub const SERIES: [[u8; 3]; 10] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [230, 159, 0],
+    [86, 180, 233],
+    [120, 94, 240],
+    [154, 99, 36],
+    [100, 143, 20],
+    [70, 90, 110],
+];
 
 /// Returns the colour of an architecture: a hue for each chain, and a shade for each driven joint. The hues can be distinguished with
 /// any type of colour vision (Okabe and Ito).

@@ -51,9 +51,11 @@ pub use control::RunControl;
 pub use durable::{WriteError, open_regular, read_regular, replace, write_whole};
 pub use events::{Batch, EndReason, Event, GenerationSummary, RunSummary, RunTimes, Started, Subscriber, front_marks};
 pub use front::{FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
+pub use kinefront_optimum::ParameterKind;
 pub use local::{
-    ActiveJson, Condition, ConditionError, Drivers, DriversOptions, InactiveJson, LocalDesign, LocalFault, PriceJson,
-    RelaxationJson, WhyNotJson, Wish, WishFault, WishOutcome,
+    ActiveJson, Condition, ConditionError, DrivenPart, Drivers, DriversAlong, DriversOptions, Hindrance, InactiveJson,
+    LocalDesign, LocalFault, PriceCurve, PriceJson, RelaxationJson, UnmetJson, WhyNotJson, Wish, WishFault, WishJson,
+    WishOutcome, stacked, usual_range,
 };
 pub use overrides::Overrides;
 pub use prepared::PreparedStudy;

@@ -391,7 +391,7 @@ impl DesignProblem {
         })
     }
 
-    fn maximises_radius(&self) -> bool {
+    pub(super) fn maximises_radius(&self) -> bool {
         let is_radius = |objective: &Objective| objective.quantity == Quantity::WorkspaceRadius;
         self.model.settings().objectives.iter().any(is_radius)
     }

@@ -75,6 +75,16 @@ class Study:
         ([True, False], (2, 6, 6), [0.985, nan])
         """
 
+    def why(self, designs: Designs, wished: float, *, held: Mapping[str, float] = {}) -> dict[str, Any]:
+        """Return why the first objective cannot have the value ``wished``, as ``kinefront why --json`` does.
+
+        >>> study = Study.paper()
+        >>> front = ["3-PRR R=3.89 r=0.71 Lb=2.567 rj=0.0247 rp=0.0349"]
+        >>> why = study.why(front, 160.0, held={"workspace_radius_m": 1.2})["why_not"]
+        >>> [round(found["needed"], 2) for found in why["relaxations"] if found["parameter"] == "k_z_min"]
+        [0.76]
+        """
+
     def optimize(
         self,
         *,
@@ -102,6 +112,31 @@ class Design:
 
     def evaluate(self, grid: str = "reference") -> dict[str, Any]: ...
     def poses(self, poses: NDArray[np.float64]) -> dict[str, Any]: ...
+    def prices(
+        self,
+        *,
+        held: Mapping[str, float] = {},
+        bars_only: bool = False,
+        steps: bool = False,
+        wish: float | None = None,
+    ) -> dict[str, Any]:
+        """Return what drives the first objective at the best design near this one, as ``kinefront prices --json`` does.
+
+        >>> design = Study.paper().design("3-PRR R=3.89 r=0.71 Lb=2.567 rj=0.0247 rp=0.0349")
+        >>> prices = design.prices(held={"workspace_radius_m": 1.2})["prices"]
+        >>> {found["parameter"]: round(found["price"], 2) for found in prices if found["parameter"] in ("k_z_min", "k_xy_min")}
+        {'k_xy_min': 0.11, 'k_z_min': 0.41}
+        """
+
+    def wish(self, conditions: Sequence[str], *, keep: Sequence[str] = ()) -> dict[str, Any]:
+        """Return the nearest design that has what is wished for, verified and proved, as ``kinefront wish --json`` does.
+
+        >>> design = Study.paper().design("3-PRR R=3.89 r=0.71 Lb=2.567 rj=0.0247 rp=0.0349")
+        >>> found = design.wish(["k_xy_n_per_m >= 1.2e6"])
+        >>> found["outcome"], found["proof"]
+        ('granted', 'proved')
+        """
+
     def export(self, format: str, pose: Sequence[float] | None = None) -> str | bytes: ...
 
 class Table:

@@ -2,10 +2,9 @@
 
 use kinefront_model::evaluation::Quantity;
 use kinefront_scene::text::number;
-use kinefront_study::{Drivers, PriceJson, WhyNotJson, WishOutcome};
+use kinefront_study::{Drivers, DriversAlong, Hindrance, PriceJson, WhyNotJson, WishOutcome};
 
 use super::table;
-use crate::cli::wish::{proof, word};
 
 /// Prices below this are told as free.
 const FREE: f64 = 1e-4;
@@ -70,6 +69,41 @@ pub fn drivers(heading: &str, drivers: &Drivers) -> String {
     text
 }
 
+/// Formats what drives the objective along the front of an architecture.
+pub fn drivers_along(along: &DriversAlong) -> String {
+    let mut text = along.architecture.to_string();
+    for sentence in along.sentences() {
+        text = format!("{text}\n  {sentence}");
+    }
+    text
+}
+
+/// Formats what stands in the way of a study of which no design is feasible.
+pub fn hindrances(found: &[Hindrance]) -> String {
+    if found.is_empty() {
+        return "no single requirement stands in the way: no design was found with any one of them relaxed to a twentieth, or to twenty times \
+                its limit. Two or more have to give, or the bounds of the design variables."
+            .to_owned();
+    }
+    let mut facts = table(
+        ["relaxed alone", "the study states", "can be had", "with the design"],
+        &[1, 2],
+    );
+    for hindrance in found {
+        let text = |value: f64| format!("{} {}", number(value), hindrance.unit).trim_end().to_owned();
+        facts.add_row([
+            hindrance.label.clone(),
+            text(hindrance.stated),
+            match hindrance.is_enough {
+                true => "as stated: search longer".to_owned(),
+                false => text(hindrance.possible),
+            },
+            hindrance.design.clone(),
+        ]);
+    }
+    facts.to_string()
+}
+
 fn remark(price: &PriceJson) -> String {
     match price.bars_cannot_repair.as_slice() {
         [] => String::new(),
@@ -131,9 +165,9 @@ pub fn wish(heading: &str, outcome: &WishOutcome, shown: &[Quantity]) -> String 
         .certified
         .as_ref()
         .map_or("nothing is proved about its workspace".to_owned(), |certified| {
-            format!("its workspace is {}", proof(certified))
+            format!("its workspace is {}", certified.state())
         });
-    let mut text = format!("{facts}\n{}: {}; {proved}", word(outcome), found.design);
+    let mut text = format!("{facts}\n{}: {}; {proved}", outcome.word(), found.design);
     for (condition, value) in &outcome.unmet {
         let entry = condition.0.quantity.entry();
         text = format!(

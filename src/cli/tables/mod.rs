@@ -3,7 +3,7 @@
 mod drivers;
 mod motion;
 
-pub use drivers::{drivers, wish};
+pub use drivers::{drivers, drivers_along, hindrances, wish};
 pub use motion::{dynamics, task};
 
 use super::wire::CertificateJson;

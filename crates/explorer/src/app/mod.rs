@@ -290,6 +290,9 @@ impl eframe::App for Explorer {
                 frame,
             };
             self.tree.ui(&mut drawing, ui);
+            if self.session.take_new_why() {
+                self.show(Panel::WhyNot);
+            }
             if let Some(purpose) = self.session.take_file_request() {
                 self.ask(&ctx, purpose);
             }

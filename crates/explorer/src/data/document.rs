@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::Filter;
+use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::Design;
+use kinefront_study::CertifiedWorkspace;
 
 /// Where a design comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +20,8 @@ pub enum DesignOrigin {
     },
     /// Kept earlier; the value is its index in [`Document::kept`].
     Kept(usize),
+    /// The answer to a wish; the value is its index in [`Document::wished`].
+    Wished(usize),
     /// A reference design of the study; the value is its index among the references.
     Reference(usize),
 }
@@ -40,7 +44,20 @@ pub struct Named {
     pub design: Design,
 }
 
-/// The user's selection, pins, kept designs, stars, notes, marked designs and filter.
+/// A design that answers a wish.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wished {
+    /// Name of the design.
+    pub name: String,
+    /// The design from which the wish started.
+    pub from: Design,
+    /// Its evaluation on the fine grid.
+    pub evaluation: Arc<Evaluation>,
+    /// What is proved about its workspace.
+    pub certified: Option<CertifiedWorkspace>,
+}
+
+/// The user's selection, pins, kept designs, answers to wishes, stars, notes, marked designs and filter.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Document {
     /// The selected design.
@@ -49,6 +66,8 @@ pub struct Document {
     pub pins: Vec<Named>,
     /// Modified designs that the user has kept.
     pub kept: Vec<Named>,
+    /// Designs that answer wishes.
+    pub wished: Vec<Wished>,
     /// Starred designs of the run, by id.
     pub stars: BTreeSet<usize>,
     /// Notes on designs of the run, by id.

@@ -6,7 +6,7 @@ mod front;
 mod history;
 mod store;
 
-pub use document::{DesignOrigin, Document, Named, Selected};
+pub use document::{DesignOrigin, Document, Named, Selected, Wished};
 pub use filter::{Filter, FilterError, PreparedFilter};
 pub use front::{FrontEntry, front_of};
 pub use history::History;

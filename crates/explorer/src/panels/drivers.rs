@@ -28,7 +28,7 @@ impl DriversPanel {
             ui.weak(format!("{name}: waiting for the fine grid and the prices…"));
             return;
         };
-        match &answer.found {
+        match answer.as_ref() {
             Ok(drivers) => {
                 ScrollArea::vertical()
                     .show(ui, |ui| show(ui, session, &name, drivers))

@@ -11,6 +11,7 @@ mod modes;
 mod parallel;
 mod plan;
 mod pose;
+mod prices;
 mod progress;
 mod question;
 mod run;
@@ -18,6 +19,8 @@ pub mod scatter;
 mod sketch;
 mod space;
 mod study;
+mod why_not;
+mod wish;
 
 use egui::Ui;
 use serde::{Deserialize, Serialize};
@@ -133,6 +136,10 @@ panels! {
     Inspector = inspector: inspector::Inspector, "Inspector", Design;
     /// What drives the mass of the selected design.
     Drivers = drivers: drivers::DriversPanel, "Drivers", Design;
+    /// What is wished of the selected design, and the design that has it.
+    Wish = wish: wish::WishPanel, "Wish", Design;
+    /// Why a point beyond the front cannot be had.
+    WhyNot = why_not: why_not::WhyNotPanel, "Why not", Design;
     /// Decision support, and the filter.
     Choose = choose: choose::ChoosePanel, "Choose", Design;
     /// The pose of the selected design.
@@ -144,6 +151,8 @@ panels! {
     Front = front: front::FrontPanel, "Front", Designs;
     /// The plot in parallel coordinates.
     Parallel = parallel: parallel::ParallelPanel, "Parallel coordinates", Designs;
+    /// What drives the mass along the front.
+    Prices = prices: prices::PricesPanel, "Prices", Designs;
     /// Pinned designs side by side.
     Compare = compare: compare::ComparePanel, "Compare", Designs;
 }

@@ -144,8 +144,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
                 ui.add_enabled(false, egui::Button::new("⏸ Pause"));
             }
             _ => {
-                let start = egui::Button::new(egui::RichText::new("▶ Start").strong().color(egui::Color32::WHITE))
-                    .fill(theme::PRIMARY);
+                let start = theme::primary("▶ Start");
                 let why = "the study has faults, which the panel Study tells";
                 if ui.add_enabled(valid, start).on_disabled_hover_text(why).clicked() {
                     session.start();

@@ -148,6 +148,7 @@ impl Session {
         self.era += 1;
         self.following = true;
         self.followed = None;
+        self.asking.forget();
         // The ids of the previous run are meaningless now; pinned and kept designs and the filter remain.
         let before = self.history.present();
         let document = Document {
@@ -245,6 +246,7 @@ impl Session {
             }
         }
         self.follow();
+        self.take_wish();
         self.notices
             .retain(|notice| notice.is_error || notice.since.elapsed() < GLANCE);
         self.answer = self.scene.answer();
@@ -319,6 +321,7 @@ impl Session {
         let of_front = || {
             let id = match self.document().selected.as_ref()?.origin {
                 DesignOrigin::Evaluated(id) => id,
+                DesignOrigin::Wished(_) => return self.wished_evaluation(design),
                 _ => return None,
             };
             self.front[*self.place_on_front.get(&id)?].evaluation.clone()

@@ -1,6 +1,7 @@
 //! The complete state of the window, independent of any window: the run, its designs, the selection, and the requests
 //! to the scene.
 
+mod asking;
 mod control;
 mod pose;
 mod selection;
@@ -10,10 +11,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use self::asking::Asking;
+pub use self::asking::WhyPoint;
 pub use self::selection::MarkedCounts;
 use super::data::{DesignOrigin, Document, History, Named, Selected};
 use super::files::Purpose;
-use super::threads::{Answer, DriversAnswer, DriversThread, Known, Running, SceneThread, Wake, Writing};
+use super::threads::{Answer, Known, Running, SceneThread, Wake, Writing};
 use super::{Filter, FrontEntry, Row, Store, StudyEditor};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model, Quantity};
 use kinefront_model::spatial::Pose;
@@ -118,7 +121,7 @@ pub struct Session {
     generation_times: Vec<Duration>,
     references: Vec<ReferenceMark>,
     scene: SceneThread,
-    drivers: DriversThread,
+    asking: Asking,
     answer: Answer,
     requested: u64,
     /// Number of the last failed request whose message was shown.
@@ -159,7 +162,7 @@ impl Session {
             generations: Vec::new(),
             generation_times: Vec::new(),
             scene: SceneThread::start(scene, move || waking())?,
-            drivers: DriversThread::new(Arc::clone(&wake)),
+            asking: Asking::new(&wake),
             answer: Answer::default(),
             requested: 0,
             failure_shown: None,
@@ -285,6 +288,7 @@ impl Session {
     pub fn certified(&self) -> Option<CertifiedWorkspace> {
         match self.document().selected.as_ref()?.origin {
             DesignOrigin::Evaluated(id) => self.front[self.place_on_front(id)?].certified,
+            DesignOrigin::Wished(index) => self.document().wished.get(index)?.certified,
             _ => None,
         }
     }
@@ -358,13 +362,6 @@ impl Session {
             .filter(|known| known.evaluation.design == selected.design)
     }
 
-    /// Returns what drives the mass of the selected design, once that and its evaluation on the fine grid are known.
-    pub fn drivers(&mut self) -> Option<Arc<DriversAnswer>> {
-        let known = self.known().filter(|known| known.verified)?;
-        let evaluation = Arc::clone(&known.evaluation);
-        self.drivers.ask(&self.as_run, &evaluation)
-    }
-
     /// Returns the fields that have values for the selected design, or all without one.
     pub fn fields(&self) -> Vec<Field> {
         match &self.document().selected {
@@ -407,6 +404,11 @@ impl Session {
             DesignOrigin::Modified { from: Some(id) } => format!("modified from #{id}"),
             DesignOrigin::Modified { from: None } => "modified".to_owned(),
             DesignOrigin::Kept(index) => document.kept.get(*index).map_or("kept", |kept| &kept.name).to_owned(),
+            DesignOrigin::Wished(index) => document
+                .wished
+                .get(*index)
+                .map_or("wish", |wished| &wished.name)
+                .to_owned(),
             DesignOrigin::Reference(index) => self
                 .references
                 .get(*index)

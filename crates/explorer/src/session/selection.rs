@@ -114,15 +114,34 @@ impl Session {
         let origin = match id {
             // After a new run, the number may belong to another design.
             Some(id) if self.store().design(id) == Some(named.design) => DesignOrigin::Evaluated(id),
-            _ => match self.document().kept.iter().position(|kept| kept.design == named.design) {
-                Some(index) => DesignOrigin::Kept(index),
-                None => DesignOrigin::Modified { from: None },
-            },
+            _ => self.origin_of_own(&named.design),
         };
         self.select_design(Selected {
             design: named.design,
             origin,
         });
+    }
+
+    /// Returns the origin of a design that is none of the run.
+    fn origin_of_own(&self, design: &Design) -> DesignOrigin {
+        let document = self.document();
+        let kept = document.kept.iter().position(|kept| kept.design == *design);
+        let mut wished = document.wished.iter();
+        let wished = wished.position(|wished| wished.evaluation.design == *design);
+        match (kept, wished) {
+            (Some(index), _) => DesignOrigin::Kept(index),
+            (None, Some(index)) => DesignOrigin::Wished(index),
+            (None, None) => DesignOrigin::Modified { from: None },
+        }
+    }
+
+    /// Selects a design that answers a wish, by its index in the document.
+    pub fn select_wished(&mut self, index: usize) {
+        if let Some(wished) = self.document().wished.get(index) {
+            let design = wished.evaluation.design;
+            let origin = DesignOrigin::Wished(index);
+            self.select_design(Selected { design, origin });
+        }
     }
 
     /// Changes one variable of the selected design, as part of a gesture.
@@ -144,7 +163,7 @@ impl Session {
                 let from = match selected.origin {
                     DesignOrigin::Evaluated(id) => Some(id),
                     DesignOrigin::Modified { from } => from,
-                    DesignOrigin::Kept(_) | DesignOrigin::Reference(_) => None,
+                    DesignOrigin::Kept(_) | DesignOrigin::Wished(_) | DesignOrigin::Reference(_) => None,
                 };
                 self.following = false;
                 self.view.pose = None;

@@ -1,15 +1,18 @@
-//! The threads beside the window: the run with its listeners, and the threads that evaluate and draw the selected design.
+//! The threads beside the window: the run with its listeners, the threads that evaluate and draw the selected design, and those that
+//! answer questions about designs.
 
 use std::sync::Arc;
 
-mod drivers;
+mod answering;
 mod intake;
 mod mailbox;
+mod questions;
 mod run;
 mod scene;
 
-pub use drivers::{DriversAnswer, DriversThread};
+pub use answering::AnsweringThread;
 pub use intake::{Intake, RunMessages};
+pub use questions::{AlongQuestion, DriversQuestion, HindrancesQuestion, StudyOfRun, WhyQuestion, WishQuestion};
 pub use run::{Running, Writing};
 pub use scene::{Answer, Known, Request, SceneThread};
 

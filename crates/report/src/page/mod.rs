@@ -3,6 +3,7 @@
 mod clearance;
 mod comparison;
 mod constraints;
+mod drivers;
 mod fronts;
 mod made;
 mod paper;
@@ -11,6 +12,8 @@ mod question;
 mod references;
 mod sensitivity;
 mod variables;
+
+use std::borrow::Cow;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -55,13 +58,17 @@ pub(super) fn html(report: &Report) -> String {
 /// A section of the page.
 struct Section {
     id: &'static str,
-    title: &'static str,
+    title: Cow<'static, str>,
     contents: Markup,
+}
+
+fn section(id: &'static str, title: impl Into<Cow<'static, str>>, contents: Markup) -> Section {
+    let title = title.into();
+    Section { id, title, contents }
 }
 
 /// Returns the sections that there is something to say in.
 fn sections(report: &Report) -> Vec<Section> {
-    let section = |id: &'static str, title: &'static str, contents: Markup| Section { id, title, contents };
     let question = &report.question;
     let mut sections = vec![section("question", "The question", question::asked(report))];
     if question.is_of_two() && report.fronts.alone.len() > 1 {
@@ -82,6 +89,10 @@ fn sections(report: &Report) -> Vec<Section> {
         "Active constraints",
         constraints::constraints(report),
     ));
+    if report.drivers.iter().any(|along| !along.designs.is_empty()) {
+        let title = format!("What drives the {}", question.name(0));
+        sections.push(section("drivers", title, drivers::drivers(report)));
+    }
     sections.push(section(
         "clearance",
         "Clearance between members",

@@ -3,7 +3,8 @@
 use kinefront_model::evaluation::{PoseScalar, Quantity};
 use kinefront_model::mechanism::JointKind;
 use kinefront_optimum::{
-    Critical, LocalProblem, PRICE_STEPS, Polished, Price, Relaxation, RelaxationOf, Requirement, reported_place,
+    Critical, LocalProblem, PRICE_STEPS, ParameterKind, Polished, Price, Relaxation, RelaxationOf, Requirement,
+    reported_place,
 };
 use serde::Serialize;
 
@@ -104,9 +105,9 @@ pub struct PriceJson {
     pub off_by_20_percent: Option<[Option<f64>; 2]>,
     /// Whether the price below and the price above differ.
     pub kink: bool,
-    /// Whether the parameter asks something of the design.
+    /// What the parameter is part of.
     #[serde(skip)]
-    pub is_requirement: bool,
+    pub kind: ParameterKind,
 }
 
 /// A requirement that is not active.
@@ -229,7 +230,7 @@ impl Drivers {
         let cheap = self
             .prices
             .iter()
-            .filter(|price| price.is_requirement && !price.is_dear(free));
+            .filter(|price| price.is_requirement() && !price.is_dear(free));
         cheap.map(|price| price.label.as_str()).collect()
     }
 
@@ -242,6 +243,10 @@ impl Drivers {
 }
 
 impl PriceJson {
+    fn is_requirement(&self) -> bool {
+        matches!(self.kind, ParameterKind::Limit | ParameterKind::Region)
+    }
+
     fn is_dear(&self, free: f64) -> bool {
         self.price.abs() >= free || self.kink
     }
@@ -275,7 +280,7 @@ fn price_json(problem: &LocalProblem, price: &Price, actuator: JointKind) -> Pri
         steps: price.steps.iter().map(|step| [step.step, step.change]).collect(),
         off_by_20_percent: (!price.steps.is_empty()).then(|| price.off_by_20_percent()),
         kink: price.is_kink(),
-        is_requirement: parameter.is_requirement(),
+        kind: parameter.kind(),
     }
 }
 

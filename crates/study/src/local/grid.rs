@@ -62,7 +62,7 @@ impl DesignProblem {
     fn improved(&self, evaluation: &Evaluation) -> Option<Design> {
         let local = Some(evaluation)
             .filter(|evaluation| evaluation.is_feasible())
-            .and_then(|evaluation| self.local_of(evaluation, None).ok())?;
+            .and_then(|evaluation| self.local_of(evaluation, &[]).ok())?;
         // An objective that the local problem does not know would be given up.
         let left_out = local.problem.left_out();
         let objectives = &self.model().settings().objectives;

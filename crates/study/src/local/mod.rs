@@ -1,15 +1,21 @@
 //! A design of a study as a local problem: the best design near it, what each requirement costs, wishes, and why a wish cannot be had.
 
+mod along;
 mod drivers;
 mod grid;
+mod hindrances;
 mod why;
 mod wish;
+mod wish_json;
 
+pub use along::{DrivenPart, DriversAlong, PriceCurve, stacked, usual_range};
 pub use drivers::{ActiveJson, Drivers, DriversOptions, InactiveJson, PriceJson, RelaxationJson, WhyNotJson};
+pub use hindrances::Hindrance;
 pub use wish::{Condition, ConditionError, Wish, WishFault, WishOutcome};
+pub use wish_json::{UnmetJson, WishJson};
 
-use kinefront_model::evaluation::{Bound, Evaluation, GridChoice, Quantity};
-use kinefront_model::mechanism::Design;
+use kinefront_model::evaluation::{Evaluation, GridChoice, Objective, Quantity};
+use kinefront_model::mechanism::{Architecture, Design};
 use kinefront_model::workspace::{Region, WorkspaceSpec};
 use kinefront_optimum::{LocalError, LocalProblem, LocalQuestion, Polished};
 
@@ -44,26 +50,31 @@ pub struct LocalDesign {
 
 impl DesignProblem {
     /// Returns the local problem of a design: the first objective is improved, the other objectives keep the values that the design has on
-    /// the fine grid. `radius` takes the place of its workspace radius \[m\].
+    /// the fine grid, or those of `held`.
     ///
     /// # Errors
     /// [`LocalFault`] if an objective is not known, or is none of a local problem.
-    pub fn local(&self, design: &Design, radius: Option<f64>) -> Result<LocalDesign, LocalFault> {
-        self.local_of(&self.model().evaluate(design, GridChoice::Fine), radius)
+    pub fn local(&self, design: &Design, held: &[(Quantity, f64)]) -> Result<LocalDesign, LocalFault> {
+        self.local_of(&self.model().evaluate(design, GridChoice::Fine), held)
     }
 
     /// Returns the local problem of a design that was evaluated.
     ///
     /// # Errors
     /// As [`DesignProblem::local`].
-    pub fn local_of(&self, evaluation: &Evaluation, radius: Option<f64>) -> Result<LocalDesign, LocalFault> {
+    pub fn local_of(&self, evaluation: &Evaluation, held: &[(Quantity, f64)]) -> Result<LocalDesign, LocalFault> {
         let settings = self.model().settings();
         let is_feasible = evaluation.is_feasible();
-        let value = |quantity: Quantity| match (quantity, radius) {
-            (Quantity::WorkspaceRadius, Some(radius)) => Some(radius),
+        let stated = |quantity: Quantity| {
+            held.iter()
+                .find(|(other, _)| *other == quantity)
+                .map(|(_, value)| *value)
+        };
+        let value = |quantity: Quantity| match (stated(quantity), quantity) {
+            (Some(value), _) => Some(value),
             // A quantity of the design as a whole does not depend on any pose.
-            (Quantity::Mass, _) => Some(self.model().mass(&evaluation.design)),
-            _ => evaluation.quantities.get(quantity).filter(|_| is_feasible),
+            (None, Quantity::Mass) => Some(self.model().mass(&evaluation.design)),
+            (None, quantity) => evaluation.quantities.get(quantity).filter(|_| is_feasible),
         };
         let region = match &settings.workspace.region {
             Region::Largest => Region::Disc(
@@ -76,17 +87,7 @@ impl DesignProblem {
         let Some((first, others)) = settings.objectives.split_first() else {
             return Err(LocalFault::Unknown("objective"));
         };
-        let mut question = LocalQuestion {
-            workspace: WorkspaceSpec {
-                region,
-                ..settings.workspace.clone()
-            },
-            objective: *first,
-            variables: self.free_variables(evaluation.design.architecture()),
-            is_of_bars: false,
-            slack: 0.0,
-            settings: settings.clone(),
-        };
+        let mut question = self.question_for(region, *first, evaluation.design.architecture());
         for objective in others {
             let quantity = objective.quantity;
             let held = value(quantity).ok_or(LocalFault::Unknown(quantity.entry().label))?;
@@ -96,25 +97,32 @@ impl DesignProblem {
             problem: LocalProblem::new(question, &evaluation.design)?,
             design: evaluation.design,
             home: evaluation.home_phi_deg.map(f64::to_radians),
-            scale: match (radius, evaluation.workspace_radius()) {
+            scale: match (stated(Quantity::WorkspaceRadius), evaluation.workspace_radius()) {
                 (Some(radius), own) if own > 0.0 => radius / own,
                 _ => 1.0,
             },
         })
     }
 
+    /// Returns the question of the study for a region of known size.
+    fn question_for(&self, region: Region, objective: Objective, architecture: Architecture) -> LocalQuestion {
+        let settings = self.model().settings();
+        LocalQuestion {
+            workspace: WorkspaceSpec {
+                region,
+                ..settings.workspace.clone()
+            },
+            objective,
+            variables: self.free_variables(architecture),
+            is_of_bars: false,
+            slack: 0.0,
+            settings: settings.clone(),
+        }
+    }
+
     /// Returns the workspace radius that is a limit, where it is no objective \[m\].
     fn held_radius(&self) -> Option<f64> {
-        let settings = self.model().settings();
-        let is_objective = settings
-            .objectives
-            .iter()
-            .any(|objective| objective.quantity == Quantity::WorkspaceRadius);
-        let of_limit = settings.limits.iter().find_map(|limit| match limit.bound {
-            Bound::AtLeast(radius) if limit.quantity == Quantity::WorkspaceRadius => Some(radius),
-            _ => None,
-        });
-        of_limit.filter(|_| !is_objective)
+        self.least_radius().filter(|_| !self.maximises_radius())
     }
 }
 

@@ -7,20 +7,21 @@ use kinefront_optimum::Polished;
 use super::{Drivers, DriversOptions, LocalDesign, LocalFault};
 use crate::DesignProblem;
 
-/// Designs of an architecture from which the best one for a point is looked for: those whose radius is nearest.
+/// Designs of an architecture from which the best one for a point is looked for: those whose other objectives are nearest.
 const NEAREST: usize = 3;
 
 impl DesignProblem {
-    /// Returns why a value of the first objective cannot be had with a workspace radius \[m\] (or for the region of the study), or that it
-    /// can: `why_not` of the answer has a deficit that is not negative then. `designs` are those of a front.
+    /// Returns why a value of the first objective cannot be had with the values `held` of other objectives (or for the region of the
+    /// study), or that it can: `why_not` of the answer has a deficit that is not negative then. An objective that is not held keeps the value
+    /// of the design of the front that is nearest. `designs` are those of a front.
     ///
     /// # Errors
-    /// [`LocalFault`] if no design near the front holds the radius.
-    pub fn why(&self, designs: &[Design], radius: Option<f64>, wished: f64) -> Result<Drivers, LocalFault> {
+    /// [`LocalFault`] if no design near the front holds these values.
+    pub fn why(&self, designs: &[Design], held: &[(Quantity, f64)], wished: f64) -> Result<Drivers, LocalFault> {
         let mut best: Option<(LocalDesign, Polished)> = None;
         let mut fault = LocalFault::Unknown("workspace radius");
-        for evaluation in self.nearest(designs, radius) {
-            let found = self.local_of(&evaluation, radius).and_then(|local| {
+        for evaluation in self.nearest(designs, held) {
+            let found = self.local_of(&evaluation, held).and_then(|local| {
                 let polished = local.best()?;
                 Ok((local, polished))
             });
@@ -46,19 +47,24 @@ impl DesignProblem {
         Ok(local.drivers_of(&local.problem, &polished, options))
     }
 
-    /// Returns evaluations of the designs of each architecture whose radius is nearest.
-    fn nearest(&self, designs: &[Design], radius: Option<f64>) -> Vec<Evaluation> {
+    /// Returns evaluations of the designs of each architecture whose values are nearest to those that are held; of a study with one
+    /// objective, those of the best designs.
+    fn nearest(&self, designs: &[Design], held: &[(Quantity, f64)]) -> Vec<Evaluation> {
+        let distance = |evaluation: &Evaluation| {
+            let off = |(quantity, value): &(Quantity, f64)| {
+                let own = evaluation.quantities.get(*quantity).unwrap_or(f64::INFINITY);
+                (own - value).abs() / value.abs().max(f64::MIN_POSITIVE)
+            };
+            match held {
+                [] => evaluation.objectives.first().copied().unwrap_or(0.0),
+                held => held.iter().map(off).fold(0.0, f64::max),
+            }
+        };
         let mut evaluated: Vec<(f64, Evaluation)> = designs
             .iter()
             .map(|design| self.model().evaluate(design, GridChoice::Reference))
             .filter(Evaluation::is_feasible)
-            .map(|evaluation| {
-                let distance = match radius {
-                    Some(radius) => (evaluation.workspace_radius() - radius).abs(),
-                    None => evaluation.quantities.get(Quantity::Mass).unwrap_or(0.0),
-                };
-                (distance, evaluation)
-            })
+            .map(|evaluation| (distance(&evaluation), evaluation))
             .collect();
         evaluated.sort_by(|a, b| a.0.total_cmp(&b.0));
         let of = |architecture: &Architecture| {

@@ -3,7 +3,9 @@
 use std::str::FromStr;
 
 use kinefront_model::certify::CertifyOptions;
-use kinefront_model::evaluation::{Better, Bound, Evaluation, GridChoice, PoseScalar, Quantity, QuantityLimit};
+use kinefront_model::evaluation::{
+    Better, Bound, Evaluation, GridChoice, ModelSettings, PoseScalar, Quantity, QuantityLimit,
+};
 use kinefront_model::mechanism::Design;
 use kinefront_model::workspace::Region;
 use kinefront_optimum::{LocalProblem, LocalQuestion, Polished};
@@ -141,8 +143,9 @@ impl DesignProblem {
                 left_out: Vec::new(),
             });
         }
-        let local = self.local_of(&before, None)?;
+        let local = self.local_of(&before, &[])?;
         let target = Target {
+            settings: self.model().settings(),
             local: &local,
             before: &before,
             conditions: &conditions,
@@ -205,6 +208,8 @@ fn kept(evaluation: &Evaluation, quantity: Quantity) -> Option<Condition> {
 
 /// A wish, on the way from a design.
 struct Target<'a> {
+    /// The settings of the study, without the values at which objectives are held.
+    settings: &'a ModelSettings,
     local: &'a LocalDesign,
     before: &'a Evaluation,
     conditions: &'a [Condition],
@@ -262,25 +267,31 @@ impl Target<'_> {
                 Quantity::Worst(scalar)
                     if scalar.bounds_poses() && is_at_least == (scalar.entry().quantity.better == Better::Higher) =>
                 {
-                    let stated = self.stricter(&question, scalar, value);
-                    question.settings.thresholds.set(scalar, Some(stated));
+                    question
+                        .settings
+                        .thresholds
+                        .set(scalar, Some(self.stricter(scalar, value)));
                 }
-                _ => question.settings.limits.push(QuantityLimit {
-                    quantity,
-                    bound: if is_at_least {
-                        Bound::AtLeast(value)
-                    } else {
-                        Bound::AtMost(value)
-                    },
-                }),
+                _ => {
+                    let limits = &mut question.settings.limits;
+                    limits.retain(|limit| limit.quantity != quantity || self.settings.limits.contains(limit));
+                    limits.push(QuantityLimit {
+                        quantity,
+                        bound: if is_at_least {
+                            Bound::AtLeast(value)
+                        } else {
+                            Bound::AtMost(value)
+                        },
+                    });
+                }
             }
         }
         question
     }
 
     /// Returns the stricter of a value and of the limit that the study states, so that a wish never breaks the study.
-    fn stricter(&self, question: &LocalQuestion, scalar: PoseScalar, value: f64) -> f64 {
-        let stated = question.settings.thresholds.get(scalar).unwrap_or(value);
+    fn stricter(&self, scalar: PoseScalar, value: f64) -> f64 {
+        let stated = self.settings.thresholds.get(scalar).unwrap_or(value);
         match scalar.entry().quantity.better {
             Better::Higher => value.max(stated),
             Better::Lower => value.min(stated),

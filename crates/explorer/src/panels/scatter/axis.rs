@@ -45,6 +45,11 @@ impl ScatterAxis {
         if self.log { value.max(1e-12).log10() } else { value }
     }
 
+    /// Returns the value at a place of the plot.
+    pub(super) fn value(self, place: f64) -> f64 {
+        if self.log { libm::exp10(place) } else { place }
+    }
+
     pub(super) fn title(self) -> String {
         let better = match self.quantity.better() {
             Some(Better::Lower) => "  ◀ better",

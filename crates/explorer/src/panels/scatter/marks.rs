@@ -6,7 +6,7 @@ use kinefront_study::Column;
 
 use super::coloring::{ColorScale, Coloring};
 use super::{Scatter, ScatterAxis};
-use crate::{FrontEntry, Row, Session, theme};
+use crate::{FrontEntry, Row, Session, Wished, theme};
 use kinefront_model::evaluation::{Better, Objective};
 use kinefront_model::mechanism::Architecture;
 use kinefront_optimize::{Objectives, knee};
@@ -40,6 +40,8 @@ impl Scatter {
         marks.extend(self.designs(session, colors));
         marks.extend(self.knee(session, colors));
         self.add_references(session, colors, &mut lines, &mut marks);
+        marks.extend(self.wished(session, colors));
+        marks.extend(self.why(session, colors));
         if let Some(known) = session.known() {
             let at = self.place(&Row::new(0, &known.evaluation));
             let color = if session.is_modified() {
@@ -160,6 +162,51 @@ impl Scatter {
         let text = Text::new("", PlotPoint::new(at[0], at[1]), "knee\u{a0}\u{a0}\u{a0}");
         let text = text.color(colors.ink).anchor(Align2::RIGHT_BOTTOM);
         Some((ring(at, 6.0, colors.ink), Some(text)))
+    }
+
+    /// The designs that answer wishes, with their names.
+    fn wished<'a>(&self, session: &Session, colors: Colors) -> Vec<LabelledPoints<'a>> {
+        let mark = |wished: &Wished| {
+            let at = self.place(&Row::new(0, &wished.evaluation));
+            let color = theme::modified(colors.dark);
+            let points = Points::new("", vec![at]).shape(MarkerShape::Diamond).radius(6.0);
+            let name = format!("{}{}", "\u{a0}".repeat(5), wished.name);
+            let text = Text::new("", PlotPoint::new(at[0], at[1]), name);
+            let text = text.color(colors.ink).anchor(Align2::LEFT_CENTER);
+            (points.color(color).allow_hover(false), Some(text))
+        };
+        session.document().wished.iter().map(mark).collect()
+    }
+
+    /// The point of which the user asks why it cannot be had, if it has a place on both axes.
+    fn why<'a>(&self, session: &Session, colors: Colors) -> Option<LabelledPoints<'a>> {
+        let point = session.why_point()?;
+        let first = session
+            .study()
+            .objectives()
+            .first()
+            .map(|objective| objective.quantity)?;
+        let place = |axis: ScatterAxis| {
+            let Column::Quantity(quantity) = axis.quantity else {
+                return None;
+            };
+            let held = point
+                .held
+                .iter()
+                .find(|(other, _)| *other == quantity)
+                .map(|(_, value)| *value);
+            let value = held.or(Some(point.wished).filter(|_| quantity == first))?;
+            Some(axis.place(value))
+        };
+        let [Some(x), Some(y)] = self.axes.map(place) else {
+            return None;
+        };
+        let text = Text::new("", PlotPoint::new(x, y), format!("{}why not?", "\u{a0}".repeat(5)));
+        let points = Points::new("", vec![[x, y]]).shape(MarkerShape::Cross).radius(6.0);
+        Some((
+            points.color(colors.ink).allow_hover(false),
+            Some(text.color(colors.ink).anchor(Align2::LEFT_CENTER)),
+        ))
     }
 
     /// The reference designs where this model places them (star), joined to where their source states them (ring).

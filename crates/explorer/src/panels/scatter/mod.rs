@@ -387,7 +387,18 @@ impl Scatter {
             return;
         }
         let place = transform.value_from_position(pointer);
+        let wished = session.document().wished.iter();
+        let wished = wished
+            .map(|wished| Row::new(0, &wished.evaluation))
+            .position(|row| near(&row) < REACH);
+        if let Some(index) = wished.filter(|_| response.clicked()) {
+            session.select_wished(index);
+            return;
+        }
         let Some(id) = on_front.or_else(|| self.cloud.at([place.x, place.y], 6)) else {
+            if response.clicked() {
+                self.ask_why([place.x, place.y], session);
+            }
             return;
         };
         if let Some(row) = session.row(id) {
@@ -398,6 +409,20 @@ impl Scatter {
         if response.clicked() {
             session.select(id);
         }
+    }
+
+    /// Asks why there is no design at a place, if the axes are objectives.
+    fn ask_why(&self, place: [f64; 2], session: &mut Session) {
+        let values = self
+            .axes
+            .iter()
+            .zip(place)
+            .filter_map(|(axis, place)| match axis.quantity {
+                Column::Quantity(quantity) => Some((quantity, axis.value(place))),
+                _ => None,
+            });
+        let values: Vec<_> = values.collect();
+        session.ask_why(&values);
     }
 
     fn draw_cloud(&mut self, ui: &Ui, session: &Session, dark: bool) {

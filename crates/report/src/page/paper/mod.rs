@@ -19,7 +19,7 @@ use kinefront_study::{Builtin, Study};
 pub(super) fn section(report: &Report) -> Option<Section> {
     states_its_problem(&report.study).then(|| Section {
         id: "paper",
-        title: "Comparison with the 2010 paper",
+        title: "Comparison with the 2010 paper".into(),
         contents: html! {
             (guide(report))
             h3 { "Differences from the paper and their causes" }

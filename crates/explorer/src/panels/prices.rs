@@ -1,0 +1,206 @@
+//! The prices panel: what drives the first objective along the front.
+
+use egui::{Color32, ComboBox, ScrollArea, Stroke, Ui, WidgetInfo, WidgetType};
+use egui_plot::{FilledArea, Legend, Line, Plot, PlotBounds, PlotPoints, PlotUi, VLine};
+use kinefront_model::mechanism::Architecture;
+use kinefront_scene::{palette, text};
+use kinefront_study::{Column, DriversAlong, ParameterKind, PriceCurve, stacked, usual_range};
+
+use crate::{DesignOrigin, Session, theme};
+
+/// Least price that is drawn \[% for 1 %\].
+const DRAWN: f64 = 0.02;
+
+/// The prices panel.
+#[derive(Default)]
+pub struct PricesPanel {
+    /// The architecture whose front is shown; that of the selected design, or the first one, if `None`.
+    architecture: Option<Architecture>,
+}
+
+impl PricesPanel {
+    /// Draws the panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        if session.front().is_empty() || session.is_running() {
+            ui.weak("Here is what drives the mass along the front, once a run has ended or was opened.");
+            return;
+        }
+        let Some(answer) = session.drivers_along() else {
+            ui.weak("Determining the prices of all designs of the front…");
+            return;
+        };
+        match answer.as_ref() {
+            Ok(all) => self.show(ui, session, all),
+            Err(message) => {
+                ui.colored_label(theme::bad(ui), message);
+            }
+        }
+    }
+
+    fn show(&mut self, ui: &mut Ui, session: &mut Session, all: &[DriversAlong]) {
+        let selected = session.document().selected.as_ref();
+        let selected = selected.map(|selected| selected.design.architecture());
+        let wanted = self.architecture.or(selected);
+        let has_prices = |along: &&DriversAlong| !along.designs.is_empty();
+        let of_wanted = all
+            .iter()
+            .filter(has_prices)
+            .find(|along| Some(along.architecture) == wanted);
+        let Some(along) = of_wanted.or_else(|| all.iter().find(has_prices)) else {
+            ui.weak("No design of the front has prices: no optimum was found near them.");
+            return;
+        };
+        self.choose(ui, all, along);
+        if along.designs.len() < 2 {
+            sentences(ui, along);
+            return;
+        }
+        let height = (ui.available_height() - 4.0).max(120.0);
+        ui.columns(3, |columns| {
+            if let [limits, others, words] = columns {
+                plots(limits, others, session, along, height);
+                ScrollArea::vertical()
+                    .id_salt("sentences")
+                    .show(words, |ui| sentences(ui, along));
+            }
+        });
+    }
+
+    /// Shows the choice of the architecture, if there are several.
+    fn choose(&mut self, ui: &mut Ui, all: &[DriversAlong], along: &DriversAlong) {
+        if all.len() < 2 {
+            return;
+        }
+        ui.horizontal(|ui| {
+            let label = ui.label("front of the");
+            ComboBox::from_id_salt("architecture of prices")
+                .selected_text(text::architecture(along.architecture))
+                .show_ui(ui, |ui| {
+                    for other in all.iter().filter(|other| !other.designs.is_empty()) {
+                        let is_shown = other.architecture == along.architecture;
+                        if ui
+                            .selectable_label(is_shown, text::architecture(other.architecture))
+                            .clicked()
+                        {
+                            self.architecture = Some(other.architecture);
+                        }
+                    }
+                })
+                .response
+                .labelled_by(label.id);
+        });
+    }
+}
+
+fn sentences(ui: &mut Ui, along: &DriversAlong) {
+    for sentence in along.sentences() {
+        ui.label(sentence);
+    }
+}
+
+/// Draws the prices of the limits as areas, and those of the region, the travels and the bounds as lines.
+fn plots(limits: &mut Ui, others: &mut Ui, session: &mut Session, along: &DriversAlong, height: f32) {
+    let drawn = |kinds: &[ParameterKind]| {
+        let mut curves = along.curves(kinds);
+        curves.retain(|curve| curve.largest() >= DRAWN);
+        curves
+    };
+    let of_limits = stacked(&drawn(&[ParameterKind::Limit]));
+    let of_others = drawn(&[ParameterKind::Region, ParameterKind::Travel, ParameterKind::Bound]);
+    let place = place_of_selected(session, along);
+    let mut clicked = None;
+    for (ui, name, curves, is_stacked) in [
+        (limits, "Prices of the limits", of_limits, true),
+        (
+            others,
+            "Prices of the region, the travels and the bounds",
+            of_others,
+            false,
+        ),
+    ] {
+        ui.label(name);
+        let plot = Plot::new(name)
+            .height(height - 24.0)
+            .legend(Legend::default())
+            .x_axis_label(Column::Quantity(along.along).title())
+            .y_axis_label("% for 1 %")
+            .allow_scroll(false)
+            .allow_drag(false)
+            .allow_zoom(false)
+            .include_y(0.0);
+        let [low, high] = usual_range(&curves);
+        let shown = plot.show(ui, |plot| {
+            if let [first, .., last] = along.designs.as_slice() {
+                plot.set_plot_bounds(PlotBounds::from_min_max([first.1, low], [last.1, high.max(low + 1e-3)]));
+            }
+            match is_stacked {
+                true => areas(plot, &curves),
+                false => lines(plot, &curves),
+            }
+            if let Some(at) = place {
+                plot.vline(VLine::new("", at).color(theme::SELECTED).allow_hover(false));
+            }
+        });
+        let response = shown.response;
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, name));
+        if response.clicked()
+            && let Some(pointer) = response.interact_pointer_pos()
+        {
+            clicked = Some(shown.transform.value_from_position(pointer).x);
+        }
+    }
+    if let Some(at) = clicked {
+        select_nearest(session, along, at);
+    }
+}
+
+fn color(index: usize) -> Color32 {
+    let [r, g, b] = palette::SERIES[index % palette::SERIES.len()];
+    Color32::from_rgb(r, g, b)
+}
+
+/// Draws areas, each on top of those before it.
+fn areas(plot: &mut PlotUi<'_>, curves: &[PriceCurve]) {
+    let Some(first) = curves.first() else { return };
+    let places: Vec<f64> = first.points.iter().map(|[at, _]| *at).collect();
+    let mut below = vec![0.0; places.len()];
+    for (index, curve) in curves.iter().enumerate() {
+        let top: Vec<f64> = curve.points.iter().map(|[_, top]| *top).collect();
+        let area = FilledArea::new(&curve.label, &places, &below, &top)
+            .fill_color(color(index).gamma_multiply(0.75))
+            .stroke(Stroke::new(1.0, color(index)));
+        plot.add(area);
+        below = top;
+    }
+}
+
+fn lines(plot: &mut PlotUi<'_>, curves: &[PriceCurve]) {
+    for (index, curve) in curves.iter().enumerate() {
+        let line = Line::new(&curve.label, PlotPoints::from(curve.points.clone()));
+        plot.line(line.color(color(index)).width(1.6));
+    }
+}
+
+/// Returns where the selected design of the run is along the front.
+fn place_of_selected(session: &Session, along: &DriversAlong) -> Option<f64> {
+    let selected = session.document().selected.as_ref()?;
+    let DesignOrigin::Evaluated(id) = selected.origin else {
+        return None;
+    };
+    if selected.design.architecture() != along.architecture {
+        return None;
+    }
+    session.number(id, Column::Quantity(along.along))
+}
+
+/// Selects the design of the front that is nearest to a place along it.
+fn select_nearest(session: &mut Session, along: &DriversAlong, at: f64) {
+    let nearest = along
+        .designs
+        .iter()
+        .min_by(|a, b| (a.1 - at).abs().total_cmp(&(b.1 - at).abs()));
+    let id = nearest.and_then(|(index, _, _)| session.front().get(*index).map(|entry| entry.id));
+    if let Some(id) = id {
+        session.select(id);
+    }
+}

@@ -1,0 +1,189 @@
+//! The panel that tells why a point beyond the front cannot be had, and what each requirement would have to give for it.
+
+use egui::{Grid, RichText, ScrollArea, Ui};
+use kinefront_scene::text::{number, quantity};
+use kinefront_study::{Drivers, RelaxationJson, WhyNotJson};
+
+use crate::{Session, WhyPoint, theme};
+
+/// The panel.
+#[derive(Default)]
+pub struct WhyNotPanel;
+
+impl WhyNotPanel {
+    /// Draws the panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        if session.is_hindered() {
+            hindrances(ui, session);
+            return;
+        }
+        let Some(point) = session.why_point() else {
+            ui.weak("Click an empty place of the scatter beyond the front: here is what stands in its way.");
+            return;
+        };
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(format!("{}?", words(session, &point))).strong());
+            if ui
+                .button("Withdraw")
+                .on_hover_text("removes the question and its mark")
+                .clicked()
+            {
+                session.withdraw_why();
+            }
+        });
+        let Some(answer) = session.why() else {
+            ui.weak("Looking for the best design there, and for what each requirement would have to give…");
+            return;
+        };
+        match answer.as_ref() {
+            Ok(drivers) => {
+                ScrollArea::both().show(ui, |ui| show(ui, session, drivers));
+            }
+            Err(message) => {
+                ui.label("There is no answer:");
+                ui.colored_label(theme::bad(ui), message);
+            }
+        }
+    }
+}
+
+/// Tells what stands in the way of a study of which no design is feasible.
+fn hindrances(ui: &mut Ui, session: &mut Session) {
+    ui.label(RichText::new("No design of the run is feasible.").strong());
+    let Some(answer) = session.hindrances() else {
+        ui.weak("Looking for the requirements that stand in the way…");
+        return;
+    };
+    let found = match answer.as_ref() {
+        Ok(found) => found,
+        Err(message) => {
+            ui.colored_label(theme::bad(ui), message);
+            return;
+        }
+    };
+    if found.is_empty() {
+        ui.label(
+            "No single requirement stands in the way: two or more have to give, or the bounds of the design variables.",
+        );
+        return;
+    }
+    ui.label("It would take one of these, with all the others kept:");
+    let mut chosen = None;
+    ScrollArea::both().show(ui, |ui| {
+        Grid::new("hindrances").num_columns(3).striped(true).show(ui, |ui| {
+            for heading in ["relaxed alone", "from … to", ""] {
+                ui.label(RichText::new(heading).strong());
+            }
+            ui.end_row();
+            for hindrance in found {
+                ui.label(&hindrance.label);
+                ui.label(match hindrance.is_enough {
+                    true => "as stated: search longer".to_owned(),
+                    false => format!(
+                        "{} … {} {}",
+                        number(hindrance.stated),
+                        number(hindrance.possible),
+                        hindrance.unit
+                    ),
+                });
+                let show = ui.button("Show").on_hover_text("selects the design that has it then");
+                if super::named(show, &format!("Show the design for {}", hindrance.label)).clicked() {
+                    chosen = Some(hindrance.design.clone());
+                }
+                ui.end_row();
+            }
+        });
+    });
+    if let Some(design) = chosen {
+        session.paste(&design);
+    }
+}
+
+/// Returns the values of a point in words.
+fn words(session: &Session, point: &WhyPoint) -> String {
+    let first = session.study().objectives().first().map(|objective| objective.quantity);
+    let values = first
+        .map(|first| (first, point.wished))
+        .into_iter()
+        .chain(point.held.iter().copied());
+    let values: Vec<String> = values.map(|(of, value)| quantity(of, value)).collect();
+    values.join(" with ")
+}
+
+fn show(ui: &mut Ui, session: &mut Session, drivers: &Drivers) {
+    let (objective, unit) = drivers.objective_name();
+    let Some(why) = &drivers.why_not else { return };
+    let best = format!("{} {unit}", number(drivers.polished_value));
+    if why.log_deficit >= 0.0 {
+        ui.colored_label(
+            theme::good(ui),
+            format!("You can have it: the best design there has {best}."),
+        );
+        if ui.button("Select it").clicked() {
+            session.paste(&drivers.design);
+        }
+        return;
+    }
+    ui.label(format!(
+        "The best design there has a {objective} of {best}, {:+.1} % of what you ask. It would take one of these:",
+        100.0 * (drivers.polished_value / why.wished - 1.0)
+    ));
+    relaxations(ui, session, drivers, why, unit);
+    for warning in &drivers.warnings {
+        ui.colored_label(theme::bad(ui), warning);
+    }
+}
+
+/// Tabulates what each requirement would have to give.
+fn relaxations(ui: &mut Ui, session: &mut Session, drivers: &Drivers, why: &WhyNotJson, unit: &str) {
+    let mut chosen = None;
+    Grid::new("relaxations").num_columns(4).striped(true).show(ui, |ui| {
+        for heading in ["relaxed alone", "from … to", "times", ""] {
+            ui.label(RichText::new(heading).strong());
+        }
+        ui.end_row();
+        for relaxation in &why.relaxations {
+            let (label, range) = change(drivers, relaxation);
+            ui.label(&label);
+            match relaxation.needed {
+                Some(factor) => {
+                    ui.label(range);
+                    ui.label(format!("{factor:.3}"));
+                    let show = ui.button("Show").on_hover_text("selects the design that has it then");
+                    if super::named(show, &format!("Show the design for {label}")).clicked() {
+                        chosen = Some(relaxation.design.clone());
+                    }
+                }
+                None => {
+                    ui.weak(format!("no help: {} {unit} remain", number(relaxation.objective)));
+                }
+            }
+            ui.end_row();
+        }
+    });
+    if let Some(design) = chosen {
+        session.paste(&design);
+    }
+}
+
+/// Returns the name of what is relaxed, and its value before and after.
+fn change(drivers: &Drivers, relaxation: &RelaxationJson) -> (String, String) {
+    let price = drivers
+        .prices
+        .iter()
+        .find(|price| price.parameter == relaxation.parameter);
+    let label = match (price, relaxation.parameter.as_str()) {
+        (Some(price), _) => price.label.clone(),
+        (None, "all_thresholds") => "all limits by the same factor".to_owned(),
+        (None, "least_norm") => "all limits, as little as possible".to_owned(),
+        (None, other) => other.to_owned(),
+    };
+    let range = match (
+        price.and_then(|price| Some((price.value?, price.unit))),
+        relaxation.needed,
+    ) {
+        (Some((value, unit)), Some(factor)) => format!("{} … {} {unit}", number(value), number(factor * value)),
+        _ => String::new(),
+    };
+    (label, range)
+}

@@ -1,0 +1,227 @@
+//! The wish panel: what is wished of the selected design, and the nearest design that has it.
+
+use std::collections::BTreeMap;
+
+use egui::{Grid, RichText, ScrollArea, Slider, Ui};
+use kinefront_model::evaluation::{Better, Bound, Constraint, Evaluation, PoseScalar, Quantity, QuantityLimit};
+use kinefront_model::mechanism::Design;
+use kinefront_scene::text::number;
+use kinefront_study::{Column, Condition, Wish, WishOutcome};
+
+use crate::{Session, theme};
+
+/// Range of the sliders \[%\].
+const RANGE: [f64; 2] = [-50.0, 100.0];
+
+/// What is wished of a quantity.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Wanted {
+    /// Change \[%\].
+    change: f64,
+    /// Whether it is not to become worse.
+    keep: bool,
+}
+
+/// The wish panel.
+#[derive(Default)]
+pub struct WishPanel {
+    /// The design of which something is wished.
+    of: Option<Design>,
+    wanted: BTreeMap<Quantity, Wanted>,
+}
+
+impl WishPanel {
+    /// Draws the panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        let Some(name) = session.selected_name() else {
+            ui.weak("Click a design in the scatter, and say here what it should have instead.");
+            return;
+        };
+        let Some(known) = session.known().filter(|known| known.verified).cloned() else {
+            ui.weak(format!("{name}: waiting for the fine grid…"));
+            return;
+        };
+        if self.of.replace(known.evaluation.design) != Some(known.evaluation.design) {
+            self.wanted.clear();
+        }
+        ScrollArea::vertical().show(ui, |ui| {
+            if !known.evaluation.is_feasible() {
+                ui.label(format!(
+                    "{name} is infeasible; a wish starts from a design that is feasible."
+                ));
+                return;
+            }
+            ui.label(RichText::new(format!("What should {name} have instead?")).strong());
+            self.quantities(ui, session, &known.evaluation);
+            self.buttons(ui, session, &known.evaluation);
+            ui.separator();
+            answer(ui, session);
+        });
+    }
+
+    /// Shows a slider for each quantity.
+    fn quantities(&mut self, ui: &mut Ui, session: &Session, evaluation: &Evaluation) {
+        Grid::new("wish").num_columns(3).spacing([10.0, 4.0]).show(ui, |ui| {
+            for quantity in wishable(session) {
+                let Some(value) = evaluation.quantities.get(quantity).filter(|value| *value > 0.0) else {
+                    continue;
+                };
+                let entry = quantity.entry();
+                let wanted = self.wanted.entry(quantity).or_default();
+                ui.label(entry.label).on_hover_text(entry.meaning);
+                let range = RANGE[0]..=RANGE[1];
+                let slider = Slider::new(&mut wanted.change, range)
+                    .step_by(1.0)
+                    .custom_formatter(|change, _| format!("{change:+.0} %"))
+                    .custom_parser(|text| text.replace(['%', ' '], "").replace('−', "-").parse().ok());
+                ui.horizontal(|ui| {
+                    ui.spacing_mut().slider_width = (ui.available_width() - 150.0).clamp(50.0, 160.0);
+                    let slider = ui.add(slider);
+                    ui.ctx().accesskit_node_builder(slider.id, |node| {
+                        node.set_label(format!("Wished change of {}", entry.label))
+                    });
+                    let keep = ui.checkbox(&mut wanted.keep, "keep");
+                    ui.ctx()
+                        .accesskit_node_builder(keep.id, |node| node.set_label(format!("Keep {}", entry.label)));
+                    keep.on_hover_text("it is not to become worse");
+                });
+                let sought = match wanted.change == 0.0 {
+                    true => format!("{} {}", number(value), entry.unit),
+                    false => format!("{} {}", limit(quantity, value, wanted.change).1, entry.unit),
+                };
+                ui.label(sought);
+                ui.end_row();
+            }
+        });
+    }
+
+    fn buttons(&mut self, ui: &mut Ui, session: &mut Session, evaluation: &Evaluation) {
+        let wish = self.wish(evaluation);
+        let is_stated = !wish.conditions.is_empty();
+        ui.horizontal(|ui| {
+            let find = ui.add_enabled(is_stated && !session.is_wishing(), theme::primary("Find the design"));
+            let hint =
+                "the nearest design that has this, proved where the study asks for proofs; undo takes it back (Ctrl+Z)";
+            if find
+                .on_hover_text(hint)
+                .on_disabled_hover_text("move a slider first")
+                .clicked()
+            {
+                session.wish(wish);
+            }
+            if ui
+                .add_enabled(!self.wanted.is_empty(), egui::Button::new("Reset"))
+                .clicked()
+            {
+                self.wanted.clear();
+            }
+        });
+    }
+
+    /// Returns the wish that the sliders state.
+    fn wish(&self, evaluation: &Evaluation) -> Wish {
+        let changed = self.wanted.iter().filter(|(_, wanted)| wanted.change != 0.0);
+        let conditions = changed.filter_map(|(quantity, wanted)| {
+            let value = evaluation.quantities.get(*quantity)?;
+            Some(Condition(limit(*quantity, value, wanted.change).0))
+        });
+        let kept = self
+            .wanted
+            .iter()
+            .filter(|(_, wanted)| wanted.keep && wanted.change == 0.0);
+        Wish {
+            conditions: conditions.collect(),
+            keep: kept.map(|(quantity, _)| *quantity).collect(),
+        }
+    }
+}
+
+/// Returns the quantities of which something may be wished: those that the study names, the constrained ones, and the footprint.
+fn wishable(session: &Session) -> Vec<Quantity> {
+    let mut quantities = session.study().shown_quantities();
+    if session.study().workspace.region.is_prescribed() {
+        quantities.retain(|quantity| *quantity != Quantity::WorkspaceRadius);
+    }
+    let constrained = Constraint::required(&session.model().settings().thresholds).map(Quantity::of_constraint);
+    for quantity in constrained.chain([Quantity::Worst(PoseScalar::Footprint)]) {
+        if !quantities.contains(&quantity) {
+            quantities.push(quantity);
+        }
+    }
+    quantities
+}
+
+/// Returns the limit that a change of a value by some per cent means, and its words.
+fn limit(quantity: Quantity, value: f64, change: f64) -> (QuantityLimit, String) {
+    let wanted = value * (1.0 + 0.01 * change);
+    let (bound, words) = match quantity.entry().better {
+        Better::Higher => (Bound::AtLeast(wanted), format!("≥ {}", number(wanted))),
+        Better::Lower => (Bound::AtMost(wanted), format!("≤ {}", number(wanted))),
+    };
+    (QuantityLimit { quantity, bound }, words)
+}
+
+/// Tells what became of the last wish.
+fn answer(ui: &mut Ui, session: &mut Session) {
+    let Some(answer) = session.wish_answer() else {
+        if session.is_wishing() {
+            ui.weak("Looking for the nearest design that has this…");
+        } else {
+            ui.weak("The answer is a design of its own in the scatter; undo takes it back (Ctrl+Z).");
+        }
+        return;
+    };
+    match answer.as_ref() {
+        Ok(outcome) => outcome_of(ui, session, outcome),
+        Err(message) => {
+            ui.colored_label(theme::bad(ui), format!("No design has this: {message}"));
+        }
+    }
+}
+
+fn outcome_of(ui: &mut Ui, session: &mut Session, outcome: &WishOutcome) {
+    if outcome.was_true {
+        ui.colored_label(theme::good(ui), "The design has that already.");
+        return;
+    }
+    if outcome.unmet.is_empty() {
+        ui.colored_label(theme::good(ui), "The wish is granted.");
+    } else {
+        ui.colored_label(theme::bad(ui), "The whole wish cannot be granted; this comes nearest.");
+    }
+    for (condition, value) in &outcome.unmet {
+        let entry = condition.0.quantity.entry();
+        ui.label(format!(
+            "{}: {} {} is what can be had.",
+            entry.label,
+            number(*value),
+            entry.unit
+        ));
+    }
+    let found = &outcome.found;
+    Grid::new("granted").num_columns(4).striped(true).show(ui, |ui| {
+        for heading in ["", "before", "after", "change"] {
+            ui.label(RichText::new(heading).strong());
+        }
+        ui.end_row();
+        for quantity in wishable(session) {
+            let values = [&outcome.before, &found.evaluation].map(|evaluation| evaluation.quantities.get(quantity));
+            let [Some(before), Some(after)] = values else { continue };
+            ui.label(Column::Quantity(quantity).title());
+            ui.label(number(before));
+            ui.label(number(after));
+            let change = 100.0 * (after / before - 1.0);
+            ui.label(if change.is_finite() {
+                format!("{change:+.1} %")
+            } else {
+                String::new()
+            });
+            ui.end_row();
+        }
+    });
+    ui.label(match found.certified {
+        Some(certified) if certified.is_proved => "Its workspace is proved.",
+        Some(_) => "Its workspace is verified on the fine grid, and not proved.",
+        None => "Its workspace is verified on the fine grid; the study asks for no proof.",
+    });
+}

@@ -1,0 +1,160 @@
+//! The questions that threads answer: what drives the mass of a design and of a front, a wish, and why a point cannot be had.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use kinefront_model::evaluation::{Evaluation, GridChoice, Quantity};
+use kinefront_model::mechanism::Design;
+use kinefront_study::{
+    DesignProblem, Drivers, DriversAlong, DriversOptions, Hindrance, PreparedStudy, Wish, WishOutcome,
+};
+
+use super::answering::Question;
+
+/// The study of a question. Two runs of one study are different.
+#[derive(Clone)]
+pub struct StudyOfRun(pub Arc<PreparedStudy>);
+
+impl PartialEq for StudyOfRun {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl StudyOfRun {
+    fn problem(&self) -> Result<DesignProblem, String> {
+        DesignProblem::new(self.0.study()).map_err(|error| error.to_string())
+    }
+}
+
+/// What drives the first objective of a design that was evaluated on the fine grid?
+#[derive(Clone, PartialEq)]
+pub struct DriversQuestion {
+    /// The study.
+    pub study: StudyOfRun,
+    /// The design.
+    pub evaluation: Arc<Evaluation>,
+}
+
+impl Question for DriversQuestion {
+    type Answer = Result<Drivers, String>;
+    const THREAD: &'static str = "kinefront-drivers";
+    const RESTING: Duration = Duration::from_millis(120);
+
+    fn answer(&self) -> Self::Answer {
+        let local = self.study.problem()?.local_of(&self.evaluation, &[]);
+        let drivers = local.and_then(|local| local.drivers(DriversOptions::default()));
+        drivers.map_err(|error| error.to_string())
+    }
+}
+
+/// What drives the first objective along a front?
+#[derive(Clone)]
+pub struct AlongQuestion {
+    /// The study.
+    pub study: StudyOfRun,
+    /// Number of the front.
+    pub front: u64,
+    /// The designs of the front.
+    pub designs: Arc<Vec<Design>>,
+}
+
+impl PartialEq for AlongQuestion {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.study, self.front) == (&other.study, other.front)
+    }
+}
+
+impl Question for AlongQuestion {
+    type Answer = Result<Vec<DriversAlong>, String>;
+    const THREAD: &'static str = "kinefront-prices";
+    const RESTING: Duration = Duration::from_millis(300);
+
+    fn answer(&self) -> Self::Answer {
+        let problem = self.study.problem()?;
+        let evaluate = |design: &Design| problem.model().evaluate(design, GridChoice::Fine);
+        let evaluations: Vec<Evaluation> = self.designs.iter().map(evaluate).collect();
+        Ok(problem.drivers_along(&evaluations))
+    }
+}
+
+/// Which design is the nearest one that has what is wished for?
+#[derive(Clone, PartialEq)]
+pub struct WishQuestion {
+    /// The study.
+    pub study: StudyOfRun,
+    /// Number of the wish: the same wish may be stated again.
+    pub number: u64,
+    /// The design from which the wish starts.
+    pub design: Design,
+    /// The wish.
+    pub wish: Wish,
+}
+
+impl Question for WishQuestion {
+    type Answer = Result<WishOutcome, String>;
+    const THREAD: &'static str = "kinefront-wish";
+    const RESTING: Duration = Duration::ZERO;
+
+    fn answer(&self) -> Self::Answer {
+        let granted = self.study.problem()?.grant(&self.design, &self.wish);
+        granted.map_err(|error| error.to_string())
+    }
+}
+
+/// Why can a value of the first objective not be had with these values of the others?
+#[derive(Clone)]
+pub struct WhyQuestion {
+    /// The study.
+    pub study: StudyOfRun,
+    /// Number of the front.
+    pub front: u64,
+    /// The designs of the front.
+    pub designs: Arc<Vec<Design>>,
+    /// Values of other objectives.
+    pub held: Vec<(Quantity, f64)>,
+    /// Value of the first objective.
+    pub wished: f64,
+}
+
+impl PartialEq for WhyQuestion {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.study, self.front, &self.held, self.wished) == (&other.study, other.front, &other.held, other.wished)
+    }
+}
+
+impl Question for WhyQuestion {
+    type Answer = Result<Drivers, String>;
+    const THREAD: &'static str = "kinefront-why";
+    const RESTING: Duration = Duration::from_millis(120);
+
+    fn answer(&self) -> Self::Answer {
+        let found = self.study.problem()?.why(&self.designs, &self.held, self.wished);
+        found.map_err(|error| error.to_string())
+    }
+}
+
+/// What stands in the way of a study of which no design is feasible?
+#[derive(Clone)]
+pub struct HindrancesQuestion {
+    /// The study.
+    pub study: StudyOfRun,
+    /// The designs that miss the requirements least, each with its violation.
+    pub designs: Arc<Vec<(f64, Design)>>,
+}
+
+impl PartialEq for HindrancesQuestion {
+    fn eq(&self, other: &Self) -> bool {
+        self.study == other.study
+    }
+}
+
+impl Question for HindrancesQuestion {
+    type Answer = Result<Vec<Hindrance>, String>;
+    const THREAD: &'static str = "kinefront-hindrances";
+    const RESTING: Duration = Duration::ZERO;
+
+    fn answer(&self) -> Self::Answer {
+        Ok(self.study.problem()?.hindrances(&self.designs))
+    }
+}

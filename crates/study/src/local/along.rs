@@ -1,0 +1,282 @@
+//! What drives the objective along a front.
+
+use kinefront_model::evaluation::{Evaluation, Quantity};
+use kinefront_model::mechanism::Architecture;
+use kinefront_optimum::ParameterKind;
+use rayon::prelude::*;
+
+use super::{Drivers, DriversOptions};
+use crate::DesignProblem;
+
+/// Least price of a bound or a travel that is told \[% for 1 %\].
+const TOLD: f64 = 0.05;
+
+/// Factor between the largest price of a plot and the usual ones from which the plot leaves it out.
+const BEYOND: f64 = 3.0;
+
+/// What drives the first objective at designs of a front that have the same architecture.
+#[derive(Debug, Clone)]
+pub struct DriversAlong {
+    /// The architecture of the designs.
+    pub architecture: Architecture,
+    /// The quantity along which the designs are ordered: the second objective, or the only one.
+    pub along: Quantity,
+    /// Each design that has prices: its index among the evaluations that were given, its value of that quantity, and its drivers.
+    pub designs: Vec<(usize, f64, Drivers)>,
+    /// Number of designs that have no prices.
+    pub without: usize,
+}
+
+/// The price of a parameter along a front.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PriceCurve {
+    /// Name of the parameter.
+    pub parameter: String,
+    /// Name for a person.
+    pub label: String,
+    /// What the parameter is part of.
+    pub kind: ParameterKind,
+    /// Value of the quantity along the front, and the price there.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// A part of a front with the parameter that drives the objective there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrivenPart {
+    /// Name of the parameter for a person.
+    pub label: String,
+    /// Values of the quantity along the front at the first and the last design.
+    pub range: [f64; 2],
+    /// The price at each design.
+    pub prices: Vec<f64>,
+}
+
+impl DesignProblem {
+    /// Determines what drives the first objective at each design of a front that was evaluated on the fine grid, in parallel. There is one
+    /// entry for each architecture.
+    pub fn drivers_along(&self, evaluations: &[Evaluation]) -> Vec<DriversAlong> {
+        let objectives = &self.model().settings().objectives;
+        let Some(place) = objectives.len().checked_sub(1).map(|last| last.min(1)) else {
+            return Vec::new();
+        };
+        let along = &objectives[place];
+        let found: Vec<Option<Drivers>> = evaluations
+            .par_iter()
+            .map(|evaluation| {
+                let local = self.local_of(evaluation, &[]).ok()?;
+                let drivers = local.drivers(DriversOptions::default()).ok()?;
+                Some(drivers).filter(|drivers| !drivers.prices.is_empty())
+            })
+            .collect();
+        let of = |architecture: &Architecture| {
+            let own = || {
+                let all = evaluations.iter().zip(&found).enumerate();
+                all.filter(|(_, (evaluation, _))| evaluation.design.architecture() == *architecture)
+            };
+            let mut designs: Vec<(usize, f64, Drivers)> = own()
+                .filter_map(|(index, (evaluation, drivers))| {
+                    let value = along.value(evaluation.objectives[place]);
+                    Some((index, value, drivers.clone()?))
+                })
+                .collect();
+            designs.sort_by(|a, b| a.1.total_cmp(&b.1));
+            let count = own().count();
+            (count > 0).then(|| DriversAlong {
+                architecture: *architecture,
+                along: along.quantity,
+                without: count - designs.len(),
+                designs,
+            })
+        };
+        Architecture::ALL.iter().filter_map(of).collect()
+    }
+}
+
+impl DriversAlong {
+    /// Returns the price of each parameter of some kinds along the front, those with the largest prices first. A design at which a
+    /// parameter has no price is a point at 0.
+    pub fn curves(&self, kinds: &[ParameterKind]) -> Vec<PriceCurve> {
+        let mut curves: Vec<PriceCurve> = Vec::new();
+        for price in self.designs.iter().flat_map(|(_, _, drivers)| &drivers.prices) {
+            if kinds.contains(&price.kind) && curves.iter().all(|curve| curve.parameter != price.parameter) {
+                let points = self.designs.iter().map(|(_, at, drivers)| {
+                    let own = drivers.prices.iter().find(|own| own.parameter == price.parameter);
+                    [*at, own.map_or(0.0, |own| own.price)]
+                });
+                curves.push(PriceCurve {
+                    parameter: price.parameter.clone(),
+                    label: price.label.clone(),
+                    kind: price.kind,
+                    points: points.collect(),
+                });
+            }
+        }
+        curves.sort_by(|a, b| b.largest().total_cmp(&a.largest()));
+        curves
+    }
+
+    /// Returns the parts of the front, in its order, in each of which one limit has the largest price. A design that differs from both its
+    /// neighbours is no part.
+    pub fn leading(&self) -> Vec<DrivenPart> {
+        let dearest = |drivers: &Drivers| {
+            let limits = drivers
+                .prices
+                .iter()
+                .filter(|price| price.kind == ParameterKind::Limit && price.price > TOLD);
+            let dearest = limits.max_by(|a, b| a.price.total_cmp(&b.price))?;
+            Some((dearest.label.clone(), dearest.price))
+        };
+        let mut parts: Vec<DrivenPart> = Vec::new();
+        for (_, at, drivers) in &self.designs {
+            let Some((label, price)) = dearest(drivers) else {
+                continue;
+            };
+            match parts.last_mut().filter(|part| part.label == label) {
+                Some(part) => part.grow(*at, price),
+                None => parts.push(DrivenPart::new(label, *at, price)),
+            }
+            // A part of one design between two parts of one limit is within them.
+            if let [.., before, odd, after] = parts.as_slice()
+                && odd.prices.len() == 1
+                && before.label == after.label
+            {
+                let mut joined = before.clone();
+                joined.join(after);
+                parts.truncate(parts.len() - 3);
+                parts.push(joined);
+            }
+        }
+        parts
+    }
+
+    /// Returns the bounds and the travels that have a price, each with the part of the front where it has one.
+    pub fn in_the_way(&self) -> Vec<DrivenPart> {
+        let curves = self.curves(&[ParameterKind::Bound, ParameterKind::Travel]);
+        let of = |curve: PriceCurve| {
+            let mut dear = curve.points.iter().filter(|[_, price]| price.abs() >= TOLD);
+            let [at, price] = *dear.next()?;
+            let mut part = DrivenPart::new(curve.label, at, price);
+            dear.for_each(|[at, price]| part.grow(*at, *price));
+            Some(part)
+        };
+        curves.into_iter().filter_map(of).collect()
+    }
+
+    /// Tells in sentences what drives the objective along the front.
+    pub fn sentences(&self) -> Vec<String> {
+        let objective = self
+            .designs
+            .first()
+            .map_or("", |(_, _, drivers)| drivers.objective_name().0);
+        let limits = self.leading().into_iter().map(|part| {
+            let (place, price) = (self.place(&part), part.median());
+            format!(
+                "Of the limits, {} drives the {objective} {place}: 1 % more of it costs {price:+.2} % there.",
+                part.label
+            )
+        });
+        let bounds = self.in_the_way().into_iter().map(|part| {
+            let (place, price) = (self.place(&part), part.median());
+            format!(
+                "The {} is in the way {place}: 1 % more of it changes the {objective} by {price:+.2} %.",
+                part.label
+            )
+        });
+        let without = match self.without {
+            0 => None,
+            1 => Some("1 design has no prices: no optimum was found near it.".to_owned()),
+            count => Some(format!(
+                "{count} designs have no prices: no optimum was found near them."
+            )),
+        };
+        limits.chain(bounds).chain(without).collect()
+    }
+
+    /// Returns where a part is, in words.
+    fn place(&self, part: &DrivenPart) -> String {
+        let entry = self.along.entry();
+        let [from, to] = part.range;
+        match part.prices.len() {
+            count if count == self.designs.len() => "along the whole front".to_owned(),
+            1 => format!("at {} {from:.3} {}", entry.short, entry.unit),
+            _ => format!("for {} from {from:.3} to {to:.3} {}", entry.short, entry.unit),
+        }
+    }
+}
+
+/// Returns curves each of which is on top of those before it. Negative prices count as 0.
+pub fn stacked(curves: &[PriceCurve]) -> Vec<PriceCurve> {
+    let mut stacked: Vec<PriceCurve> = Vec::new();
+    for curve in curves {
+        let below = stacked.last().map(|below| &below.points);
+        let points = curve.points.iter().enumerate().map(|(place, [at, price])| {
+            let base = below.map_or(0.0, |below| below[place][1]);
+            [*at, base + price.max(0.0)]
+        });
+        let points = points.collect();
+        stacked.push(PriceCurve {
+            points,
+            ..curve.clone()
+        });
+    }
+    stacked
+}
+
+/// Returns the range of a plot that shows the prices of most designs: at the end of a front, beyond which there is no design, prices grow
+/// beyond any measure.
+pub fn usual_range(curves: &[PriceCurve]) -> [f64; 2] {
+    let designs = curves.first().map_or(0, |curve| curve.points.len());
+    let extremes = |place: usize| {
+        let prices = curves.iter().map(|curve| curve.points[place][1]);
+        prices.fold([0.0_f64; 2], |[low, high], price| [low.min(price), high.max(price)])
+    };
+    let mut sides = [Vec::new(), Vec::new()];
+    for [low, high] in (0..designs).map(extremes) {
+        sides[0].push(-low);
+        sides[1].push(high);
+    }
+    let [low, high] = sides.map(|mut side| {
+        side.sort_by(f64::total_cmp);
+        let most = side.last().copied().unwrap_or(0.0);
+        let usual = side.get(side.len() * 9 / 10).copied().unwrap_or(0.0);
+        if most > BEYOND * usual && usual > 0.0 {
+            1.2 * usual
+        } else {
+            1.05 * most
+        }
+    });
+    [-low, high]
+}
+
+impl PriceCurve {
+    /// Returns the largest absolute price.
+    pub fn largest(&self) -> f64 {
+        self.points.iter().fold(0.0, |most, [_, price]| most.max(price.abs()))
+    }
+}
+
+impl DrivenPart {
+    fn new(label: String, at: f64, price: f64) -> Self {
+        Self {
+            label,
+            range: [at; 2],
+            prices: vec![price],
+        }
+    }
+
+    fn grow(&mut self, at: f64, price: f64) {
+        self.join(&Self::new(String::new(), at, price));
+    }
+
+    fn join(&mut self, other: &Self) {
+        self.range[1] = other.range[1];
+        self.prices.extend(&other.prices);
+    }
+
+    /// Returns the median of the prices.
+    pub fn median(&self) -> f64 {
+        let mut prices = self.prices.clone();
+        prices.sort_by(f64::total_cmp);
+        prices.get(prices.len() / 2).copied().unwrap_or(0.0)
+    }
+}
