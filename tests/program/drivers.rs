@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 
 use super::support::{folder, json, kinefront};
@@ -218,5 +219,190 @@ fn a_front_answers_wishes_and_reasons() {
         (vec!["prices", &subject, "--radius", "0"], "it must be a number above 0"),
     ] {
         kinefront().args(&arguments).assert().code(2).stderr(contains(message));
+    }
+}
+
+/// The prices of a table are those of its designs, and nothing of the front is left out.
+#[test]
+fn prices_along_a_front_are_those_of_its_designs() {
+    let folder = folder();
+    let run = folder.path().join("run");
+    let arguments = [
+        "--evaluations",
+        "300",
+        "--front",
+        "12",
+        "--architectures",
+        "3-PRR,3-RPR",
+    ];
+    let out = ["--no-recording", "--quiet", "--out"];
+    kinefront()
+        .arg("optimize")
+        .args(arguments)
+        .args(out)
+        .arg(&run)
+        .assert()
+        .success();
+    let table = run.join("front.csv").to_str().expect("a path").to_owned();
+    let along = json(["prices", &table, "--json"]);
+    let printed = kinefront()
+        .args(["prices", &table, "--csv"])
+        .output()
+        .expect("a table")
+        .stdout;
+    let mut printed = csv::Reader::from_reader(printed.as_slice());
+    let headers = printed.headers().expect("a header").clone();
+    let place = |name: &str| headers.iter().position(|header| header == name).expect("a column");
+    let rows: Vec<csv::StringRecord> = printed.records().map(|row| row.expect("a row")).collect();
+    let front = fs::read_to_string(run.join("front.csv")).expect("a front");
+    assert_eq!(rows.len(), front.lines().count() - 1);
+    let mut priced = 0;
+    for front in along.as_array().expect("architectures") {
+        assert_eq!(front["along"], "workspace_radius_m");
+        assert!(!front["sentences"].as_array().expect("sentences").is_empty(), "{front}");
+        let designs = front["designs"].as_array().expect("designs");
+        priced += designs.len() + front["without_prices"].as_u64().expect("a number") as usize;
+        let at: Vec<f64> = designs
+            .iter()
+            .map(|design| design["at"].as_f64().expect("a radius"))
+            .collect();
+        assert!(at.is_sorted(), "{at:?}");
+        for design in designs {
+            let id = design["id"].to_string();
+            let row = rows.iter().find(|row| row[place("id")] == id).expect("the row");
+            assert_eq!(row[place("architecture")], front["architecture"]);
+            for price in design["drivers"]["prices"].as_array().expect("prices") {
+                let name = format!("price_{}", price["parameter"].as_str().expect("a name"));
+                let cell: f64 = row[place(&name)].parse().expect("a price");
+                assert_eq!(Some(cell), price["price"].as_f64(), "{name}");
+            }
+        }
+        if let Some(design) = designs.first() {
+            let alone = json(["prices", &format!("{table}#{}", design["id"]), "--json"]);
+            assert_eq!(alone, design["drivers"], "a design alone has the same prices");
+        }
+    }
+    assert_eq!(priced, rows.len());
+    for (arguments, message) in [
+        (vec!["prices", &table, "--steps"], "name it as TABLE#ID"),
+        (
+            vec!["prices", &format!("{table}#1"), "--csv"],
+            "name the table without #ID",
+        ),
+        (vec!["prices", &table, "--csv", "--json"], "cannot be used with"),
+    ] {
+        kinefront().args(&arguments).assert().code(2).stderr(contains(message));
+    }
+}
+
+/// A run that finds nothing tells what stands in the way, and the value that it tells can be had.
+#[test]
+fn a_study_without_designs_is_told_what_stands_in_the_way() {
+    let folder = folder();
+    let study = folder.path().join("stiff.toml");
+    let text = |k_xy: f64| {
+        format!(
+            "architectures = [\"3-PRR\", \"3-RRR\"]\n[requirements]\nk_xy_min_n_per_m = {k_xy:e}\n[workspace]\ncertify = false\n\
+             [optimizer]\nevaluations = 90\n"
+        )
+    };
+    fs::write(&study, text(1e12)).expect("a study");
+    let run = folder.path().join("run");
+    kinefront()
+        .args(["optimize", "--no-recording", "--out"])
+        .arg(&run)
+        .arg(&study)
+        .assert()
+        .success()
+        .stdout(contains("No design is feasible.").and(contains("k_xy")));
+    let table = run.join("designs.csv").to_str().expect("a path").to_owned();
+    let found = json(["why", &table, "--json"]);
+    let found = found.as_array().expect("hindrances").clone();
+    let hindrance = found
+        .iter()
+        .find(|found| found["parameter"] == "k_xy_min")
+        .expect("the requirement");
+    let possible = hindrance["possible"].as_f64().expect("a value");
+    assert_eq!(hindrance["stated"], 1e12);
+    assert!(possible > 1e7 && possible < 1e11, "{possible}");
+    // The design has the value, and it has no more.
+    for (share, is_feasible) in [(0.98, true), (1.02, false)] {
+        fs::write(&study, text(share * possible)).expect("a study");
+        let design = hindrance["design"].as_str().expect("a design");
+        let evaluated = json([
+            "evaluate",
+            "--design",
+            design,
+            "--study",
+            study.to_str().expect("a path"),
+            "--grid",
+            "fine",
+            "--json",
+        ]);
+        assert_eq!(evaluated["feasible"], is_feasible, "{share}: {evaluated}");
+    }
+    kinefront()
+        .args(["why", &table, "--radius", "1"])
+        .assert()
+        .code(2)
+        .stderr(contains("add --mass"));
+    let feasible = folder.path().join("feasible");
+    kinefront()
+        .args(["optimize", "--evaluations", "60", "--no-recording", "--quiet", "--out"])
+        .arg(&feasible)
+        .assert()
+        .success();
+    kinefront()
+        .arg("why")
+        .arg(feasible.join("designs.csv"))
+        .assert()
+        .code(2)
+        .stderr(contains("is feasible, so that nothing is in the way"));
+}
+
+/// A point of a question without a workspace radius is stated by its own quantities.
+#[test]
+fn why_is_asked_of_the_objectives_of_the_study() {
+    let folder = folder();
+    let study = folder.path().join("cell.toml");
+    let text = "architectures = [\"3-PRR\"]\nobjectives = [{ minimize = \"mass_kg\" }, { maximize = \"k_xy_n_per_m\" }]\n\
+                [workspace]\ncertify = false\n[workspace.region]\nkind = \"rectangle\"\nwidth_m = 0.6\nheight_m = 0.4\n\
+                [optimizer]\nevaluations = 200\nfront_designs = 8\n";
+    fs::write(&study, text).expect("a study");
+    let run = folder.path().join("run");
+    kinefront()
+        .args(["optimize", "--no-recording", "--quiet", "--out"])
+        .arg(&run)
+        .arg(&study)
+        .assert()
+        .success();
+    let table = run.join("front.csv").to_str().expect("a path").to_owned();
+    let why = |mass: &str, stiffness: &str| {
+        let at = format!("k_xy_n_per_m={stiffness}");
+        json(["why", &table, "--mass", mass, "--at", &at, "--json"])
+    };
+    let deficit = |answer: &serde_json::Value| answer["why_not"]["log_deficit"].as_f64().expect("a number");
+    let (light, heavy) = (why("1", "2e6"), why("1000", "2e6"));
+    assert!(deficit(&light) < 0.0 && deficit(&heavy) > 0.0);
+    // More stiffness at the same mass is further away.
+    assert!(deficit(&why("1", "4e6")) < deficit(&light) - 0.1);
+    for (arguments, message) in [
+        (
+            vec!["--at", "k_z_n_per_m=3"],
+            "the objectives beside the first one are k_xy_n_per_m",
+        ),
+        (vec!["--at", "k_xy_n_per_m=-3"], "a number above 0"),
+        (
+            vec!["--at", "k_xy_n_per_m=3", "--at", "k_xy_n_per_m=4"],
+            "is stated twice",
+        ),
+        (vec!["--radius", "1"], "is no objective of the study; omit --radius"),
+    ] {
+        kinefront()
+            .args(["why", &table, "--mass", "10"])
+            .args(&arguments)
+            .assert()
+            .code(2)
+            .stderr(contains(message));
     }
 }

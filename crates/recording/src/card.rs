@@ -4,7 +4,13 @@ use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable};
 use kinefront_scene::text::{self, short};
 use kinefront_scene::{EllipsoidSet, Tour};
-use kinefront_study::CertifiedWorkspace;
+use kinefront_study::{CertifiedWorkspace, Drivers};
+
+/// Prices below this \[% for 1 %\] are left out.
+const FREE: f64 = 0.01;
+
+/// Largest number of prices on a card.
+const PRICES: usize = 10;
 
 /// Returns the card of a design; `heading` names the design.
 pub(super) fn card(
@@ -14,6 +20,7 @@ pub(super) fn card(
     ellipsoids: &[EllipsoidSet],
     tour: Option<&Tour>,
     certified: Option<&CertifiedWorkspace>,
+    drivers: Option<&Drivers>,
 ) -> String {
     let design = &evaluation.design;
     let mut card = format!(
@@ -75,6 +82,9 @@ pub(super) fn card(
             tour.forward_error
         );
     }
+    if let Some(drivers) = drivers {
+        card += &prices(drivers);
+    }
     if certified.is_some() {
         card += "\nboxes of the proof, filled by the number of divisions, outlined by the constraint that was proved last: g2 cyan · \
                  g3 blue · g4 red · g5 yellow · g6 green · g7 orange · beyond an infeasible pose: bright red\n";
@@ -82,4 +92,23 @@ pub(super) fn card(
     card + "\nwhite: regular workspace · magenta: threshold of the field · red: parallel singularity · orange edge: \
             end of a leg's reach (serial singularity) · grey edge: joint limit · red dots: poses at which the active \
             constraints have their smallest values\n"
+}
+
+/// Tabulates what drives the first objective of a design.
+fn prices(drivers: &Drivers) -> String {
+    let (objective, unit) = drivers.objective_name();
+    let dear = drivers.dear(FREE);
+    if dear.is_empty() {
+        return String::new();
+    }
+    let mut text = format!("\n| 1 % more of | changes the {objective} by | |\n|---|---|---|\n");
+    for price in dear.iter().take(PRICES) {
+        text += &format!(
+            "| {} | {:+.2} % | {:+.3} {unit} |\n",
+            price.label,
+            price.price,
+            0.01 * price.price * drivers.polished_value
+        );
+    }
+    text
 }

@@ -12,7 +12,7 @@ use kinefront_model::spatial::Pose;
 use kinefront_scene::{
     EllipsoidKind, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour, workspace_proof,
 };
-use kinefront_study::{CertifiedWorkspace, PreparedStudy, replace};
+use kinefront_study::{CertifiedWorkspace, DesignProblem, Drivers, DriversOptions, PreparedStudy, Study, replace};
 
 /// Number of cells along the longer side of a heatmap: of a single design, of a layer over φ, of a step of a front, and
 /// of an outline over φ.
@@ -120,12 +120,27 @@ fn draw_design(
             )?;
         }
     }
+    let drivers = drivers(study, evaluation);
     writer.text(
         paths::CARD,
         ALWAYS,
-        &card(heading, model, evaluation, &sets, tour.as_ref(), certified.as_ref()),
+        &card(
+            heading,
+            model,
+            evaluation,
+            &sets,
+            tour.as_ref(),
+            certified.as_ref(),
+            drivers.as_ref(),
+        ),
     )?;
     writer.close()
+}
+
+/// Returns what drives the first objective of a design, if an optimum is found near it.
+pub(super) fn drivers(study: &Study, evaluation: &Evaluation) -> Option<Drivers> {
+    let local = DesignProblem::new(study).ok()?.local_of(evaluation, &[]).ok()?;
+    local.drivers(DriversOptions::default()).ok()
 }
 
 /// Records one verified design of a front as a step: manipulator at the home pose, regular workspace, heatmap of the
@@ -136,6 +151,7 @@ pub(super) fn record_step(
     model: &Model,
     evaluation: &Evaluation,
     certified: Option<&CertifiedWorkspace>,
+    drivers: Option<&Drivers>,
     heading: &str,
 ) -> Result<(), RecordingError> {
     let subject = DrawnDesign { model, evaluation };
@@ -156,6 +172,6 @@ pub(super) fn record_step(
     writer.text(
         paths::CARD,
         moment,
-        &card(heading, model, evaluation, set.as_slice(), None, certified),
+        &card(heading, model, evaluation, set.as_slice(), None, certified, drivers),
     )
 }

@@ -196,7 +196,7 @@ pub fn save_copy(from: &Path, to: &Path, shown: Option<(&Model, &Evaluation, &st
     if let Some(((model, evaluation, heading), store)) = shown.zip(recording) {
         let builder = RecordingWriter::builder().recording_id(store.recording_id().clone());
         let writer = RecordingWriter::over(&file, to, builder)?;
-        design::record_step(&writer, &last, model, evaluation, None, heading)?;
+        design::record_step(&writer, &last, model, evaluation, None, None, heading)?;
         writer.close()?;
     } else {
         file.finish().map_err(failed)?;

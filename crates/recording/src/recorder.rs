@@ -17,7 +17,7 @@ use kinefront_model::evaluation::{Constraint, Evaluation, Quantity};
 use kinefront_model::mechanism::Architecture;
 use kinefront_scene::text::number;
 use kinefront_study::{
-    Batch, Column, Event, GenerationSummary, PreparedStudy, Row, RunSummary, RunWriter, Study, TableRow,
+    Batch, Column, Drivers, Event, GenerationSummary, PreparedStudy, Row, RunSummary, RunWriter, Study, TableRow,
 };
 
 /// Number of designs after which the rows that were collected are written, large enough to keep the file's index small.
@@ -258,13 +258,16 @@ impl Recorder {
             if give_up.load(Ordering::Relaxed) {
                 return Err(RecordingError::GivenUp);
             }
-            self.step(&[(timelines::FRONT, step)], step, summary)?;
+            self.step(&[(timelines::FRONT, step)], step, None, summary)?;
             self.writer.check()?;
         }
         // The timelines `evaluation` and `generation` end with the knee of the front; `front` begins with the scatter.
         let last = summary.history.last();
         if let Some((knee, last)) = summary.knee().zip(last) {
-            self.step(&moment(last.evaluations, last.generation), knee, summary)?;
+            // Prices take longer than a step, so that only the knee has them.
+            let drivers = design::drivers(self.study.study(), &summary.front[knee].evaluation);
+            let at = moment(last.evaluations, last.generation);
+            self.step(&at, knee, drivers.as_ref(), summary)?;
             self.scatter_on_front();
             // On the timeline `front`, each curve of the run is a horizontal line at its last value.
             for step in [0, summary.front.len() - 1] {
@@ -275,7 +278,13 @@ impl Recorder {
     }
 
     /// Writes one design of the verified front at a moment, and marks it in the scatter plot.
-    fn step(&self, moment: Moment<'_>, step: usize, summary: &RunSummary) -> Result<(), RecordingError> {
+    fn step(
+        &self,
+        moment: Moment<'_>,
+        step: usize,
+        drivers: Option<&Drivers>,
+        summary: &RunSummary,
+    ) -> Result<(), RecordingError> {
         let member = &summary.front[step];
         let heading = format!(
             "#{}, design {} of {} on the front",
@@ -290,6 +299,7 @@ impl Recorder {
             self.study.model(),
             &member.evaluation,
             certified,
+            drivers,
             &heading,
         )?;
         for (name, value) in ALONG_FRONT {

@@ -218,7 +218,7 @@ const SHOWN: f64 = 0.02;
 /// travels and the bounds, as lines.
 fn prices(along: &DriversAlong, kinds: &[ParameterKind], mark: Mark) -> Chart {
     let mut curves = along.curves(kinds);
-    curves.retain(|curve| curve.largest() >= SHOWN);
+    curves.retain(|curve| curve.is_usual(SHOWN));
     if mark == Mark::Area {
         curves = stacked(&curves);
     }

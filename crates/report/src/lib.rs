@@ -11,6 +11,7 @@ mod error;
 mod figures;
 mod fits;
 mod fronts;
+mod nearby;
 mod page;
 mod picture;
 mod question;
@@ -26,6 +27,7 @@ pub use assumptions::{ClearanceCost, Variation};
 pub use error::ReportError;
 pub use fits::{AT_BOUND, Fit, Trend, trends};
 pub use fronts::{Front, Fronts, SearchFronts, best_intervals};
+pub use nearby::Nearby;
 pub use reference::EvaluatedReference;
 pub use source::Source;
 pub use write::free;
@@ -116,6 +118,8 @@ pub struct Report {
     trends: Vec<(Architecture, Vec<Trend>)>,
     /// What drives the first objective along the front of each architecture.
     drivers: Vec<DriversAlong>,
+    /// What alternative assumptions change at designs of the front of each architecture.
+    nearby: Vec<Nearby>,
     variations: Vec<Variation>,
     question: Question,
     figures: Vec<Figure>,
@@ -236,6 +240,7 @@ impl Report {
             .collect();
         tell("determining prices along the fronts");
         let drivers = problem.drivers_along(&fronts.priced());
+        let nearby = nearby::all(&study, &problem, &fronts, tell)?;
         let variations = match options.sensitivity {
             Some(evaluations) => assumptions::search_alternatives(&study, evaluations, tell)?,
             None => Vec::new(),
@@ -252,6 +257,7 @@ impl Report {
             references,
             trends,
             drivers,
+            nearby,
             variations,
             question,
             figures: Vec::new(),

@@ -1,7 +1,7 @@
 //! The prices panel: what drives the first objective along the front.
 
-use egui::{Color32, ComboBox, ScrollArea, Stroke, Ui, WidgetInfo, WidgetType};
-use egui_plot::{FilledArea, Legend, Line, Plot, PlotBounds, PlotPoints, PlotUi, VLine};
+use egui::{Align, Color32, ComboBox, Layout, RichText, ScrollArea, Stroke, Ui, WidgetInfo, WidgetType};
+use egui_plot::{FilledArea, Line, Plot, PlotBounds, PlotPoints, PlotUi, VLine};
 use kinefront_model::mechanism::Architecture;
 use kinefront_scene::{palette, text};
 use kinefront_study::{Column, DriversAlong, ParameterKind, PriceCurve, stacked, usual_range};
@@ -93,16 +93,18 @@ impl PricesPanel {
 }
 
 fn sentences(ui: &mut Ui, along: &DriversAlong) {
-    for sentence in along.sentences() {
-        ui.label(sentence);
-    }
+    ui.with_layout(Layout::top_down(Align::Min), |ui| {
+        for sentence in along.sentences() {
+            ui.label(sentence);
+        }
+    });
 }
 
 /// Draws the prices of the limits as areas, and those of the region, the travels and the bounds as lines.
 fn plots(limits: &mut Ui, others: &mut Ui, session: &mut Session, along: &DriversAlong, height: f32) {
     let drawn = |kinds: &[ParameterKind]| {
         let mut curves = along.curves(kinds);
-        curves.retain(|curve| curve.largest() >= DRAWN);
+        curves.retain(|curve| curve.is_usual(DRAWN));
         curves
     };
     let of_limits = stacked(&drawn(&[ParameterKind::Limit]));
@@ -118,10 +120,11 @@ fn plots(limits: &mut Ui, others: &mut Ui, session: &mut Session, along: &Driver
             false,
         ),
     ] {
+        let top = ui.cursor().top();
         ui.label(name);
+        legend(ui, &curves);
         let plot = Plot::new(name)
-            .height(height - 24.0)
-            .legend(Legend::default())
+            .height((height - (ui.cursor().top() - top)).max(80.0))
             .x_axis_label(Column::Quantity(along.along).title())
             .y_axis_label("% for 1 %")
             .allow_scroll(false)
@@ -152,6 +155,16 @@ fn plots(limits: &mut Ui, others: &mut Ui, session: &mut Session, along: &Driver
     if let Some(at) = clicked {
         select_nearest(session, along, at);
     }
+}
+
+/// Names the curves in their colours.
+fn legend(ui: &mut Ui, curves: &[PriceCurve]) {
+    ui.horizontal_wrapped(|ui| {
+        for (index, curve) in curves.iter().enumerate() {
+            ui.label(RichText::new("■").color(color(index)));
+            ui.label(&curve.label);
+        }
+    });
 }
 
 fn color(index: usize) -> Color32 {

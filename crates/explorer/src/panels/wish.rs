@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use egui::{Grid, RichText, ScrollArea, Slider, Ui};
-use kinefront_model::evaluation::{Better, Bound, Constraint, Evaluation, PoseScalar, Quantity, QuantityLimit};
+use kinefront_model::evaluation::{Better, Bound, Evaluation, PoseScalar, Quantity, QuantityLimit};
 use kinefront_model::mechanism::Design;
 use kinefront_scene::text::number;
 use kinefront_study::{Column, Condition, Wish, WishOutcome};
@@ -12,6 +12,9 @@ use crate::{Session, theme};
 
 /// Range of the sliders \[%\].
 const RANGE: [f64; 2] = [-50.0, 100.0];
+
+/// Width of a slider \[points\].
+const SLIDER: f32 = 96.0;
 
 /// What is wished of a quantity.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -75,7 +78,7 @@ impl WishPanel {
                     .custom_formatter(|change, _| format!("{change:+.0} %"))
                     .custom_parser(|text| text.replace(['%', ' '], "").replace('−', "-").parse().ok());
                 ui.horizontal(|ui| {
-                    ui.spacing_mut().slider_width = (ui.available_width() - 150.0).clamp(50.0, 160.0);
+                    ui.spacing_mut().slider_width = SLIDER;
                     let slider = ui.add(slider);
                     ui.ctx().accesskit_node_builder(slider.id, |node| {
                         node.set_label(format!("Wished change of {}", entry.label))
@@ -142,8 +145,12 @@ fn wishable(session: &Session) -> Vec<Quantity> {
     if session.study().workspace.region.is_prescribed() {
         quantities.retain(|quantity| *quantity != Quantity::WorkspaceRadius);
     }
-    let constrained = Constraint::required(&session.model().settings().thresholds).map(Quantity::of_constraint);
-    for quantity in constrained.chain([Quantity::Worst(PoseScalar::Footprint)]) {
+    let thresholds = session.model().settings().thresholds;
+    let limited = thresholds
+        .iter()
+        .map(|(scalar, _)| scalar)
+        .filter(|scalar| *scalar != PoseScalar::Reach);
+    for quantity in limited.chain([PoseScalar::Footprint]).map(Quantity::Worst) {
         if !quantities.contains(&quantity) {
             quantities.push(quantity);
         }

@@ -1,5 +1,6 @@
 //! Tests that operate the window as a user would: by the text it shows, with the mouse and with keys.
 
+mod asking;
 mod controls;
 mod exploring;
 mod files;

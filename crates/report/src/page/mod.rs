@@ -99,7 +99,7 @@ fn sections(report: &Report) -> Vec<Section> {
         clearance::clearance(report),
     ));
     sections.push(section("pictures", "Pictures of designs", pictures::pictures(report)));
-    if !report.variations.is_empty() {
+    if !report.variations.is_empty() || !report.nearby.is_empty() {
         let contents = sensitivity::sensitivity(report);
         sections.push(section("sensitivity", "Sensitivity to assumptions", contents));
     }

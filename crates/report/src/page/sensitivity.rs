@@ -10,6 +10,61 @@ use kinefront_study::Column;
 use kinefront_study::sensitivity::{ALTERNATIVES, AS_STATED, Alternative};
 
 pub(super) fn sensitivity(report: &Report) -> Markup {
+    html! {
+        @if !report.nearby.is_empty() { (nearby(report)) }
+        (searched(report))
+    }
+}
+
+/// Tabulates what alternative assumptions change at designs of the fronts.
+fn nearby(report: &Report) -> Markup {
+    let question = &report.question;
+    let objective = question.name(0);
+    let compared = question.compared();
+    html! {
+        p {
+            "Under each alternative assumption, designs of the fronts are optimized again near themselves, with every pose as a constraint"
+            @if question.objectives.len() > 1 { " and the other objectives held" }
+            ". The change of the " (objective) " owes nothing to chance; a design of another kind may be better under the alternative. Alternatives "
+            "that change nothing at an architecture are left out."
+        }
+        @for nearby in &report.nearby {
+            h3 { (nearby.architecture) }
+            div.scroll { table {
+                caption { "Change of the " (objective) " of the best design near each." }
+                thead { tr {
+                    th { "assumption" }
+                    @for design in &nearby.designs {
+                        th.number { (question.name(compared)) " " (short(question.value(compared, design))) (question.unit(compared)) }
+                    }
+                    th { "meaning" }
+                } }
+                tbody {
+                    tr {
+                        td { (AS_STATED) }
+                        @for stated in &nearby.stated { td.number { @match stated {
+                            Some(stated) => { (number(*stated)) (question.unit(0)) }
+                            None => "no optimum found"
+                        } } }
+                        td {}
+                    }
+                    @for (alternative, found) in &nearby.changed { tr {
+                        td { (alternative.name) }
+                        @for (stated, found) in nearby.stated.iter().zip(found) { td.number { @match (stated, found) {
+                            (Some(stated), Some(found)) => (change(found / stated)),
+                            (Some(_), None) => "no design near",
+                            (None, _) => "–",
+                        } } }
+                        td { (alternative.meaning) }
+                    } }
+                }
+            } }
+        }
+    }
+}
+
+/// Tells how fronts that were searched again under alternative assumptions differ.
+fn searched(report: &Report) -> Markup {
     let Some((base, others)) = report.variations.split_first() else {
         return html! {};
     };
@@ -21,6 +76,7 @@ pub(super) fn sensitivity(report: &Report) -> Markup {
         .map(|alternative| alternative.name)
         .collect();
     html! {
+        h3 { "Searched again" }
         p {
             "Under each alternative assumption, every architecture is searched again on its own with " (evaluations)
             " evaluations, and its front is verified on the fine grid. Searches with other random seeds show how "

@@ -149,7 +149,7 @@ impl DriversAlong {
         parts
     }
 
-    /// Returns the bounds and the travels that have a price, each with the part of the front where it has one.
+    /// Returns the bounds and the travels that have a price, each with the part of the front where it has one, the longest part first.
     pub fn in_the_way(&self) -> Vec<DrivenPart> {
         let curves = self.curves(&[ParameterKind::Bound, ParameterKind::Travel]);
         let of = |curve: PriceCurve| {
@@ -159,7 +159,9 @@ impl DriversAlong {
             dear.for_each(|[at, price]| part.grow(*at, *price));
             Some(part)
         };
-        curves.into_iter().filter_map(of).collect()
+        let mut parts: Vec<DrivenPart> = curves.into_iter().filter_map(of).collect();
+        parts.sort_by_key(|part| std::cmp::Reverse(part.prices.len()));
+        parts
     }
 
     /// Tells in sentences what drives the objective along the front.
@@ -249,6 +251,12 @@ pub fn usual_range(curves: &[PriceCurve]) -> [f64; 2] {
 }
 
 impl PriceCurve {
+    /// Returns whether prices of at least `least` are usual: a tenth of the designs has them.
+    pub fn is_usual(&self, least: f64) -> bool {
+        let dear = self.points.iter().filter(|[_, price]| price.abs() >= least).count();
+        10 * dear >= self.points.len()
+    }
+
     /// Returns the largest absolute price.
     pub fn largest(&self) -> f64 {
         self.points.iter().fold(0.0, |most, [_, price]| most.max(price.abs()))
