@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use indicatif::ProgressBar;
-use kinefront_report::{Options, Report, ReportError, Source, free};
+use kinefront_report::{Options, Report, ReportError, SideBySide, Source, free};
 use miette::Report as Words;
 
 use super::progress::keep_ticking;
@@ -19,9 +19,11 @@ const SCALE: f32 = 2.0;
 Examples:
   kinefront report run                          report on one run in run/report
   kinefront report prr rpr rrr --out compared   report on several runs with the same requirements
+  kinefront report steel aluminium --out both   runs of different studies side by side
   kinefront report --paper --out paper          comparison with the 2010 paper, with new runs of its study")]
 pub struct ReportArguments {
-    /// Run folders; the studies of several runs may differ only in architectures and search.
+    /// Run folders. Runs whose studies differ in architectures and search alone are put together in one report; others are shown side by
+    /// side, if their objectives are the same.
     #[arg(value_name = "RUN", required_unless_present = "paper", conflicts_with = "paper")]
     runs: Vec<PathBuf>,
     /// Run the paper's study anew, each architecture alone and all together, and report on it.
@@ -127,7 +129,11 @@ pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
             Report::make(&sources, options, &mut tell)
         })
     };
-    let written = report.and_then(|report| report.write(&folder, arguments.replace));
+    let written = match report {
+        Err(ReportError::Differing { .. }) => SideBySide::read(&arguments.runs, arguments.command())
+            .and_then(|found| found.write(&folder, arguments.replace)),
+        report => report.and_then(|report| report.write(&folder, arguments.replace)),
+    };
     spinner.finish_and_clear();
     written.map_err(failure)?;
     if !arguments.quiet {
@@ -144,6 +150,7 @@ fn failure(error: ReportError) -> Failure {
             | ReportError::Table(_)
             | ReportError::Differing { .. }
             | ReportError::NothingFeasible
+            | ReportError::NoFront(_)
             | ReportError::Sensitivity { .. }
             | ReportError::Occupied(_)
     );

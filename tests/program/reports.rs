@@ -65,7 +65,7 @@ fn a_page_holds_everything_and_loads_nothing() {
     }
 
     // Three charts of all architectures; for each of the three architectures a front, two charts of variables, and
-    // charts of active constraints, clearance and sensitivity.
+    // charts of active constraints, clearance and sensitivity, and two of prices.
     let names = |name: &str, extension: &str| -> Vec<String> {
         let mut found: Vec<String> = std::fs::read_dir(out.join(name))
             .expect("a folder")
@@ -77,7 +77,7 @@ fn a_page_holds_everything_and_loads_nothing() {
     };
     let figures = names("figures", ".svg");
     assert_eq!(figures, names("figures", ".png"));
-    assert_eq!(figures.len(), 3 + 3 + 3 * 2 + 3 + 3 + 3);
+    assert_eq!(figures.len(), 3 + 3 + 3 * 2 + 3 + 3 + 3 + 3 * 2);
     for figure in &figures {
         assert!(
             page.contains(&format!("id=\"figure-{figure}\"")),
@@ -149,16 +149,38 @@ fn runs_are_put_together_where_they_ask_for_the_same() {
     report(&[&first, &second], &out, &["--sensitivity", "0"]).success();
     let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
     assert!(page.contains("Pareto front of the 3-PRR.") && page.contains("Pareto front of the 3-RPR."));
-    assert!(!page.contains("Pareto front of the 3-RRR.") && !page.contains("Sensitivity to assumptions"));
+    assert!(!page.contains("Pareto front of the 3-RRR.") && !page.contains("Searched again"));
 
     let text = std::fs::read_to_string(&study).expect("a study");
     let softer = folder.path().join("softer.toml");
     std::fs::write(&softer, format!("{text}[material]\nyoungs_modulus_pa = 70e9\n")).expect("a study");
     let third = folder.path().join("third");
-    optimize(&softer, &third, &["--evaluations", "60"]);
-    report(&[&first, &third], &folder.path().join("not"), &[])
+    optimize(&softer, &third, &["--evaluations", "60", "--architectures", "3-PRR"]);
+    let beside = folder.path().join("beside");
+    report(&[&first, &third], &beside, &[]).success();
+    let page = std::fs::read_to_string(beside.join("index.html")).expect("a page");
+    assert!(page.contains("first beside third"));
+    assert!(page.contains("material.youngs_modulus_pa") && page.contains("70000000000"));
+    assert!(!page.contains("optimizer.evaluations"));
+    // Softer bars are heavier at every radius that both reach: no change is below zero.
+    let levels = page.split("id=\"levels\"").nth(1).expect("the table");
+    let levels = levels.split("</table>").next().expect("the table");
+    assert!(
+        levels.matches(" %</td>").count() > 3 && !levels.contains('−'),
+        "{levels}"
+    );
+    assert!(beside.join("figures/fronts.svg").exists() && beside.join("figures/fronts-log.png").exists());
+
+    // Of other objectives there is nothing to compare.
+    let other = folder.path().join("other.toml");
+    let objectives = "objectives = [{ minimize = \"mass_kg\" }, { maximize = \"k_xy_n_per_m\" }]";
+    let region = "[workspace.region]\nkind = \"disc\"\nradius_m = 0.3\n";
+    std::fs::write(&other, format!("{objectives}\n{text}{region}")).expect("a study");
+    let fourth = folder.path().join("fourth");
+    optimize(&other, &fourth, &["--evaluations", "60"]);
+    report(&[&first, &fourth], &folder.path().join("not"), &[])
         .code(2)
-        .stderr(contains("first and third cannot be put in one report").and(contains("material")));
+        .stderr(contains("first and fourth cannot be put in one report").and(contains("objectives")));
     assert!(!folder.path().join("not").exists());
 }
 

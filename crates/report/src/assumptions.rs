@@ -91,7 +91,7 @@ pub(super) fn search_alternatives(
         let mut alone = Vec::new();
         for &architecture in &study.architectures {
             tell(&format!("sensitivity: {name}, {architecture}"));
-            let source = Source::run(name, study.with_one_architecture(architecture))?;
+            let source = Source::search(name, study.with_one_architecture(architecture))?;
             match Fronts::new(&[source], &problem, study.optimizer.front_designs) {
                 Some(fronts) => alone.extend(fronts.alone),
                 None => alone.push((architecture, Front::default())),

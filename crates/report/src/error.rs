@@ -36,6 +36,9 @@ pub enum ReportError {
         /// Number of its objectives.
         count: usize,
     },
+    /// A run has no reported front.
+    #[error("{0} has no front.csv with designs; finish the run first: kinefront optimize --resume")]
+    NoFront(String),
     /// The runs have no feasible design.
     #[error("no design of the run is feasible: there is no front to report")]
     NothingFeasible,

@@ -16,6 +16,7 @@ mod page;
 mod picture;
 mod question;
 mod reference;
+mod side_by_side;
 mod source;
 mod write;
 
@@ -29,6 +30,7 @@ pub use fits::{AT_BOUND, Fit, Trend, trends};
 pub use fronts::{Front, Fronts, SearchFronts, best_intervals};
 pub use nearby::Nearby;
 pub use reference::EvaluatedReference;
+pub use side_by_side::SideBySide;
 pub use source::Source;
 pub use write::free;
 

@@ -45,6 +45,21 @@ impl Source {
         })
     }
 
+    /// Searches a study and collects its designs; what the run would report of them is not verified.
+    ///
+    /// # Errors
+    /// [`ReportError::Run`] if the run fails.
+    pub fn search(name: &str, study: Study) -> Result<Self, ReportError> {
+        let mut searched = study.clone();
+        // The least that a run reports: the designs of a search do not depend on it.
+        searched.optimizer.front_designs = 3;
+        searched.workspace.certify = false;
+        Ok(Self {
+            study,
+            ..Self::run(name, searched)?
+        })
+    }
+
     /// Runs a study to its end and collects its designs.
     ///
     /// # Errors

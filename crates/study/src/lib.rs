@@ -29,6 +29,7 @@ mod control;
 mod durable;
 mod events;
 mod front;
+mod levels;
 mod local;
 mod overrides;
 mod prepared;
@@ -52,6 +53,7 @@ pub use durable::{WriteError, open_regular, read_regular, replace, write_whole};
 pub use events::{Batch, EndReason, Event, GenerationSummary, RunSummary, RunTimes, Started, Subscriber, front_marks};
 pub use front::{FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
 pub use kinefront_optimum::ParameterKind;
+pub use levels::{EqualLevel, equal_levels};
 pub use local::{
     ActiveJson, Condition, ConditionError, DrivenPart, Drivers, DriversAlong, DriversOptions, Hindrance, InactiveJson,
     LocalDesign, LocalFault, PriceCurve, PriceJson, RelaxationJson, UnmetJson, WhyNotJson, Wish, WishFault, WishJson,
@@ -76,7 +78,7 @@ pub use settings::{
     SectionsSection, Setting, Stagnation, StiffnessChoice, StrengthSection, TelescopicBar, Tie, VariableChoice,
     Variables, WHOLE_FRONT, WorkspaceSection, is_shown, settings,
 };
-pub use study::{Fault, Study, StudyError};
+pub use study::{Fault, SettingDifference, Study, StudyError};
 pub use sum::{Difference, FileSum};
 pub use table::{
     Cell, Column, ColumnType, Row, RowError, TableContents, TableError, TableFault, TableRow, read_design,

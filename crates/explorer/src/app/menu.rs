@@ -13,9 +13,10 @@ use kinefront_export::Format;
 use kinefront_study::BUILTIN;
 
 /// Entries of the menu "File" that select a file first.
-const FILE_ENTRIES: [(&str, Purpose); 9] = [
+const FILE_ENTRIES: [(&str, Purpose); 10] = [
     ("Open… (Ctrl+O)", Purpose::Open),
     ("Open run folder…", Purpose::OpenFolder),
+    ("Open run beside…", Purpose::OpenBeside),
     ("Save recording… (Ctrl+S)", Purpose::SaveRecording),
     ("Save run folder…", Purpose::SaveRun),
     ("Save study…", Purpose::SaveStudy),

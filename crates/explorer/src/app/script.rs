@@ -7,6 +7,7 @@
 //! | `wait finished` | waits for the end of the run |
 //! | `wait evaluations N` | waits until N designs are evaluated |
 //! | `wait drawn` | waits until the design is verified and everything requested of the scene is drawn |
+//! | `wait answered` | waits until every question is answered that panels have asked: prices, wishes, why not |
 //! | `wait proved` | waits until the workspace of the selected design is proved |
 //! | `wait frames N` | waits N frames |
 //! | `choose knee`, `choose #ID`, `choose DESIGN` | selects a design |
@@ -25,6 +26,7 @@
 //! | `tool pan`, `tool box`, `tool lasso` | sets what dragging in the scatter does |
 //! | `color architecture`, `color density`, `color KEY` | sets what the colours of the scatter tell |
 //! | `size W H` | sets the size of the window \[points\] |
+//! | `beside FOLDER` | shows a run beside that in the window |
 //! | `pause`, `resume`, `stop` | control the run |
 //! | `filter KEY LOW HIGH` | sets a range of the filter |
 //! | `picture FILE.png`, `save FILE.rrd` | writes a file and waits until it is written |
@@ -63,6 +65,7 @@ enum Step {
     WaitFinished,
     WaitEvaluations(usize),
     WaitDrawn,
+    WaitAnswered,
     WaitProved,
     WaitFrames(usize),
     WaitBusy,
@@ -211,6 +214,8 @@ impl Script {
                 // The viewer shows the scene a few frames later.
                 return verified && session.is_drawn() && self.frames > 12;
             }
+            // A panel asks in the frame after it was shown.
+            Step::WaitAnswered => return session.is_answered() && self.frames > 12,
             Step::WaitProved => return session.proof().is_some(),
             Step::WaitFrames(count) => return self.frames >= *count,
             // A picture arrives some frames after its request.
@@ -313,6 +318,7 @@ fn step(line: &str) -> Option<Step> {
         "wait" => match rest.split_once(' ').unwrap_or((rest, "")) {
             ("finished", "") => Step::WaitFinished,
             ("drawn", "") => Step::WaitDrawn,
+            ("answered", "") => Step::WaitAnswered,
             ("proved", "") => Step::WaitProved,
             ("evaluations", count) => Step::WaitEvaluations(count.parse().ok()?),
             ("frames", count) => Step::WaitFrames(count.parse().ok()?),
@@ -364,6 +370,7 @@ fn step(line: &str) -> Option<Step> {
             let mut number = || words.next()?.parse::<f64>().ok();
             Step::Filter(quantity, [number()?, number()?])
         }
+        "beside" => Step::File(Purpose::OpenBeside, path()?),
         "picture" => Step::File(Purpose::SavePicture, path()?),
         "save" => Step::File(Purpose::SaveRecording, path()?),
         "frames" => Step::Frames(path()?),

@@ -12,6 +12,8 @@ pub enum Purpose {
     Open,
     /// A run folder to open.
     OpenFolder,
+    /// A run folder to show beside the run in the window.
+    OpenBeside,
     /// Destination of the study.
     SaveStudy,
     /// Destination of the session's recording.
@@ -50,6 +52,7 @@ impl Purpose {
                 &[("studies, recordings, tables", &["toml", "rrd", "csv"])],
             ),
             Purpose::OpenFolder => ("Open a run folder", "", &[]),
+            Purpose::OpenBeside => ("Open a run folder beside the run", "", &[]),
             Purpose::SaveStudy => ("Save the study", "study.toml", &[("study", &["toml"])]),
             Purpose::SaveRecording => ("Save the recording", "session.rrd", &[("recording", &["rrd"])]),
             Purpose::SaveRun => ("Save the run folder", "run", &[]),
@@ -78,7 +81,10 @@ impl Purpose {
     }
 
     fn is_saving(self) -> bool {
-        !matches!(self, Purpose::Open | Purpose::OpenFolder | Purpose::OpenFilter)
+        !matches!(
+            self,
+            Purpose::Open | Purpose::OpenFolder | Purpose::OpenBeside | Purpose::OpenFilter
+        )
     }
 }
 
@@ -99,7 +105,7 @@ impl Dialog {
         }
         std::thread::spawn(move || {
             let path = match purpose {
-                Purpose::OpenFolder => dialog.pick_folder(),
+                Purpose::OpenFolder | Purpose::OpenBeside => dialog.pick_folder(),
                 _ if purpose.is_saving() => dialog.set_file_name(name).save_file(),
                 _ => dialog.pick_file(),
             };

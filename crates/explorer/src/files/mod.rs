@@ -24,6 +24,7 @@ pub type Job = Box<dyn FnOnce() -> Result<String, AnyError> + Send>;
 pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job> {
     match purpose {
         Purpose::Open | Purpose::OpenFolder => session.open(&path),
+        Purpose::OpenBeside => session.open_beside(&path),
         Purpose::SaveStudy => {
             let saved = session.editor_mut().save(&path);
             notify(session, saved.map(|()| format!("saved {}", path.display())));

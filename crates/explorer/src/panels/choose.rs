@@ -14,8 +14,8 @@ pub struct ChoosePanel {
     /// Weights of the objectives in the ranking, in \[0, 1\]. With two objectives, that of the second is the rest of the first.
     weights: [f64; Objectives::MOST],
     groups: usize,
-    /// Number of the front, number of groups, and ids of the groups' representatives, as last computed.
-    middles: Option<(u64, usize, Vec<usize>)>,
+    /// Number of the front, the filter, number of groups, and ids of the groups' representatives, as last computed.
+    middles: Option<(u64, Filter, usize, Vec<usize>)>,
 }
 
 impl Default for ChoosePanel {
@@ -91,12 +91,9 @@ impl ChoosePanel {
             2 => vec![self.weights[0], 1.0 - self.weights[0]],
             _ => self.weights.to_vec(),
         };
-        let objectives: Vec<Objectives> = session.front().iter().map(|entry| entry.objectives()).collect();
-        let best: Vec<usize> = ranking(&objectives, &weights)
-            .into_iter()
-            .take(5)
-            .map(|place| session.front()[place].id)
-            .collect();
+        let (ids, objectives) = passing(session);
+        let ranked = ranking(&objectives, &weights).into_iter().take(5);
+        let best: Vec<usize> = ranked.map(|place| ids[place]).collect();
         designs(ui, session, &best);
     }
 
@@ -109,11 +106,15 @@ impl ChoosePanel {
         });
         let front = session.front_number();
         let middles = match self.middles.take() {
-            Some((of, groups, middles)) if of == front && groups == self.groups => middles,
+            Some((of, filter, groups, middles))
+                if of == front && groups == self.groups && filter == session.document().filter =>
+            {
+                middles
+            }
             _ => representatives(session, self.groups),
         };
         designs(ui, session, &middles);
-        self.middles = Some((front, self.groups, middles));
+        self.middles = Some((front, session.document().filter.clone(), self.groups, middles));
     }
 }
 
@@ -217,20 +218,25 @@ fn kept(ui: &mut Ui, session: &mut Session) {
 
 /// Divides the front into `count` groups of similar designs and returns the id of the middle design of each.
 fn representatives(session: &Session, count: usize) -> Vec<usize> {
-    let objectives: Vec<Objectives> = session.front().iter().map(|entry| entry.objectives()).collect();
+    let (ids, objectives) = passing(session);
     groups(&objectives, count)
         .into_iter()
-        .map(|group| session.front()[group[(group.len() - 1) / 2]].id)
+        .map(|group| ids[group[(group.len() - 1) / 2]])
         .collect()
+}
+
+/// Returns the designs of the front that pass the filter, with their objectives.
+fn passing(session: &Session) -> (Vec<usize>, Vec<Objectives>) {
+    let entries = session.passing().into_iter().map(|place| &session.front()[place]);
+    entries.map(|entry| (entry.id, entry.objectives())).unzip()
 }
 
 /// Returns the objectives with the id of the best design of the front in each.
 fn bests(session: &Session) -> Vec<(Objective, usize)> {
+    let (ids, points) = passing(session);
     let best = |place: usize| {
-        let entries = session.front().iter();
-        entries
-            .min_by(|a, b| a.row.objectives[place].total_cmp(&b.row.objectives[place]))
-            .map(|entry| entry.id)
+        let places = (0..ids.len()).min_by(|&a, &b| points[a][place].total_cmp(&points[b][place]));
+        places.map(|found| ids[found])
     };
     let objectives = session.study().objectives().into_iter().enumerate();
     objectives

@@ -23,7 +23,14 @@ impl ComparePanel {
             return;
         }
         let mut comparing = session.view().comparing;
-        ui.checkbox(&mut comparing, "show side by side in 3-D");
+        ui.horizontal_wrapped(|ui| {
+            ui.checkbox(&mut comparing, "show side by side in 3-D");
+            ui.weak(format!(
+                "values on the fine grid under the study {}; changes are from {}",
+                session.study().name,
+                pins[0].name
+            ));
+        });
         session.view_mut().comparing = comparing;
         let evaluations: Vec<Option<Evaluation>> = session
             .pin_evaluations()
@@ -145,7 +152,8 @@ fn row(ui: &mut Ui, name: &str, values: Vec<Option<f64>>, better: Option<Better>
         Better::Higher => known.reduce(f64::max),
     });
     let several = values.len() > 1;
-    for value in values {
+    let first = values.first().copied().flatten();
+    for (place, value) in values.into_iter().enumerate() {
         let text = value.map_or_else(|| "…".to_owned(), theme::number);
         let text = RichText::new(text).monospace();
         let text = if several && value.is_some() && value == target {
@@ -153,7 +161,27 @@ fn row(ui: &mut Ui, name: &str, values: Vec<Option<f64>>, better: Option<Better>
         } else {
             text.color(Color32::PLACEHOLDER)
         };
-        ui.label(text);
+        ui.horizontal(|ui| {
+            ui.label(text);
+            if let (Some(value), Some(first), true) = (value, first, place > 0) {
+                ui.weak(difference(value, first));
+            }
+        });
     }
     ui.end_row();
+}
+
+/// Returns the difference of a value from that of the first design, absolute and in per cent; nothing if there is none.
+fn difference(value: f64, first: f64) -> String {
+    let difference = value - first;
+    if difference == 0.0 {
+        return String::new();
+    }
+    let sign = if difference > 0.0 { "+" } else { "−" };
+    let absolute = format!("{sign}{}", theme::number(difference.abs()));
+    let percent = 100.0 * difference / first.abs();
+    match percent.is_finite() && percent.abs() < 1e4 {
+        true => format!("{absolute}, {percent:+.1} %"),
+        false => absolute,
+    }
 }

@@ -1,5 +1,6 @@
 //! The panels, one per file.
 
+mod beside;
 mod choose;
 mod compare;
 mod drivers;
@@ -155,6 +156,8 @@ panels! {
     Prices = prices: prices::PricesPanel, "Prices", Designs;
     /// Pinned designs side by side.
     Compare = compare: compare::ComparePanel, "Compare", Designs;
+    /// The front beside that of another run.
+    Beside = beside: beside::BesidePanel, "Beside", Designs;
 }
 
 impl Panels {

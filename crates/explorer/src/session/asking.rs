@@ -52,6 +52,14 @@ impl Asking {
         }
     }
 
+    fn is_waiting(&self) -> bool {
+        self.drivers.is_waiting()
+            || self.along.is_waiting()
+            || self.wish.is_waiting()
+            || self.why.is_waiting()
+            || self.hindrances.is_waiting()
+    }
+
     /// Forgets what was asked of an earlier run.
     pub fn forget(&mut self) {
         self.drivers.forget();
@@ -83,6 +91,11 @@ impl Session {
             designs: self.designs_of_front(),
         };
         self.asking.along.ask(question)
+    }
+
+    /// Returns whether every question that was asked is answered.
+    pub fn is_answered(&self) -> bool {
+        !self.asking.is_waiting()
     }
 
     /// States a wish about the selected design.

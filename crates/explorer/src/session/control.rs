@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::super::{FrontEntry, Store, StudyEditor};
+use super::super::{Filter, FrontEntry, Store, StudyEditor};
 use super::{GLANCE, Phase, Session, references};
 use crate::AnyError;
 use crate::data::{DesignOrigin, Document, Selected};
@@ -138,6 +138,7 @@ impl Session {
     }
 
     fn begin(&mut self, study: PreparedStudy) {
+        let is_same = self.as_run.study().differing_key(study.study()).is_none();
         self.references = references(&study);
         self.as_run = Arc::new(study);
         self.store = Store::default();
@@ -149,12 +150,17 @@ impl Session {
         self.following = true;
         self.followed = None;
         self.asking.forget();
-        // The ids of the previous run are meaningless now; pinned and kept designs and the filter remain.
+        self.keep_beside();
+        // The ids of the previous run are meaningless now; pinned and kept designs remain, and the filter if the question is the same.
         let before = self.history.present();
         let document = Document {
             pins: before.pins.clone(),
             kept: before.kept.clone(),
-            filter: before.filter.clone(),
+            filter: if is_same {
+                before.filter.clone()
+            } else {
+                Filter::default()
+            },
             ..Document::default()
         };
         self.history.restart(document);

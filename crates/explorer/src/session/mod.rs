@@ -2,6 +2,7 @@
 //! to the scene.
 
 mod asking;
+mod beside;
 mod control;
 mod pose;
 mod selection;
@@ -13,6 +14,7 @@ use std::time::{Duration, Instant};
 
 use self::asking::Asking;
 pub use self::asking::WhyPoint;
+pub use self::beside::Beside;
 pub use self::selection::MarkedCounts;
 use super::data::{DesignOrigin, Document, History, Named, Selected};
 use super::files::Purpose;
@@ -122,6 +124,7 @@ pub struct Session {
     references: Vec<ReferenceMark>,
     scene: SceneThread,
     asking: Asking,
+    beside: Option<Beside>,
     answer: Answer,
     requested: u64,
     /// Number of the last failed request whose message was shown.
@@ -163,6 +166,7 @@ impl Session {
             generation_times: Vec::new(),
             scene: SceneThread::start(scene, move || waking())?,
             asking: Asking::new(&wake),
+            beside: None,
             answer: Answer::default(),
             requested: 0,
             failure_shown: None,

@@ -6,6 +6,7 @@ use super::{MOST_PINS, Session};
 use crate::data::{DesignOrigin, Document, Named, Selected};
 use kinefront_model::mechanism::{Architecture, Design, DesignError, DesignVariable};
 use kinefront_model::spatial::Pose;
+use kinefront_optimize::{Objectives, knee};
 use kinefront_recording::Picked;
 
 /// Numbers of marked designs.
@@ -50,22 +51,28 @@ impl Session {
         self.history.edit(|document| document.selected = Some(selected));
     }
 
-    /// Selects the knee of the front.
+    /// Returns the places on the front of the designs that pass the filter, in order.
+    pub fn passing(&self) -> Vec<usize> {
+        let prepared = self.document().filter.prepare(&self.store);
+        let places = self.front.iter().enumerate();
+        places
+            .filter(|(_, entry)| prepared.passes_entry(entry))
+            .map(|(place, _)| place)
+            .collect()
+    }
+
+    /// Selects the knee of the designs of the front that pass the filter.
     pub fn select_knee(&mut self) {
-        if let Some(place) = self.knee() {
-            self.select(self.front[place].id);
+        let passing = self.passing();
+        let objectives: Vec<Objectives> = passing.iter().map(|&place| self.front[place].objectives()).collect();
+        if let Some(place) = knee(&objectives) {
+            self.select(self.front[passing[place]].id);
         }
     }
 
     /// Moves the selection by `steps` along the designs of the front that pass the filter.
     pub fn walk(&mut self, steps: isize) {
-        let prepared = self.document().filter.prepare(&self.store);
-        let passing: Vec<usize> = self
-            .front
-            .iter()
-            .filter(|entry| prepared.passes_entry(entry))
-            .map(|entry| entry.id)
-            .collect();
+        let passing: Vec<usize> = self.passing().into_iter().map(|place| self.front[place].id).collect();
         let here = match self.document().selected {
             Some(Selected {
                 origin: DesignOrigin::Evaluated(id),

@@ -76,6 +76,11 @@ impl<Q: Question> AnsweringThread<Q> {
         (question == asked).then(|| Arc::clone(answer))
     }
 
+    /// Returns whether the question that was asked last has no answer yet.
+    pub fn is_waiting(&self) -> bool {
+        self.asked.is_some() && self.answer().is_none()
+    }
+
     /// Returns the question that was asked last.
     pub fn asked(&self) -> Option<&Q> {
         self.asked.as_ref()

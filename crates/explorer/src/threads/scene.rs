@@ -300,7 +300,22 @@ fn step(state: &mut SceneState, shared: &Shared, request: &Request) -> Result<()
     };
     let new_pins = before.as_ref().is_none_or(|before| before.pins != request.pins);
     if new_pins {
-        state.pins = request.pins.iter().map(|(_, design)| evaluate(design)).collect();
+        // A design that was verified as the selected one is not evaluated again; the others are, as the tables show them.
+        let fine = |design: &Design| model.evaluate(design, GridChoice::Fine);
+        let before = std::mem::take(&mut state.pins);
+        let known = |design: &Design| before.iter().find(|pin| pin.design == *design).cloned();
+        let verified = |design: &Design| {
+            let known = state.known.as_ref().filter(|known| known.verified);
+            known
+                .filter(|known| known.evaluation.design == *design)
+                .map(|known| (*known.evaluation).clone())
+        };
+        let pins = request.pins.iter().map(|(_, design)| {
+            known(design)
+                .or_else(|| verified(design))
+                .unwrap_or_else(|| fine(design))
+        });
+        state.pins = pins.collect();
     }
 
     let Some(mut scene) = state.scene.take() else {

@@ -135,3 +135,58 @@ fn a_run_without_designs_tells_what_stands_in_the_way() {
     window.run_steps(3);
     assert!(window.state().session().document().selected.is_some());
 }
+
+#[test]
+fn a_second_run_is_compared_with_the_first() {
+    // The same question with a softer material, in a run of its own.
+    let mut study = Study {
+        references: Vec::new(),
+        ..small_study()
+    };
+    study.material.youngs_modulus_pa = 70e9;
+    study.optimizer.evaluations = 150;
+    let mut softer = window(InitialContent::Study {
+        study: Box::new(study),
+        path: None,
+        start: true,
+    });
+    until(&mut softer, "the run ends", |explorer| {
+        let session = explorer.session();
+        !session.is_running() && session.front().iter().all(|entry| entry.verified) && session.store().len() == 150
+    });
+    let folder = tempfile::tempdir().expect("a folder");
+    let ctx = softer.ctx.clone();
+    let path = folder.path().join("softer");
+    softer
+        .state_mut()
+        .act(&ctx, kinefront_explorer::Purpose::SaveRun, path.clone());
+    until(&mut softer, "the run is saved", |explorer| !explorer.is_busy());
+    assert!(path.join("front.csv").exists());
+
+    let mut window = opened_window();
+    let ctx = window.ctx.clone();
+    window
+        .state_mut()
+        .act(&ctx, kinefront_explorer::Purpose::OpenBeside, path);
+    window.state_mut().show(Panel::Beside);
+    window.run_steps(4);
+    assert!(told(&window, "small beside softer").is_some());
+    assert!(window.query_by_label("material.youngs_modulus_pa").is_some());
+    let levels = window.state().session().levels_beside();
+    let both: Vec<[f64; 2]> = levels
+        .iter()
+        .filter_map(|level| Some([level.costs[0]?, level.costs[1]?]))
+        .collect();
+    assert!(both.len() > 3, "{levels:?}");
+    // A softer material is heavier wherever both have a design.
+    assert!(both.iter().all(|[stiff, soft]| soft > stiff), "{levels:?}");
+    window.get_by_label("Close softer").click();
+    window.run_steps(3);
+    assert!(window.state().session().beside().is_none());
+    // A folder that is no run is refused.
+    window
+        .state_mut()
+        .act(&ctx, kinefront_explorer::Purpose::OpenBeside, folder.path().to_owned());
+    assert!(window.state().session().beside().is_none());
+    assert!(window.state().session().notices().iter().any(|notice| notice.is_error));
+}

@@ -11,6 +11,7 @@ mod pictures;
 mod question;
 mod references;
 mod sensitivity;
+mod side_by_side;
 mod variables;
 
 use std::borrow::Cow;
@@ -19,15 +20,25 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{DesignPicture, Figure, Report, Topic};
+use super::{DesignPicture, Figure, Report, SideBySide, Topic};
 use kinefront_scene::text::number;
 
 const STYLE: &str = include_str!("style.css");
 
-/// Returns the page as text.
+/// Returns the page of a report as text.
 pub(super) fn html(report: &Report) -> String {
     let title = format!("Kinefront report: {}", report.study.name);
-    let sections = sections(report);
+    page(&title, &report.study.description, &sections(report))
+}
+
+/// Returns the page of runs of different studies as text.
+pub(super) fn side_by_side(found: &SideBySide) -> String {
+    let names: Vec<&str> = found.runs.iter().map(|run| run.name.as_str()).collect();
+    let title = format!("Kinefront: {}", names.join(" beside "));
+    page(&title, "", &side_by_side::sections(found))
+}
+
+fn page(title: &str, lead: &str, sections: &[Section]) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -41,11 +52,11 @@ pub(super) fn html(report: &Report) -> String {
             body {
                 header {
                     h1 { (title) }
-                    @if !report.study.description.is_empty() { p.lead { (report.study.description) } }
-                    nav { @for section in &sections { a href={ "#" (section.id) } { (section.title) } } }
+                    @if !lead.is_empty() { p.lead { (lead) } }
+                    nav { @for section in sections { a href={ "#" (section.id) } { (section.title) } } }
                 }
                 main {
-                    @for part in &sections {
+                    @for part in sections {
                         section id=(part.id) { h2 { (part.title) } (part.contents) }
                     }
                 }

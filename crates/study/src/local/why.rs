@@ -3,6 +3,7 @@
 use kinefront_model::evaluation::{Evaluation, GridChoice, Quantity};
 use kinefront_model::mechanism::{Architecture, Design};
 use kinefront_optimum::Polished;
+use rayon::prelude::*;
 
 use super::{Drivers, DriversOptions, LocalDesign, LocalFault};
 use crate::DesignProblem;
@@ -60,9 +61,10 @@ impl DesignProblem {
                 held => held.iter().map(off).fold(0.0, f64::max),
             }
         };
+        // A design of a front may hold on the fine grid alone, on which its home orientation is.
         let mut evaluated: Vec<(f64, Evaluation)> = designs
-            .iter()
-            .map(|design| self.model().evaluate(design, GridChoice::Reference))
+            .par_iter()
+            .map(|design| self.model().evaluate(design, GridChoice::Fine))
             .filter(Evaluation::is_feasible)
             .map(|evaluation| (distance(&evaluation), evaluation))
             .collect();

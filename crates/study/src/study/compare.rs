@@ -25,7 +25,52 @@ fn is_of_one_search(path: &str) -> bool {
     OWN.contains(&path) || path.starts_with("optimizer.stagnation.")
 }
 
+/// A setting in which two studies differ, with its value in each; absent where a study does not state it and there is no default.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SettingDifference {
+    /// The key with its sections.
+    pub key: String,
+    /// Its values.
+    pub values: [Option<String>; 2],
+}
+
 impl Study {
+    /// Returns every setting in which another study differs, apart from names and how it is searched.
+    pub fn differences(&self, other: &Study) -> Vec<SettingDifference> {
+        let (Ok(ours), Ok(theirs)) = (Table::try_from(self), Table::try_from(other)) else {
+            return Vec::new();
+        };
+        let of_search = |path: &str| is_of_search(path) && path != "architectures";
+        let settings = settings().filter(|setting| !of_search(&setting.path()));
+        let of_settings = settings.filter_map(|setting| {
+            let values = [setting.value(&ours), setting.value(&theirs)];
+            (values[0] != values[1]).then(|| SettingDifference {
+                key: setting.path(),
+                values: values.map(|value| value.map(|value| value.to_string())),
+            })
+        });
+        let of_lists = [
+            (
+                "obstacles",
+                self.obstacles.len(),
+                other.obstacles.len(),
+                self.obstacles != other.obstacles,
+            ),
+            (
+                "room",
+                usize::from(self.room.is_some()),
+                usize::from(other.room.is_some()),
+                self.room != other.room,
+            ),
+        ];
+        let of_lists = of_lists.into_iter().filter(|(.., differs)| *differs);
+        let of_lists = of_lists.map(|(key, ours, theirs, _)| SettingDifference {
+            key: key.to_owned(),
+            values: [ours, theirs].map(|count| (count > 0).then(|| format!("{count} stated"))),
+        });
+        of_settings.chain(of_lists).collect()
+    }
+
     /// Returns the first setting by which another study is another search; `None` if the two differ in seed, budget and name at
     /// most.
     pub fn key_of_other_search(&self, other: &Study) -> Option<String> {

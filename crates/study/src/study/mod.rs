@@ -14,6 +14,7 @@ mod region;
 mod surroundings;
 mod variables;
 
+pub use compare::SettingDifference;
 pub use error::StudyError;
 pub use faults::Fault;
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::entry;
-use crate::{FrontEntry, Session, theme};
+use crate::{Filter, FrontEntry, Session, theme};
 use kinefront_model::evaluation::{Constraint, Quantity};
 use kinefront_study::Column;
 
@@ -53,6 +53,7 @@ struct Basis {
     listing: Listing,
     era: u64,
     front: u64,
+    filter: Filter,
     marked: Arc<Vec<usize>>,
     stars: BTreeSet<usize>,
     notes: BTreeMap<usize, String>,
@@ -71,6 +72,7 @@ impl Order {
             listing: listing.clone(),
             era: session.era(),
             front: session.front_number(),
+            filter: document.filter.clone(),
             marked: Arc::clone(&document.marked),
             stars: document.stars.clone(),
             notes: document.notes.clone(),
@@ -79,9 +81,16 @@ impl Order {
             return;
         }
         let all: Vec<usize> = if listing.marked {
-            document.marked.to_vec()
+            let prepared = document.filter.prepare(session.store());
+            document
+                .marked
+                .iter()
+                .copied()
+                .filter(|&id| prepared.passes(id))
+                .collect()
         } else {
-            session.front().iter().map(|entry| entry.id).collect()
+            let passing = session.passing().into_iter();
+            passing.map(|place| session.front()[place].id).collect()
         };
         let mut found: Vec<(f64, usize)> = all
             .into_iter()

@@ -36,7 +36,8 @@ impl Scatter {
             dark,
         };
         let (mut lines, mut marks) = (Vec::new(), Vec::new());
-        lines.extend(self.staircase(session, colors));
+        lines.extend(self.staircase(session, session.front(), colors.ink));
+        self.add_beside(session, colors, &mut lines, &mut marks);
         marks.extend(self.designs(session, colors));
         marks.extend(self.knee(session, colors));
         self.add_references(session, colors, &mut lines, &mut marks);
@@ -54,9 +55,45 @@ impl Scatter {
         (lines, marks)
     }
 
+    /// The front of the run beside that of the session: a dashed edge and hollow marks, with its name.
+    fn add_beside<'a>(
+        &self,
+        session: &Session,
+        colors: Colors,
+        lines: &mut Vec<Line<'a>>,
+        marks: &mut Vec<LabelledPoints<'a>>,
+    ) {
+        let Some(beside) = session.beside() else { return };
+        let ink = theme::mix(colors.ink, colors.ground, 0.7);
+        lines.extend(
+            self.staircase(session, &beside.front, ink)
+                .map(|line| line.style(LineStyle::dashed_loose())),
+        );
+        for &architecture in Architecture::ALL {
+            let own = beside
+                .front
+                .iter()
+                .filter(|entry| entry.row.design.architecture() == architecture);
+            let places: Vec<[f64; 2]> = own.map(|entry| self.place(&entry.row)).collect();
+            let color = theme::architecture(architecture, colors.dark);
+            let points = Points::new("", places).radius(3.5).filled(false).color(color);
+            marks.push((points.shape(theme::mark(architecture)).allow_hover(false), None));
+        }
+        if let Some(middle) = beside.front.get(beside.front.len() / 2) {
+            let [x, y] = self.place(&middle.row);
+            let text = Text::new(
+                "",
+                PlotPoint::new(x, y),
+                format!("{}{}", "\u{a0}".repeat(4), beside.name),
+            );
+            let anchor = Points::new("", vec![[x, y]]).radius(0.0).color(ink).allow_hover(false);
+            marks.push((anchor, Some(text.color(ink).anchor(Align2::LEFT_TOP))));
+        }
+    }
+
     /// The edge of the dominated region, if the axes are the two objectives: from the bad end of the second axis to that of the first
     /// one.
-    fn staircase<'a>(&self, session: &Session, colors: Colors) -> Option<Line<'a>> {
+    fn staircase<'a>(&self, session: &Session, front: &[FrontEntry], color: Color32) -> Option<Line<'a>> {
         let objectives = session.study().objectives();
         let [first, second] = objectives.as_slice() else {
             return None;
@@ -73,7 +110,7 @@ impl Scatter {
         };
         let mut steps: Vec<[f64; 2]> = Vec::new();
         // The front is in the order of the first objective.
-        for entry in session.front() {
+        for entry in front {
             let [x, y] = self.place(&entry.row);
             let before = steps.last().map_or(worst(second, 1), |last| last[1]);
             steps.extend([[x, before], [x, y]]);
@@ -81,7 +118,7 @@ impl Scatter {
         let &[_, y] = steps.last()?;
         steps.push([worst(first, 0), y]);
         let line = Line::new("", PlotPoints::from(steps));
-        Some(line.color(colors.ink).width(1.2).allow_hover(false))
+        Some(line.color(color).width(1.2).allow_hover(false))
     }
 
     /// The designs of the front in the colours of a quantity.

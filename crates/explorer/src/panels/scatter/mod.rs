@@ -108,6 +108,7 @@ impl Scatter {
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         self.follow_objectives(session);
         self.controls(ui, session);
+        chips(ui, session);
         self.marked(ui, session);
         self.scale = match self.coloring {
             Coloring::Quantity(column) => Some(self.color_range.update(column, session.era(), session.store())),
@@ -538,6 +539,41 @@ fn include(ui: &mut Ui, session: &mut Session, architecture: Architecture) {
                 None => hidden.push(architecture),
             }
         });
+    }
+}
+
+/// Tells how many designs of the front pass the filter, with a button that removes each criterion.
+fn chips(ui: &mut Ui, session: &mut Session) {
+    let filter = session.document().filter.clone();
+    if filter.is_empty() {
+        return;
+    }
+    let mut kept = filter.clone();
+    ui.horizontal_wrapped(|ui| {
+        ui.strong(format!("{} of {} pass", session.passing().len(), session.front().len()));
+        let chip = |ui: &mut Ui, words: &str, name: &str| {
+            let button = ui.button(format!("{words}  ×"));
+            super::named(button, &format!("Remove the filter: {name}")).clicked()
+        };
+        if filter.feasible_only && chip(ui, "feasible", "feasible only") {
+            kept.feasible_only = false;
+        }
+        for (key, [low, high]) in &filter.ranges {
+            let title = Column::find_quantity(key).map_or_else(|| key.clone(), |column| column.title());
+            let words = format!("{title} {} … {}", theme::number(*low), theme::number(*high));
+            if chip(ui, &words, &title) {
+                kept.ranges.remove(key);
+            }
+        }
+        if !filter.hidden.is_empty() {
+            let names: Vec<String> = filter.hidden.iter().map(|hidden| text::architecture(*hidden)).collect();
+            if chip(ui, &format!("without {}", names.join(", ")), "architectures") {
+                kept.hidden.clear();
+            }
+        }
+    });
+    if kept != filter {
+        session.edit(|document| document.filter = kept);
     }
 }
 
