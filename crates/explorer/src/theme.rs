@@ -103,6 +103,12 @@ pub fn nearest(too_near: bool, dark: bool) -> Color32 {
     readable(palette::nearest(too_near), dark)
 }
 
+/// Returns a colour that is legible as text.
+pub fn legible(color: Color32, ui: &Ui) -> Color32 {
+    let [r, g, b, _] = color.to_array();
+    readable([r, g, b], ui.visuals().dark_mode)
+}
+
 /// Returns a colour, made darker or lighter until it is legible as text on the ground of designs.
 fn readable([r, g, b]: [u8; 3], dark: bool) -> Color32 {
     let (color, ground) = (Color32::from_rgb(r, g, b), ground(dark));

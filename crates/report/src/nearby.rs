@@ -12,17 +12,31 @@ use super::{Front, Fronts, ReportError};
 /// Largest number of designs of a front.
 const DESIGNS: usize = 5;
 
+/// Relative difference up to which an optimum is the same.
+const SAME: f64 = 1e-7;
+
 /// What alternative assumptions change at designs of the front of an architecture.
 #[derive(Debug, Clone)]
 pub struct Nearby {
     /// The architecture.
     pub architecture: Architecture,
-    /// The designs.
+    /// The designs near which there is an optimum.
     pub designs: Vec<Evaluation>,
-    /// The first objective of the best design near each under the study as given; `None` if none was found.
-    pub stated: Vec<Option<f64>>,
-    /// The same under each alternative, with the other objectives held.
+    /// The first objective of the optimum near each under the study as given.
+    pub stated: Vec<f64>,
+    /// The same under each alternative, with the other objectives held; `None` where there is no optimum near.
     pub changed: Vec<(Alternative, Vec<Option<f64>>)>,
+    optima: Vec<Optimum>,
+}
+
+/// An optimum near a design of a front, under the study as given.
+#[derive(Debug, Clone)]
+struct Optimum {
+    /// The evaluation of the design, with the optimum in its place.
+    at: Evaluation,
+    /// Values of the objectives after the first one.
+    held: Vec<(Quantity, f64)>,
+    value: f64,
 }
 
 /// Optimizes designs of each front again under every alternative assumption that changes the evaluation of a design.
@@ -35,62 +49,86 @@ pub(super) fn all(
     fronts: &Fronts,
     tell: &mut dyn FnMut(&str),
 ) -> Result<Vec<Nearby>, ReportError> {
+    tell("sensitivity: the study as given");
     let mut all: Vec<Nearby> = fronts
         .alone
         .iter()
-        .map(|(architecture, front)| {
-            let designs = chosen(front);
-            Nearby {
-                architecture: *architecture,
-                stated: best_near(problem, problem, &designs),
-                designs,
-                changed: Vec::new(),
-            }
-        })
+        .map(|(architecture, front)| Nearby::new(*architecture, problem, front))
+        .filter(|nearby| !nearby.designs.is_empty())
         .collect();
-    let studies = sensitivity::studies(study, study.optimizer.evaluations);
-    for (alternative, changed) in studies {
+    for (alternative, changed) in sensitivity::studies(study, study.optimizer.evaluations) {
         let Some(alternative) = alternative.filter(|alternative| alternative.effect == Effect::Evaluation) else {
             continue;
         };
         tell(&format!("sensitivity: {}", alternative.name));
         let changed = DesignProblem::new(&changed)?;
         for nearby in &mut all {
-            let found = best_near(&changed, problem, &nearby.designs);
-            nearby.changed.push((alternative, found));
+            let found: Vec<Option<f64>> = nearby
+                .optima
+                .par_iter()
+                .map(|optimum| optimum.under(&changed))
+                .collect();
+            let differs =
+                |(found, stated): (&Option<f64>, &f64)| found.is_none_or(|found| (found / stated - 1.0).abs() > SAME);
+            // An alternative may concern other architectures alone.
+            if found.iter().zip(&nearby.stated).any(differs) {
+                nearby.changed.push((alternative, found));
+            }
         }
     }
-    // An alternative may concern other architectures alone.
-    for nearby in &mut all {
-        let stated = nearby.stated.clone();
-        nearby.changed.retain(|(_, found)| *found != stated);
-    }
-    all.retain(|nearby| nearby.stated.iter().any(Option::is_some));
     Ok(all)
 }
 
-/// Returns designs of a front that are evenly spread.
-fn chosen(front: &Front) -> Vec<Evaluation> {
-    let objectives: Vec<Objectives> = front
-        .shown()
-        .map(|member| DesignProblem::outcome(member).objectives)
-        .collect();
-    let mut places = spread(&objectives, DESIGNS);
-    places.sort_unstable();
-    places.into_iter().map(|place| front.shown[place].clone()).collect()
+impl Nearby {
+    /// Finds the optima near designs of a front that are evenly spread.
+    fn new(architecture: Architecture, problem: &DesignProblem, front: &Front) -> Self {
+        let objectives: Vec<Objectives> = front
+            .shown()
+            .map(|member| DesignProblem::outcome(member).objectives)
+            .collect();
+        let mut places = spread(&objectives, DESIGNS);
+        places.sort_unstable();
+        let found: Vec<(Evaluation, Optimum)> = places
+            .par_iter()
+            .filter_map(|&place| {
+                let design = &front.shown[place];
+                Some((design.clone(), Optimum::near(problem, design)?))
+            })
+            .collect();
+        let (designs, optima): (Vec<Evaluation>, Vec<Optimum>) = found.into_iter().unzip();
+        Self {
+            architecture,
+            designs,
+            stated: optima.iter().map(|optimum| optimum.value).collect(),
+            changed: Vec::new(),
+            optima,
+        }
+    }
 }
 
-/// Returns the first objective of the best design near each of some, under a problem; the other objectives are held at the values that
-/// the designs have under the problem `of`.
-fn best_near(problem: &DesignProblem, of: &DesignProblem, designs: &[Evaluation]) -> Vec<Option<f64>> {
-    let objectives = &of.model().settings().objectives;
-    let best = |evaluation: &Evaluation| {
-        let held = objectives.iter().zip(&evaluation.objectives).skip(1);
-        let held: Vec<(Quantity, f64)> = held
+impl Optimum {
+    fn near(problem: &DesignProblem, design: &Evaluation) -> Option<Self> {
+        let objectives = &problem.model().settings().objectives;
+        let values = objectives.iter().zip(&design.objectives).skip(1);
+        let held: Vec<(Quantity, f64)> = values
             .map(|(objective, value)| (objective.quantity, objective.value(*value)))
             .collect();
-        let best = problem.local_of(evaluation, &held).ok()?.best().ok()?;
-        best.is_optimal().then_some(best.objective)
-    };
-    designs.par_iter().map(best).collect()
+        let best = problem.local_of(design, &held).ok()?.best().ok()?;
+        best.is_optimal().then(|| Self {
+            at: Evaluation {
+                design: best.design,
+                home_phi_deg: Some(best.home.to_degrees()),
+                ..design.clone()
+            },
+            held,
+            value: best.objective,
+        })
+    }
+
+    /// Returns the first objective of the optimum near this one under another problem.
+    fn under(&self, problem: &DesignProblem) -> Option<f64> {
+        let local = problem.local_of(&self.at, &self.held).ok()?;
+        let found = local.problem.polish(&local.design, local.home?)?;
+        found.is_optimal().then_some(found.objective)
+    }
 }

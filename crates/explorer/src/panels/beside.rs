@@ -91,7 +91,8 @@ fn differences(ui: &mut Ui, session: &Session, name: &str) {
         for difference in &beside.differences {
             ui.label(RichText::new(&difference.key).monospace());
             for value in &difference.values {
-                ui.label(value.as_deref().unwrap_or("–"));
+                let value = value.as_deref().unwrap_or("–");
+                ui.label(value.parse().map_or_else(|_| value.to_owned(), number));
             }
             ui.end_row();
         }

@@ -3,7 +3,7 @@
 use egui::{Color32, Grid, RichText, ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo, WidgetType};
 use kinefront_scene::text;
 
-use super::named;
+use super::{named, what_if};
 use crate::{Known, Session, theme};
 use kinefront_model::certify::Verdict;
 use kinefront_model::evaluation::{ConstraintResult, Quantity};
@@ -27,6 +27,7 @@ impl Inspector {
             ui.separator();
             match session.known().cloned() {
                 Some(known) => {
+                    what_if::verdict(ui, session, &known);
                     objectives(ui, session, &known);
                     proof(ui, session);
                     ui.separator();
@@ -56,6 +57,7 @@ fn heading(ui: &mut Ui, session: &mut Session) {
             {
                 session.keep();
             }
+            what_if::back(ui, session);
         }
     });
     ui.horizontal_wrapped(|ui| {
@@ -112,6 +114,7 @@ fn usual_range(variable: DesignVariable) -> Option<[f64; 2]> {
 
 fn sliders(ui: &mut Ui, session: &mut Session, design: &Design) {
     let study = session.study().clone();
+    let original = what_if::original(session).map(|(_, row)| row.design);
     let further = design.architecture().further_variables().iter().copied();
     for variable in DESIGN_VARIABLES.into_iter().chain(further) {
         let [low, high] = match usual_range(variable) {
@@ -145,6 +148,7 @@ fn sliders(ui: &mut Ui, session: &mut Session, design: &Design) {
                 session.modify(variable, value);
             }
         });
+        what_if::change(ui, variable, value, original.as_ref());
     }
 }
 

@@ -20,6 +20,7 @@ pub mod scatter;
 mod sketch;
 mod space;
 mod study;
+mod what_if;
 mod why_not;
 mod wish;
 

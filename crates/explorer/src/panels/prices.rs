@@ -121,7 +121,7 @@ fn plots(limits: &mut Ui, others: &mut Ui, session: &mut Session, along: &Driver
         ),
     ] {
         let top = ui.cursor().top();
-        ui.label(name);
+        ui.with_layout(Layout::top_down(Align::Min), |ui| ui.label(name));
         legend(ui, &curves);
         let plot = Plot::new(name)
             .height((height - (ui.cursor().top() - top)).max(80.0))
@@ -161,8 +161,8 @@ fn plots(limits: &mut Ui, others: &mut Ui, session: &mut Session, along: &Driver
 fn legend(ui: &mut Ui, curves: &[PriceCurve]) {
     ui.horizontal_wrapped(|ui| {
         for (index, curve) in curves.iter().enumerate() {
-            ui.label(RichText::new("■").color(color(index)));
-            ui.label(&curve.label);
+            let words = format!("■ {}", curve.label).replace(' ', "\u{a0}");
+            ui.label(RichText::new(words).color(theme::legible(color(index), ui)));
         }
     });
 }

@@ -70,13 +70,15 @@ fn hindrances(ui: &mut Ui, session: &mut Session) {
     ui.label("It would take one of these, with all the others kept:");
     let mut chosen = None;
     ScrollArea::both().show(ui, |ui| {
-        Grid::new("hindrances").num_columns(3).striped(true).show(ui, |ui| {
-            for heading in ["relaxed alone", "from … to", ""] {
+        Grid::new("hindrances").num_columns(2).striped(true).show(ui, |ui| {
+            for heading in ["relaxed alone", "from … to"] {
                 ui.label(RichText::new(heading).strong());
             }
             ui.end_row();
             for hindrance in found {
-                ui.label(&hindrance.label);
+                if show_design(ui, &hindrance.label) {
+                    chosen = Some(hindrance.design.clone());
+                }
                 ui.label(match hindrance.is_enough {
                     true => "as stated: search longer".to_owned(),
                     false => format!(
@@ -86,10 +88,6 @@ fn hindrances(ui: &mut Ui, session: &mut Session) {
                         hindrance.unit
                     ),
                 });
-                let show = ui.button("Show").on_hover_text("selects the design that has it then");
-                if super::named(show, &format!("Show the design for {}", hindrance.label)).clicked() {
-                    chosen = Some(hindrance.design.clone());
-                }
                 ui.end_row();
             }
         });
@@ -125,7 +123,7 @@ fn show(ui: &mut Ui, session: &mut Session, drivers: &Drivers) {
         return;
     }
     ui.label(format!(
-        "The best design there has a {objective} of {best}, {:+.1} % of what you ask. It would take one of these:",
+        "The best design there has a {objective} of {best}: {:+.1} % from what you ask. It would take one of these:",
         100.0 * (drivers.polished_value / why.wished - 1.0)
     ));
     relaxations(ui, session, drivers, why, unit);
@@ -137,24 +135,23 @@ fn show(ui: &mut Ui, session: &mut Session, drivers: &Drivers) {
 /// Tabulates what each requirement would have to give.
 fn relaxations(ui: &mut Ui, session: &mut Session, drivers: &Drivers, why: &WhyNotJson, unit: &str) {
     let mut chosen = None;
-    Grid::new("relaxations").num_columns(4).striped(true).show(ui, |ui| {
-        for heading in ["relaxed alone", "from … to", "times", ""] {
+    Grid::new("relaxations").num_columns(3).striped(true).show(ui, |ui| {
+        for heading in ["relaxed alone", "from … to", "times"] {
             ui.label(RichText::new(heading).strong());
         }
         ui.end_row();
         for relaxation in &why.relaxations {
             let (label, range) = change(drivers, relaxation);
-            ui.label(&label);
             match relaxation.needed {
                 Some(factor) => {
-                    ui.label(range);
-                    ui.label(format!("{factor:.3}"));
-                    let show = ui.button("Show").on_hover_text("selects the design that has it then");
-                    if super::named(show, &format!("Show the design for {label}")).clicked() {
+                    if show_design(ui, &label) {
                         chosen = Some(relaxation.design.clone());
                     }
+                    ui.label(range);
+                    ui.label(format!("{factor:.3}"));
                 }
                 None => {
+                    ui.label(&label);
                     ui.weak(format!("no help: {} {unit} remain", number(relaxation.objective)));
                 }
             }
@@ -164,6 +161,12 @@ fn relaxations(ui: &mut Ui, session: &mut Session, drivers: &Drivers, why: &WhyN
     if let Some(design) = chosen {
         session.paste(&design);
     }
+}
+
+/// Shows what is relaxed as a link to the design that results; returns whether it was clicked.
+fn show_design(ui: &mut Ui, label: &str) -> bool {
+    let link = ui.link(label);
+    super::named(link, &format!("Show the design for {label}")).clicked()
 }
 
 /// Returns the name of what is relaxed, and its value before and after.

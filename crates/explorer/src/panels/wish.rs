@@ -14,7 +14,7 @@ use crate::{Session, theme};
 const RANGE: [f64; 2] = [-50.0, 100.0];
 
 /// Width of a slider \[points\].
-const SLIDER: f32 = 96.0;
+const SLIDER: f32 = 64.0;
 
 /// What is wished of a quantity.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -42,18 +42,14 @@ fn nearby(report: &Report) -> Markup {
                 tbody {
                     tr {
                         td { (AS_STATED) }
-                        @for stated in &nearby.stated { td.number { @match stated {
-                            Some(stated) => { (number(*stated)) (question.unit(0)) }
-                            None => "no optimum found"
-                        } } }
+                        @for stated in &nearby.stated { td.number { (number(*stated)) (question.unit(0)) } }
                         td {}
                     }
                     @for (alternative, found) in &nearby.changed { tr {
                         td { (alternative.name) }
-                        @for (stated, found) in nearby.stated.iter().zip(found) { td.number { @match (stated, found) {
-                            (Some(stated), Some(found)) => (change(found / stated)),
-                            (Some(_), None) => "no design near",
-                            (None, _) => "–",
+                        @for (stated, found) in nearby.stated.iter().zip(found) { td.number { @match found {
+                            Some(found) => (change(found / stated)),
+                            None => "no design near",
                         } } }
                         td { (alternative.meaning) }
                     } }

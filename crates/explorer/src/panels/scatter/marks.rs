@@ -37,8 +37,8 @@ impl Scatter {
         };
         let (mut lines, mut marks) = (Vec::new(), Vec::new());
         lines.extend(self.staircase(session, session.front(), colors.ink));
-        self.add_beside(session, colors, &mut lines, &mut marks);
         marks.extend(self.designs(session, colors));
+        self.add_beside(session, colors, &mut lines, &mut marks);
         marks.extend(self.knee(session, colors));
         self.add_references(session, colors, &mut lines, &mut marks);
         marks.extend(self.wished(session, colors));
@@ -79,15 +79,13 @@ impl Scatter {
             let points = Points::new("", places).radius(3.5).filled(false).color(color);
             marks.push((points.shape(theme::mark(architecture)).allow_hover(false), None));
         }
-        if let Some(middle) = beside.front.get(beside.front.len() / 2) {
-            let [x, y] = self.place(&middle.row);
-            let text = Text::new(
-                "",
-                PlotPoint::new(x, y),
-                format!("{}{}", "\u{a0}".repeat(4), beside.name),
-            );
-            let anchor = Points::new("", vec![[x, y]]).radius(0.0).color(ink).allow_hover(false);
-            marks.push((anchor, Some(text.color(ink).anchor(Align2::LEFT_TOP))));
+        // The last design of a front lies at its end, where there is room for a name.
+        if let Some(last) = beside.front.last() {
+            let [x, y] = self.place(&last.row);
+            let name = format!("{}{}", beside.name, "\u{a0}".repeat(3));
+            let text = Text::new("", PlotPoint::new(x, y), name).color(colors.ink);
+            let end = Points::new("", vec![[x, y]]).radius(2.0).color(ink).allow_hover(false);
+            marks.push((end, Some(text.anchor(Align2::RIGHT_BOTTOM))));
         }
     }
 
