@@ -4,11 +4,10 @@ use std::path::Path;
 
 use kinefront_model::evaluation::Objective;
 use kinefront_optimize::Objectives;
-use kinefront_study::{Column, EqualLevel, RunFolder, SettingDifference, Study, WriteError, equal_levels, write_whole};
+use kinefront_study::{Column, EqualLevel, RunFolder, SettingDifference, Study, equal_levels};
 
-use super::chart::{Chart, ChartAxis, Mark, Series, png};
-use super::write::free;
-use super::{Figure, ReportError, Topic, page};
+use super::chart::{Chart, ChartAxis, Mark, Series};
+use super::{Figure, ReportError, Topic};
 use kinefront_model::evaluation::Scale;
 use kinefront_scene::palette;
 
@@ -68,29 +67,6 @@ impl SideBySide {
         };
         found.figures = found.draw()?;
         Ok(found)
-    }
-
-    /// Writes the page and its figures to a folder; with `replace`, the files of a report that is already there are replaced.
-    ///
-    /// # Errors
-    /// As [`super::Report::write`].
-    pub fn write(&self, folder: &Path, replace: bool) -> Result<(), ReportError> {
-        free(folder, replace)?;
-        let figures = folder.join("figures");
-        std::fs::create_dir_all(&figures).map_err(|cause| WriteError::Write {
-            path: figures.clone(),
-            cause,
-        })?;
-        for figure in &self.figures {
-            write_whole(&figures.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
-            let picture = png(&figure.svg, 2.0).map_err(|cause| ReportError::Figure {
-                name: figure.name.clone(),
-                cause,
-            })?;
-            write_whole(&figures.join(format!("{}.png", figure.name)), &picture)?;
-        }
-        write_whole(&folder.join("index.html"), page::side_by_side(self).as_bytes())?;
-        Ok(())
     }
 
     /// Draws the fronts, over a linear axis of the first objective and, where its values span decades, over a logarithmic one.

@@ -1,10 +1,13 @@
 //! Writing a report to a folder.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::{Front, Report, ReportError, chart, page};
+use super::{Figure, Front, Report, ReportError, SideBySide, chart, page};
 use kinefront_model::evaluation::Evaluation;
 use kinefront_study::{Cell, Column, Row, TableRow, WriteError, table_bytes, write_whole};
+
+/// Pixels per unit of the figures of runs side by side.
+const SCALE: f32 = 2.0;
 
 impl Report {
     /// Writes the report to a folder; with `replace`, the files of a report that is already there are replaced.
@@ -14,23 +17,8 @@ impl Report {
     /// if a file cannot be created, [`ReportError::Write`] if one cannot be written.
     pub fn write(&self, folder: &Path, replace: bool) -> Result<(), ReportError> {
         free(folder, replace)?;
-        let make = |path: &Path| {
-            std::fs::create_dir_all(path).map_err(|cause| WriteError::Write {
-                path: path.to_owned(),
-                cause,
-            })
-        };
-        let (figures, pictures) = (folder.join("figures"), folder.join("pictures"));
-        make(&figures)?;
-        make(&pictures)?;
-        for figure in &self.figures {
-            write_whole(&figures.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
-            let png = chart::png(&figure.svg, self.options.scale).map_err(|cause| ReportError::Figure {
-                name: figure.name.clone(),
-                cause,
-            })?;
-            write_whole(&figures.join(format!("{}.png", figure.name)), &png)?;
-        }
+        let figures = write_figures(folder, &self.figures, self.options.scale)?;
+        let pictures = made(folder.join("pictures"))?;
         for picture in &self.pictures {
             write_whole(&pictures.join(format!("{}.png", picture.name)), &picture.png)?;
         }
@@ -63,6 +51,42 @@ impl Report {
             self.pictures.iter().any(|picture| picture.name == name)
         })?;
         Ok(())
+    }
+}
+
+impl SideBySide {
+    /// Writes the page and its figures to a folder; with `replace`, the files of a report that is already there are replaced.
+    ///
+    /// # Errors
+    /// As [`Report::write`].
+    pub fn write(&self, folder: &Path, replace: bool) -> Result<(), ReportError> {
+        free(folder, replace)?;
+        let figures = write_figures(folder, &self.figures, SCALE)?;
+        write_whole(&folder.join("index.html"), page::side_by_side(self).as_bytes())?;
+        remove_stale(&figures, |name| self.figures.iter().any(|figure| figure.name == name))?;
+        Ok(())
+    }
+}
+
+/// Writes figures as SVG and PNG, with `scale` pixels per unit, to their folder, which is returned.
+fn write_figures(folder: &Path, all: &[Figure], scale: f32) -> Result<PathBuf, ReportError> {
+    let figures = made(folder.join("figures"))?;
+    for figure in all {
+        write_whole(&figures.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
+        let png = chart::png(&figure.svg, scale).map_err(|cause| ReportError::Figure {
+            name: figure.name.clone(),
+            cause,
+        })?;
+        write_whole(&figures.join(format!("{}.png", figure.name)), &png)?;
+    }
+    Ok(figures)
+}
+
+/// Makes a folder, unless it is there.
+fn made(folder: PathBuf) -> Result<PathBuf, WriteError> {
+    match std::fs::create_dir_all(&folder) {
+        Ok(()) => Ok(folder),
+        Err(cause) => Err(WriteError::Write { path: folder, cause }),
     }
 }
 

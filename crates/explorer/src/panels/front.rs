@@ -138,8 +138,12 @@ impl FrontPanel {
             } else {
                 "designs"
             };
+            let passing = match session.document().filter.is_empty() {
+                true => String::new(),
+                false => format!(", {} pass the filter", session.passing().len()),
+            };
             ui.weak(format!(
-                "{} {noun} on the front, {} verified on the fine grid, {} proved",
+                "{} {noun} on the front{passing}, {} verified on the fine grid, {} proved",
                 session.front().len(),
                 count(|entry| entry.verified),
                 count(|entry| entry.certified.is_some_and(|certified| certified.is_proved)),

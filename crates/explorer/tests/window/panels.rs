@@ -30,9 +30,11 @@ fn session() -> Session {
             .filter
             .set_range(Column::Quantity(Quantity::WorkspaceRadius), Some([0.2, 1.5]));
     });
-    for _ in 0..2000 {
+    let point = [(Quantity::Mass, 40.0), (Quantity::WorkspaceRadius, 1.2)];
+    session.ask_why(&point);
+    for _ in 0..4000 {
         session.update();
-        let has_prices = session.drivers().is_some();
+        let has_prices = session.drivers().is_some() && session.drivers_along().is_some() && session.why().is_some();
         if has_prices && session.known().is_some_and(|known| known.verified) && session.is_drawn() {
             return session;
         }
@@ -56,6 +58,9 @@ fn every_panel_looks_as_it_did() {
     for theme in [egui::Theme::Dark, egui::Theme::Light] {
         for &panel in Panel::ALL.iter().filter(|panel| **panel != Panel::Scene) {
             let (mut session, mut panels, mut dressed) = (session(), Panels::default(), false);
+            if panel == Panel::Beside {
+                session.open_beside(&run_folder());
+            }
             let mut harness = Harness::builder()
                 .with_size(size(panel))
                 .with_theme(theme)

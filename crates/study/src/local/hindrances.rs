@@ -16,7 +16,7 @@ const STARTS: usize = 2;
 const ALL_STARTS: usize = 8;
 
 /// Radius of the disc for which a design is looked for where the study asks for no size, as a share of `R`.
-const SPECK: f64 = 0.01;
+const SMALL: f64 = 0.01;
 
 /// A requirement that stands in the way: relaxed alone, it leaves a feasible design.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -94,7 +94,7 @@ impl DesignProblem {
     /// Returns the problem of finding any design: no objective holds.
     fn any_design(&self, start: &Design) -> Option<LocalProblem> {
         let region = match &self.model().settings().workspace.region {
-            Region::Largest => Region::Disc(self.least_radius().unwrap_or(SPECK * start.base_radius())),
+            Region::Largest => Region::Disc(self.least_radius().unwrap_or(SMALL * start.base_radius())),
             region => region.clone(),
         };
         let objective = Objective {
