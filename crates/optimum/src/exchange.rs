@@ -185,8 +185,11 @@ impl<'a> Exchange<'a> {
                 break;
             }
         }
-        let missed = missed(&survey);
         let problem = self.problem;
+        if slack == 0.0 && missed(&survey) <= HELD {
+            (self.unknowns, survey) = problem.finished(self.unknowns, survey, HELD);
+        }
+        let missed = missed(&survey);
         let prepared = problem.prepare(&self.unknowns)?;
         let multipliers = Multipliers::new(problem, &self.unknowns, &survey);
         Some(Polished {

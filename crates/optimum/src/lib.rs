@@ -7,6 +7,7 @@
 
 mod convex;
 mod exchange;
+mod finish;
 mod multipliers;
 mod parameter;
 mod place;

@@ -98,7 +98,7 @@ impl Front {
 }
 
 /// Largest number of designs of a front of which prices are determined.
-const PRICED: usize = 24;
+const PRICED: usize = 12;
 
 /// Fronts of several searches, pooled.
 #[derive(Debug, Clone)]

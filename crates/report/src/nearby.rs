@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::{Front, Fronts, ReportError};
 
 /// Largest number of designs of a front.
-const DESIGNS: usize = 5;
+const DESIGNS: usize = 3;
 
 /// Relative difference up to which an optimum is the same.
 const SAME: f64 = 1e-7;
@@ -113,8 +113,8 @@ impl Optimum {
         let held: Vec<(Quantity, f64)> = values
             .map(|(objective, value)| (objective.quantity, objective.value(*value)))
             .collect();
-        let best = problem.local_of(design, &held).ok()?.best().ok()?;
-        best.is_optimal().then(|| Self {
+        let best = problem.local_of(design, &held).ok()?.optimum()?;
+        Some(Self {
             at: Evaluation {
                 design: best.design,
                 home_phi_deg: Some(best.home.to_degrees()),
@@ -127,8 +127,7 @@ impl Optimum {
 
     /// Returns the first objective of the optimum near this one under another problem.
     fn under(&self, problem: &DesignProblem) -> Option<f64> {
-        let local = problem.local_of(&self.at, &self.held).ok()?;
-        let found = local.problem.polish(&local.design, local.home?)?;
-        found.is_optimal().then_some(found.objective)
+        let found = problem.local_of(&self.at, &self.held).ok()?.optimum()?;
+        Some(found.objective)
     }
 }

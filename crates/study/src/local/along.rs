@@ -64,7 +64,9 @@ impl DesignProblem {
             .par_iter()
             .map(|evaluation| {
                 let local = self.local_of(evaluation, &[]).ok()?;
-                let drivers = local.drivers(DriversOptions::default()).ok()?;
+                // A design of a front has its optimum near its own home orientation; a search of all others would take a second.
+                let optimum = local.optimum()?;
+                let drivers = local.drivers_of(&local.problem, &optimum, DriversOptions::default());
                 Some(drivers).filter(|drivers| !drivers.prices.is_empty())
             })
             .collect();

@@ -127,20 +127,24 @@ impl DesignProblem {
 }
 
 impl LocalDesign {
-    /// Returns the best design near the given one.
+    /// Returns the best design near the given one: near its own home orientation, or else near any other.
     ///
     /// # Errors
     /// [`LocalFault::Infeasible`] if none keeps every requirement.
     pub fn best(&self) -> Result<Polished, LocalFault> {
-        // A similar design has the radius that is kept, unless bounds are in the way.
-        let starts = [self.problem.scaled(&self.design, self.scale), Some(self.design)];
-        let from_home = |start: Design| self.home.and_then(|home| self.problem.polish(&start, home));
-        let near = starts
-            .into_iter()
-            .flatten()
-            .filter_map(from_home)
-            .find(Polished::is_optimal);
-        let found = near.or_else(|| self.problem.best(&self.design, None));
+        let found = self.optimum().or_else(|| self.problem.best(&self.design, None));
         found.ok_or_else(|| LocalFault::Infeasible(Box::new(self.design)))
+    }
+
+    /// Returns the optimum near the given design and its home orientation, if there is one.
+    pub fn optimum(&self) -> Option<Polished> {
+        // A similar design has the radius that is kept, unless bounds are in the way.
+        let scaled = self
+            .problem
+            .scaled(&self.design, self.scale)
+            .filter(|scaled| *scaled != self.design);
+        let from_home = |start: Design| self.home.and_then(|home| self.problem.polish(&start, home));
+        let mut found = [scaled, Some(self.design)].into_iter().flatten().filter_map(from_home);
+        found.find(Polished::is_optimal)
     }
 }
