@@ -251,6 +251,13 @@ impl PyStudy {
         poses::evaluate(py, self.shared.model(), &design, poses)
     }
 
+    /// Returns what drives the first objective along a front, as `kinefront prices TABLE --json` does: for each architecture, sentences, and
+    /// the prices of each design in the order of the second objective. The `id` of a design is its place among `designs`.
+    fn prices<'py>(&self, py: Python<'py>, designs: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let designs = designs::read(self.study(), designs)?;
+        local::prices_along(py, self.study(), &designs)
+    }
+
     /// Returns why the first objective cannot have the value `wished`, as `kinefront why --json` does: what each requirement would have to
     /// give for it, or that it can be had.
     ///

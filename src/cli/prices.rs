@@ -3,9 +3,10 @@
 use std::io::Write;
 
 use kinefront_model::evaluation::{Evaluation, GridChoice, Quantity};
-use kinefront_study::{Column, DesignProblem, Drivers, DriversAlong, DriversOptions, PriceJson, Row, Study, TableRow};
+use kinefront_study::{
+    AlongJson, Column, DesignProblem, Drivers, DriversAlong, DriversOptions, PriceJson, Row, Study, TableRow,
+};
 use miette::miette;
-use serde::Serialize;
 
 use super::subject::SubjectArguments;
 use super::{Ending, Failure, tables, to_json};
@@ -39,25 +40,6 @@ pub struct PricesArguments {
     /// Print the result as one JSON object.
     #[arg(long)]
     json: bool,
-}
-
-/// The output of `kinefront prices TABLE --json` for an architecture.
-#[derive(Debug, Serialize)]
-struct AlongJson<'a> {
-    architecture: String,
-    /// Key of the quantity along which the designs are ordered.
-    along: &'static str,
-    sentences: Vec<String>,
-    designs: Vec<DesignJson<'a>>,
-    /// Number of designs that have no prices.
-    without_prices: usize,
-}
-
-#[derive(Debug, Serialize)]
-struct DesignJson<'a> {
-    id: usize,
-    at: f64,
-    drivers: &'a Drivers,
 }
 
 pub fn run(arguments: &PricesArguments) -> Result<Ending, Failure> {
@@ -110,7 +92,7 @@ fn along_front(arguments: &PricesArguments) -> Result<Ending, Failure> {
     let along = problem.drivers_along(&evaluations);
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        let all: Vec<AlongJson<'_>> = along.iter().map(|along| along_json(along, &ids)).collect();
+        let all: Vec<AlongJson<'_>> = along.iter().map(|along| along.to_json(&ids)).collect();
         writeln!(out, "{}", to_json(&all).map_err(Failure::Runtime)?)?;
     } else if arguments.csv {
         write_table(&study, &along, &ids, &evaluations, out)?;
@@ -120,24 +102,6 @@ fn along_front(arguments: &PricesArguments) -> Result<Ending, Failure> {
         }
     }
     Ok(Ending::Done)
-}
-
-fn along_json<'a>(along: &'a DriversAlong, ids: &[usize]) -> AlongJson<'a> {
-    AlongJson {
-        architecture: along.architecture.to_string(),
-        along: along.along.entry().key,
-        sentences: along.sentences(),
-        designs: along
-            .designs
-            .iter()
-            .map(|(index, at, drivers)| DesignJson {
-                id: ids[*index],
-                at: *at,
-                drivers,
-            })
-            .collect(),
-        without_prices: along.without,
-    }
 }
 
 /// Writes the designs in the order of the table, each with the price of each parameter; a parameter that has none is an empty cell.

@@ -269,6 +269,7 @@ fn prices_along_a_front_are_those_of_its_designs() {
         assert!(at.is_sorted(), "{at:?}");
         for design in designs {
             let id = design["id"].to_string();
+            keeps_its_identities(design, front["architecture"].as_str().expect("a name"));
             let row = rows.iter().find(|row| row[place("id")] == id).expect("the row");
             assert_eq!(row[place("architecture")], front["architecture"]);
             for price in design["drivers"]["prices"].as_array().expect("prices") {
@@ -293,6 +294,29 @@ fn prices_along_a_front_are_those_of_its_designs() {
     ] {
         kinefront().args(&arguments).assert().code(2).stderr(contains(message));
     }
+}
+
+/// Scaling all forces, or all lengths, changes nothing but the unit: the prices of what has them add up.
+fn keeps_its_identities(design: &serde_json::Value, architecture: &str) {
+    let prices = design["drivers"]["prices"].as_array().expect("prices");
+    let price = |name: &str| {
+        let found = prices.iter().find(|price| price["parameter"] == name);
+        found.map_or(0.0, |price| price["price"].as_f64().expect("a number"))
+    };
+    let bounds = prices.iter().filter(|price| {
+        price["parameter"]
+            .as_str()
+            .is_some_and(|name| name.starts_with("bounds."))
+    });
+    let bounds: f64 = bounds.map(|price| price["price"].as_f64().expect("a number")).sum();
+    let stiffness = price("k_xy_min") + price("k_z_min");
+    let forces = price("E") + price("G") + price("K_act") + stiffness + price("k_phi_z_min");
+    assert!(forces.abs() < 1e-7, "{architecture}: {forces}");
+    // The stiffness of an actuator that slides is a force over a length.
+    assert!(["3-PRR", "3-RPR"].contains(&architecture));
+    let lengths = price("K_act") + stiffness + 3.0 * price("k_phi_z_min") + price("workspace_radius") + bounds;
+    assert!((lengths - 3.0).abs() < 1e-6, "{architecture}: {lengths}");
+    assert!((price("density") - 1.0).abs() < 1e-9);
 }
 
 /// A run that finds nothing tells what stands in the way, and the value that it tells can be had.

@@ -9,19 +9,24 @@ use toml_edit::{DocumentMut, Item, TableLike};
 use super::History;
 use kinefront_study::{BUILTIN, Builtin, Fault, Study, StudyError, settings};
 
+/// The text of a study and the file that it was read from or saved to.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StudySource {
+    text: String,
+    path: Option<PathBuf>,
+}
+
 /// A study being edited.
 #[derive(Debug, Clone)]
 pub struct StudyEditor {
-    /// Its text, including comments, with its earlier states.
-    text: History<String>,
+    /// Its text, including comments, and its file, with their earlier states.
+    source: History<StudySource>,
     /// The study that the text describes, or the last valid one.
     study: Study,
     /// Faults in the text.
     faults: Vec<Fault>,
     /// Faults of the last change by hand, which was not made; empty if it was.
     rejected: Vec<Fault>,
-    /// File that it was read from or saved to.
-    path: Option<PathBuf>,
     changed: bool,
 }
 
@@ -30,11 +35,10 @@ impl StudyEditor {
     pub fn new(study: Study, path: Option<PathBuf>) -> Self {
         let text = toml::to_string(&study).unwrap_or_default();
         Self {
-            text: history_of(text),
+            source: history_of(text, path),
             study,
             faults: Vec::new(),
             rejected: Vec::new(),
-            path,
             changed: false,
         }
     }
@@ -45,7 +49,7 @@ impl StudyEditor {
     /// Returns a [`StudyError`] if the built-in study is invalid, which the tests exclude.
     pub fn builtin(builtin: &Builtin) -> Result<Self, StudyError> {
         Ok(Self {
-            text: history_of(builtin.text.to_owned()),
+            source: history_of(builtin.text.to_owned(), None),
             ..Self::new(builtin.study()?, None)
         })
     }
@@ -66,7 +70,7 @@ impl StudyEditor {
             cause,
         })?;
         Ok(Self {
-            text: history_of(text),
+            source: history_of(text, Some(path.to_owned())),
             ..Self::new(study, Some(path.to_owned()))
         })
     }
@@ -93,14 +97,15 @@ impl StudyEditor {
     /// Returns a message that says why the file cannot be written.
     pub fn save(&mut self, path: &Path) -> Result<(), AnyError> {
         kinefront_study::write_whole(path, self.text().as_bytes())?;
-        self.path = Some(path.to_owned());
+        // Where a text was saved is no step to undo.
+        self.source.follow(|source| source.path = Some(path.to_owned()));
         self.changed = false;
         Ok(())
     }
 
     /// Returns the text.
     pub fn text(&self) -> &str {
-        self.text.present()
+        &self.source.present().text
     }
 
     /// Returns the study that the text describes if it is valid, otherwise the last valid one.
@@ -120,7 +125,7 @@ impl StudyEditor {
 
     /// Returns the file that the study was read from or saved to, if there is one.
     pub fn path(&self) -> Option<&Path> {
-        self.path.as_deref()
+        self.source.present().path.as_deref()
     }
 
     /// Returns whether the study was changed since it was read or saved.
@@ -131,32 +136,39 @@ impl StudyEditor {
     /// Sets the text as typed and checks it.
     pub fn set_text(&mut self, text: String) {
         self.changed |= text != *self.text();
-        self.text.edit(|present| *present = text);
+        self.source.edit(|source| source.text = text);
         self.check();
     }
 
-    /// Returns the text with its earlier states.
-    pub fn history(&self) -> &History<String> {
-        &self.text
+    /// Puts another study in the place of this one, as a step that can be undone.
+    pub fn replace(&mut self, other: &Self) {
+        self.source.edit(|source| source.clone_from(other.source.present()));
+        self.check();
+        self.changed = false;
+    }
+
+    /// Returns the text and its file with their earlier states.
+    pub fn history(&self) -> &History<StudySource> {
+        &self.source
     }
 
     /// Undoes the last change.
     pub fn undo(&mut self) {
-        self.text.undo();
+        self.source.undo();
         self.changed = true;
         self.check();
     }
 
     /// Redoes the change undone last.
     pub fn redo(&mut self) {
-        self.text.redo();
+        self.source.redo();
         self.changed = true;
         self.check();
     }
 
     /// Ends the gesture to which changes by hand belong.
     pub fn end_gesture(&mut self) {
-        self.text.end_gesture();
+        self.source.end_gesture();
     }
 
     /// Reads the study from the text, or the faults of the text.
@@ -188,7 +200,7 @@ impl StudyEditor {
 
     /// Parses a text whose paths are relative to the folder of the study's file.
     fn parse(&self, text: &str) -> Result<Study, StudyError> {
-        let folder = self.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+        let folder = self.path().and_then(Path::parent).unwrap_or(Path::new(""));
         Study::parse_in(folder, text, "study")
     }
 
@@ -202,7 +214,7 @@ impl StudyEditor {
         self.rejected = study.faults();
         if self.rejected.is_empty() {
             let text = self.text_of(&study);
-            self.text.drag("by hand", |present| *present = text);
+            self.source.drag("by hand", |source| source.text = text);
             self.study = study;
             self.faults.clear();
             self.changed = true;
@@ -221,10 +233,10 @@ impl StudyEditor {
     }
 }
 
-/// Returns a history that begins with a text.
-fn history_of(text: String) -> History<String> {
+/// Returns a history that begins with a text and its file.
+fn history_of(text: String, path: Option<PathBuf>) -> History<StudySource> {
     let mut history = History::default();
-    history.restart(text);
+    history.restart(StudySource { text, path });
     history
 }
 
@@ -312,6 +324,13 @@ mod tests {
         assert!(editor.text().contains("seed = 7") && editor.is_changed());
         let kept = editor.text().replace("seed = 7", "seed = 1");
         assert_eq!(kept, BUILTIN[0].text, "everything but the value stays, comments too");
+        // Another study takes its place, and undo brings the edits back.
+        let edited = editor.text().to_owned();
+        let other = StudyEditor::builtin(&BUILTIN[1]).expect("a built-in study");
+        editor.replace(&other);
+        assert!(editor.study() == other.study() && !editor.is_changed());
+        editor.undo();
+        assert!(editor.text() == edited && editor.study().optimizer.seed == 7);
         editor.change(|study| study.bounds.R_m = [2.0, 1.0]);
         assert_eq!(editor.faults().next().expect("a fault").key, "bounds.R_m");
         assert_eq!(editor.study().bounds.R_m, [0.5, 4.0]);

@@ -75,6 +75,14 @@ class Study:
         ([True, False], (2, 6, 6), [0.985, nan])
         """
 
+    def prices(self, designs: Designs) -> list[dict[str, Any]]:
+        """Return what drives the first objective along a front, as ``kinefront prices TABLE --json`` does.
+
+        >>> along = Study.paper().prices(["3-PRR R=3.89 r=0.71 Lb=2.567 rj=0.0247 rp=0.0349"])
+        >>> along[0]["architecture"], along[0]["along"], len(along[0]["designs"])
+        ('3-PRR', 'workspace_radius_m', 1)
+        """
+
     def why(self, designs: Designs, wished: float, *, held: Mapping[str, float] = {}) -> dict[str, Any]:
         """Return why the first objective cannot have the value ``wished``, as ``kinefront why --json`` does.
 

@@ -5,6 +5,7 @@ use egui::{Context, Event, Key, KeyboardShortcut, Modifiers, ViewportCommand};
 use super::super::Phase;
 use super::super::files::Purpose;
 use super::Explorer;
+use kinefront_recording::Viewpoint;
 
 const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
 const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
@@ -13,12 +14,23 @@ const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O)
 const SAVE: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::S);
 const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
 
+const START: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::R);
+
 /// Keys and descriptions of the shortcuts, as listed in the window.
-pub(super) const SHORTCUTS: [(&str, &str); 14] = [
+pub(super) const SHORTCUTS: [(&str, &str); 18] = [
     ("←  →", "select the previous or next design of the front"),
     ("K", "select the knee of the front"),
     ("P", "pin or unpin the selected design"),
     ("S", "star or unstar the selected design"),
+    (
+        "Alt+arrows, Alt+PageUp/Down",
+        "move the platform by a hundredth of R, turn it by 1°",
+    ),
+    (
+        "1  2  3  4",
+        "look at the manipulator obliquely, from the top, the front, the side",
+    ),
+    ("Ctrl+R", "start the study of the panel Run"),
     ("Space", "pause or resume the run"),
     ("G", "run one generation, then pause"),
     ("Ctrl+C, Ctrl+V", "copy the selected design as text, paste a design"),
@@ -28,6 +40,7 @@ pub(super) const SHORTCUTS: [(&str, &str); 14] = [
     ("Ctrl+Q", "quit"),
     ("F", "turn the filter for feasible designs on or off"),
     ("Esc", "close messages and dialogs"),
+    ("F1", "what you see"),
     ("?", "show or hide this list"),
 ];
 
@@ -39,6 +52,7 @@ impl Explorer {
             return;
         }
         self.menu_shortcuts(ctx);
+        self.platform_keys(ctx);
         self.session_keys(ctx);
         let typed = |text: &str| {
             let is_typed = |event: &Event| matches!(event, Event::Text(typed) if typed == text);
@@ -66,6 +80,37 @@ impl Explorer {
         }
         if pressed(&QUIT) {
             ctx.send_viewport_cmd(ViewportCommand::Close);
+        }
+        if pressed(&START) && !self.session.is_running() {
+            self.session.start();
+        }
+        if ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F1)) {
+            self.introduction = true;
+        }
+    }
+
+    /// Moves the platform, and looks at the manipulator from another side.
+    fn platform_keys(&mut self, ctx: &Context) {
+        const MOVES: [(Key, [f64; 3]); 6] = [
+            (Key::ArrowRight, [1.0, 0.0, 0.0]),
+            (Key::ArrowLeft, [-1.0, 0.0, 0.0]),
+            (Key::ArrowUp, [0.0, 1.0, 0.0]),
+            (Key::ArrowDown, [0.0, -1.0, 0.0]),
+            (Key::PageUp, [0.0, 0.0, 1.0]),
+            (Key::PageDown, [0.0, 0.0, -1.0]),
+        ];
+        for (key, steps) in MOVES {
+            if ctx.input_mut(|input| input.consume_key(Modifiers::ALT, key)) {
+                self.session.nudge(steps);
+            }
+        }
+        for (key, viewpoint) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4]
+            .into_iter()
+            .zip(Viewpoint::ALL)
+        {
+            if ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key)) {
+                self.session.look_from(viewpoint);
+            }
         }
     }
 

@@ -22,8 +22,19 @@ impl Session {
     /// Puts a built-in study into the editor.
     pub fn edit_builtin(&mut self, builtin: &Builtin) {
         match StudyEditor::builtin(builtin) {
-            Ok(editor) => self.editor = editor,
+            Ok(editor) => self.edit_study(editor),
             Err(error) => self.notify_error(error),
+        }
+    }
+
+    /// Puts a study into the editor. If the one that was there has edits that were not saved, undo brings it back.
+    fn edit_study(&mut self, editor: StudyEditor) {
+        if self.editor.is_changed() {
+            let name = &self.editor.study().name;
+            self.notify(format!("undo (Ctrl+Z) brings back your edits of the study {name}"));
+            self.editor.replace(&editor);
+        } else {
+            self.editor = editor;
         }
     }
 
@@ -106,7 +117,7 @@ impl Session {
         if is_study {
             match StudyEditor::read(path) {
                 Ok(editor) => {
-                    self.editor = editor;
+                    self.edit_study(editor);
                     self.notify(format!("the study {} is ready to run", path.display()));
                 }
                 Err(error) => self.notify_error(error.to_string()),
@@ -125,7 +136,7 @@ impl Session {
                     Ok(prepared) => self.begin(prepared),
                     Err(error) => return self.notify_error(error),
                 }
-                self.editor = StudyEditor::new(study, None);
+                self.edit_study(StudyEditor::new(study, None));
                 self.run = None;
                 self.store = store;
                 self.set_front(front);

@@ -1,5 +1,7 @@
 //! The pose of the selected design.
 
+use glam::DVec2;
+
 use super::Session;
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::spatial::Pose;
@@ -14,6 +16,20 @@ impl Session {
     /// Returns the home pose of the selected design.
     pub fn home(&self) -> Option<Pose> {
         Some(self.model().home(&self.known()?.evaluation))
+    }
+
+    /// Moves the platform by steps of a hundredth of `R` along x and y, and of a degree about z.
+    pub fn nudge(&mut self, steps: [f64; 3]) {
+        let Some((pose, selected)) = self.pose().zip(self.document().selected.as_ref()) else {
+            return;
+        };
+        let [x, y, turn] = steps;
+        let length = 0.01 * selected.design.base_radius();
+        let position = pose.position + length * DVec2::new(x, y);
+        let phi = pose.phi + turn.to_radians();
+        if let Some(stopped) = self.move_platform(Pose { position, phi }) {
+            self.notify(stopped);
+        }
     }
 
     /// Moves the platform to `pose` or, if that is not reachable, as far towards it as possible in a straight line;

@@ -298,3 +298,37 @@ fn any_two_quantities_stand_against_each_other() {
         assert!(shown.is_some(), "the scatter of {quantity:?} is missing");
     }
 }
+
+/// The platform, the view and the guide are reached without a mouse.
+#[test]
+fn keys_move_the_platform_and_turn_the_view() {
+    let mut window = opened_window();
+    let before = window.state().session().pose().expect("a pose");
+    let design = window
+        .state()
+        .session()
+        .document()
+        .selected
+        .as_ref()
+        .expect("a design")
+        .design;
+    let step = 0.01 * design.base_radius();
+    window.key_press_modifiers(Modifiers::ALT, Key::ArrowRight);
+    window.key_press_modifiers(Modifiers::ALT, Key::ArrowUp);
+    window.key_press_modifiers(Modifiers::ALT, Key::PageUp);
+    window.run_steps(4);
+    let session = window.state().session();
+    let moved = session.pose().expect("a pose");
+    assert!((moved.position - before.position - glam::DVec2::splat(step)).length() < 1e-9);
+    assert!((moved.phi - before.phi - 1f64.to_radians()).abs() < 1e-9);
+    // The arrow keys alone walk along the front: the design is still the same.
+    assert_eq!(session.document().selected.as_ref().expect("a design").design, design);
+    let (viewpoint, changes) = session.view().viewpoint;
+    window.key_press(Key::Num2);
+    window.run_steps(2);
+    let (top, more) = window.state().session().view().viewpoint;
+    assert!(top != viewpoint && more == changes + 1);
+    window.key_press(Key::F1);
+    window.run_steps(2);
+    assert!(window.query_by_label_contains("What you see").is_some());
+}

@@ -4,6 +4,7 @@ use kinefront_model::evaluation::{Evaluation, Quantity};
 use kinefront_model::mechanism::Architecture;
 use kinefront_optimum::ParameterKind;
 use rayon::prelude::*;
+use serde::Serialize;
 
 use super::{Drivers, DriversOptions};
 use crate::DesignProblem;
@@ -250,6 +251,50 @@ pub fn usual_range(curves: &[PriceCurve]) -> [f64; 2] {
         }
     });
     [-low, high]
+}
+
+/// What drives the first objective along the front of an architecture, as other programs read it.
+#[derive(Debug, Clone, Serialize)]
+pub struct AlongJson<'a> {
+    /// Name of the architecture.
+    pub architecture: String,
+    /// Key of the quantity along which the designs are ordered.
+    pub along: &'static str,
+    /// What drives it, in sentences.
+    pub sentences: Vec<String>,
+    /// The designs in their order.
+    pub designs: Vec<PricedDesignJson<'a>>,
+    /// Number of designs that have no prices.
+    pub without_prices: usize,
+}
+
+/// A design with what drives its first objective.
+#[derive(Debug, Clone, Serialize)]
+pub struct PricedDesignJson<'a> {
+    /// Id of the design.
+    pub id: usize,
+    /// Its value of the quantity along which the designs are ordered.
+    pub at: f64,
+    /// What drives its first objective.
+    pub drivers: &'a Drivers,
+}
+
+impl DriversAlong {
+    /// Returns what other programs read; `ids` are those of the designs that were given.
+    pub fn to_json(&self, ids: &[usize]) -> AlongJson<'_> {
+        let designs = self.designs.iter().map(|(index, at, drivers)| PricedDesignJson {
+            id: ids.get(*index).copied().unwrap_or(*index),
+            at: *at,
+            drivers,
+        });
+        AlongJson {
+            architecture: self.architecture.to_string(),
+            along: self.along.entry().key,
+            sentences: self.sentences(),
+            designs: designs.collect(),
+            without_prices: self.without,
+        }
+    }
 }
 
 impl PriceCurve {

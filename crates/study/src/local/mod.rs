@@ -8,7 +8,7 @@ mod why;
 mod wish;
 mod wish_json;
 
-pub use along::{DrivenPart, DriversAlong, PriceCurve, stacked, usual_range};
+pub use along::{AlongJson, DrivenPart, DriversAlong, PriceCurve, PricedDesignJson, stacked, usual_range};
 pub use drivers::{ActiveJson, Drivers, DriversOptions, InactiveJson, PriceJson, RelaxationJson, WhyNotJson};
 pub use hindrances::Hindrance;
 pub use wish::{Condition, ConditionError, Wish, WishFault, WishOutcome};
