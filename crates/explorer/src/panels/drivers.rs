@@ -30,8 +30,10 @@ impl DriversPanel {
         };
         match answer.as_ref() {
             Ok(drivers) => {
+                let stepped = session.drivers_with_steps();
+                let stepped = stepped.as_ref().and_then(|stepped| stepped.as_ref().as_ref().ok());
                 ScrollArea::vertical()
-                    .show(ui, |ui| show(ui, session, &name, drivers))
+                    .show(ui, |ui| show(ui, session, &name, stepped.unwrap_or(drivers)))
                     .inner
             }
             Err(message) => {
@@ -68,7 +70,7 @@ fn show(ui: &mut Ui, session: &mut Session, name: &str, drivers: &Drivers) {
         }
     }
     ui.add_space(6.0);
-    ui.weak("Outlines are the prices with the bars alone. Click a bar to see the pose that pays it.");
+    ui.weak("Outlines are the prices with the bars alone, whiskers those of steps up to 20 %. Click a bar to see the pose that pays it.");
     let free = drivers.free(FREE);
     if !free.is_empty() {
         ui.label(format!("Practically free: {}.", free.join(", ")));
@@ -142,6 +144,14 @@ fn bar(ui: &mut Ui, price: &PriceJson, largest: f64, drivers: &Drivers, (objecti
         let outline = from_middle(of_bars);
         painter.rect_stroke(outline, 1.0, egui::Stroke::new(1.0, ink), egui::StrokeKind::Inside);
     }
+    if let Some([least, most]) = range_of_steps(price) {
+        let [left, right] = [least, most].map(|value| (middle + reach(value)).clamp(area.left(), area.right()));
+        let line = egui::Stroke::new(1.0, ink.gamma_multiply(0.8));
+        painter.hline(left..=right, area.center().y, line);
+        for end in [left, right] {
+            painter.vline(end, area.center().y - 3.0..=area.center().y + 3.0, line);
+        }
+    }
     painter.vline(middle, area.y_range(), egui::Stroke::new(1.0, ink.gamma_multiply(0.5)));
     let cannot = match price.bars_cannot_repair.as_slice() {
         [] => String::new(),
@@ -150,7 +160,28 @@ fn bar(ui: &mut Ui, price: &PriceJson, largest: f64, drivers: &Drivers, (objecti
     let value = price.value.map_or(String::new(), |value| {
         format!("\nIts value is {} {}.", number(value), price.unit)
     });
-    response.on_hover_text(format!("{words}{value}{cannot}")).clicked()
+    let steps = steps_in_words(price);
+    response
+        .on_hover_text(format!("{words}{value}{cannot}{steps}"))
+        .clicked()
+}
+
+/// Returns the least and the largest price that finite steps give: the change divided by the step.
+fn range_of_steps(price: &PriceJson) -> Option<[f64; 2]> {
+    let slopes = price.steps.iter().map(|[step, change]| change / step);
+    let range = slopes.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], slope| {
+        [least.min(slope), most.max(slope)]
+    });
+    (range[0] <= range[1]).then_some(range)
+}
+
+/// Tells what finite steps change.
+fn steps_in_words(price: &PriceJson) -> String {
+    let percent = |log: f64| 100.0 * (libm::exp(log) - 1.0);
+    let steps = price.steps.iter();
+    let steps =
+        steps.map(|[step, change]| format!("\n{:+.0} % changes it by {:+.2} %", percent(*step), percent(*change)));
+    steps.collect()
 }
 
 /// Returns the pose at which a requirement is active: the one with the largest multiplier.

@@ -14,6 +14,8 @@ use kinefront_study::{Column, Drivers, DriversAlong, Hindrance, Wish, WishOutcom
 /// The threads that answer questions about designs.
 pub(super) struct Asking {
     drivers: AnsweringThread<DriversQuestion>,
+    /// The same with finite steps.
+    steps: AnsweringThread<DriversQuestion>,
     along: AnsweringThread<AlongQuestion>,
     wish: AnsweringThread<WishQuestion>,
     why: AnsweringThread<WhyQuestion>,
@@ -41,6 +43,7 @@ impl Asking {
     pub fn new(wake: &Wake) -> Self {
         Self {
             drivers: AnsweringThread::new(Arc::clone(wake)),
+            steps: AnsweringThread::new(Arc::clone(wake)),
             along: AnsweringThread::new(Arc::clone(wake)),
             wish: AnsweringThread::new(Arc::clone(wake)),
             why: AnsweringThread::new(Arc::clone(wake)),
@@ -54,6 +57,7 @@ impl Asking {
 
     fn is_waiting(&self) -> bool {
         self.drivers.is_waiting()
+            || self.steps.is_waiting()
             || self.along.is_waiting()
             || self.wish.is_waiting()
             || self.why.is_waiting()
@@ -63,6 +67,7 @@ impl Asking {
     /// Forgets what was asked of an earlier run.
     pub fn forget(&mut self) {
         self.drivers.forget();
+        self.steps.forget();
         self.along.forget();
         self.wish.forget();
         self.why.forget();
@@ -77,7 +82,18 @@ impl Session {
         let known = self.known().filter(|known| known.verified)?;
         let evaluation = Arc::clone(&known.evaluation);
         let study = StudyOfRun(self.prepared());
-        self.asking.drivers.ask(DriversQuestion { study, evaluation })
+        self.asking.drivers.ask(DriversQuestion {
+            study,
+            evaluation,
+            steps: false,
+        })
+    }
+
+    /// Returns the same with the changes after finite steps of each parameter, some time later.
+    pub fn drivers_with_steps(&mut self) -> Option<Arc<Result<Drivers, String>>> {
+        let asked = self.asking.drivers.asked()?.clone();
+        self.asking.drivers.answer()?;
+        self.asking.steps.ask(DriversQuestion { steps: true, ..asked })
     }
 
     /// Returns what drives the first objective along the front, once it is known; nothing is determined during a search.

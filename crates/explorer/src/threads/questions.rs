@@ -34,6 +34,8 @@ pub struct DriversQuestion {
     pub study: StudyOfRun,
     /// The design.
     pub evaluation: Arc<Evaluation>,
+    /// Whether it is optimized again after finite steps of each parameter, which takes a second or two.
+    pub steps: bool,
 }
 
 impl Question for DriversQuestion {
@@ -43,7 +45,11 @@ impl Question for DriversQuestion {
 
     fn answer(&self) -> Self::Answer {
         let local = self.study.problem()?.local_of(&self.evaluation, &[]);
-        let drivers = local.and_then(|local| local.drivers(DriversOptions::default()));
+        let options = DriversOptions {
+            steps: self.steps,
+            ..DriversOptions::default()
+        };
+        let drivers = local.and_then(|local| local.drivers(options));
         drivers.map_err(|error| error.to_string())
     }
 }

@@ -34,7 +34,10 @@ fn session() -> Session {
     session.ask_why(&point);
     for _ in 0..4000 {
         session.update();
-        let has_prices = session.drivers().is_some() && session.drivers_along().is_some() && session.why().is_some();
+        let has_prices = session.drivers().is_some()
+            && session.drivers_with_steps().is_some()
+            && session.drivers_along().is_some()
+            && session.why().is_some();
         if has_prices && session.known().is_some_and(|known| known.verified) && session.is_drawn() {
             return session;
         }
