@@ -68,6 +68,10 @@ const HEAVIEST: f64 = 2e3;
 /// Rounds without an improvement after which the search ends.
 const PATIENCE: usize = 10;
 
+/// Rounds after which a design for a grid is given up, and violation from which it is.
+const HOPEFUL: usize = 8;
+const FAR_OFF: f64 = 0.05;
+
 /// Critical poses with more slack than this are forgotten.
 const SLACK: f64 = 0.25;
 
@@ -169,6 +173,10 @@ impl<'a> Exchange<'a> {
             };
             if missed < 0.7 * least_missed {
                 (least_missed, improved) = (missed, round);
+            }
+            // A design for a grid that misses much after some rounds was good on that grid alone.
+            if slack > 0.0 && round >= HOPEFUL && missed > FAR_OFF {
+                break;
             }
             let is_stuck = moved <= 1e-12 && round > 0 || missed > 1e-6 && round > improved + PATIENCE;
             // The approximation of the curvature may have grown so steep that steps stay short.
