@@ -17,8 +17,8 @@ use super::{Ending, Failure, tables, to_json};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Of each architecture, the designs of the front whose other objectives are nearest are made the best ones for the wished values of these.
-If the lightest of them is still too heavy, each requirement is relaxed until the wished mass is reached, alone and together with the others; the factor
-is solved for, not extrapolated.
+If the lightest of them is still too heavy, each requirement is relaxed until the wished mass is reached, alone and together with the
+others; the factor is solved for, not extrapolated.
 
 Without --mass, the table is that of a run that found no feasible design, as run/designs.csv: each requirement is told with the nearest
 value of it that can be had while all others are kept.")]
