@@ -8,7 +8,7 @@ use super::place::Density;
 use super::polished::Polished;
 use super::problem::LocalProblem;
 use super::requirement::{Critical, Kind, NOWHERE};
-use super::survey::{add, is_same};
+use super::survey::{FOLLOWED, is_same, missed};
 
 /// Largest number of times that critical poses are added.
 const ROUNDS: usize = 40;
@@ -34,15 +34,9 @@ const EXPLAINED: f64 = 1e-6;
 /// Number of times that the Hessian is determined anew.
 const RENEWALS: usize = 8;
 
-/// Half the difference of the unknowns by which the Hessian is determined.
-const BEND: f64 = 1e-4;
-
 /// Least and largest curvature.
 const FLATTEST: f64 = 1e-3;
 const STEEPEST: f64 = 1e6;
-
-/// Slack below which a critical pose is followed from one design to the next, and step by which it is.
-const FOLLOWED: f64 = 0.02;
 
 /// Two critical poses at one place whose slacks differ by less than this are one constraint.
 const IDENTICAL: f64 = 1e-11;
@@ -67,10 +61,6 @@ const HEAVIEST: f64 = 2e3;
 
 /// Rounds without an improvement after which the search ends.
 const PATIENCE: usize = 10;
-
-/// Rounds after which a design for a grid is given up, and violation from which it is.
-const HOPEFUL: usize = 8;
-const FAR_OFF: f64 = 0.05;
 
 /// Critical poses with more slack than this are forgotten.
 const SLACK: f64 = 0.25;
@@ -174,10 +164,6 @@ impl<'a> Exchange<'a> {
             if missed < 0.7 * least_missed {
                 (least_missed, improved) = (missed, round);
             }
-            // A design for a grid that misses much after some rounds was good on that grid alone.
-            if slack > 0.0 && round >= HOPEFUL && missed > FAR_OFF {
-                break;
-            }
             let is_stuck = moved <= 1e-12 && round > 0 || missed > 1e-6 && round > improved + PATIENCE;
             // The approximation of the curvature may have grown so steep that steps stay short.
             if missed <= SLOW && moved <= SLOW && renewed < RENEWALS {
@@ -212,21 +198,10 @@ impl<'a> Exchange<'a> {
         })
     }
 
-    /// Returns the critical poses of the design: those that spots of the region lead to, and those that earlier designs lead to, which
-    /// may lie between the spots.
+    /// Returns the critical poses of the design.
     fn survey(&self, density: Density) -> Option<Vec<Critical>> {
         let prepared = self.problem.prepare(&self.unknowns)?;
-        let mut found = self.problem.survey(&prepared, density);
-        for critical in &self.critical {
-            let slack = self.problem.value(&prepared, critical.requirement, &critical.place);
-            if critical.requirement.is_of_poses(self.problem) && slack < FOLLOWED && slack > NOWHERE {
-                let next = self
-                    .problem
-                    .refined(&prepared, critical.requirement, critical.place, FOLLOWED);
-                add(&mut found, next);
-            }
-        }
-        Some(found)
+        Some(self.problem.survey_from(&prepared, density, &self.critical, FOLLOWED))
     }
 
     /// Adds critical poses that are new, and forgets those that are far from being critical.
@@ -403,29 +378,16 @@ impl<'a> Exchange<'a> {
 
     /// Determines the Hessian of the Lagrangian by differences, made positive definite.
     fn renew_hessian(&mut self, multipliers: &Multipliers) {
-        let count = self.unknowns.len();
         let (critical, weights): (Vec<Critical>, Vec<f64>) = multipliers
             .critical_with_values()
             .map(|(critical, multiplier)| (*critical, multiplier))
             .unzip();
-        let weights = DVector::from_vec(weights);
-        let of_lagrangian = |unknowns: &[f64]| {
-            let (gradient, rows) = self.problem.derivatives(unknowns, &critical);
-            gradient - rows.transpose() * &weights
-        };
-        let mut hessian = DMatrix::zeros(count, count);
-        for unknown in 0..count {
-            let at = |step: f64| {
-                let mut moved = self.unknowns.clone();
-                moved[unknown] += step;
-                of_lagrangian(&moved)
-            };
-            hessian.set_column(unknown, &((at(BEND) - at(-BEND)) / (2.0 * BEND)));
-        }
-        if !hessian.iter().all(|number: &f64| number.is_finite()) {
-            return;
-        }
-        let mut found = (0.5 * (&hessian + hessian.transpose())).symmetric_eigen();
+        let of_places = |_: &[f64]| Some(critical.clone());
+        let hessian = self
+            .problem
+            .hessian_of_lagrangian(&self.unknowns, &DVector::from_vec(weights), of_places);
+        let Some(hessian) = hessian else { return };
+        let mut found = hessian.symmetric_eigen();
         for value in found.eigenvalues.iter_mut() {
             *value = value.abs().clamp(FLATTEST, STEEPEST);
         }
@@ -451,9 +413,4 @@ impl<'a> Exchange<'a> {
         self.hessian += &turned * turned.transpose() / along - &image * image.transpose() / curvature;
         self.hessian = 0.5 * (&self.hessian + self.hessian.transpose());
     }
-}
-
-/// Returns the largest amount by which a requirement is missed.
-fn missed(critical: &[Critical]) -> f64 {
-    critical.iter().fold(0.0, |most, critical| most.max(-critical.slack))
 }

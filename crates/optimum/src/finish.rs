@@ -6,8 +6,8 @@ use nalgebra::{DMatrix, DVector};
 use super::multipliers::Multipliers;
 use super::place::Density;
 use super::problem::LocalProblem;
-use super::requirement::{Critical, NOWHERE};
-use super::survey::add;
+use super::requirement::Critical;
+use super::survey::{FOLLOWED, missed};
 
 /// Residual of the multipliers that is not made smaller, and largest one that is.
 const EXACT: f64 = 1e-9;
@@ -22,13 +22,7 @@ const STEPS: usize = 4;
 /// Largest change of an unknown in a step.
 const SLIGHT: f64 = 1e-3;
 
-/// Half the difference of the unknowns by which the Hessian is determined.
-const BEND: f64 = 1e-4;
-
-/// Slack below which a critical pose is made more exact and followed from one design to the next.
-const FOLLOWED: f64 = 0.02;
-
-/// First step by which such a pose is followed.
+/// First step by which a critical pose is followed to a design that is very near.
 const NEAR: f64 = 1e-3;
 
 /// Distance from a bound at which an unknown stays there.
@@ -72,23 +66,15 @@ impl LocalProblem {
     /// Surveys a design near one whose critical poses are known; `None` if it misses a requirement by more than `held`.
     fn finishing(&self, unknowns: Vec<f64>, known: &[Critical], held: f64) -> Option<Finishing> {
         let prepared = self.prepare(&unknowns)?;
-        let mut survey = self.survey(&prepared, Density::Fine);
-        let is_followed = |critical: &Critical| critical.requirement.is_of_poses(self) && critical.slack < FOLLOWED;
-        for critical in known.iter().filter(|critical| is_followed(critical)) {
-            let next = self.refined(&prepared, critical.requirement, critical.place, NEAR);
-            if next.slack > NOWHERE {
-                add(&mut survey, next);
-            }
-        }
-        for critical in survey.iter_mut().filter(|critical| is_followed(critical)) {
+        let mut survey = self.survey_from(&prepared, Density::Fine, known, NEAR);
+        let is_near = |critical: &Critical| critical.requirement.is_of_poses(self) && critical.slack < FOLLOWED;
+        for critical in survey.iter_mut().filter(|critical| is_near(critical)) {
             *critical = self.sharpened(&prepared, critical);
         }
-        let multipliers = Multipliers::new(self, &unknowns, &survey);
-        let is_held = survey.iter().all(|critical| critical.slack >= -held);
-        is_held.then_some(Finishing {
+        (missed(&survey) <= held).then(|| Finishing {
+            multipliers: Multipliers::new(self, &unknowns, &survey),
             unknowns,
             survey,
-            multipliers,
         })
     }
 
@@ -115,7 +101,16 @@ impl LocalProblem {
         }
         let (gradient, rows) = self.derivatives(&at.unknowns, &critical);
         let values = self.values_of(&at.unknowns, &critical);
-        let hessian = self.hessian_of_lagrangian(&at.unknowns, &critical, &DVector::from_vec(weights))?;
+        // The critical poses move with the design.
+        let followed = |moved: &[f64]| -> Option<Vec<Critical>> {
+            let prepared = self.prepare(moved)?;
+            let follow = |critical: &Critical| match critical.requirement.is_of_poses(self) {
+                true => self.sharpened(&prepared, critical),
+                false => *critical,
+            };
+            Some(critical.iter().map(follow).collect())
+        };
+        let hessian = self.hessian_of_lagrangian(&at.unknowns, &DVector::from_vec(weights), followed)?;
         let size = free.len() + critical.len();
         let mut system = DMatrix::zeros(size, size);
         let mut right = DVector::zeros(size);
@@ -139,36 +134,5 @@ impl LocalProblem {
             change[unknown] = solved[row];
         }
         change.iter().all(|number: &f64| number.is_finite()).then_some(change)
-    }
-
-    /// Returns the Hessian of the Lagrangian by differences; the critical poses move with the design.
-    fn hessian_of_lagrangian(
-        &self,
-        unknowns: &[f64],
-        critical: &[Critical],
-        weights: &DVector<f64>,
-    ) -> Option<DMatrix<f64>> {
-        let count = unknowns.len();
-        let gradient = |moved: &[f64]| -> Option<DVector<f64>> {
-            let prepared = self.prepare(moved)?;
-            let follow = |critical: &Critical| match critical.requirement.is_of_poses(self) {
-                true => self.sharpened(&prepared, critical),
-                false => *critical,
-            };
-            let followed: Vec<Critical> = critical.iter().map(follow).collect();
-            let (gradient, rows) = self.derivatives(moved, &followed);
-            Some(gradient - rows.transpose() * weights)
-        };
-        let mut hessian = DMatrix::zeros(count, count);
-        for unknown in 0..count {
-            let at = |step: f64| {
-                let mut moved = unknowns.to_vec();
-                moved[unknown] += step;
-                gradient(&moved)
-            };
-            hessian.set_column(unknown, &((at(BEND)? - at(-BEND)?) / (2.0 * BEND)));
-        }
-        let hessian = 0.5 * (&hessian + hessian.transpose());
-        hessian.iter().all(|number: &f64| number.is_finite()).then_some(hessian)
     }
 }

@@ -71,6 +71,13 @@ pub enum ParameterKind {
     Material,
 }
 
+impl ParameterKind {
+    /// Returns whether less is asked for where the parameter is smaller: it is a requirement, not a property of the material.
+    pub fn is_requirement(self) -> bool {
+        matches!(self, ParameterKind::Limit | ParameterKind::Region)
+    }
+}
+
 /// How a parameter is changed by a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Change {
@@ -296,11 +303,6 @@ impl Parameter {
             | Parameter::YieldStrength
             | Parameter::ActuatorStiffness => ParameterKind::Material,
         }
-    }
-
-    /// Returns whether less is asked for where the parameter is smaller: it is a requirement, not a property of the material.
-    pub fn is_requirement(self) -> bool {
-        matches!(self.kind(), ParameterKind::Limit | ParameterKind::Region)
     }
 
     /// Returns the question with the parameter changed by a step, for a design of base radius `base_radius` \[m\]; `None` if a step has no

@@ -2,9 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use kinefront_model::evaluation::{
-    Better, Bound, Model, ModelSettings, Objective, PoseScalar, Quantity, QuantityLimit,
-};
+use kinefront_model::evaluation::{Bound, Model, ModelSettings, Objective, PoseScalar, Quantity, QuantityLimit};
 use kinefront_model::mechanism::{AnyLeg, Architecture, Design, DesignVariable, Leg};
 use kinefront_model::workspace::{GridError, WorkspaceSpec};
 
@@ -70,10 +68,7 @@ impl LocalQuestion {
             Quantity::Worst(scalar) if better == objective.goal => self.settings.thresholds.set(scalar, Some(value)),
             quantity => self.settings.limits.push(QuantityLimit {
                 quantity,
-                bound: match objective.goal {
-                    Better::Higher => Bound::AtLeast(value),
-                    Better::Lower => Bound::AtMost(value),
-                },
+                bound: Bound::no_worse_than(value, objective.goal),
             }),
         }
     }

@@ -57,7 +57,7 @@ impl LocalProblem {
         let way = |price: &Price| (price.parameter, way_of(self.question(), price.parameter));
         let single = prices
             .iter()
-            .filter(|price| price.parameter.is_requirement() && price.price.abs() > FREE)
+            .filter(|price| price.parameter.kind().is_requirement() && price.price.abs() > FREE)
             .map(|price| (RelaxationOf::Single(price.parameter), vec![way(price)]));
         let thresholds = prices.iter().filter(|price| is_factor(price, self.question()));
         let all: Vec<(Parameter, f64)> = thresholds.clone().map(way).collect();

@@ -32,7 +32,7 @@ impl LocalProblem {
     pub fn may_be_relaxed(&self) -> Vec<Parameter> {
         let is_stated = |parameter: &Parameter| match parameter {
             Parameter::Threshold(PoseScalar::Reach) => false,
-            parameter => parameter.is_requirement(),
+            parameter => parameter.kind().is_requirement(),
         };
         Parameter::all(self).into_iter().filter(is_stated).collect()
     }

@@ -32,6 +32,9 @@ const PATIENCE: usize = 200;
 /// Places that are nearer to each other than this are one.
 const SAME: f64 = 1e-5;
 
+/// Slack below which a critical pose is followed from one design to the next.
+pub(crate) const FOLLOWED: f64 = 0.02;
+
 /// Half the width of a parabola through values of a requirement.
 const PARABOLA: f64 = 1e-3;
 
@@ -95,6 +98,26 @@ impl LocalProblem {
         all.into_iter()
             .filter(|critical| critical.slack <= least + ALSO)
             .collect()
+    }
+
+    /// Returns the critical poses of a design: those that spots of the region lead to, and those that `known` ones of a design near it lead
+    /// to by steps of `step` at first, which may lie between the spots.
+    pub(crate) fn survey_from(
+        &self,
+        prepared: &Prepared,
+        density: Density,
+        known: &[Critical],
+        step: f64,
+    ) -> Vec<Critical> {
+        let mut found = self.survey(prepared, density);
+        for critical in known {
+            let slack = self.value(prepared, critical.requirement, &critical.place);
+            if critical.requirement.is_of_poses(self) && slack < FOLLOWED && slack > NOWHERE {
+                let next = self.refined(prepared, critical.requirement, critical.place, step);
+                add(&mut found, next);
+            }
+        }
+        found
     }
 
     /// Returns the minimum of a requirement near a place, by steps along each coordinate that are halved where none helps.
@@ -182,6 +205,11 @@ fn moved(prepared: &Prepared, place: Place, freedom: usize, freedoms: usize, ste
     }
     let turn = (place.turn + step).clamp(-1.0, 1.0);
     (turn != place.turn).then_some(Place { turn, ..place })
+}
+
+/// Returns the largest amount by which a requirement is missed.
+pub(crate) fn missed(critical: &[Critical]) -> f64 {
+    critical.iter().fold(0.0, |most, critical| most.max(-critical.slack))
 }
 
 /// Adds a minimum unless it is one that was found before.

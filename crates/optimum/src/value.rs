@@ -12,6 +12,9 @@ use super::requirement::{Critical, End, NOWHERE, Requirement, threshold_name};
 /// Half the difference by which derivatives are taken.
 const DIFFERENCE: f64 = 2e-6;
 
+/// Half the difference of the unknowns by which a Hessian is determined.
+const BEND: f64 = 1e-4;
+
 /// Value of a requirement that another one of the same leg hides.
 const FAR: f64 = 1.0;
 
@@ -174,6 +177,29 @@ impl LocalProblem {
             }
         }
         (gradient, rows)
+    }
+
+    /// Returns the Hessian of the Lagrangian by differences; `None` if it is not finite. `weights` are the multipliers of the critical
+    /// requirements, and `critical_at` returns these at other unknowns, in the same order.
+    pub(crate) fn hessian_of_lagrangian(
+        &self,
+        unknowns: &[f64],
+        weights: &DVector<f64>,
+        critical_at: impl Fn(&[f64]) -> Option<Vec<Critical>>,
+    ) -> Option<DMatrix<f64>> {
+        let count = unknowns.len();
+        let mut hessian = DMatrix::zeros(count, count);
+        for unknown in 0..count {
+            let at = |step: f64| -> Option<DVector<f64>> {
+                let mut moved = unknowns.to_vec();
+                moved[unknown] += step;
+                let (gradient, rows) = self.derivatives(&moved, &critical_at(&moved)?);
+                Some(gradient - rows.transpose() * weights)
+            };
+            hessian.set_column(unknown, &((at(BEND)? - at(-BEND)?) / (2.0 * BEND)));
+        }
+        let is_finite = hessian.iter().all(|number: &f64| number.is_finite());
+        is_finite.then(|| 0.5 * (&hessian + hessian.transpose()))
     }
 }
 
