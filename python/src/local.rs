@@ -4,10 +4,9 @@ use std::collections::BTreeMap;
 
 use pyo3::prelude::*;
 
-use kinefront_model::evaluation::{Evaluation, GridChoice, Quantity};
+use kinefront_model::evaluation::Quantity;
 use kinefront_model::mechanism::Design;
 use kinefront_study::{AlongJson, Condition, DesignProblem, DriversOptions, Study, Wish};
-use rayon::prelude::*;
 
 use crate::convert::from_serializable;
 use crate::errors::{InputError, of_design};
@@ -47,11 +46,7 @@ pub(crate) fn prices<'py>(
 /// Returns what drives the first objective along a front, for each architecture; the id of a design is its place.
 pub(crate) fn prices_along<'py>(py: Python<'py>, study: &Study, designs: &[Design]) -> PyResult<Bound<'py, PyAny>> {
     let problem = DesignProblem::new(study).map_err(of_design)?;
-    let along = py.detach(|| {
-        let evaluate = |design: &Design| problem.model().evaluate(design, GridChoice::Fine);
-        let evaluations: Vec<Evaluation> = designs.par_iter().map(evaluate).collect();
-        problem.drivers_along(&evaluations)
-    });
+    let along = py.detach(|| problem.drivers_along(&problem.evaluate_on_fine_grid(designs)));
     let all: Vec<AlongJson<'_>> = along.iter().map(|along| along.to_json(&[])).collect();
     from_serializable(py, &all)
 }

@@ -222,12 +222,8 @@ impl PyStudy {
                 }
             });
             let first = rows.len();
-            rows.extend(evaluated.into_iter().enumerate().map(|(place, row)| TableRow {
-                id: first + place,
-                row,
-                reference_radius: None,
-                certified: None,
-            }));
+            let evaluated = evaluated.into_iter().enumerate();
+            rows.extend(evaluated.map(|(place, row)| TableRow::new(first + place, row)));
             py.check_signals()?;
         }
         PyTable::new(py, &columns(self.study()), &rows)

@@ -2,7 +2,8 @@
 
 use std::io::Write;
 
-use kinefront_model::evaluation::{Evaluation, GridChoice, Quantity};
+use kinefront_model::evaluation::{Evaluation, Quantity};
+use kinefront_model::mechanism::Design;
 use kinefront_study::{
     AlongJson, Column, DesignProblem, Drivers, DriversAlong, DriversOptions, PriceJson, Row, Study, TableRow,
 };
@@ -85,10 +86,8 @@ fn along_front(arguments: &PricesArguments) -> Result<Ending, Failure> {
     }
     let (study, designs) = arguments.subject.read_table().map_err(Failure::Input)?;
     let problem = DesignProblem::new(&study).map_err(Failure::runtime)?;
-    let (ids, evaluations): (Vec<usize>, Vec<Evaluation>) = designs
-        .iter()
-        .map(|(id, design)| (*id, problem.model().evaluate(design, GridChoice::Fine)))
-        .unzip();
+    let (ids, designs): (Vec<usize>, Vec<Design>) = designs.into_iter().unzip();
+    let evaluations = problem.evaluate_on_fine_grid(&designs);
     let along = problem.drivers_along(&evaluations);
     let mut out = std::io::stdout().lock();
     if arguments.json {
@@ -129,12 +128,7 @@ fn write_table(
     let failed = |error: csv::Error| Failure::from(std::io::Error::from(error));
     table.write_record(names.map(|name| name.to_string())).map_err(failed)?;
     for (place, evaluation) in evaluations.iter().enumerate() {
-        let row = TableRow {
-            id: ids[place],
-            row: Row::new(0, evaluation),
-            reference_radius: None,
-            certified: None,
-        };
+        let row = TableRow::new(ids[place], Row::new(0, evaluation));
         let price = |parameter: &&str| {
             let mut prices = drivers[place].into_iter().flat_map(|drivers| &drivers.prices);
             let own = prices.find(|price| price.parameter == **parameter);

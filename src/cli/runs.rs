@@ -186,13 +186,13 @@ fn tell(
                 path.display()
             )?;
         }
-        let is_hindered = last.is_some_and(|last| last.feasible == 0);
-        // What stands in the way is told beside the run: that it cannot be told makes no run fail.
-        if is_hindered
-            && is_written
-            && let Ok(found) = hindrances(&path.join("designs.csv"), study)
-        {
-            writeln!(out, "No design is feasible.\n{}", tables::hindrances(&found))?;
+        if is_written && last.is_some_and(|last| last.feasible == 0) {
+            // The answer takes seconds.
+            writeln!(out, "No design is feasible.")?;
+            // It is told beside the run: that it cannot be told makes no run fail.
+            if let Ok(found) = hindrances(&path.join("designs.csv"), study) {
+                writeln!(out, "{}", tables::hindrances(&found))?;
+            }
         }
     }
     Ok(())

@@ -55,10 +55,7 @@ impl SubjectArguments {
     pub fn read_table(&self) -> Result<(Study, Vec<(usize, Design)>)> {
         let table = Path::new(self.row.as_deref().unwrap_or_default());
         let study = study_of(table, self.study.as_deref())?;
-        let designs = read_designs(table, &study).into_diagnostic()?;
-        if designs.is_empty() {
-            return Err(miette!("{} has no designs", table.display()));
-        }
+        let designs = designs_of(table, &study)?;
         Ok((study, designs))
     }
 }
@@ -72,6 +69,20 @@ pub fn study_of(table: &Path, named: Option<&OsStr>) -> Result<Study> {
         Some(run) => Ok(run.study().clone()),
         None => study_beside(table),
     }
+}
+
+/// Reads all designs of a table, each with its id; a table without designs is an error.
+pub fn designs_of(table: &Path, study: &Study) -> Result<Vec<(usize, Design)>> {
+    let designs = read_designs(table, study).into_diagnostic()?;
+    match designs.is_empty() {
+        true => Err(without_designs(table)),
+        false => Ok(designs),
+    }
+}
+
+/// Returns the error of a table that has no designs.
+pub fn without_designs(table: &Path) -> miette::Report {
+    miette!("{} has no designs", table.display())
 }
 
 /// Opens the run that a table belongs to, if it stands in a run folder. A run knows what it wrote: a study or a table that was damaged
@@ -123,12 +134,9 @@ fn study_name(table: &Path) -> String {
 
 /// Returns the design in the row with the given id.
 fn find_design(table: &Path, study: &Study, id: &str) -> Result<Design> {
-    let rows = read_designs(table, study).into_diagnostic()?;
+    let rows = designs_of(table, study)?;
     if let Some((_, design)) = rows.iter().find(|(found, _)| found.to_string() == id) {
         return Ok(*design);
-    }
-    if rows.is_empty() {
-        return Err(miette!("{} has no designs", table.display()));
     }
     let some: Vec<String> = rows.iter().take(8).map(|(id, _)| id.to_string()).collect();
     let more = if rows.len() > some.len() { ", …" } else { "" };

@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use kinefront_model::evaluation::Quantity;
 use kinefront_model::mechanism::Design;
 use kinefront_scene::text::quantity as quantity_text;
-use kinefront_study::{DesignProblem, Hindrance, Study, read_designs, read_table};
+use kinefront_study::{DesignProblem, Hindrance, Study, read_table};
 use miette::{Result, miette};
 
 use super::prices::above_zero;
-use super::subject::study_of;
+use super::subject::{designs_of, study_of, without_designs};
 use super::{Ending, Failure, tables, to_json};
 
 #[derive(Debug, clap::Args)]
@@ -52,11 +52,8 @@ pub fn run(arguments: &WhyArguments) -> std::result::Result<Ending, Failure> {
         return tell_hindrances(arguments, &study);
     };
     let held = held(arguments, &study).map_err(Failure::Input)?;
-    let designs = read_designs(table, &study).map_err(Failure::input)?;
+    let designs = designs_of(table, &study).map_err(Failure::Input)?;
     let designs: Vec<Design> = designs.into_iter().map(|(_, design)| design).collect();
-    if designs.is_empty() {
-        return Err(Failure::Input(miette!("{} has no designs", table.display())));
-    }
     let problem = DesignProblem::new(&study).map_err(Failure::runtime)?;
     let drivers = problem.why(&designs, &held, mass).map_err(Failure::input)?;
     let mut out = std::io::stdout().lock();
@@ -99,7 +96,7 @@ pub fn hindrances(table: &Path, study: &Study) -> std::result::Result<Vec<Hindra
         .map(|entry| (entry.row.violation, entry.row.design))
         .collect();
     if designs.is_empty() {
-        return Err(Failure::Input(miette!("{} has no designs", table.display())));
+        return Err(Failure::Input(without_designs(table)));
     }
     if let Some(feasible) = rows.iter().find(|entry| entry.row.is_feasible()) {
         let (id, table) = (feasible.id, table.display());

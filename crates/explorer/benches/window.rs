@@ -113,12 +113,10 @@ impl Stream {
                 members.retain(|member| archive.iter().any(|kept| kept.id == member.id));
                 members.sort_by(|a, b| a.evaluation.mass().total_cmp(&b.evaluation.mass()));
                 let front = members.iter().map(|member| {
-                    Arc::new(TableRow {
-                        id: member.id,
-                        row: Row::new(member.generation, &member.evaluation),
-                        reference_radius: None,
-                        certified: None,
-                    })
+                    Arc::new(TableRow::new(
+                        member.id,
+                        Row::new(member.generation, &member.evaluation),
+                    ))
                 });
                 waited += tell(Event::Front(front.collect()));
             }

@@ -151,12 +151,7 @@ fn rows(path: &Path, recorded: &RecordedRun) -> Result<(Study, Vec<TableRow>), R
             path: path.to_owned(),
             fault: TableFault::Design { index, error },
         })?;
-        Ok(TableRow {
-            id: index,
-            row,
-            reference_radius: None,
-            certified: None,
-        })
+        Ok(TableRow::new(index, row))
     });
     let rows = rows.collect::<Result<Vec<_>, TableError>>()?;
     Ok((study, rows))

@@ -52,6 +52,14 @@ impl Front {
         self.shown.iter()
     }
 
+    /// Returns at most `most` of the designs that are shown, evenly spread, in their order.
+    pub fn spread(&self, most: usize) -> Vec<Evaluation> {
+        let objectives = self.shown().map(|member| DesignProblem::outcome(member).objectives);
+        let mut places = spread(&objectives.collect::<Vec<_>>(), most);
+        places.sort_unstable();
+        places.into_iter().map(|place| self.shown[place].clone()).collect()
+    }
+
     /// Returns the design that is best in the first objective of those whose other objectives, as they are minimised, are at most
     /// `others`.
     pub fn best_with(&self, others: &[f64]) -> Option<&Evaluation> {
@@ -141,18 +149,7 @@ impl Fronts {
 
     /// Returns the designs of which prices are determined: some of those that are shown of each front, evenly spread.
     pub fn priced(&self) -> Vec<Evaluation> {
-        let some = |(_, front): &(Architecture, Front)| {
-            let objectives: Vec<Objectives> = front
-                .shown()
-                .map(|member| DesignProblem::outcome(member).objectives)
-                .collect();
-            let places = spread(&objectives, PRICED);
-            places
-                .into_iter()
-                .map(|place| front.shown[place].clone())
-                .collect::<Vec<_>>()
-        };
-        self.alone.iter().flat_map(some).collect()
+        self.alone.iter().flat_map(|(_, front)| front.spread(PRICED)).collect()
     }
 
     /// Returns the front of an architecture.

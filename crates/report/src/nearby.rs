@@ -2,7 +2,6 @@
 
 use kinefront_model::evaluation::{Evaluation, Quantity};
 use kinefront_model::mechanism::Architecture;
-use kinefront_optimize::{Objectives, spread};
 use kinefront_study::sensitivity::{self, Alternative, Effect};
 use kinefront_study::{DesignProblem, Study};
 use rayon::prelude::*;
@@ -82,18 +81,10 @@ pub(super) fn all(
 impl Nearby {
     /// Finds the optima near designs of a front that are evenly spread.
     fn new(architecture: Architecture, problem: &DesignProblem, front: &Front) -> Self {
-        let objectives: Vec<Objectives> = front
-            .shown()
-            .map(|member| DesignProblem::outcome(member).objectives)
-            .collect();
-        let mut places = spread(&objectives, DESIGNS);
-        places.sort_unstable();
-        let found: Vec<(Evaluation, Optimum)> = places
-            .par_iter()
-            .filter_map(|&place| {
-                let design = &front.shown[place];
-                Some((design.clone(), Optimum::near(problem, design)?))
-            })
+        let found: Vec<(Evaluation, Optimum)> = front
+            .spread(DESIGNS)
+            .into_par_iter()
+            .filter_map(|design| Optimum::near(problem, &design).map(|optimum| (design, optimum)))
             .collect();
         let (designs, optima): (Vec<Evaluation>, Vec<Optimum>) = found.into_iter().unzip();
         Self {

@@ -4,10 +4,7 @@ use super::Source;
 use super::fronts::Front;
 use kinefront_model::evaluation::{Better, Evaluation, Objective};
 use kinefront_optimize::{Objectives, hypervolume};
-use kinefront_study::{Column, DesignProblem, Study};
-
-/// Values of the second objective at which architectures are compared, as fractions of the way from its worst value to its best one.
-const LEVELS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95];
+use kinefront_study::{Column, DesignProblem, Study, levels_between};
 
 /// The question of a study. Of several objectives, the first is what a design costs, and the second what it is compared by.
 #[derive(Debug, Clone)]
@@ -93,14 +90,8 @@ impl Question {
         let Some([worst, best]) = self.span(front) else {
             return Vec::new();
         };
-        let decade = libm::pow(
-            10.0,
-            libm::floor(libm::log10((best - worst).abs().max(f64::MIN_POSITIVE))) - 1.0,
-        );
-        let level = |fraction: f64| ((worst + fraction * (best - worst)) / decade).round() * decade;
-        let mut levels: Vec<f64> = LEVELS.into_iter().map(level).filter(|&level| level != worst).collect();
-        levels.dedup();
-        levels
+        let levels = levels_between(worst, best).into_iter();
+        levels.filter(|&level| level != worst).collect()
     }
 
     /// Returns the worst and the best value of the second objective over a front, where a range that begins at 0 counts from there;

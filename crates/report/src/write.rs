@@ -27,12 +27,7 @@ impl Report {
         let joint = |member: &Evaluation| joint_front.contains(member);
         let columns = || Column::of_designs(&self.study).chain([Column::OnJointFront]);
         let rows = members().enumerate().map(|(id, member)| {
-            let entry = TableRow {
-                id,
-                row: Row::new(0, member),
-                reference_radius: None,
-                certified: None,
-            };
+            let entry = TableRow::new(id, Row::new(0, member));
             let cell = |column| match column {
                 Column::OnJointFront => Cell::Flag(joint(member)),
                 column => column.cell(&entry),

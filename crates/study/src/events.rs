@@ -57,12 +57,9 @@ pub struct Batch {
 impl Batch {
     /// Returns the rows with their ids.
     pub fn entries(&self) -> impl Iterator<Item = TableRow> {
-        (self.first_id..).zip(&self.rows).map(|(id, row)| TableRow {
-            id,
-            row: *row,
-            reference_radius: None,
-            certified: None,
-        })
+        (self.first_id..)
+            .zip(&self.rows)
+            .map(|(id, row)| TableRow::new(id, *row))
     }
 }
 

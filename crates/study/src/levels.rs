@@ -45,9 +45,15 @@ fn levels(fronts: &[Vec<Objectives>]) -> Vec<f64> {
     let (Some(best), Some(worst)) = (values().reduce(f64::min), values().reduce(f64::max)) else {
         return Vec::new();
     };
-    let span = (worst - best).max(f64::MIN_POSITIVE);
+    levels_between(worst, best)
+}
+
+/// Returns values between the worst and the best value of an objective at which fronts are compared, rounded to two digits, the worst
+/// first.
+pub fn levels_between(worst: f64, best: f64) -> Vec<f64> {
+    let span = (best - worst).abs().max(f64::MIN_POSITIVE);
     let decade = libm::pow(10.0, libm::floor(libm::log10(span)) - 1.0);
-    let level = |fraction: f64| ((worst - fraction * (worst - best)) / decade).round() * decade;
+    let level = |fraction: f64| ((worst + fraction * (best - worst)) / decade).round() * decade;
     let mut levels: Vec<f64> = FRACTIONS.into_iter().map(level).collect();
     levels.dedup();
     levels

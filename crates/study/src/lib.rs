@@ -53,7 +53,7 @@ pub use durable::{WriteError, open_regular, read_regular, replace, write_whole};
 pub use events::{Batch, EndReason, Event, GenerationSummary, RunSummary, RunTimes, Started, Subscriber, front_marks};
 pub use front::{FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
 pub use kinefront_optimum::ParameterKind;
-pub use levels::{EqualLevel, equal_levels};
+pub use levels::{EqualLevel, equal_levels, levels_between};
 pub use local::{
     ActiveJson, AlongJson, Condition, ConditionError, DrivenPart, Drivers, DriversAlong, DriversOptions, Hindrance,
     InactiveJson, LocalDesign, LocalFault, PriceCurve, PriceJson, PricedDesignJson, RelaxationJson, UnmetJson,

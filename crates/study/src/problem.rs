@@ -13,6 +13,7 @@ use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, DesignE
 use kinefront_model::workspace::GridError;
 use kinefront_optimize::{Candidate, Objectives, Outcome, Problem, Target, Variable};
 use kinefront_optimum::FreeVariable;
+use rayon::prelude::*;
 
 /// Variables that are sized.
 const BARS: [DesignVariable; 2] = [DesignVariable::LegBarRadius, DesignVariable::PlatformBarRadius];
@@ -148,6 +149,12 @@ impl DesignProblem {
     /// Evaluates a design on the reference grid.
     pub fn evaluate_design(&self, design: &Design) -> Evaluation {
         self.model.evaluate(design, GridChoice::Reference)
+    }
+
+    /// Evaluates designs on the fine grid, in parallel.
+    pub fn evaluate_on_fine_grid(&self, designs: &[Design]) -> Vec<Evaluation> {
+        let evaluate = |design: &Design| self.model.evaluate(design, GridChoice::Fine);
+        designs.par_iter().map(evaluate).collect()
     }
 
     /// Whether a design is one at which a candidate is evaluated: its values are those of the candidate, but for the bars, and

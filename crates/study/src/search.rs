@@ -268,12 +268,7 @@ impl Found {
     fn update_front(&mut self, first_id: usize, rows: &[Row]) {
         let mut before = std::mem::take(&mut self.front).into_iter();
         let entry = |id: usize| match id.checked_sub(first_id) {
-            Some(place) => Some(Arc::new(TableRow {
-                id,
-                row: rows[place],
-                reference_radius: None,
-                certified: None,
-            })),
+            Some(place) => Some(Arc::new(TableRow::new(id, rows[place]))),
             None => before.find(|entry| entry.id == id),
         };
         self.front = self.archive.iter().map(|member| member.id).filter_map(entry).collect();
@@ -297,14 +292,7 @@ impl Found {
         let entries = (first_id..)
             .zip(rows)
             .filter(|(_, row)| row.is_feasible())
-            .map(|(id, row)| {
-                Arc::new(TableRow {
-                    id,
-                    row: *row,
-                    reference_radius: None,
-                    certified: None,
-                })
-            });
+            .map(|(id, row)| Arc::new(TableRow::new(id, *row)));
         self.runners_up.extend(entries);
         keep_runners_up(&mut self.runners_up, |entry| entry.row.objectives[0]);
     }

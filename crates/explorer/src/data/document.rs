@@ -49,8 +49,6 @@ pub struct Named {
 pub struct Wished {
     /// Name of the design.
     pub name: String,
-    /// The design from which the wish started.
-    pub from: Design,
     /// Its evaluation on the fine grid.
     pub evaluation: Arc<Evaluation>,
     /// What is proved about its workspace.

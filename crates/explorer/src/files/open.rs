@@ -9,6 +9,8 @@ use kinefront_study::{GenerationSummary, RunFolder, RunFolderError, Study, Table
 /// A run that was read from its files.
 #[derive(Debug)]
 pub struct Opened {
+    /// Name of its folder, or of its recording.
+    pub name: String,
     /// The study of the run.
     pub study: Study,
     /// Every evaluated design.
@@ -66,6 +68,7 @@ fn open_folder(folder: &Path) -> Result<Opened, OpenError> {
         None => front_of(&store),
     };
     Ok(Opened {
+        name: run.name(),
         study: run.study().clone(),
         store,
         front,
@@ -81,7 +84,9 @@ fn open_recording(path: &Path) -> Result<Opened, OpenError> {
         store.push(&entry.row);
     }
     let front = front_of(&store);
+    let name = path.file_name().unwrap_or(path.as_os_str());
     Ok(Opened {
+        name: name.to_string_lossy().into_owned(),
         study,
         store,
         front,

@@ -16,7 +16,7 @@ impl BesidePanel {
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let Some(beside) = session.beside() else {
             ui.weak("Open another run beside this one, with the same objectives: both fronts are drawn in the scatter and compared here.");
-            if ui.button("Open a run beside…").clicked() {
+            if ui.button("Open run beside…").clicked() {
                 session.request_file(Purpose::OpenBeside);
             }
             return;

@@ -247,12 +247,8 @@ fn proof(ui: &mut Ui, session: &mut Session) {
         return;
     };
     let certificate = &proof.certificate;
-    let (color, verdict) = match certificate.verdict {
-        // What the front reports is the proved radius, whatever the fine grid gave.
-        _ if session.certified().is_some_and(|certified| certified.is_proved) => (theme::good(ui), "proved"),
-        Verdict::Proved => (theme::good(ui), "proved"),
-        Verdict::Refuted => (theme::bad(ui), "refuted"),
-        Verdict::OpenBudget | Verdict::OpenPrecision => (theme::active(ui), "open"),
+    let Some((color, verdict)) = what_if::proof_in_a_word(ui, session) else {
+        return;
     };
     let mut has_asked = false;
     ui.horizontal_wrapped(|ui| {

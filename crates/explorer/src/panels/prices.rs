@@ -1,5 +1,7 @@
 //! The prices panel: what drives the first objective along the front.
 
+use std::sync::Arc;
+
 use egui::{Align, Color32, ComboBox, Layout, RichText, ScrollArea, Stroke, Ui, WidgetInfo, WidgetType};
 use egui_plot::{FilledArea, Line, Plot, PlotBounds, PlotPoints, PlotUi, VLine};
 use kinefront_model::mechanism::Architecture;
@@ -11,11 +13,48 @@ use crate::{DesignOrigin, Session, theme};
 /// Least price that is drawn \[% for 1 %\].
 const DRAWN: f64 = 0.02;
 
+/// The answer of the session.
+type Answer = Arc<Result<Vec<DriversAlong>, String>>;
+
 /// The prices panel.
 #[derive(Default)]
 pub struct PricesPanel {
     /// The architecture whose front is shown; that of the selected design, or the first one, if `None`.
     architecture: Option<Architecture>,
+    /// What was drawn last: it is the same from frame to frame.
+    drawn: Option<Drawn>,
+}
+
+/// What is drawn of the front of an architecture.
+struct Drawn {
+    answer: Answer,
+    architecture: Architecture,
+    /// Prices of the limits, each on top of those before it.
+    limits: Vec<PriceCurve>,
+    /// Prices of the region, the travels and the bounds.
+    others: Vec<PriceCurve>,
+    sentences: Vec<String>,
+}
+
+impl Drawn {
+    fn new(answer: &Answer, along: &DriversAlong) -> Self {
+        let drawn = |kinds: &[ParameterKind]| {
+            let mut curves = along.curves(kinds);
+            curves.retain(|curve| curve.is_usual(DRAWN));
+            curves
+        };
+        Self {
+            answer: Arc::clone(answer),
+            architecture: along.architecture,
+            limits: stacked(&drawn(&[ParameterKind::Limit])),
+            others: drawn(&[ParameterKind::Region, ParameterKind::Travel, ParameterKind::Bound]),
+            sentences: along.sentences(),
+        }
+    }
+
+    fn is_of(&self, answer: &Answer, along: &DriversAlong) -> bool {
+        Arc::ptr_eq(&self.answer, answer) && self.architecture == along.architecture
+    }
 }
 
 impl PricesPanel {
@@ -30,14 +69,14 @@ impl PricesPanel {
             return;
         };
         match answer.as_ref() {
-            Ok(all) => self.show(ui, session, all),
+            Ok(all) => self.show(ui, session, all, &answer),
             Err(message) => {
                 ui.colored_label(theme::bad(ui), message);
             }
         }
     }
 
-    fn show(&mut self, ui: &mut Ui, session: &mut Session, all: &[DriversAlong]) {
+    fn show(&mut self, ui: &mut Ui, session: &mut Session, all: &[DriversAlong], answer: &Answer) {
         let selected = session.document().selected.as_ref();
         let selected = selected.map(|selected| selected.design.architecture());
         let wanted = self.architecture.or(selected);
@@ -51,17 +90,19 @@ impl PricesPanel {
             return;
         };
         self.choose(ui, all, along);
+        let known = self.drawn.take().filter(|drawn| drawn.is_of(answer, along));
+        let drawn = self.drawn.insert(known.unwrap_or_else(|| Drawn::new(answer, along)));
         if along.designs.len() < 2 {
-            sentences(ui, along);
+            sentences(ui, &drawn.sentences);
             return;
         }
         let height = (ui.available_height() - 4.0).max(120.0);
         ui.columns(3, |columns| {
             if let [limits, others, words] = columns {
-                plots(limits, others, session, along, height);
+                plots([limits, others], session, along, drawn, height);
                 ScrollArea::vertical()
                     .id_salt("sentences")
-                    .show(words, |ui| sentences(ui, along));
+                    .show(words, |ui| sentences(ui, &drawn.sentences));
             }
         });
     }
@@ -92,37 +133,30 @@ impl PricesPanel {
     }
 }
 
-fn sentences(ui: &mut Ui, along: &DriversAlong) {
+fn sentences(ui: &mut Ui, sentences: &[String]) {
     ui.with_layout(Layout::top_down(Align::Min), |ui| {
-        for sentence in along.sentences() {
+        for sentence in sentences {
             ui.label(sentence);
         }
     });
 }
 
 /// Draws the prices of the limits as areas, and those of the region, the travels and the bounds as lines.
-fn plots(limits: &mut Ui, others: &mut Ui, session: &mut Session, along: &DriversAlong, height: f32) {
-    let drawn = |kinds: &[ParameterKind]| {
-        let mut curves = along.curves(kinds);
-        curves.retain(|curve| curve.is_usual(DRAWN));
-        curves
-    };
-    let of_limits = stacked(&drawn(&[ParameterKind::Limit]));
-    let of_others = drawn(&[ParameterKind::Region, ParameterKind::Travel, ParameterKind::Bound]);
+fn plots([limits, others]: [&mut Ui; 2], session: &mut Session, along: &DriversAlong, drawn: &Drawn, height: f32) {
     let place = place_of_selected(session, along);
     let mut clicked = None;
     for (ui, name, curves, is_stacked) in [
-        (limits, "Prices of the limits", of_limits, true),
+        (limits, "Prices of the limits", &drawn.limits, true),
         (
             others,
             "Prices of the region, the travels and the bounds",
-            of_others,
+            &drawn.others,
             false,
         ),
     ] {
         let top = ui.cursor().top();
         ui.with_layout(Layout::top_down(Align::Min), |ui| ui.label(name));
-        legend(ui, &curves);
+        legend(ui, curves);
         let plot = Plot::new(name)
             .height((height - (ui.cursor().top() - top)).max(80.0))
             .x_axis_label(Column::Quantity(along.along).title())
@@ -131,14 +165,14 @@ fn plots(limits: &mut Ui, others: &mut Ui, session: &mut Session, along: &Driver
             .allow_drag(false)
             .allow_zoom(false)
             .include_y(0.0);
-        let [low, high] = usual_range(&curves);
+        let [low, high] = usual_range(curves);
         let shown = plot.show(ui, |plot| {
             if let [first, .., last] = along.designs.as_slice() {
                 plot.set_plot_bounds(PlotBounds::from_min_max([first.1, low], [last.1, high.max(low + 1e-3)]));
             }
             match is_stacked {
-                true => areas(plot, &curves),
-                false => lines(plot, &curves),
+                true => areas(plot, curves),
+                false => lines(plot, curves),
             }
             if let Some(at) = place {
                 plot.vline(VLine::new("", at).color(theme::SELECTED).allow_hover(false));

@@ -1,6 +1,6 @@
 //! A modified design beside the one that it was modified from: what changed, the way back, and a verdict in one line.
 
-use egui::{RichText, Ui};
+use egui::{Color32, RichText, Ui};
 use kinefront_model::certify::Verdict;
 use kinefront_model::mechanism::{Design, DesignVariable};
 use kinefront_scene::text;
@@ -45,6 +45,19 @@ pub(super) fn back(ui: &mut Ui, session: &mut Session) {
     }
 }
 
+/// Returns what is proved about the workspace of the selected design, in a word with its colour, once it is known. What the front reports
+/// is the proved radius, whatever the fine grid gave.
+pub(super) fn proof_in_a_word(ui: &Ui, session: &Session) -> Option<(Color32, &'static str)> {
+    if session.certified().is_some_and(|certified| certified.is_proved) {
+        return Some((theme::good(ui), "proved"));
+    }
+    Some(match session.proof()?.certificate.verdict {
+        Verdict::Proved => (theme::good(ui), "proved"),
+        Verdict::Refuted => (theme::bad(ui), "refuted"),
+        Verdict::OpenBudget | Verdict::OpenPrecision => (theme::active(ui), "open"),
+    })
+}
+
 /// Tells in one line whether the selected design is feasible, proved, and free of collisions, and what changed of the quantities of the study.
 pub(super) fn verdict(ui: &mut Ui, session: &Session, known: &Known) {
     let evaluation = &known.evaluation;
@@ -54,13 +67,9 @@ pub(super) fn verdict(ui: &mut Ui, session: &Session, known: &Known) {
             false => ui.colored_label(theme::bad(ui), RichText::new("infeasible").strong()),
         };
         if evaluation.is_feasible() && session.study().workspace.certify {
-            let of_front = session.certified().map(|certified| certified.is_proved);
-            let verdict = session.proof().map(|proof| proof.certificate.verdict);
-            match (of_front, verdict) {
-                (Some(true), _) | (_, Some(Verdict::Proved)) => ui.colored_label(theme::good(ui), "proved"),
-                (_, Some(Verdict::Refuted)) => ui.colored_label(theme::bad(ui), "refuted"),
-                (_, Some(_)) => ui.colored_label(theme::active(ui), "not proved"),
-                (_, None) => ui.weak("proving…"),
+            match proof_in_a_word(ui, session) {
+                Some((color, word)) => ui.colored_label(color, word),
+                None => ui.weak("proving…"),
             };
         }
         match evaluation.clearance() {

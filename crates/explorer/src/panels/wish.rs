@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use egui::{Grid, RichText, ScrollArea, Slider, Ui};
-use kinefront_model::evaluation::{Better, Bound, Evaluation, PoseScalar, Quantity, QuantityLimit};
+use kinefront_model::evaluation::{Bound, Evaluation, PoseScalar, Quantity};
 use kinefront_model::mechanism::Design;
 use kinefront_scene::text::number;
 use kinefront_study::{Column, Condition, Wish, WishOutcome};
@@ -90,7 +90,7 @@ impl WishPanel {
                 });
                 let sought = match wanted.change == 0.0 {
                     true => format!("{} {}", number(value), entry.unit),
-                    false => format!("{} {}", limit(quantity, value, wanted.change).1, entry.unit),
+                    false => words(wished(quantity, value, wanted.change)),
                 };
                 ui.label(sought);
                 ui.end_row();
@@ -126,7 +126,7 @@ impl WishPanel {
         let changed = self.wanted.iter().filter(|(_, wanted)| wanted.change != 0.0);
         let conditions = changed.filter_map(|(quantity, wanted)| {
             let value = evaluation.quantities.get(*quantity)?;
-            Some(Condition(limit(*quantity, value, wanted.change).0))
+            Some(wished(*quantity, value, wanted.change))
         });
         let kept = self
             .wanted
@@ -158,14 +158,18 @@ fn wishable(session: &Session) -> Vec<Quantity> {
     quantities
 }
 
-/// Returns the limit that a change of a value by some per cent means, and its words.
-fn limit(quantity: Quantity, value: f64, change: f64) -> (QuantityLimit, String) {
-    let wanted = value * (1.0 + 0.01 * change);
-    let (bound, words) = match quantity.entry().better {
-        Better::Higher => (Bound::AtLeast(wanted), format!("≥ {}", number(wanted))),
-        Better::Lower => (Bound::AtMost(wanted), format!("≤ {}", number(wanted))),
+/// Returns the condition that a change of a value by some per cent means.
+fn wished(quantity: Quantity, value: f64, change: f64) -> Condition {
+    Condition::no_worse_than(quantity, value * (1.0 + 0.01 * change))
+}
+
+/// Returns the bound of a condition in words.
+fn words(Condition(limit): Condition) -> String {
+    let (sign, value) = match limit.bound {
+        Bound::AtLeast(value) => ("≥", value),
+        Bound::AtMost(value) => ("≤", value),
     };
-    (QuantityLimit { quantity, bound }, words)
+    format!("{sign} {} {}", number(value), limit.quantity.entry().unit)
 }
 
 /// Tells what became of the last wish.

@@ -154,11 +154,9 @@ impl Session {
             return;
         }
         let found = &outcome.found;
-        let from = self.asking.wish.asked().map(|question| question.design);
         let name = format!("wish {}", self.asking.wishes);
         let wished = Wished {
             name,
-            from: from.unwrap_or(found.evaluation.design),
             evaluation: Arc::new(found.evaluation.clone()),
             certified: found.certified,
         };

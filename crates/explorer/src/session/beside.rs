@@ -4,14 +4,14 @@ use std::path::Path;
 
 use super::Session;
 use crate::FrontEntry;
-use crate::files::{Opened, open, run_folder_of};
+use crate::files::{Opened, open};
 use kinefront_optimize::Objectives;
 use kinefront_study::{EqualLevel, SettingDifference, Study, equal_levels};
 
 /// A run that is shown beside that of the session.
 #[derive(Debug, Clone)]
 pub struct Beside {
-    /// Name of its folder.
+    /// Name of its folder, or of its recording.
     pub name: String,
     /// Its study, whose objectives are those of the session.
     pub study: Study,
@@ -24,16 +24,10 @@ pub struct Beside {
 impl Session {
     /// Shows a run beside that of the session; both must have the same objectives.
     pub fn open_beside(&mut self, path: &Path) {
-        let Opened { study, front, .. } = match open(path) {
+        let Opened { name, study, front, .. } = match open(path) {
             Ok(opened) => opened,
             Err(error) => return self.notify_error(error),
         };
-        let folder = run_folder_of(path).unwrap_or(path);
-        let name = folder
-            .file_name()
-            .unwrap_or(folder.as_os_str())
-            .to_string_lossy()
-            .into_owned();
         if study.objectives() != self.study().objectives() {
             let own = &self.study().name;
             let words = format!("{name} has other objectives than {own}, so that their fronts cannot be compared");

@@ -131,6 +131,7 @@ impl Session {
                     store,
                     front,
                     history,
+                    ..
                 } = opened;
                 match PreparedStudy::new(study.clone()) {
                     Ok(prepared) => self.begin(prepared),

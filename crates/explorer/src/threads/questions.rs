@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use kinefront_model::evaluation::{Evaluation, GridChoice, Quantity};
+use kinefront_model::evaluation::{Evaluation, Quantity};
 use kinefront_model::mechanism::Design;
 use kinefront_study::{
     DesignProblem, Drivers, DriversAlong, DriversOptions, Hindrance, PreparedStudy, Wish, WishOutcome,
@@ -78,9 +78,7 @@ impl Question for AlongQuestion {
 
     fn answer(&self) -> Self::Answer {
         let problem = self.study.problem()?;
-        let evaluate = |design: &Design| problem.model().evaluate(design, GridChoice::Fine);
-        let evaluations: Vec<Evaluation> = self.designs.iter().map(evaluate).collect();
-        Ok(problem.drivers_along(&evaluations))
+        Ok(problem.drivers_along(&problem.evaluate_on_fine_grid(&self.designs)))
     }
 }
 

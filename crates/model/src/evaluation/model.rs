@@ -491,10 +491,7 @@ impl Model {
         let others = limits.filter(|(scalar, _)| Constraint::of_scalar(*scalar).is_none());
         others.map(|(scalar, threshold)| QuantityLimit {
             quantity: Quantity::Worst(scalar),
-            bound: match scalar.entry().quantity.better {
-                Better::Higher => Bound::AtLeast(threshold),
-                Better::Lower => Bound::AtMost(threshold),
-            },
+            bound: Bound::no_worse_than(threshold, scalar.entry().quantity.better),
         })
     }
 

@@ -363,6 +363,16 @@ pub enum Bound {
     AtMost(f64),
 }
 
+impl Bound {
+    /// Returns the bound that allows a value and all that are better.
+    pub const fn no_worse_than(value: f64, better: Better) -> Self {
+        match better {
+            Better::Higher => Bound::AtLeast(value),
+            Better::Lower => Bound::AtMost(value),
+        }
+    }
+}
+
 /// Limit of a quantity of a design.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QuantityLimit {

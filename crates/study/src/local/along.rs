@@ -71,27 +71,34 @@ impl DesignProblem {
                 Some(drivers).filter(|drivers| !drivers.prices.is_empty())
             })
             .collect();
-        let of = |architecture: &Architecture| {
-            let own = || {
-                let all = evaluations.iter().zip(&found).enumerate();
-                all.filter(|(_, (evaluation, _))| evaluation.design.architecture() == *architecture)
-            };
-            let mut designs: Vec<(usize, f64, Drivers)> = own()
-                .filter_map(|(index, (evaluation, drivers))| {
-                    let value = along.value(evaluation.objectives[place]);
-                    Some((index, value, drivers.clone()?))
-                })
-                .collect();
-            designs.sort_by(|a, b| a.1.total_cmp(&b.1));
-            let count = own().count();
-            (count > 0).then(|| DriversAlong {
-                architecture: *architecture,
-                along: along.quantity,
-                without: count - designs.len(),
-                designs,
-            })
+        let has_designs = |architecture: &&Architecture| {
+            let mut designs = evaluations.iter().map(|evaluation| &evaluation.design);
+            designs.any(|design| design.architecture() == **architecture)
         };
-        Architecture::ALL.iter().filter_map(of).collect()
+        let front = |architecture: &Architecture| DriversAlong {
+            architecture: *architecture,
+            along: along.quantity,
+            designs: Vec::new(),
+            without: 0,
+        };
+        let mut fronts: Vec<DriversAlong> = Architecture::ALL.iter().filter(has_designs).map(front).collect();
+        for (index, (evaluation, drivers)) in evaluations.iter().zip(found).enumerate() {
+            let is_own = |front: &&mut DriversAlong| front.architecture == evaluation.design.architecture();
+            let Some(front) = fronts.iter_mut().find(is_own) else {
+                continue;
+            };
+            match drivers {
+                Some(drivers) => {
+                    let at = along.value(evaluation.objectives[place]);
+                    front.designs.push((index, at, drivers));
+                }
+                None => front.without += 1,
+            }
+        }
+        for front in &mut fronts {
+            front.designs.sort_by(|a, b| a.1.total_cmp(&b.1));
+        }
+        fronts
     }
 }
 
@@ -118,8 +125,8 @@ impl DriversAlong {
         curves
     }
 
-    /// Returns the parts of the front, in its order, in each of which one limit has the largest price. A design that differs from both its
-    /// neighbours is no part.
+    /// Returns the parts of the front, in its order, in each of which one limit has the largest price. A single design between
+    /// two parts of another limit belongs to them.
     pub fn leading(&self) -> Vec<DrivenPart> {
         let dearest = |drivers: &Drivers| {
             let limits = drivers
@@ -320,7 +327,8 @@ impl DrivenPart {
     }
 
     fn grow(&mut self, at: f64, price: f64) {
-        self.join(&Self::new(String::new(), at, price));
+        self.range[1] = at;
+        self.prices.push(price);
     }
 
     fn join(&mut self, other: &Self) {

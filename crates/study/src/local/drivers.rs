@@ -230,7 +230,7 @@ impl Drivers {
         let cheap = self
             .prices
             .iter()
-            .filter(|price| price.is_requirement() && !price.is_dear(free));
+            .filter(|price| price.kind.is_requirement() && !price.is_dear(free));
         cheap.map(|price| price.label.as_str()).collect()
     }
 
@@ -243,10 +243,6 @@ impl Drivers {
 }
 
 impl PriceJson {
-    fn is_requirement(&self) -> bool {
-        matches!(self.kind, ParameterKind::Limit | ParameterKind::Region)
-    }
-
     fn is_dear(&self, free: f64) -> bool {
         self.price.abs() >= free || self.kink
     }

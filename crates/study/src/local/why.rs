@@ -1,9 +1,8 @@
 //! Why a point of the objectives cannot be had: the best design near the front for it, and what each requirement would have to give.
 
-use kinefront_model::evaluation::{Evaluation, GridChoice, Quantity};
+use kinefront_model::evaluation::{Evaluation, Quantity};
 use kinefront_model::mechanism::{Architecture, Design};
 use kinefront_optimum::Polished;
-use rayon::prelude::*;
 
 use super::{Drivers, DriversOptions, LocalDesign, LocalFault};
 use crate::DesignProblem;
@@ -62,9 +61,9 @@ impl DesignProblem {
             }
         };
         // A design of a front may hold on the fine grid alone, on which its home orientation is.
-        let mut evaluated: Vec<(f64, Evaluation)> = designs
-            .par_iter()
-            .map(|design| self.model().evaluate(design, GridChoice::Fine))
+        let mut evaluated: Vec<(f64, Evaluation)> = self
+            .evaluate_on_fine_grid(designs)
+            .into_iter()
             .filter(Evaluation::is_feasible)
             .map(|evaluation| (distance(&evaluation), evaluation))
             .collect();

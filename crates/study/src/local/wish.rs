@@ -39,6 +39,14 @@ pub enum ConditionError {
     Number(String),
 }
 
+impl Condition {
+    /// Returns the condition that a quantity has a value or a better one.
+    pub fn no_worse_than(quantity: Quantity, value: f64) -> Self {
+        let bound = Bound::no_worse_than(value, quantity.entry().better);
+        Self(QuantityLimit { quantity, bound })
+    }
+}
+
 impl FromStr for Condition {
     type Err = ConditionError;
 
@@ -199,11 +207,7 @@ impl DesignProblem {
 /// Returns the condition that a quantity does not become worse.
 fn kept(evaluation: &Evaluation, quantity: Quantity) -> Option<Condition> {
     let value = evaluation.quantities.get(quantity)?;
-    let bound = match quantity.entry().better {
-        Better::Higher => Bound::AtLeast(value),
-        Better::Lower => Bound::AtMost(value),
-    };
-    Some(Condition(QuantityLimit { quantity, bound }))
+    Some(Condition::no_worse_than(quantity, value))
 }
 
 /// A wish, on the way from a design.

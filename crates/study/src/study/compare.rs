@@ -35,40 +35,12 @@ pub struct SettingDifference {
 }
 
 impl Study {
-    /// Returns every setting in which another study differs, apart from names and how it is searched.
+    /// Returns every setting in which another study differs, apart from names, how it is searched, and the designs that it refers to.
     pub fn differences(&self, other: &Study) -> Vec<SettingDifference> {
-        let (Ok(ours), Ok(theirs)) = (Table::try_from(self), Table::try_from(other)) else {
-            return Vec::new();
-        };
-        let of_search = |path: &str| is_of_search(path) && path != "architectures";
-        let settings = settings().filter(|setting| !of_search(&setting.path()));
-        let of_settings = settings.filter_map(|setting| {
-            let values = [setting.value(&ours), setting.value(&theirs)];
-            (values[0] != values[1]).then(|| SettingDifference {
-                key: setting.path(),
-                values: values.map(|value| value.map(|value| value.to_string())),
-            })
-        });
-        let of_lists = [
-            (
-                "obstacles",
-                self.obstacles.len(),
-                other.obstacles.len(),
-                self.obstacles != other.obstacles,
-            ),
-            (
-                "room",
-                usize::from(self.room.is_some()),
-                usize::from(other.room.is_some()),
-                self.room != other.room,
-            ),
-        ];
-        let of_lists = of_lists.into_iter().filter(|(.., differs)| *differs);
-        let of_lists = of_lists.map(|(key, ours, theirs, _)| SettingDifference {
-            key: key.to_owned(),
-            values: [ours, theirs].map(|count| (count > 0).then(|| format!("{count} stated"))),
-        });
-        of_settings.chain(of_lists).collect()
+        let is_told = |key: &str| key == "architectures" || key != "references" && !is_of_search(key);
+        let mut differences = self.all_differences(other).unwrap_or_default();
+        differences.retain(|difference| is_told(&difference.key));
+        differences
     }
 
     /// Returns the first setting by which another study is another search; `None` if the two differ in seed, budget and name at
@@ -84,16 +56,48 @@ impl Study {
     }
 
     fn first_difference(&self, other: &Study, may_differ: fn(&str) -> bool) -> Option<String> {
-        let (Ok(ours), Ok(theirs)) = (Table::try_from(self), Table::try_from(other)) else {
+        let Some(differences) = self.all_differences(other) else {
             // A number beyond the range of TOML is not valid in a study.
             return (self != other).then(|| "optimizer".to_owned());
         };
-        settings()
-            .filter(|setting| setting.value(&ours) != setting.value(&theirs))
-            .map(|setting| setting.path())
-            .find(|path| !may_differ(path))
-            .or_else(|| (self.obstacles != other.obstacles).then(|| "obstacles".to_owned()))
-            .or_else(|| (self.room != other.room).then(|| "room".to_owned()))
-            .or_else(|| (self.references != other.references).then(|| "references".to_owned()))
+        let mut keys = differences.into_iter().map(|difference| difference.key);
+        keys.find(|key| !may_differ(key))
+    }
+
+    /// Returns every setting in which two studies differ, then the sections that hold lists; `None` if one of them is not TOML.
+    fn all_differences(&self, other: &Study) -> Option<Vec<SettingDifference>> {
+        let tables = [Table::try_from(self).ok()?, Table::try_from(other).ok()?];
+        let of_settings = settings().filter_map(|setting| {
+            let values = tables.each_ref().map(|table| setting.value(table));
+            (values[0] != values[1]).then(|| SettingDifference {
+                key: setting.path(),
+                values: values.map(|value| value.map(toml::Value::to_string)),
+            })
+        });
+        let of_list = |key: &str, differs: bool, counts: [usize; 2]| {
+            differs.then(|| SettingDifference {
+                key: key.to_owned(),
+                values: counts.map(|count| (count > 0).then(|| format!("{count} stated"))),
+            })
+        };
+        let both = [self, other];
+        let of_lists = [
+            of_list(
+                "obstacles",
+                self.obstacles != other.obstacles,
+                both.map(|study| study.obstacles.len()),
+            ),
+            of_list(
+                "room",
+                self.room != other.room,
+                both.map(|study| usize::from(study.room.is_some())),
+            ),
+            of_list(
+                "references",
+                self.references != other.references,
+                both.map(|study| study.references.len()),
+            ),
+        ];
+        Some(of_settings.chain(of_lists.into_iter().flatten()).collect())
     }
 }

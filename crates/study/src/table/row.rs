@@ -193,3 +193,15 @@ pub struct TableRow {
     /// What is proved about `R_w`, in a front whose workspaces were proved.
     pub certified: Option<CertifiedWorkspace>,
 }
+
+impl TableRow {
+    /// Makes the row of a design of which only the evaluation is known.
+    pub fn new(id: usize, row: Row) -> Self {
+        Self {
+            id,
+            row,
+            reference_radius: None,
+            certified: None,
+        }
+    }
+}
