@@ -4,8 +4,8 @@ use std::ffi::OsString;
 use std::io::Write;
 
 use kinefront_export::{TaskJson, TaskRow};
-use kinefront_model::evaluation::{TaskFault, TaskOutcome};
 use kinefront_model::mechanism::Design;
+use kinefront_scene::text;
 use miette::miette;
 use serde::Serialize;
 
@@ -67,11 +67,11 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
         writeln!(out, "{}", to_json(&json).map_err(Failure::Runtime)?)?;
     } else if arguments.csv {
         write_rows(&mut out, rows)?;
-        if let Some(reason) = why_not(&outcome) {
+        if let Some(reason) = text::motion_fault(&outcome) {
             say(format_args!("{design}: {reason}"));
         }
     } else {
-        writeln!(out, "{}", tables::task(&design, &outcome, why_not(&outcome)))?;
+        writeln!(out, "{}", tables::task(&design, &outcome, text::motion_fault(&outcome)))?;
     }
     Ok(Ending::Done)
 }
@@ -86,28 +86,4 @@ fn write_rows(out: &mut impl Write, rows: impl Iterator<Item = TaskRow>) -> Resu
     }
     writer.flush()?;
     Ok(())
-}
-
-/// Returns why a design does not follow its motion, in words.
-fn why_not(outcome: &TaskOutcome) -> Option<String> {
-    let Some(result) = &outcome.result else {
-        return Some(
-            "there is no motion: the path has no length, or it is scaled to a workspace that the design does not have"
-                .to_owned(),
-        );
-    };
-    let failure = result.as_ref().err()?;
-    let place = format!("piece {} at {:.4} s", failure.piece + 1, failure.time);
-    Some(match failure.leg {
-        Some(leg) => format!(
-            "the motion ends in {place}: leg {} is {:.6} m beyond its {}",
-            leg + 1,
-            -failure.path_reach,
-            match failure.fault {
-                TaskFault::Limit => "joint limit",
-                _ => "reach",
-            }
-        ),
-        None => format!("the motion ends in {place}: it meets a parallel singularity"),
-    })
 }

@@ -252,3 +252,21 @@ fn mujoco_needs_the_same_forces() {
         );
     }
 }
+
+/// Whether a motion lies in a prescribed rectangle is asked of the rectangle, not of the disc within it.
+#[test]
+fn a_motion_within_a_prescribed_rectangle_is_inside() {
+    let folder = folder();
+    let study = folder.path().join("stroke.toml");
+    let inside = |half_stroke: f64| {
+        let text = format!(
+            "name = \"stroke\"\n[task]\nshape = \"waypoints\"\nwaypoints = [[-{half_stroke}, 0.0, 35.0], [{half_stroke}, 0.0, 35.0]]\n\
+             cycle_time_s = 2.0\n[workspace]\nhome_phi_deg = 35.0\n[workspace.region]\nkind = \"rectangle\"\nwidth_m = 0.6\nheight_m = 0.3\n"
+        );
+        fs::write(&study, text).expect("a study");
+        let study = study.to_str().expect("a path");
+        json(["task", "--design", DESIGN, "--study", study, "--json"])["inside_workspace"].clone()
+    };
+    assert_eq!(inside(0.3), true, "up to the side of the rectangle");
+    assert_eq!(inside(0.301), false, "beyond it");
+}

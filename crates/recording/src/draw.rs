@@ -13,11 +13,12 @@ use super::colors::{self, rgb};
 use super::stage::Rows;
 use super::writer::{Moment, RecordingError, RecordingWriter};
 use kinefront_model::evaluation::{ConstraintResult, Evaluation};
-use kinefront_model::spatial::unit;
+use kinefront_model::spatial::{Pose, unit};
 use kinefront_scene::palette;
 use kinefront_scene::text::short;
 use kinefront_scene::{
-    ColorMap, ConfigurationSpace, EllipsoidSet, Heatmap, Nearest, Part, RegularCylinder, Scene, Solid, SolidShape,
+    ColorMap, ConfigurationSpace, EllipsoidSet, Heatmap, MotionPath, Nearest, Part, RegularCylinder, Scene, Solid,
+    SolidShape,
 };
 
 type DrawResult = Result<(), RecordingError>;
@@ -383,6 +384,20 @@ impl<'a> Canvas<'a> {
         .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.9), active.len()));
         self.row(&format!("{root}/leaders"), &leaders)?;
         self.labels(&format!("{root}/names"), names, color)
+    }
+
+    /// Draws the path of a motion, each piece in the colour of its beginning; `place` maps its poses to points of the scene.
+    pub(super) fn path(&self, entity: &str, path: &MotionPath, place: &impl Fn(&Pose) -> DVec3) -> DrawResult {
+        let points: Vec<[f32; 3]> = path.poses.iter().map(|pose| point(place(pose))).collect();
+        let lines = LineStrips3D::new(points.windows(2).map(|piece| piece.to_vec()))
+            .with_colors(
+                path.colors
+                    .iter()
+                    .map(|color| rgb(*color))
+                    .take(points.len().saturating_sub(1)),
+            )
+            .with_radii([Radius::new_ui_points(2.2)]);
+        self.row(entity, &lines)
     }
 
     /// Draws the axes of the configuration space below `root`; the φ axis extends by `span` \[rad\] on either side of

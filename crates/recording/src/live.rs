@@ -14,10 +14,11 @@ use super::subject::DrawnDesign;
 use super::viewpoint::Viewpoint;
 use super::writer::{RecordingError, RecordingWriter};
 use super::{SceneTarget, blueprint, colors, paths};
-use kinefront_model::evaluation::{Evaluation, Model};
+use kinefront_model::evaluation::{Evaluation, Model, TaskSample};
 use kinefront_model::spatial::Pose;
 use kinefront_scene::{
-    EllipsoidKind, Field, FieldLegend, Heatmap, HeatmapSettings, Part, Scene, WorkspaceProof, ellipsoids, manipulator,
+    EllipsoidKind, Field, FieldLegend, Heatmap, HeatmapSettings, MotionPath, Part, PathColor, Scene, WorkspaceProof,
+    ellipsoids, manipulator,
 };
 use kinefront_study::Study;
 
@@ -59,6 +60,8 @@ pub struct VisibleLayers {
     pub locked: Option<(Field, [f64; 2])>,
     /// The workspace in (x, y, φ).
     pub configuration: bool,
+    /// The path of a motion, and what its colours tell.
+    pub path: Option<PathColor>,
 }
 
 impl Default for VisibleLayers {
@@ -75,6 +78,7 @@ impl Default for VisibleLayers {
             heatmap: Some(Field::DEXTERITY),
             locked: None,
             configuration: true,
+            path: Some(PathColor::FORCE),
         }
     }
 }
@@ -88,6 +92,8 @@ pub struct Shown<'a> {
     pub evaluation: &'a Evaluation,
     /// The proof of its workspace, once it is known.
     pub proof: Option<&'a WorkspaceProof>,
+    /// Samples of the motion that the design follows; none without a motion.
+    pub motion: &'a [TaskSample],
     /// Pose of the manipulator; the home pose if `None`.
     pub pose: Option<Pose>,
     /// Orientation of the heatmap \[rad\]; the home orientation if `None`.
@@ -394,11 +400,20 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<Option<FieldLegend>, R
     if let Some(proof) = proof {
         subject.proof(canvas, proof, shown.heatmap_phi.unwrap_or(home.phi))?;
     }
+    let path = layers
+        .path
+        .and_then(|color| MotionPath::new(model, &evaluation.design, shown.motion, color));
+    if let Some(path) = &path {
+        subject.path(canvas, path)?;
+    }
     if layers.configuration {
         subject.configuration(canvas)?;
         subject.layers(canvas, OUTLINE, false)?;
         if let Some(proof) = proof {
             subject.proof_in_space(canvas, proof)?;
+        }
+        if let Some(path) = &path {
+            subject.path_in_space(canvas, path)?;
         }
         let at = subject.space().place(pose.position, pose.phi);
         canvas.mark(&format!("{}/pose", paths::CONFIGURATION), at, "P", colors::ELLIPSOID)?;

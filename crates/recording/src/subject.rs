@@ -11,8 +11,8 @@ use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 use kinefront_scene::{
-    ColorMap, ConfigurationSpace, Field, FieldLegend, Heatmap, HeatmapSettings, RegularCylinder, SolidShape,
-    WorkspaceProof, manipulator, region_corners, regular_workspace,
+    ColorMap, ConfigurationSpace, Field, FieldLegend, Heatmap, HeatmapSettings, MotionPath, RegularCylinder,
+    SolidShape, WorkspaceProof, manipulator, region_corners, regular_workspace,
 };
 
 /// Orientations of the layers, relative to the home orientation \[deg\].
@@ -21,6 +21,9 @@ const LAYERS_DEG: [f64; 5] = [-60.0, -30.0, 0.0, 30.0, 60.0];
 /// Height of the top of the regular workspace drawn below the manipulator, as a fraction of the heatmap's depth. It is
 /// drawn as a flat disc, because its height has no meaning there.
 const DISC: f64 = 0.8;
+
+/// The same of the path of a motion.
+const PATH: f64 = 0.7;
 
 /// Range of orientations shown in the configuration space on either side of the home orientation \[deg\].
 const SPAN_DEG: f64 = 75.0;
@@ -145,6 +148,20 @@ impl DrawnDesign<'_> {
     /// Draws the proof of the workspace in the configuration space.
     pub(super) fn proof_in_space(&self, canvas: &Canvas<'_>, proof: &WorkspaceProof) -> Result<(), RecordingError> {
         canvas.proof_in_space(&format!("{}/proof", paths::CONFIGURATION), proof, &self.space())
+    }
+
+    /// Draws the path of a motion, above the disc of the workspace.
+    pub(super) fn path(&self, canvas: &Canvas<'_>, path: &MotionPath) -> Result<(), RecordingError> {
+        let height = PATH * self.floor();
+        canvas.path(paths::PATH, path, &|pose: &Pose| pose.position.extend(height))
+    }
+
+    /// Draws the path of a motion in the configuration space.
+    pub(super) fn path_in_space(&self, canvas: &Canvas<'_>, path: &MotionPath) -> Result<(), RecordingError> {
+        let space = self.space();
+        canvas.path(&format!("{}/path", paths::CONFIGURATION), path, &|pose: &Pose| {
+            space.place(pose.position, pose.phi)
+        })
     }
 
     /// Draws only the regular workspace, at the entities below `root`.

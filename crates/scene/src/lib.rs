@@ -11,6 +11,7 @@
 //! | [`dimension_lines`] | where the lengths of a design are |
 //! | [`linkage`] | the manipulator as rigid bodies with joints and masses |
 //! | [`Mesh`] | a solid as triangles |
+//! | [`MotionPath`], [`MotionCurve`] | the path of a motion with colours, and what its actuators do |
 //! | [`tour`] | poses along the regular workspace, checked by forward kinematics |
 //!
 //! Lengths are in metres in the base frame; z points out of the plane. A shape states which part of the manipulator it
@@ -25,6 +26,7 @@ mod linkage;
 mod manipulator;
 mod mesh;
 mod modes;
+mod motion;
 pub mod palette;
 mod proof;
 mod shape;
@@ -43,6 +45,7 @@ pub use linkage::{Body, Closure, Frame, Joint, Linkage, MassBar, linkage};
 pub use manipulator::manipulator;
 pub use mesh::Mesh;
 pub use modes::{ModeMap, Modes, example, modes_at};
+pub use motion::{MotionCurve, MotionPath, PathColor, pose_at};
 pub use proof::{ProofCell, WorkspaceProof, workspace_proof};
 pub use shape::{Label, Line, Nearest, Part, Scene, Solid, SolidShape};
 pub use tour::{Tour, tour};

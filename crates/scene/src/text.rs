@@ -1,7 +1,7 @@
 //! Formatting of numbers and names for display.
 
 use kinefront_model::clearance::Clearance;
-use kinefront_model::evaluation::{Quantity, QuantityValues};
+use kinefront_model::evaluation::{Quantity, QuantityValues, TaskFault, TaskOutcome};
 use kinefront_model::mechanism::{Architecture, CrossSections, Design, DesignVariable};
 use kinefront_model::workspace::Region;
 
@@ -109,6 +109,30 @@ pub fn architecture(architecture: Architecture) -> String {
     } else {
         architecture.underlined_name()
     }
+}
+
+/// Returns why a design does not follow its motion, in words.
+pub fn motion_fault(outcome: &TaskOutcome) -> Option<String> {
+    let Some(result) = &outcome.result else {
+        return Some(
+            "there is no motion: the path has no length, or it is scaled to a workspace that the design does not have"
+                .to_owned(),
+        );
+    };
+    let failure = result.as_ref().err()?;
+    let place = format!("piece {} at {:.4} s", failure.piece + 1, failure.time);
+    Some(match failure.leg {
+        Some(leg) => format!(
+            "the motion ends in {place}: leg {} is {:.6} m beyond its {}",
+            leg + 1,
+            -failure.path_reach,
+            match failure.fault {
+                TaskFault::Limit => "joint limit",
+                _ => "reach",
+            }
+        ),
+        None => format!("the motion ends in {place}: it meets a parallel singularity"),
+    })
 }
 
 #[cfg(test)]

@@ -1,13 +1,14 @@
 //! Checks that scenes show what the model computes.
 
 use glam::{DVec2, DVec3};
+use kinefront_model::dynamics::{MotionLaw, Task, TaskShape, TaskTiming};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model, ModelSettings, PoseEvaluation, PoseScalar};
 use kinefront_model::mechanism::{Architecture, Design, JointKind, JointMasses, MemberKind, WorkingMode};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::StiffnessDefinition;
 use kinefront_scene::{
-    Body, EllipsoidKind, Field, Heatmap, HeatmapSettings, Part, Solid, SolidShape, ellipsoids, linkage, manipulator,
-    regular_workspace, tour,
+    Body, EllipsoidKind, Field, Heatmap, HeatmapSettings, MotionPath, Part, PathColor, Solid, SolidShape, ellipsoids,
+    linkage, manipulator, pose_at, regular_workspace, tour,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -590,4 +591,50 @@ fn moments_of_inertia_are_those_of_cylinders() {
         assert!((found - wanted).abs() < 1e-9 * wanted, "{found}, not {wanted}");
     }
     assert!(xy.abs() < 1e-9 * zz && platform.centre_of_mass().length() < 1e-12);
+}
+
+/// The path of a motion has the colours of what its actuators do, and its poses in time.
+#[test]
+fn the_path_of_a_motion_has_its_poses_and_values() {
+    let task = Task {
+        shape: TaskShape::Star,
+        share: 0.8,
+        angle: 0.0,
+        closed: true,
+        law: MotionLaw::Quintic,
+        dwell: 0.1,
+        samples: 200,
+        timing: TaskTiming::Cycle(4.0),
+    };
+    let model = Model::default();
+    let design: Design = DESIGNS[1].parse().expect("a design");
+    let evaluation = model.evaluate(&design, GridChoice::Reference);
+    let (outcome, samples) = model.follow(&evaluation, &task);
+    let figures = outcome.result.expect("a motion").expect("followed to its end");
+    let path = |color| MotionPath::new(&model, &design, &samples, color).expect("a path");
+    let forces = path(PathColor::FORCE);
+    let largest = figures.peak_force.iter().fold(0.0f64, |most, force| most.max(*force));
+    assert!((forces.range[1] - largest).abs() < 1e-12 * largest);
+    assert_eq!(forces.poses.len(), forces.colors.len());
+    let kappa = path(PathColor::Field(Field::DEXTERITY));
+    let own = |pose: &Pose| model.pose(&design, pose).expect("reached").values[PoseScalar::Dexterity];
+    let least = kappa.poses.iter().map(own).fold(f64::INFINITY, f64::min);
+    assert!(
+        (kappa.range[0] - least).abs() < 1e-9,
+        "{} instead of {least}",
+        kappa.range[0]
+    );
+
+    // Between two samples the platform is on a straight line, and before and after the motion at its ends.
+    let [first, second] = [samples[40], samples[41]].map(|sample| sample.instant);
+    let between = pose_at(&samples, 0.5 * (first.time + second.time)).expect("a pose");
+    assert!(
+        between
+            .position
+            .distance(first.pose.position.midpoint(second.pose.position))
+            < 1e-12
+    );
+    assert_eq!(pose_at(&samples, -1.0), Some(samples[0].instant.pose));
+    assert_eq!(pose_at(&samples, 1e3), samples.last().map(|sample| sample.instant.pose));
+    assert_eq!(pose_at(&[], 0.0), None);
 }

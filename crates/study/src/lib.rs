@@ -75,8 +75,8 @@ pub use settings::{
     CatalogueFault, CatalogueRow, Check, FileScope, GridSection, Grids, HypervolumeSection, Initial, JointSection,
     LengthChoice, LimitChoice, Limits, LoadShapeChoice, MATERIALS, MaterialSection, ModelSection, ObjectiveChoice,
     OptimizerSection, ReferenceDesign, RegionKind, RegionSection, RequirementSection, SectionChoice, SectionKind,
-    SectionsSection, Setting, Stagnation, StiffnessChoice, StrengthSection, TelescopicBar, Tie, VariableChoice,
-    Variables, WHOLE_FRONT, WorkspaceSection, is_shown, settings,
+    SectionsSection, Setting, Stagnation, StiffnessChoice, StrengthSection, TaskShapeChoice, TelescopicBar, Tie,
+    VariableChoice, Variables, WHOLE_FRONT, WorkspaceSection, is_shown, settings,
 };
 pub use study::{Fault, SettingDifference, Study, StudyError};
 pub use sum::{Difference, FileSum};

@@ -3,7 +3,7 @@
 use egui::{Slider, Ui};
 
 use crate::Session;
-use kinefront_scene::EllipsoidKind;
+use kinefront_scene::{EllipsoidKind, PathColor};
 
 /// The layers panel.
 #[derive(Default)]
@@ -25,6 +25,10 @@ impl LayersPanel {
             (&mut layers.configuration, "Configuration space"),
         ] {
             ui.checkbox(flag, name);
+        }
+        let mut is_shown = layers.path.is_some();
+        if ui.checkbox(&mut is_shown, "Path of the motion").changed() {
+            layers.path = is_shown.then_some(PathColor::FORCE);
         }
         ui.separator();
         ui.label("ellipsoids");

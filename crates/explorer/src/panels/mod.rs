@@ -4,11 +4,13 @@ mod beside;
 mod choose;
 mod compare;
 mod drivers;
+mod fields;
 mod front;
 mod inspector;
 mod layers;
 mod mechanisms;
 mod modes;
+mod motion;
 mod parallel;
 mod plan;
 mod pose;
@@ -155,6 +157,8 @@ panels! {
     Parallel = parallel: parallel::ParallelPanel, "Parallel coordinates", Designs;
     /// What drives the mass along the front.
     Prices = prices: prices::PricesPanel, "Prices", Designs;
+    /// The motion that the selected design follows.
+    Motion = motion: motion::MotionPanel, "Motion", Designs;
     /// Pinned designs side by side.
     Compare = compare: compare::ComparePanel, "Compare", Designs;
     /// The front beside that of another run.

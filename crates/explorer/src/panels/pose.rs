@@ -183,6 +183,12 @@ impl PosePanel {
         };
         self.drag(&response, session, &plan, design, pose);
         if response.clicked()
+            && session.view().drawing_path
+            && let Some(pointer) = response.interact_pointer_pos()
+        {
+            let position = plan.world(pointer);
+            session.add_waypoint(Pose { position, ..pose });
+        } else if response.clicked()
             && let Some(pointer) = response.interact_pointer_pos()
             && let Some(mode) = self.modes.pointed_at(&plan, pointer)
         {
@@ -211,6 +217,7 @@ impl PosePanel {
                 Stroke::new(1.2, theme::good(ui)),
             );
         }
+        draw_path(ui, &painter, &plan, session);
         self.modes.ghosts(&painter, &plan, session, design, theme::ink(ui));
         paint(ui, &painter, &plan, &scene);
         let rim = (design.platform_radius() * plan.scale) as f32;
@@ -267,6 +274,28 @@ impl PosePanel {
             None => return,
         };
         self.move_platform(session, target);
+    }
+}
+
+/// Draws the path of the motion of the study being edited, and its waypoints.
+fn draw_path(ui: &Ui, painter: &egui::Painter, plan: &Plan, session: &mut Session) {
+    let task = &session.editor().study().task;
+    if task.shape.is_none() {
+        return;
+    }
+    let waypoints = task.waypoints.clone().unwrap_or_default();
+    let color = theme::active(ui);
+    if let Some(motion) = session.motion()
+        && let Ok(Some(followed)) = motion.as_ref()
+    {
+        let poses = followed
+            .samples
+            .iter()
+            .map(|sample| plan.screen(sample.instant.pose.position));
+        painter.line(poses.collect(), Stroke::new(1.5, color));
+    }
+    for [x, y, _] in waypoints {
+        painter.circle_stroke(plan.screen(DVec2::new(x, y)), 3.5, Stroke::new(1.2, color));
     }
 }
 

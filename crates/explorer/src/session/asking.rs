@@ -5,7 +5,8 @@ use std::sync::Arc;
 use super::Session;
 use crate::data::{DesignOrigin, Selected, Wished};
 use crate::threads::{
-    AlongQuestion, AnsweringThread, DriversQuestion, HindrancesQuestion, StudyOfRun, Wake, WhyQuestion, WishQuestion,
+    AlongQuestion, AnsweringThread, DriversQuestion, HindrancesQuestion, MotionQuestion, StudyOfRun, Wake, WhyQuestion,
+    WishQuestion,
 };
 use kinefront_model::evaluation::{Evaluation, Quantity};
 use kinefront_model::mechanism::Design;
@@ -20,6 +21,7 @@ pub(super) struct Asking {
     wish: AnsweringThread<WishQuestion>,
     why: AnsweringThread<WhyQuestion>,
     hindrances: AnsweringThread<HindrancesQuestion>,
+    pub motion: AnsweringThread<MotionQuestion>,
     /// Number of wishes that were stated.
     wishes: u64,
     /// Whether the answer to the last wish has become a design.
@@ -48,6 +50,7 @@ impl Asking {
             wish: AnsweringThread::new(Arc::clone(wake)),
             why: AnsweringThread::new(Arc::clone(wake)),
             hindrances: AnsweringThread::new(Arc::clone(wake)),
+            motion: AnsweringThread::new(Arc::clone(wake)),
             wishes: 0,
             is_wish_taken: true,
             is_why_new: false,
@@ -62,6 +65,7 @@ impl Asking {
             || self.wish.is_waiting()
             || self.why.is_waiting()
             || self.hindrances.is_waiting()
+            || self.motion.is_waiting()
     }
 
     /// Forgets what was asked of an earlier run.
@@ -72,6 +76,7 @@ impl Asking {
         self.wish.forget();
         self.why.forget();
         self.hindrances.forget();
+        self.motion.forget();
         self.is_wish_taken = true;
     }
 }

@@ -356,12 +356,14 @@ impl Session {
     /// Requests the current scene from the scene thread.
     fn ask(&mut self) {
         self.draw_front();
+        let motion = self.shown_motion();
         let document = self.history.present();
         let design = document.selected.as_ref().map(|selected| selected.design);
         let request = Request {
             study: Arc::clone(&self.as_run),
             verified: design.and_then(|design| self.verified(&design)),
             proof: self.proof().cloned(),
+            motion,
             design,
             pose: self.view.pose,
             heatmap_phi: self.view.heatmap_phi,

@@ -4,6 +4,7 @@
 mod asking;
 mod beside;
 mod control;
+mod motion;
 mod pose;
 mod selection;
 
@@ -93,6 +94,8 @@ pub struct ViewState {
     pub light: bool,
     /// Direction from which the manipulator is seen, and how often one was chosen.
     pub viewpoint: (Viewpoint, u64),
+    /// Whether a click in the plan view adds a waypoint to the motion.
+    pub drawing_path: bool,
 }
 
 /// The complete state of the window.

@@ -12,9 +12,12 @@ mod scene;
 
 pub use answering::AnsweringThread;
 pub use intake::{Intake, RunMessages};
-pub use questions::{AlongQuestion, DriversQuestion, HindrancesQuestion, StudyOfRun, WhyQuestion, WishQuestion};
+pub use questions::{
+    AlongQuestion, DriversQuestion, FollowedMotion, HindrancesQuestion, MotionAnswer, MotionQuestion, StudyOfRun,
+    WhyQuestion, WishQuestion,
+};
 pub use run::{Running, Writing};
-pub use scene::{Answer, Known, Request, SceneThread};
+pub use scene::{Answer, Known, MotionShown, Request, SceneThread};
 
 /// Wakes the window when there is something new to show.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;

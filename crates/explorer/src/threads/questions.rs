@@ -1,12 +1,13 @@
-//! The questions that threads answer: what drives the mass of a design and of a front, a wish, and why a point cannot be had.
+//! The questions that threads answer: what drives the mass of a design and of a front, a wish, why a point cannot be had, and what a
+//! motion asks of the drives.
 
 use std::sync::Arc;
 use std::time::Duration;
 
-use kinefront_model::evaluation::{Evaluation, Quantity};
+use kinefront_model::evaluation::{Evaluation, Quantity, TaskOutcome, TaskSample};
 use kinefront_model::mechanism::Design;
 use kinefront_study::{
-    DesignProblem, Drivers, DriversAlong, DriversOptions, Hindrance, PreparedStudy, Wish, WishOutcome,
+    DesignProblem, Drivers, DriversAlong, DriversOptions, Hindrance, PreparedStudy, Study, Wish, WishOutcome,
 };
 
 use super::answering::Question;
@@ -160,5 +161,38 @@ impl Question for HindrancesQuestion {
 
     fn answer(&self) -> Self::Answer {
         Ok(self.study.problem()?.hindrances(&self.designs))
+    }
+}
+
+/// What does a motion ask of the drives of a design?
+#[derive(Clone, PartialEq)]
+pub struct MotionQuestion {
+    /// The study of the run, with the motion and what moves with it of the study being edited.
+    pub study: Arc<Study>,
+    /// The design.
+    pub evaluation: Arc<Evaluation>,
+}
+
+/// A motion that a design follows, or where it ends.
+#[derive(Debug)]
+pub struct FollowedMotion {
+    /// What came of it.
+    pub outcome: TaskOutcome,
+    /// The samples up to its end.
+    pub samples: Vec<TaskSample>,
+}
+
+/// The answer: no motion if the study states none.
+pub type MotionAnswer = Result<Option<FollowedMotion>, String>;
+
+impl Question for MotionQuestion {
+    type Answer = MotionAnswer;
+    const THREAD: &'static str = "kinefront-motion";
+    const RESTING: Duration = Duration::ZERO;
+
+    fn answer(&self) -> Self::Answer {
+        let model = self.study.model().map_err(|error| error.to_string())?;
+        let followed = model.follow_task(&self.evaluation);
+        Ok(followed.map(|(outcome, samples)| FollowedMotion { outcome, samples }))
     }
 }

@@ -16,7 +16,8 @@ use std::time::Duration;
 
 use super::Wake;
 use super::mailbox::Mailbox;
-use kinefront_model::evaluation::{Evaluation, GridChoice};
+use super::questions::MotionAnswer;
+use kinefront_model::evaluation::{Evaluation, GridChoice, TaskSample};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 use kinefront_recording::{FrontPoint, LiveScene, Pinned, RecordingError, Shown, Viewpoint, VisibleLayers};
@@ -25,6 +26,23 @@ use kinefront_study::PreparedStudy;
 
 /// Time without a newer design after which a design is verified.
 const RESTING: Duration = Duration::from_millis(150);
+
+/// The motion that is shown. Two answers are different, so that their samples need not be compared.
+#[derive(Debug, Clone)]
+pub struct MotionShown(pub Arc<MotionAnswer>);
+
+impl PartialEq for MotionShown {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl MotionShown {
+    fn samples(&self) -> &[TaskSample] {
+        let followed = self.0.as_ref().as_ref().ok().and_then(Option::as_ref);
+        followed.map_or(&[], |followed| &followed.samples)
+    }
+}
 
 /// Request to show a scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,6 +69,8 @@ pub struct Request {
     pub verified: Option<Arc<Evaluation>>,
     /// Proof of its workspace, if it is known.
     pub proof: Option<Arc<WorkspaceProof>>,
+    /// The motion that it follows, if it is known.
+    pub motion: Option<MotionShown>,
     /// The current front.
     pub front: Arc<Vec<FrontPoint>>,
 }
@@ -349,6 +369,7 @@ fn draw(
             .proof
             .as_deref()
             .filter(|proof| proof.design == known.evaluation.design),
+        motion: request.motion.as_ref().map_or(&[], MotionShown::samples),
         pose: request.pose,
         heatmap_phi: request.heatmap_phi,
         layers: &request.layers,

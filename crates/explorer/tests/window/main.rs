@@ -4,6 +4,7 @@ mod asking;
 mod controls;
 mod exploring;
 mod files;
+mod motion;
 mod panels;
 mod questions;
 mod scene;

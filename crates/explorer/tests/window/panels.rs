@@ -7,7 +7,7 @@ use egui_kittest::{Harness, SnapshotOptions, SnapshotResults};
 use kinefront_explorer::{Panel, Panels, Session, StudyEditor, dress};
 
 use kinefront_model::evaluation::Quantity;
-use kinefront_study::Column;
+use kinefront_study::{Column, TaskShapeChoice};
 use kinefront_testkit::run_folder;
 
 use super::support::small_study;
@@ -30,6 +30,11 @@ fn session(panel: Panel) -> Session {
             .filter
             .set_range(Column::Quantity(Quantity::WorkspaceRadius), Some([0.2, 1.5]));
     });
+    if panel == Panel::Motion {
+        session
+            .editor_mut()
+            .change(|study| study.task.go(TaskShapeChoice::Star));
+    }
     let point = [(Quantity::Mass, 40.0), (Quantity::WorkspaceRadius, 1.2)];
     session.ask_why(&point);
     for _ in 0..4000 {
@@ -38,6 +43,7 @@ fn session(panel: Panel) -> Session {
             Panel::Drivers => session.drivers().is_some() && session.drivers_with_steps().is_some(),
             Panel::Prices => session.drivers_along().is_some(),
             Panel::WhyNot => session.why().is_some(),
+            Panel::Motion => session.motion().is_some(),
             _ => true,
         };
         if is_answered && session.known().is_some_and(|known| known.verified) && session.is_drawn() {
@@ -51,7 +57,7 @@ fn session(panel: Panel) -> Session {
 fn size(panel: Panel) -> egui::Vec2 {
     match panel {
         Panel::Scatter => egui::vec2(560.0, 480.0),
-        Panel::Front | Panel::Parallel | Panel::Compare => egui::vec2(820.0, 360.0),
+        Panel::Front | Panel::Parallel | Panel::Compare | Panel::Motion => egui::vec2(820.0, 360.0),
         Panel::Pose => egui::vec2(400.0, 560.0),
         _ => egui::vec2(420.0, 520.0),
     }

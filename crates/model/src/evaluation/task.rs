@@ -4,6 +4,7 @@ use super::{Evaluation, Model, PosedDesign};
 use crate::dynamics::{Response, Task, TaskFrame, TaskInstant, TaskMotion};
 use crate::mechanism::{Design, JointKind, ReachReason};
 use crate::spatial::LEGS;
+use crate::workspace::Region;
 
 /// A sample of a motion with what the actuators do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -182,10 +183,24 @@ impl Tally {
 impl Model {
     /// Moves an evaluated design along the motion of the study, scaled to its workspace; `None` if the study states none.
     pub fn follow_task(&self, evaluation: &Evaluation) -> Option<(TaskOutcome, Vec<TaskSample>)> {
-        let task = self.settings().task.as_ref()?;
+        Some(self.follow(evaluation, self.settings().task.as_ref()?))
+    }
+
+    /// Moves an evaluated design along any motion, scaled to its workspace.
+    pub fn follow(&self, evaluation: &Evaluation, task: &Task) -> (TaskOutcome, Vec<TaskSample>) {
         let home_phi_deg = evaluation.home_phi_deg.unwrap_or(0.0);
         let frame = self.task_frame(&evaluation.design, evaluation.workspace_radius(), home_phi_deg);
-        Some(self.posed(&evaluation.design).follow(task, &frame))
+        let (mut outcome, samples) = self.posed(&evaluation.design).follow(task, &frame);
+        // A prescribed polygon holds more than the disc to which a path is scaled.
+        if let (Region::Polygon(polygon), Some(Ok(figures))) = (&self.settings().workspace.region, &mut outcome.result)
+        {
+            figures.inside_workspace = samples.iter().all(|sample| {
+                let at = sample.instant.pose.position - frame.centre;
+                let is_held = polygon.contains(at) || polygon.distance_to_boundary(at) <= 1e-9 * frame.radius;
+                is_held && frame.holds_orientation(&sample.instant)
+            });
+        }
+        (outcome, samples)
     }
 
     /// Returns the workspace of a design to which a motion is scaled.
@@ -313,9 +328,13 @@ impl PosedDesign {
 impl TaskFrame {
     /// Returns whether a moment of a motion lies in the workspace, up to rounding.
     fn contains(&self, instant: &TaskInstant) -> bool {
-        let near = 1.0 + 1e-9;
-        let pose = &instant.pose;
-        let turn = libm::remainder(pose.phi - self.home_phi, 2.0 * std::f64::consts::PI);
-        pose.position.distance(self.centre) <= self.radius * near && turn.abs() <= self.half_range * near + 1e-12
+        let distance = instant.pose.position.distance(self.centre);
+        distance <= self.radius * (1.0 + 1e-9) && self.holds_orientation(instant)
+    }
+
+    /// Returns whether the orientation of a moment lies in the rotation range, up to rounding.
+    fn holds_orientation(&self, instant: &TaskInstant) -> bool {
+        let turn = libm::remainder(instant.pose.phi - self.home_phi, 2.0 * std::f64::consts::PI);
+        turn.abs() <= self.half_range * (1.0 + 1e-9) + 1e-12
     }
 }

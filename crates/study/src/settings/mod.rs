@@ -35,6 +35,7 @@ pub use sections::{
 pub use strength::{LoadShapeChoice, StrengthSection};
 pub use surroundings::{ObstacleSection, RoomSection};
 pub use task::{
-    AnywhereSection, DriveSection, DynamicsSections, LoadSection, PayloadSection, TaskSection, ToleranceSection,
+    AnywhereSection, DriveSection, DynamicsSections, LoadSection, PayloadSection, TaskSection, TaskShapeChoice,
+    ToleranceSection,
 };
 pub use variables::{Tie, VariableChoice, Variables};

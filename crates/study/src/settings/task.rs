@@ -148,6 +148,57 @@ section! {
 const MOST_SAMPLES: i64 = 1_000_000;
 
 impl TaskSection {
+    /// Sets the path, with what else a new motion needs.
+    pub fn go(&mut self, shape: TaskShapeChoice) {
+        let before = self.clone();
+        self.shape = Some(shape);
+        self.settle(&before);
+    }
+
+    /// Makes the settings agree after one of them was changed by hand: a path of waypoints has them and no other has, and either the time
+    /// of a cycle or limits state how fast the motion is.
+    pub fn settle(&mut self, before: &Self) {
+        let Some(shape) = self.shape else { return };
+        let is_of_points = shape == TaskShapeChoice::Waypoints;
+        let points = self.waypoints.take().filter(|_| is_of_points);
+        let across = || vec![[-0.1, 0.0, 0.0], [0.1, 0.0, 0.0]];
+        self.waypoints = is_of_points.then(|| points.unwrap_or_else(across));
+        match (
+            self.cycle_time_s.is_some(),
+            self.limits().iter().any(|(_, limit)| limit.is_some()),
+        ) {
+            (true, true) if before.cycle_time_s.is_some() => self.cycle_time_s = None,
+            (true, true) => {
+                self.v_max_m_per_s = None;
+                self.a_max_m_per_s2 = None;
+                self.omega_max_rad_per_s = None;
+                self.alpha_max_rad_per_s2 = None;
+            }
+            (false, false) if before.cycle_time_s.is_some() => {
+                self.v_max_m_per_s = Some(1.0);
+                self.a_max_m_per_s2 = Some(10.0);
+            }
+            (false, false) => self.cycle_time_s = Some(2.0),
+            _ => {}
+        }
+    }
+
+    /// Returns the limits of the motion, with their keys.
+    fn limits(&self) -> [(&'static str, Option<f64>); 4] {
+        [
+            ("v_max_m_per_s", self.v_max_m_per_s),
+            ("a_max_m_per_s2", self.a_max_m_per_s2),
+            ("omega_max_rad_per_s", self.omega_max_rad_per_s),
+            ("alpha_max_rad_per_s2", self.alpha_max_rad_per_s2),
+        ]
+    }
+
+    /// Sets the path to straight lines between points \[m, m, deg\].
+    pub fn go_along(&mut self, points: Vec<[f64; 3]>) {
+        self.waypoints = Some(points);
+        self.go(TaskShapeChoice::Waypoints);
+    }
+
     /// Returns the points of the path.
     fn points(&self) -> &[[f64; 3]] {
         self.waypoints.as_deref().unwrap_or_default()
@@ -234,12 +285,7 @@ impl TaskSection {
                 ),
             );
         }
-        let limits = [
-            ("v_max_m_per_s", self.v_max_m_per_s),
-            ("a_max_m_per_s2", self.a_max_m_per_s2),
-            ("omega_max_rad_per_s", self.omega_max_rad_per_s),
-            ("alpha_max_rad_per_s2", self.alpha_max_rad_per_s2),
-        ];
+        let limits = self.limits();
         match self.cycle_time_s {
             Some(time) => {
                 for (key, limit) in limits {

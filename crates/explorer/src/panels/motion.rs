@@ -1,0 +1,427 @@
+//! The motion panel: the motion of the study being edited as the selected design follows it, with curves, playback and what it asks of
+//! the drives.
+
+use std::sync::Arc;
+
+use egui::{Align, Color32, ComboBox, Layout, RichText, ScrollArea, Slider, Stroke, Ui, WidgetInfo, WidgetType};
+use egui_plot::{Line, Plot, PlotPoints, VLine};
+use kinefront_model::evaluation::{Bound, Quantity, TaskFigures, TaskSample};
+use kinefront_model::mechanism::JointKind;
+use kinefront_scene::{MotionCurve, MotionPath, PathColor, palette, text};
+use kinefront_study::TaskShapeChoice;
+
+use super::{fields, named};
+use crate::threads::{FollowedMotion, MotionAnswer};
+use crate::{Session, theme};
+
+/// Width of the fields.
+const FORM: f32 = 330.0;
+
+/// Largest number of points of a curve that are drawn.
+const MOST_POINTS: usize = 2000;
+
+/// Rates of playback.
+const RATES: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
+
+/// The paths that a motion can have.
+const SHAPES: [(&str, TaskShapeChoice); 4] = [
+    ("Pick and place", TaskShapeChoice::PickAndPlace),
+    ("Circle", TaskShapeChoice::Circle),
+    ("Star", TaskShapeChoice::Star),
+    ("Waypoints", TaskShapeChoice::Waypoints),
+];
+
+/// The motion panel.
+pub struct MotionPanel {
+    curve: MotionCurve,
+    /// Time of the cursor \[s\].
+    at: f64,
+    /// Whether the motion is being played.
+    is_playing: bool,
+    /// Seconds of the motion per second of playback.
+    rate: f64,
+    drawn: Option<Drawn>,
+}
+
+impl Default for MotionPanel {
+    fn default() -> Self {
+        Self {
+            curve: MotionCurve::Force,
+            at: 0.0,
+            is_playing: false,
+            rate: RATES[0],
+            drawn: None,
+        }
+    }
+}
+
+/// What is drawn of a motion: it is the same from frame to frame.
+struct Drawn {
+    answer: Arc<MotionAnswer>,
+    curve: MotionCurve,
+    color: Option<PathColor>,
+    /// The curve over time, one for each leg.
+    over_time: [Vec<[f64; 2]>; 3],
+    /// Force over speed, one for each leg.
+    over_speed: [Vec<[f64; 2]>; 3],
+    /// Least and largest value that the colours of the path tell.
+    range: Option<[f64; 2]>,
+}
+
+impl Drawn {
+    fn new(answer: &Arc<MotionAnswer>, followed: &FollowedMotion, curve: MotionCurve, session: &Session) -> Self {
+        let color = session.view().layers.path;
+        let samples = &followed.samples;
+        let step = samples.len().div_ceil(MOST_POINTS).max(1);
+        let chosen: Vec<&TaskSample> = samples.iter().step_by(step).chain(samples.last()).collect();
+        let of_legs = |point: &dyn Fn(&TaskSample, usize) -> [f64; 2]| {
+            [0, 1, 2].map(|leg| chosen.iter().map(|sample| point(sample, leg)).collect())
+        };
+        let known = session.known();
+        let path = color
+            .zip(known)
+            .and_then(|(color, known)| MotionPath::new(session.model(), &known.evaluation.design, samples, color));
+        Self {
+            answer: Arc::clone(answer),
+            curve,
+            color,
+            over_time: of_legs(&|sample, leg| [sample.instant.time, curve.values(sample)[leg]]),
+            over_speed: of_legs(&|sample, leg| [sample.response.speeds[leg], sample.response.forces[leg]]),
+            range: path.map(|path| path.range),
+        }
+    }
+
+    fn is_of(&self, answer: &Arc<MotionAnswer>, curve: MotionCurve, session: &Session) -> bool {
+        Arc::ptr_eq(&self.answer, answer) && self.curve == curve && self.color == session.view().layers.path
+    }
+}
+
+impl MotionPanel {
+    /// Draws the panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        if session.known().is_none() {
+            ui.weak("Click a design in the scatter: here it follows the motion of the study.");
+            return;
+        }
+        if session.editor().study().task.shape.is_none() {
+            self.is_playing = false;
+            self.offer(ui, session);
+            return;
+        }
+        let width = FORM.min(0.45 * ui.available_width());
+        ui.horizontal_top(|ui| {
+            let height = ui.available_height();
+            ui.allocate_ui_with_layout(egui::vec2(width, height), Layout::top_down(Align::Min), |ui| {
+                ScrollArea::vertical()
+                    .id_salt("motion fields")
+                    .show(ui, |ui| form(ui, session));
+            });
+            ui.separator();
+            ui.vertical(|ui| self.followed(ui, session));
+        });
+    }
+
+    /// Offers paths where the study asks for no motion.
+    fn offer(&mut self, ui: &mut Ui, session: &mut Session) {
+        ui.label("The study asks for no motion. Let the platform go along a path:");
+        ui.horizontal_wrapped(|ui| {
+            for (name, shape) in SHAPES {
+                if ui.button(name).clicked() {
+                    session.editor_mut().change(|study| study.task.go(shape));
+                    session.editor_mut().end_gesture();
+                }
+            }
+        });
+        ui.weak("The motion becomes a part of the study that the next run uses.");
+    }
+
+    /// Shows what came of the motion.
+    fn followed(&mut self, ui: &mut Ui, session: &mut Session) {
+        let Some(answer) = session.motion() else {
+            ui.weak("Following the motion…");
+            return;
+        };
+        let followed = match answer.as_ref() {
+            Ok(Some(followed)) => followed,
+            Ok(None) => return,
+            Err(message) => {
+                ui.colored_label(theme::bad(ui), message);
+                return;
+            }
+        };
+        let Some((figures, cycle)) = figures(followed) else {
+            self.is_playing = false;
+            let reason = text::motion_fault(&followed.outcome).unwrap_or_default();
+            ui.colored_label(theme::bad(ui), reason);
+            return;
+        };
+        let known = self
+            .drawn
+            .take()
+            .filter(|drawn| drawn.is_of(&answer, self.curve, session));
+        let drawn = known.unwrap_or_else(|| Drawn::new(&answer, followed, self.curve, session));
+        self.play(ui, session, &answer, cycle);
+        let actuator = actuator(session);
+        self.choose(ui, session, actuator, &drawn);
+        summary(ui, figures, cycle, actuator);
+        self.plots(ui, session, &answer, (&drawn, figures, actuator));
+        self.drawn = Some(drawn);
+    }
+
+    /// Shows the buttons and the slider of the playback, and moves the platform while it is played.
+    fn play(&mut self, ui: &mut Ui, session: &mut Session, answer: &MotionAnswer, cycle: f64) {
+        ui.horizontal(|ui| {
+            let (symbol, name) = if self.is_playing {
+                ("⏸", "Pause")
+            } else {
+                ("▶", "Play")
+            };
+            if named(ui.add(theme::toggle(self.is_playing, symbol)), name).clicked() {
+                self.is_playing = !self.is_playing;
+            }
+            let rate = ui.label("rate").id;
+            ComboBox::from_id_salt("rate of playback")
+                .width(56.0)
+                .selected_text(format!("{}×", self.rate))
+                .show_ui(ui, |ui| {
+                    for rate in RATES {
+                        ui.selectable_value(&mut self.rate, rate, format!("{rate}×"));
+                    }
+                })
+                .response
+                .labelled_by(rate);
+            if self.is_playing {
+                self.at = (self.at + self.rate * f64::from(ui.input(|input| input.stable_dt))) % cycle;
+                session.move_to_time(answer, self.at);
+                ui.ctx().request_repaint();
+            }
+            let label = ui.label("time").id;
+            ui.spacing_mut().slider_width = (ui.available_width() - 80.0).clamp(60.0, 400.0);
+            self.at = self.at.min(cycle);
+            let slider = Slider::new(&mut self.at, 0.0..=cycle).suffix(" s").max_decimals(3);
+            if ui.add(slider).labelled_by(label).changed() {
+                self.is_playing = false;
+                session.move_to_time(answer, self.at);
+            }
+        });
+    }
+
+    /// Shows the choice of the curve and of the colours of the path.
+    fn choose(&mut self, ui: &mut Ui, session: &mut Session, actuator: JointKind, drawn: &Drawn) {
+        ui.horizontal_wrapped(|ui| {
+            for curve in MotionCurve::ALL {
+                let title = curve.title(actuator);
+                let name = title.split(" [").next().unwrap_or_default();
+                theme::choice(ui, &mut self.curve, curve, name);
+            }
+            for leg in 0..3 {
+                let words = RichText::new(format!("■ leg {}", leg + 1)).color(theme::legible(color(leg), ui));
+                ui.label(words);
+            }
+            ui.separator();
+            let label = ui.label("path in 3-D").id;
+            let fields = session.fields();
+            let path = &mut session.view_mut().layers.path;
+            let shown = path.map_or("hidden".into(), |path| path.title(actuator));
+            ComboBox::from_id_salt("colours of the path")
+                .selected_text(shown)
+                .show_ui(ui, |ui| {
+                    ui.selectable_value(path, None, "hidden");
+                    let curves = MotionCurve::ALL.into_iter().map(PathColor::Curve);
+                    for choice in curves.chain(fields.into_iter().map(PathColor::Field)) {
+                        ui.selectable_value(path, Some(choice), choice.title(actuator));
+                    }
+                })
+                .response
+                .labelled_by(label);
+            if let Some([low, high]) = drawn.range {
+                ui.weak(format!("dark {} to bright {}", theme::number(low), theme::number(high)));
+            }
+        });
+    }
+
+    /// Draws the curve over time and the force over the speed.
+    fn plots(
+        &mut self,
+        ui: &mut Ui,
+        session: &mut Session,
+        answer: &MotionAnswer,
+        (drawn, figures, actuator): (&Drawn, &TaskFigures, JointKind),
+    ) {
+        let height = (ui.available_height() - 4.0).max(110.0);
+        ui.columns(2, |columns| {
+            let [time, speed] = columns else { return };
+            let title = self.curve.title(actuator);
+            let shown = plot(&title, "time [s]", &title, height).show(time, |plot| {
+                for (leg, points) in drawn.over_time.iter().enumerate() {
+                    plot.line(line(leg, points));
+                }
+                plot.vline(VLine::new("", self.at).color(theme::SELECTED).allow_hover(false));
+            });
+            let response = shown.response;
+            response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, format!("{title} over time")));
+            if (response.clicked() || response.dragged())
+                && let Some(pointer) = response.interact_pointer_pos()
+            {
+                self.at = shown.transform.value_from_position(pointer).x.max(0.0);
+                self.is_playing = false;
+                session.move_to_time(answer, self.at);
+            }
+            let [along, across] = [MotionCurve::Speed, MotionCurve::Force].map(|curve| curve.title(actuator));
+            let name = format!("{across} over {along}");
+            let (limits, words) = drive_box(session, figures, actuator);
+            let response = plot(&name, &along, &across, height)
+                .show(speed, |plot| {
+                    for (leg, points) in drawn.over_speed.iter().enumerate() {
+                        plot.line(line(leg, points));
+                    }
+                    let [v, f] = limits;
+                    let corners = vec![[-v, -f], [v, -f], [v, f], [-v, f], [-v, -f]];
+                    let stroke = Stroke::new(1.4, theme::SELECTED);
+                    plot.line(Line::new(words, PlotPoints::from(corners)).stroke(stroke));
+                })
+                .response;
+            response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, name.clone()));
+            response.on_hover_text(words);
+        });
+    }
+}
+
+/// Shows the fields of the motion and of what moves.
+fn form(ui: &mut Ui, session: &mut Session) {
+    ui.horizontal_wrapped(|ui| {
+        let shape = session.editor().study().task.shape;
+        let label = ui.label("path").id;
+        let shown = SHAPES.iter().find(|(_, choice)| Some(*choice) == shape);
+        ComboBox::from_id_salt("path of the motion")
+            .width(96.0)
+            .selected_text(shown.map_or("", |(name, _)| name))
+            .show_ui(ui, |ui| {
+                for (name, choice) in SHAPES {
+                    if ui.selectable_label(Some(choice) == shape, name).clicked() {
+                        session.editor_mut().change(|study| study.task.go(choice));
+                        session.editor_mut().end_gesture();
+                    }
+                }
+            })
+            .response
+            .labelled_by(label);
+        if ui
+            .button("Add the pose")
+            .on_hover_text("adds the present pose of the platform to the waypoints")
+            .clicked()
+            && let Some(pose) = session.pose()
+        {
+            session.add_waypoint(pose);
+        }
+        let drawing = session.view().drawing_path;
+        if ui
+            .add(theme::toggle(drawing, "Draw"))
+            .on_hover_text("clicks in the plan view of the panel Pose add waypoints")
+            .clicked()
+        {
+            session.view_mut().drawing_path = !drawing;
+        }
+        if ui.button("No motion").clicked() {
+            session.view_mut().drawing_path = false;
+            session.editor_mut().change(|study| study.task = Default::default());
+            session.editor_mut().end_gesture();
+        }
+    });
+    let faults: Vec<String> = session
+        .editor()
+        .faults()
+        .map(|fault| format!("`{}` {}", fault.key, fault.message))
+        .collect();
+    for fault in faults {
+        ui.colored_label(theme::bad(ui), fault);
+    }
+    fields::of_sections(ui, session, &["task", "payload", "drives", "loads"]);
+}
+
+/// Returns the figures of a motion that is followed to its end, with the time of its cycle \[s\].
+fn figures(followed: &FollowedMotion) -> Option<(&TaskFigures, f64)> {
+    let figures = followed.outcome.result.as_ref()?.as_ref().ok()?;
+    Some((figures, followed.outcome.motion.as_ref()?.cycle_time()))
+}
+
+fn actuator(session: &Session) -> JointKind {
+    let selected = session.document().selected.as_ref();
+    selected.map_or(JointKind::Prismatic, |selected| {
+        selected.design.architecture().actuator()
+    })
+}
+
+/// Tells the figures of a motion in a line.
+fn summary(ui: &mut Ui, figures: &TaskFigures, cycle: f64, actuator: JointKind) {
+    let most = |values: &[f64; 3]| theme::number(values.iter().fold(0.0f64, |most, value| most.max(*value)));
+    let unit = |curve: MotionCurve| curve.unit(actuator);
+    ui.horizontal_wrapped(|ui| {
+        ui.label(format!(
+            "cycle {} s · speed {} {} · {} {} {} (RMS {}) · power {} W · energy {} J",
+            theme::number(cycle),
+            most(&figures.peak_speed),
+            unit(MotionCurve::Speed),
+            match actuator {
+                JointKind::Prismatic => "force",
+                JointKind::Revolute => "torque",
+            },
+            most(&figures.peak_force),
+            unit(MotionCurve::Force),
+            most(&figures.rms_force),
+            most(&figures.peak_power),
+            theme::number(figures.energy_shared),
+        ))
+        .on_hover_text("largest of the three actuators; the energy of a cycle if the drives share what they recover");
+        if !figures.inside_workspace {
+            ui.colored_label(theme::active(ui), "leaves the regular workspace");
+        }
+    });
+}
+
+/// Returns half the sides of a box in speed and force that holds the motion, and what it is: the limits of the study, or the largest
+/// values where it states none.
+fn drive_box(session: &Session, figures: &TaskFigures, actuator: JointKind) -> ([f64; 2], &'static str) {
+    let quantities = match actuator {
+        JointKind::Prismatic => [Quantity::PathSpeed, Quantity::PathForce],
+        JointKind::Revolute => [Quantity::PathRate, Quantity::PathTorque],
+    };
+    let limit = |quantity| {
+        let limits = session.model().settings().limits.iter();
+        limits
+            .filter(|limit| limit.quantity == quantity)
+            .find_map(|limit| match limit.bound {
+                Bound::AtMost(most) => Some(most),
+                _ => None,
+            })
+    };
+    if let [Some(speed), Some(force)] = quantities.map(limit) {
+        return ([speed, force], "limits of the study");
+    }
+    let most = |values: &[f64; 3]| values.iter().fold(0.0f64, |most, value| most.max(*value));
+    let least = [most(&figures.peak_speed), most(&figures.peak_force)];
+    (least, "the smallest drive that does it, one kind for all three")
+}
+
+fn color(leg: usize) -> Color32 {
+    let [r, g, b] = palette::SERIES[leg];
+    Color32::from_rgb(r, g, b)
+}
+
+fn line<'a>(leg: usize, points: &[[f64; 2]]) -> Line<'a> {
+    let name = format!("leg {}", leg + 1);
+    Line::new(name, PlotPoints::from(points.to_vec()))
+        .color(color(leg))
+        .width(1.6)
+}
+
+fn plot<'a>(id: &str, x: &str, y: &str, height: f32) -> Plot<'a> {
+    Plot::new(id.to_owned())
+        .height(height)
+        .x_axis_label(x.to_owned())
+        .y_axis_label(y.to_owned())
+        .allow_scroll(false)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+}

@@ -1,0 +1,138 @@
+//! The motion of the study, followed by the selected design.
+
+use egui_kittest::kittest::Queryable as _;
+use kinefront_explorer::Panel;
+use kinefront_model::spatial::Pose;
+use kinefront_study::TaskShapeChoice;
+
+use super::support::{Window, click_at, opened_window, set_slider, until};
+
+/// Opens a window with the panel and a path that is chosen in it.
+fn window_with(path: &str) -> Window {
+    let mut window = opened_window();
+    window.state_mut().show(Panel::Motion);
+    window.run_steps(3);
+    window.get_by_label(path).click();
+    window.run_steps(2);
+    until_followed(&mut window);
+    window
+}
+
+fn until_followed(window: &mut Window) {
+    until(window, "the motion is followed", |explorer| {
+        explorer.session().is_answered()
+    });
+}
+
+fn pose(window: &Window) -> Pose {
+    window.state().session().pose().expect("a pose")
+}
+
+fn waypoints(window: &Window) -> Vec<[f64; 3]> {
+    let task = &window.state().session().editor().study().task;
+    task.waypoints.clone().expect("waypoints")
+}
+
+#[test]
+fn a_time_of_the_cursor_is_a_pose_of_the_path() {
+    let mut window = window_with("Pick and place");
+    let task = window.state().session().editor().study().task.clone();
+    assert_eq!(
+        (task.shape, task.cycle_time_s),
+        (Some(TaskShapeChoice::PickAndPlace), Some(2.0))
+    );
+    let evaluation = window.state().session().known().expect("known").evaluation.clone();
+    let home = window.state().session().home().expect("a home pose");
+    let radius = evaluation.workspace_radius();
+    // The stroke takes half of the cycle, from 0.8 R_w on one side to 0.8 R_w on the other.
+    for (time, along) in [(0.5, 0.0), (1.0, 0.8), (1.5, 0.0), (2.0, -0.8)] {
+        set_slider(&mut window, "time", time);
+        window.run_steps(2);
+        let arm = pose(&window).position - home.position;
+        assert!(
+            (arm.x - along * radius).abs() < 1e-3 * radius && arm.y.abs() < 1e-9,
+            "at {time} s {arm} from the centre instead of {along} R_w"
+        );
+    }
+    // In equal steps of time the platform goes from rest to rest.
+    let before = pose(&window);
+    window.get_by_label("Play").click();
+    window.run_steps(12);
+    assert!(pose(&window).position.distance(before.position) > 1e-6 * radius);
+    window.get_by_label("Pause").click();
+    window.run_steps(3);
+    let rest = pose(&window);
+    window.run_steps(6);
+    assert_eq!(pose(&window), rest);
+}
+
+#[test]
+fn waypoints_are_added_by_the_pose_and_by_clicks() {
+    let mut window = window_with("Waypoints");
+    let first = waypoints(&window);
+    assert_eq!(first.len(), 2);
+    let home = pose(&window);
+    let moved = Pose {
+        position: home.position + glam::DVec2::new(0.0, 0.01),
+        phi: home.phi + 0.02,
+    };
+    window.state_mut().session_mut().view_mut().pose = Some(moved);
+    window.run_steps(2);
+    window.get_by_label("Add the pose").click();
+    window.run_steps(3);
+    let with_pose = waypoints(&window);
+    let [x, y, phi_deg] = with_pose[2];
+    assert!((x - moved.position.x).abs() < 1e-6 && (y - moved.position.y).abs() < 1e-6);
+    assert!((phi_deg - moved.phi.to_degrees()).abs() < 1e-6);
+
+    window.state_mut().show(Panel::Pose);
+    window.get_by_label("Draw").click();
+    window.run_steps(3);
+    // The middle of the plan view is the centre of the base.
+    let view = window.get_by_label("Top view").rect();
+    click_at(&mut window, view.center() + egui::vec2(6.0, 0.0));
+    let drawn = waypoints(&window);
+    assert_eq!(drawn.len(), 4, "{drawn:?}");
+    assert!(drawn[3][0] > 0.0 && drawn[3][1].abs() < 1e-3, "{:?}", drawn[3]);
+    // Each is a step of its own that can be undone.
+    window.state_mut().session_mut().editor_mut().undo();
+    assert_eq!(waypoints(&window), with_pose);
+    window.state_mut().session_mut().editor_mut().undo();
+    assert_eq!(waypoints(&window), first);
+}
+
+#[test]
+fn a_path_that_is_too_large_tells_where_it_ends() {
+    let mut window = window_with("Circle");
+    assert!(window.query_all_by_label_contains("cycle 2.000 s").next().is_some());
+    window
+        .state_mut()
+        .session_mut()
+        .editor_mut()
+        .change(|study| study.task.share = 40.0);
+    until_followed(&mut window);
+    assert!(
+        window
+            .query_all_by_label_contains("the motion ends in piece 1")
+            .next()
+            .is_some()
+    );
+    window.get_by_label("No motion").click();
+    window.run_steps(3);
+    assert_eq!(window.state().session().editor().study().task.shape, None);
+    assert!(window.query_by_label("Pick and place").is_some());
+}
+
+#[test]
+fn limits_take_the_place_of_the_time_of_a_cycle() {
+    let mut window = window_with("Star");
+    window.get_by_label("set v max [m/s]").click();
+    window.run_steps(3);
+    let task = window.state().session().editor().study().task.clone();
+    assert_eq!((task.cycle_time_s, task.v_max_m_per_s), (None, Some(1.0)));
+    window.get_by_label("set v max [m/s]").click();
+    window.run_steps(3);
+    let task = window.state().session().editor().study().task.clone();
+    assert_eq!((task.cycle_time_s, task.v_max_m_per_s), (Some(2.0), None));
+    assert!(window.state().session().editor().text_fault().is_none());
+}
