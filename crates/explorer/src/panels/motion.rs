@@ -198,7 +198,9 @@ impl MotionPanel {
             let label = ui.label("time").id;
             ui.spacing_mut().slider_width = (ui.available_width() - 80.0).clamp(60.0, 400.0);
             self.at = self.at.min(cycle);
-            let slider = Slider::new(&mut self.at, 0.0..=cycle).suffix(" s").max_decimals(3);
+            // A slider with fewer decimals would round the time, and so end the playback.
+            let slider = Slider::new(&mut self.at, 0.0..=cycle).custom_formatter(|time, _| format!("{time:.3} s"));
+            let slider = slider.custom_parser(|text| text.trim().trim_end_matches('s').trim().parse().ok());
             if ui.add(slider).labelled_by(label).changed() {
                 self.is_playing = false;
                 session.move_to_time(answer, self.at);
