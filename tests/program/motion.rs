@@ -260,7 +260,7 @@ fn a_motion_within_a_prescribed_rectangle_is_inside() {
     let study = folder.path().join("stroke.toml");
     let inside = |half_stroke: f64| {
         let text = format!(
-            "name = \"stroke\"\n[task]\nshape = \"waypoints\"\nwaypoints = [[-{half_stroke}, 0.0, 35.0], [{half_stroke}, 0.0, 35.0]]\n\
+            "name = \"stroke\"\nobjectives = [{{ minimize = \"mass_kg\" }}]\n[task]\nshape = \"waypoints\"\nwaypoints = [[-{half_stroke}, 0.0, 35.0], [{half_stroke}, 0.0, 35.0]]\n\
              cycle_time_s = 2.0\n[workspace]\nhome_phi_deg = 35.0\n[workspace.region]\nkind = \"rectangle\"\nwidth_m = 0.6\nheight_m = 0.3\n"
         );
         fs::write(&study, text).expect("a study");
