@@ -6,7 +6,6 @@ use glam::DVec2;
 use kinefront_model::evaluation::{Model, Scale, TaskSample};
 use kinefront_model::mechanism::{Design, JointKind};
 use kinefront_model::spatial::{Pose, Rotation};
-use kinefront_model::workspace::ValueColumns;
 
 use super::{ColorMap, Field};
 
@@ -160,16 +159,11 @@ fn values(model: &Model, design: &Design, samples: &[&TaskSample], color: PathCo
         PathColor::Field(field) => {
             let mut evaluator = model.pose_evaluator(design);
             field.ask(evaluator.as_mut());
-            let mut columns = ValueColumns::default();
             let at = |sample: &&TaskSample| {
                 let Pose { position, phi } = sample.instant.pose;
-                let arms = evaluator.arms(&Rotation::new(phi));
-                evaluator.evaluate_positions(&arms, &[position.x], &[position.y], &mut columns);
+                let values = evaluator.evaluate_position(&evaluator.arms(&Rotation::new(phi)), position);
                 // A motion is followed where every leg reaches it.
-                columns
-                    .get(0)
-                    .ok()
-                    .map_or(0.0, |values| field.value(model, design, &values))
+                values.map_or(0.0, |values| field.value(model, design, &values))
             };
             samples.iter().map(at).collect()
         }

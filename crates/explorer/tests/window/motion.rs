@@ -3,6 +3,7 @@
 use egui_kittest::kittest::Queryable as _;
 use kinefront_explorer::Panel;
 use kinefront_model::spatial::Pose;
+use kinefront_scene::PathColor;
 use kinefront_study::TaskShapeChoice;
 
 use super::support::{Window, click_at, opened_window, set_slider, until};
@@ -105,6 +106,14 @@ fn waypoints_are_added_by_the_pose_and_by_clicks() {
 fn a_path_that_is_too_large_tells_where_it_ends() {
     let mut window = window_with("Circle");
     assert!(window.query_all_by_label_contains("cycle 2.000 s").next().is_some());
+    for field in window.state().session().fields() {
+        window.state_mut().session_mut().view_mut().layers.path = Some(PathColor::Field(field));
+        window.run_steps(2);
+        assert!(
+            window.query_all_by_label_contains("to bright").next().is_some(),
+            "{field:?}"
+        );
+    }
     window
         .state_mut()
         .session_mut()
