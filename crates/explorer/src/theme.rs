@@ -103,6 +103,12 @@ pub fn nearest(too_near: bool, dark: bool) -> Color32 {
     readable(palette::nearest(too_near), dark)
 }
 
+/// Returns the colour of a series of a chart.
+pub fn series(index: usize) -> Color32 {
+    let [r, g, b] = palette::SERIES[index % palette::SERIES.len()];
+    Color32::from_rgb(r, g, b)
+}
+
 /// Returns a colour that is legible as text.
 pub fn legible(color: Color32, ui: &Ui) -> Color32 {
     let [r, g, b, _] = color.to_array();

@@ -14,7 +14,7 @@ use super::subject::DrawnDesign;
 use super::viewpoint::Viewpoint;
 use super::writer::{RecordingError, RecordingWriter};
 use super::{SceneTarget, blueprint, colors, paths};
-use kinefront_model::evaluation::{Evaluation, Model, TaskSample};
+use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::spatial::Pose;
 use kinefront_scene::{
     EllipsoidKind, Field, FieldLegend, Heatmap, HeatmapSettings, MotionPath, Part, PathColor, Scene, WorkspaceProof,
@@ -92,8 +92,8 @@ pub struct Shown<'a> {
     pub evaluation: &'a Evaluation,
     /// The proof of its workspace, once it is known.
     pub proof: Option<&'a WorkspaceProof>,
-    /// Samples of the motion that the design follows; none without a motion.
-    pub motion: &'a [TaskSample],
+    /// The path of the motion that the design follows.
+    pub path: Option<&'a MotionPath>,
     /// Pose of the manipulator; the home pose if `None`.
     pub pose: Option<Pose>,
     /// Orientation of the heatmap \[rad\]; the home orientation if `None`.
@@ -400,10 +400,8 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<Option<FieldLegend>, R
     if let Some(proof) = proof {
         subject.proof(canvas, proof, shown.heatmap_phi.unwrap_or(home.phi))?;
     }
-    let path = layers
-        .path
-        .and_then(|color| MotionPath::new(model, &evaluation.design, shown.motion, color));
-    if let Some(path) = &path {
+    let path = shown.path.filter(|_| layers.path.is_some());
+    if let Some(path) = path {
         subject.path(canvas, path)?;
     }
     if layers.configuration {
@@ -412,7 +410,7 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<Option<FieldLegend>, R
         if let Some(proof) = proof {
             subject.proof_in_space(canvas, proof)?;
         }
-        if let Some(path) = &path {
+        if let Some(path) = path {
             subject.path_in_space(canvas, path)?;
         }
         let at = subject.space().place(pose.position, pose.phi);

@@ -11,7 +11,7 @@
 //! | [`dimension_lines`] | where the lengths of a design are |
 //! | [`linkage`] | the manipulator as rigid bodies with joints and masses |
 //! | [`Mesh`] | a solid as triangles |
-//! | [`MotionPath`], [`MotionCurve`] | the path of a motion with colours, and what its actuators do |
+//! | [`MotionPath`], [`MotionCurve`] | the path of a motion with colours, and what the actuators do during it |
 //! | [`tour`] | poses along the regular workspace, checked by forward kinematics |
 //!
 //! Lengths are in metres in the base frame; z points out of the plane. A shape states which part of the manipulator it
@@ -45,7 +45,7 @@ pub use linkage::{Body, Closure, Frame, Joint, Linkage, MassBar, linkage};
 pub use manipulator::manipulator;
 pub use mesh::Mesh;
 pub use modes::{ModeMap, Modes, example, modes_at};
-pub use motion::{MotionCurve, MotionPath, PathColor, pose_at};
+pub use motion::{MotionCurve, MotionPath, PathColor, drawn_samples, pose_at};
 pub use proof::{ProofCell, WorkspaceProof, workspace_proof};
 pub use shape::{Label, Line, Nearest, Part, Scene, Solid, SolidShape};
 pub use tour::{Tour, tour};

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use glam::DVec2;
-use kinefront_model::evaluation::{Model, Scale, TaskSample};
+use kinefront_model::evaluation::{Model, Scale, TaskSample, largest_of_legs};
 use kinefront_model::mechanism::{Design, JointKind};
 use kinefront_model::spatial::{Pose, Rotation};
 
@@ -37,33 +37,32 @@ impl MotionCurve {
         MotionCurve::Power,
     ];
 
-    /// Returns the name, with that of the unit for an actuator.
-    pub fn title(self, actuator: JointKind) -> String {
-        let name = match (self, actuator) {
+    /// Returns the name for a kind of actuator.
+    pub fn name(self, actuator: JointKind) -> &'static str {
+        match (self, actuator) {
             (MotionCurve::Position, _) => "position",
             (MotionCurve::Speed, _) => "speed",
             (MotionCurve::Acceleration, _) => "acceleration",
             (MotionCurve::Force, JointKind::Prismatic) => "force",
             (MotionCurve::Force, JointKind::Revolute) => "torque",
             (MotionCurve::Power, _) => "power",
-        };
-        format!("{name} [{}]", self.unit(actuator))
+        }
     }
 
-    /// Returns the unit for an actuator.
-    pub fn unit(self, actuator: JointKind) -> &'static str {
-        let is_linear = actuator == JointKind::Prismatic;
+    /// Returns the unit for a kind of actuator.
+    pub fn unit(self, actuator: JointKind) -> String {
         match self {
-            MotionCurve::Position if is_linear => "m",
-            MotionCurve::Position => "rad",
-            MotionCurve::Speed if is_linear => "m/s",
-            MotionCurve::Speed => "rad/s",
-            MotionCurve::Acceleration if is_linear => "m/s²",
-            MotionCurve::Acceleration => "rad/s²",
-            MotionCurve::Force if is_linear => "N",
-            MotionCurve::Force => "N·m",
-            MotionCurve::Power => "W",
+            MotionCurve::Position => actuator.unit().to_owned(),
+            MotionCurve::Speed => format!("{}/s", actuator.unit()),
+            MotionCurve::Acceleration => format!("{}/s²", actuator.unit()),
+            MotionCurve::Force => actuator.effort_unit().to_owned(),
+            MotionCurve::Power => "W".to_owned(),
         }
+    }
+
+    /// Returns the name with the unit for a kind of actuator.
+    pub fn title(self, actuator: JointKind) -> String {
+        format!("{} [{}]", self.name(actuator), self.unit(actuator))
     }
 
     /// Returns the value of each actuator at a sample, in the unit of [`MotionCurve::unit`].
@@ -112,62 +111,57 @@ pub struct MotionPath {
 }
 
 impl MotionPath {
-    /// Computes the path of samples of a motion; `None` without samples. Of a very long motion, evenly chosen samples are drawn.
+    /// Computes the path of samples of a motion; `None` without samples.
     pub fn new(model: &Model, design: &Design, samples: &[TaskSample], color: PathColor) -> Option<Self> {
-        let step = samples.len().div_ceil(MOST_POINTS).max(1);
-        let last = samples.last()?;
-        let chosen: Vec<&TaskSample> = samples.iter().step_by(step).chain([last]).collect();
-        let values = values(model, design, &chosen, color);
-        let range = values
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-                [low.min(*value), high.max(*value)]
-            });
-        let scale = match color {
-            PathColor::Curve(_) => Scale::Linear,
-            PathColor::Field(field) => field.scale(),
-        };
-        let threshold = match color {
-            PathColor::Curve(_) => 0.0,
-            PathColor::Field(field) => field.threshold(model),
-        };
-        let map = ColorMap::new(scale, range, threshold);
-        let factor = match color {
-            PathColor::Curve(_) => 1.0,
-            PathColor::Field(field) => field.display_factor(),
+        let chosen = drawn_samples(samples);
+        chosen.first()?;
+        let (values, map, factor) = match color {
+            PathColor::Curve(curve) => {
+                let largest = |sample: &&TaskSample| largest_of_legs(curve.values(sample));
+                let values: Vec<f64> = chosen.iter().map(largest).collect();
+                let map = ColorMap::new(Scale::Linear, range(&values), 0.0);
+                (values, map, 1.0)
+            }
+            PathColor::Field(field) => {
+                let values = values_of_field(model, design, &chosen, field);
+                let map = ColorMap::new(field.scale(), range(&values), field.threshold(model));
+                (values, map, field.display_factor())
+            }
         };
         Some(Self {
             poses: chosen.iter().map(|sample| sample.instant.pose).collect(),
             colors: values.iter().map(|value| map.color(*value)).collect(),
-            range: range.map(|value| value * factor),
+            range: range(&values).map(|value| value * factor),
         })
     }
 }
 
-/// Returns the values that the colours of a path tell.
-fn values(model: &Model, design: &Design, samples: &[&TaskSample], color: PathColor) -> Vec<f64> {
-    match color {
-        PathColor::Curve(curve) => samples
-            .iter()
-            .map(|sample| {
-                curve
-                    .values(sample)
-                    .iter()
-                    .fold(0.0f64, |most, value| most.max(value.abs()))
-            })
-            .collect(),
-        PathColor::Field(field) => {
-            let mut evaluator = model.pose_evaluator(design);
-            field.ask(evaluator.as_mut());
-            let at = |sample: &&TaskSample| {
-                let Pose { position, phi } = sample.instant.pose;
-                let values = evaluator.evaluate_position(&evaluator.arms(&Rotation::new(phi)), position);
-                // A motion is followed where every leg reaches it.
-                values.map_or(0.0, |values| field.value(model, design, &values))
-            };
-            samples.iter().map(at).collect()
-        }
-    }
+/// Returns the samples of a motion that are drawn: of a very long one, evenly chosen samples and the last one.
+pub fn drawn_samples(samples: &[TaskSample]) -> Vec<&TaskSample> {
+    let Some((last, others)) = samples.split_last() else {
+        return Vec::new();
+    };
+    let step = samples.len().div_ceil(MOST_POINTS);
+    others.iter().step_by(step).chain([last]).collect()
+}
+
+fn range(values: &[f64]) -> [f64; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    values
+        .iter()
+        .fold(none, |[low, high], value| [low.min(*value), high.max(*value)])
+}
+
+/// Returns the values of a field at samples, which every leg reaches.
+fn values_of_field(model: &Model, design: &Design, samples: &[&TaskSample], field: Field) -> Vec<f64> {
+    let mut evaluator = model.pose_evaluator(design);
+    field.ask(evaluator.as_mut());
+    let at = |sample: &&TaskSample| {
+        let Pose { position, phi } = sample.instant.pose;
+        let values = evaluator.evaluate_position(&evaluator.arms(&Rotation::new(phi)), position);
+        values.map_or(0.0, |values| field.value(model, design, &values))
+    };
+    samples.iter().map(at).collect()
 }
 
 /// Returns the pose of a motion at a time \[s\] from the beginning of its cycle: between samples on a straight line, and at rest after

@@ -51,6 +51,9 @@ const GROUPS: [(&str, &[&str]); 7] = [
     ),
 ];
 
+/// Largest number of points that are edited as fields; more are edited as text.
+const MOST_POINTS: usize = 200;
+
 /// What the fields of a study are shown with.
 struct Context<'a> {
     /// The paper's study, which has the defaults.
@@ -78,9 +81,23 @@ pub(super) fn all(ui: &mut Ui, session: &mut Session, faults: &[Fault], sketch: 
     });
 }
 
-/// Shows the fields of some sections.
+/// Tells the faults of a study, or that it is valid.
+pub(super) fn verdict(ui: &mut Ui, faults: &[Fault]) {
+    // What is below keeps its identity, and with it the focus and the cursor, however many faults there are.
+    ui.vertical(|ui| {
+        for fault in faults {
+            ui.colored_label(theme::bad(ui), format!("`{}` {}", fault.key, fault.message));
+        }
+        if faults.is_empty() {
+            ui.colored_label(theme::good(ui), "valid");
+        }
+    });
+}
+
+/// Tells whether the study is valid, and shows the fields of some sections.
 pub(super) fn of_sections(ui: &mut Ui, session: &mut Session, sections: &[&str]) {
     let faults: Vec<Fault> = session.editor().faults().cloned().collect();
+    verdict(ui, &faults);
     edited(ui, session, &faults, |ui, _, table, context| {
         for path in sections {
             section(ui, path, table, context);
@@ -342,7 +359,9 @@ fn edit(ui: &mut Ui, setting: &Setting, value: &mut Value, label: egui::Id) {
                 number(ui, item).labelled_by(label);
             }
         }
-        (_, Value::Array(rows)) if !rows.is_empty() && rows.iter().all(is_point) => points(ui, setting, rows),
+        (_, Value::Array(rows)) if (1..=MOST_POINTS).contains(&rows.len()) && rows.iter().all(is_point) => {
+            points(ui, setting, rows);
+        }
         // Other arrays are edited as text.
         (_, Value::Array(_) | Value::Table(_) | Value::Datetime(_)) => {
             ui.weak("see Text");

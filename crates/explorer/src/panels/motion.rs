@@ -1,14 +1,14 @@
-//! The motion panel: the motion of the study being edited as the selected design follows it, with curves, playback and what it asks of
-//! the drives.
+//! The motion panel: the selected design follows the motion of the study being edited. Curves tell what that asks of the drives, and the
+//! motion can be played.
 
 use std::sync::Arc;
 
-use egui::{Align, Color32, ComboBox, Layout, RichText, ScrollArea, Slider, Stroke, Ui, WidgetInfo, WidgetType};
+use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Slider, Stroke, Ui, WidgetInfo, WidgetType};
 use egui_plot::{Line, Plot, PlotPoints, VLine};
-use kinefront_model::evaluation::{Bound, Quantity, TaskFigures, TaskSample};
+use kinefront_model::evaluation::{Bound, Quantity, TaskFigures, TaskSample, largest_of_legs};
 use kinefront_model::mechanism::JointKind;
-use kinefront_scene::{MotionCurve, MotionPath, PathColor, palette, text};
-use kinefront_study::TaskShapeChoice;
+use kinefront_scene::{MotionCurve, PathColor, drawn_samples, text};
+use kinefront_study::{TaskSection, TaskShapeChoice};
 
 use super::{fields, named};
 use crate::threads::{FollowedMotion, MotionAnswer};
@@ -16,9 +16,6 @@ use crate::{Session, theme};
 
 /// Width of the fields.
 const FORM: f32 = 330.0;
-
-/// Largest number of points of a curve that are drawn.
-const MOST_POINTS: usize = 2000;
 
 /// Rates of playback.
 const RATES: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
@@ -55,54 +52,43 @@ impl Default for MotionPanel {
     }
 }
 
-/// What is drawn of a motion: it is the same from frame to frame.
+/// The curves of a motion: they are the same from frame to frame.
 struct Drawn {
     answer: Arc<MotionAnswer>,
     curve: MotionCurve,
-    color: Option<PathColor>,
     /// The curve over time, one for each leg.
     over_time: [Vec<[f64; 2]>; 3],
     /// Force over speed, one for each leg.
     over_speed: [Vec<[f64; 2]>; 3],
-    /// Least and largest value that the colours of the path tell.
-    range: Option<[f64; 2]>,
 }
 
 impl Drawn {
-    fn new(answer: &Arc<MotionAnswer>, followed: &FollowedMotion, curve: MotionCurve, session: &Session) -> Self {
-        let color = session.view().layers.path;
-        let samples = &followed.samples;
-        let step = samples.len().div_ceil(MOST_POINTS).max(1);
-        let chosen: Vec<&TaskSample> = samples.iter().step_by(step).chain(samples.last()).collect();
+    fn new(answer: &Arc<MotionAnswer>, followed: &FollowedMotion, curve: MotionCurve) -> Self {
+        let samples = drawn_samples(&followed.samples);
         let of_legs = |point: &dyn Fn(&TaskSample, usize) -> [f64; 2]| {
-            [0, 1, 2].map(|leg| chosen.iter().map(|sample| point(sample, leg)).collect())
+            [0, 1, 2].map(|leg| samples.iter().map(|sample| point(sample, leg)).collect())
         };
-        let known = session.known();
-        let path = color
-            .zip(known)
-            .and_then(|(color, known)| MotionPath::new(session.model(), &known.evaluation.design, samples, color));
         Self {
             answer: Arc::clone(answer),
             curve,
-            color,
             over_time: of_legs(&|sample, leg| [sample.instant.time, curve.values(sample)[leg]]),
             over_speed: of_legs(&|sample, leg| [sample.response.speeds[leg], sample.response.forces[leg]]),
-            range: path.map(|path| path.range),
         }
     }
 
-    fn is_of(&self, answer: &Arc<MotionAnswer>, curve: MotionCurve, session: &Session) -> bool {
-        Arc::ptr_eq(&self.answer, answer) && self.curve == curve && self.color == session.view().layers.path
+    fn is_of(&self, answer: &Arc<MotionAnswer>, curve: MotionCurve) -> bool {
+        Arc::ptr_eq(&self.answer, answer) && self.curve == curve
     }
 }
 
 impl MotionPanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        if session.known().is_none() {
+        let Some(known) = session.known() else {
             ui.weak("Click a design in the scatter: here it follows the motion of the study.");
             return;
-        }
+        };
+        let actuator = known.evaluation.design.architecture().actuator();
         if session.editor().study().task.shape.is_none() {
             self.is_playing = false;
             self.offer(ui, session);
@@ -117,18 +103,17 @@ impl MotionPanel {
                     .show(ui, |ui| form(ui, session));
             });
             ui.separator();
-            ui.vertical(|ui| self.followed(ui, session));
+            ui.vertical(|ui| self.followed(ui, session, actuator));
         });
     }
 
     /// Offers paths where the study asks for no motion.
     fn offer(&mut self, ui: &mut Ui, session: &mut Session) {
-        ui.label("The study asks for no motion. Let the platform go along a path:");
+        ui.label("The study asks for no motion. Choose a path for the platform:");
         ui.horizontal_wrapped(|ui| {
             for (name, shape) in SHAPES {
                 if ui.button(name).clicked() {
-                    session.editor_mut().change(|study| study.task.go(shape));
-                    session.editor_mut().end_gesture();
+                    change(session, |task| task.go(shape));
                 }
             }
         });
@@ -136,7 +121,7 @@ impl MotionPanel {
     }
 
     /// Shows what came of the motion.
-    fn followed(&mut self, ui: &mut Ui, session: &mut Session) {
+    fn followed(&mut self, ui: &mut Ui, session: &mut Session, actuator: JointKind) {
         let Some(answer) = session.motion() else {
             ui.weak("Following the motion…");
             return;
@@ -155,14 +140,10 @@ impl MotionPanel {
             ui.colored_label(theme::bad(ui), reason);
             return;
         };
-        let known = self
-            .drawn
-            .take()
-            .filter(|drawn| drawn.is_of(&answer, self.curve, session));
-        let drawn = known.unwrap_or_else(|| Drawn::new(&answer, followed, self.curve, session));
+        let known = self.drawn.take().filter(|drawn| drawn.is_of(&answer, self.curve));
+        let drawn = known.unwrap_or_else(|| Drawn::new(&answer, followed, self.curve));
         self.play(ui, session, &answer, cycle);
-        let actuator = actuator(session);
-        self.choose(ui, session, actuator, &drawn);
+        self.choose(ui, session, actuator, followed);
         summary(ui, figures, cycle, actuator);
         self.plots(ui, session, &answer, (&drawn, figures, actuator));
         self.drawn = Some(drawn);
@@ -209,16 +190,14 @@ impl MotionPanel {
     }
 
     /// Shows the choice of the curve and of the colours of the path.
-    fn choose(&mut self, ui: &mut Ui, session: &mut Session, actuator: JointKind, drawn: &Drawn) {
+    fn choose(&mut self, ui: &mut Ui, session: &mut Session, actuator: JointKind, followed: &FollowedMotion) {
         ui.horizontal_wrapped(|ui| {
             for curve in MotionCurve::ALL {
-                let title = curve.title(actuator);
-                let name = title.split(" [").next().unwrap_or_default();
-                theme::choice(ui, &mut self.curve, curve, name);
+                theme::choice(ui, &mut self.curve, curve, curve.name(actuator));
             }
             for leg in 0..3 {
-                let words = RichText::new(format!("■ leg {}", leg + 1)).color(theme::legible(color(leg), ui));
-                ui.label(words);
+                let color = theme::legible(theme::series(leg), ui);
+                ui.label(RichText::new(format!("■ leg {}", leg + 1)).color(color));
             }
             ui.separator();
             let label = ui.label("path in 3-D").id;
@@ -236,7 +215,7 @@ impl MotionPanel {
                 })
                 .response
                 .labelled_by(label);
-            if let Some([low, high]) = drawn.range {
+            if let Some([low, high]) = followed.path.as_ref().map(|path| path.range) {
                 ui.weak(format!("dark {} to bright {}", theme::number(low), theme::number(high)));
             }
         });
@@ -301,8 +280,7 @@ fn form(ui: &mut Ui, session: &mut Session) {
             .show_ui(ui, |ui| {
                 for (name, choice) in SHAPES {
                     if ui.selectable_label(Some(choice) == shape, name).clicked() {
-                        session.editor_mut().change(|study| study.task.go(choice));
-                        session.editor_mut().end_gesture();
+                        change(session, |task| task.go(choice));
                     }
                 }
             })
@@ -326,19 +304,16 @@ fn form(ui: &mut Ui, session: &mut Session) {
         }
         if ui.button("No motion").clicked() {
             session.view_mut().drawing_path = false;
-            session.editor_mut().change(|study| study.task = Default::default());
-            session.editor_mut().end_gesture();
+            change(session, |task| *task = TaskSection::default());
         }
     });
-    let faults: Vec<String> = session
-        .editor()
-        .faults()
-        .map(|fault| format!("`{}` {}", fault.key, fault.message))
-        .collect();
-    for fault in faults {
-        ui.colored_label(theme::bad(ui), fault);
-    }
     fields::of_sections(ui, session, &["task", "payload", "drives", "loads"]);
+}
+
+/// Changes the motion of the study being edited, as a step that can be undone.
+fn change(session: &mut Session, change: impl FnOnce(&mut TaskSection)) {
+    session.editor_mut().change(|study| change(&mut study.task));
+    session.editor_mut().end_gesture();
 }
 
 /// Returns the figures of a motion that is followed to its end, with the time of its cycle \[s\].
@@ -347,31 +322,21 @@ fn figures(followed: &FollowedMotion) -> Option<(&TaskFigures, f64)> {
     Some((figures, followed.outcome.motion.as_ref()?.cycle_time()))
 }
 
-fn actuator(session: &Session) -> JointKind {
-    let selected = session.document().selected.as_ref();
-    selected.map_or(JointKind::Prismatic, |selected| {
-        selected.design.architecture().actuator()
-    })
-}
-
 /// Tells the figures of a motion in a line.
 fn summary(ui: &mut Ui, figures: &TaskFigures, cycle: f64, actuator: JointKind) {
-    let most = |values: &[f64; 3]| theme::number(values.iter().fold(0.0f64, |most, value| most.max(*value)));
+    let most = |values: [f64; 3]| theme::number(largest_of_legs(values));
     let unit = |curve: MotionCurve| curve.unit(actuator);
     ui.horizontal_wrapped(|ui| {
         ui.label(format!(
             "cycle {} s · speed {} {} · {} {} {} (RMS {}) · power {} W · energy {} J",
             theme::number(cycle),
-            most(&figures.peak_speed),
+            most(figures.peak_speed),
             unit(MotionCurve::Speed),
-            match actuator {
-                JointKind::Prismatic => "force",
-                JointKind::Revolute => "torque",
-            },
-            most(&figures.peak_force),
+            MotionCurve::Force.name(actuator),
+            most(figures.peak_force),
             unit(MotionCurve::Force),
-            most(&figures.rms_force),
-            most(&figures.peak_power),
+            most(figures.rms_force),
+            most(figures.peak_power),
             theme::number(figures.energy_shared),
         ))
         .on_hover_text("largest of the three actuators; the energy of a cycle if the drives share what they recover");
@@ -400,20 +365,14 @@ fn drive_box(session: &Session, figures: &TaskFigures, actuator: JointKind) -> (
     if let [Some(speed), Some(force)] = quantities.map(limit) {
         return ([speed, force], "limits of the study");
     }
-    let most = |values: &[f64; 3]| values.iter().fold(0.0f64, |most, value| most.max(*value));
-    let least = [most(&figures.peak_speed), most(&figures.peak_force)];
-    (least, "the smallest drive that does it, one kind for all three")
-}
-
-fn color(leg: usize) -> Color32 {
-    let [r, g, b] = palette::SERIES[leg];
-    Color32::from_rgb(r, g, b)
+    let least = [figures.peak_speed, figures.peak_force].map(largest_of_legs);
+    (least, "the smallest drive that suffices, of one kind for all legs")
 }
 
 fn line<'a>(leg: usize, points: &[[f64; 2]]) -> Line<'a> {
     let name = format!("leg {}", leg + 1);
     Line::new(name, PlotPoints::from(points.to_vec()))
-        .color(color(leg))
+        .color(theme::series(leg))
         .width(1.6)
 }
 

@@ -10,7 +10,7 @@ use crate::{Session, theme};
 use kinefront_model::evaluation::PoseScalar;
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
-use kinefront_scene::{Tour, manipulator, region_corners, regular_workspace, tour};
+use kinefront_scene::{Tour, drawn_samples, manipulator, region_corners, regular_workspace, tour};
 
 /// Number of poses around each rim of the tour.
 const TOUR_STEPS: usize = 90;
@@ -183,16 +183,14 @@ impl PosePanel {
         };
         self.drag(&response, session, &plan, design, pose);
         if response.clicked()
-            && session.view().drawing_path
             && let Some(pointer) = response.interact_pointer_pos()
         {
-            let position = plan.world(pointer);
-            session.add_waypoint(Pose { position, ..pose });
-        } else if response.clicked()
-            && let Some(pointer) = response.interact_pointer_pos()
-            && let Some(mode) = self.modes.pointed_at(&plan, pointer)
-        {
-            session.jump_to(&mode);
+            if session.view().drawing_path {
+                let position = plan.world(pointer);
+                session.add_waypoint(Pose { position, ..pose });
+            } else if let Some(mode) = self.modes.pointed_at(&plan, pointer) {
+                session.jump_to(&mode);
+            }
         }
         let workspace = session.known().and_then(|known| {
             regular_workspace(
@@ -288,11 +286,9 @@ fn draw_path(ui: &Ui, painter: &egui::Painter, plan: &Plan, session: &mut Sessio
     if let Some(motion) = session.motion()
         && let Ok(Some(followed)) = motion.as_ref()
     {
-        let poses = followed
-            .samples
-            .iter()
-            .map(|sample| plan.screen(sample.instant.pose.position));
-        painter.line(poses.collect(), Stroke::new(1.5, color));
+        let samples = drawn_samples(&followed.samples).into_iter();
+        let points = samples.map(|sample| plan.screen(sample.instant.pose.position));
+        painter.line(points.collect(), Stroke::new(1.5, color));
     }
     for [x, y, _] in waypoints {
         painter.circle_stroke(plan.screen(DVec2::new(x, y)), 3.5, Stroke::new(1.2, color));

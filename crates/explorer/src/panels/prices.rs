@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use egui::{Align, Color32, ComboBox, Layout, RichText, ScrollArea, Stroke, Ui, WidgetInfo, WidgetType};
+use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Stroke, Ui, WidgetInfo, WidgetType};
 use egui_plot::{FilledArea, Line, Plot, PlotBounds, PlotPoints, PlotUi, VLine};
 use kinefront_model::mechanism::Architecture;
-use kinefront_scene::{palette, text};
+use kinefront_scene::text;
 use kinefront_study::{Column, DriversAlong, ParameterKind, PriceCurve, stacked, usual_range};
 
 use crate::{DesignOrigin, Session, theme};
@@ -196,14 +196,9 @@ fn legend(ui: &mut Ui, curves: &[PriceCurve]) {
     ui.horizontal_wrapped(|ui| {
         for (index, curve) in curves.iter().enumerate() {
             let words = format!("■ {}", curve.label).replace(' ', "\u{a0}");
-            ui.label(RichText::new(words).color(theme::legible(color(index), ui)));
+            ui.label(RichText::new(words).color(theme::legible(theme::series(index), ui)));
         }
     });
-}
-
-fn color(index: usize) -> Color32 {
-    let [r, g, b] = palette::SERIES[index % palette::SERIES.len()];
-    Color32::from_rgb(r, g, b)
 }
 
 /// Draws areas, each on top of those before it.
@@ -214,8 +209,8 @@ fn areas(plot: &mut PlotUi<'_>, curves: &[PriceCurve]) {
     for (index, curve) in curves.iter().enumerate() {
         let top: Vec<f64> = curve.points.iter().map(|[_, top]| *top).collect();
         let area = FilledArea::new(&curve.label, &places, &below, &top)
-            .fill_color(color(index).gamma_multiply(0.75))
-            .stroke(Stroke::new(1.0, color(index)));
+            .fill_color(theme::series(index).gamma_multiply(0.75))
+            .stroke(Stroke::new(1.0, theme::series(index)));
         plot.add(area);
         below = top;
     }
@@ -224,7 +219,7 @@ fn areas(plot: &mut PlotUi<'_>, curves: &[PriceCurve]) {
 fn lines(plot: &mut PlotUi<'_>, curves: &[PriceCurve]) {
     for (index, curve) in curves.iter().enumerate() {
         let line = Line::new(&curve.label, PlotPoints::from(curve.points.clone()));
-        plot.line(line.color(color(index)).width(1.6));
+        plot.line(line.color(theme::series(index)).width(1.6));
     }
 }
 

@@ -54,15 +54,7 @@ impl StudyPanel {
             }
         });
         let faults: Vec<Fault> = session.editor().faults().cloned().collect();
-        // What is below keeps its identity, and with it the focus and the cursor, however many faults there are.
-        ui.vertical(|ui| {
-            for fault in &faults {
-                ui.colored_label(theme::bad(ui), format!("`{}` {}", fault.key, fault.message));
-            }
-            if faults.is_empty() {
-                ui.colored_label(theme::good(ui), "valid");
-            }
-        });
+        fields::verdict(ui, &faults);
         if faults.is_empty() {
             self.typed = None;
         }

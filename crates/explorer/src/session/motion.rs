@@ -3,18 +3,27 @@
 use std::sync::Arc;
 
 use super::Session;
-use crate::threads::{MotionAnswer, MotionQuestion, MotionShown};
+use crate::threads::{MotionAnswer, MotionQuestion, MotionShown, StudyOfRun};
 use kinefront_model::spatial::Pose;
 use kinefront_scene::pose_at;
-use kinefront_study::Study;
 
 impl Session {
     /// Returns what the motion asks of the drives of the selected design, once that is known: the motion of the study being edited, with
     /// its payload, drives and loads, and all else as in the study that was run.
     pub fn motion(&mut self) -> Option<Arc<MotionAnswer>> {
-        let evaluation = Arc::clone(&self.known()?.evaluation);
-        let study = self.moving_study();
-        self.asking.motion.ask(MotionQuestion { study, evaluation })
+        let question = MotionQuestion {
+            study: StudyOfRun(self.prepared()),
+            sections: self.editor.study().into(),
+            color: self.view.layers.path,
+            evaluation: Arc::clone(&self.known()?.evaluation),
+        };
+        let (study, design) = (question.study.clone(), question.evaluation.design);
+        // While a setting is dragged, the motion before stays in view until the next one is known.
+        let answer = self.asking.motion.ask(question);
+        answer.or_else(|| {
+            let motion = &self.asking.motion;
+            motion.last(|asked| asked.study == study && asked.evaluation.design == design)
+        })
     }
 
     /// Returns the motion that the scene shows, if there is one and its path is drawn.
@@ -44,20 +53,6 @@ impl Session {
         points.push(in_degrees(pose));
         self.editor.change(|study| study.task.go_along(points));
         self.editor.end_gesture();
-    }
-
-    fn moving_study(&mut self) -> Arc<Study> {
-        let edited = self.editor.study();
-        let mut study = self.as_run.study().clone();
-        study.task = edited.task.clone();
-        study.payload = edited.payload.clone();
-        study.drives = edited.drives.clone();
-        study.loads = edited.loads.clone();
-        // The study is compared with the last one that was asked: it is the same from frame to frame.
-        match self.asking.motion.asked() {
-            Some(asked) if *asked.study == study => Arc::clone(&asked.study),
-            _ => Arc::new(study),
-        }
     }
 }
 

@@ -71,9 +71,14 @@ impl<Q: Question> AnsweringThread<Q> {
     /// Returns the answer to the question that was asked last, once it is known.
     pub fn answer(&self) -> Option<Arc<Q::Answer>> {
         let asked = self.asked.as_ref()?;
+        self.last(|question| question == asked)
+    }
+
+    /// Returns the answer that was found last, if `accepts` accepts its question.
+    pub fn last(&self, accepts: impl FnOnce(&Q) -> bool) -> Option<Arc<Q::Answer>> {
         let answered = self.shared.answered.lock().unwrap_or_else(PoisonError::into_inner);
         let (question, answer) = answered.as_ref()?;
-        (question == asked).then(|| Arc::clone(answer))
+        accepts(question).then(|| Arc::clone(answer))
     }
 
     /// Returns whether the question that was asked last has no answer yet.

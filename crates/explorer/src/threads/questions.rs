@@ -6,8 +6,10 @@ use std::time::Duration;
 
 use kinefront_model::evaluation::{Evaluation, Quantity, TaskOutcome, TaskSample};
 use kinefront_model::mechanism::Design;
+use kinefront_scene::{MotionPath, PathColor};
 use kinefront_study::{
-    DesignProblem, Drivers, DriversAlong, DriversOptions, Hindrance, PreparedStudy, Study, Wish, WishOutcome,
+    DesignProblem, DriveSection, Drivers, DriversAlong, DriversOptions, Hindrance, LoadSection, PayloadSection,
+    PreparedStudy, Study, TaskSection, Wish, WishOutcome,
 };
 
 use super::answering::Question;
@@ -164,11 +166,35 @@ impl Question for HindrancesQuestion {
     }
 }
 
+/// The sections of a study that describe a motion and what moves.
+#[derive(Clone, PartialEq)]
+pub struct MotionSections {
+    task: TaskSection,
+    payload: PayloadSection,
+    drives: DriveSection,
+    loads: LoadSection,
+}
+
+impl From<&Study> for MotionSections {
+    fn from(study: &Study) -> Self {
+        Self {
+            task: study.task.clone(),
+            payload: study.payload.clone(),
+            drives: study.drives.clone(),
+            loads: study.loads.clone(),
+        }
+    }
+}
+
 /// What does a motion ask of the drives of a design?
 #[derive(Clone, PartialEq)]
 pub struct MotionQuestion {
-    /// The study of the run, with the motion and what moves with it of the study being edited.
-    pub study: Arc<Study>,
+    /// The study that was run.
+    pub study: StudyOfRun,
+    /// The motion, which takes the place of that of the study.
+    pub sections: MotionSections,
+    /// What the colours of the path tell; without, there is no path.
+    pub color: Option<PathColor>,
     /// The design.
     pub evaluation: Arc<Evaluation>,
 }
@@ -180,6 +206,8 @@ pub struct FollowedMotion {
     pub outcome: TaskOutcome,
     /// The samples up to its end.
     pub samples: Vec<TaskSample>,
+    /// The path with its colours.
+    pub path: Option<MotionPath>,
 }
 
 /// The answer: no motion if the study states none.
@@ -191,8 +219,18 @@ impl Question for MotionQuestion {
     const RESTING: Duration = Duration::ZERO;
 
     fn answer(&self) -> Self::Answer {
-        let model = self.study.model().map_err(|error| error.to_string())?;
-        let followed = model.follow_task(&self.evaluation);
-        Ok(followed.map(|(outcome, samples)| FollowedMotion { outcome, samples }))
+        let mut study = self.study.0.study().clone();
+        let sections = self.sections.clone();
+        study.task = sections.task;
+        study.payload = sections.payload;
+        study.drives = sections.drives;
+        study.loads = sections.loads;
+        let model = study.model().map_err(|error| error.to_string())?;
+        let Some((outcome, samples)) = model.follow_task(&self.evaluation) else {
+            return Ok(None);
+        };
+        let color = self.color;
+        let path = color.and_then(|color| MotionPath::new(&model, &self.evaluation.design, &samples, color));
+        Ok(Some(FollowedMotion { outcome, samples, path }))
     }
 }

@@ -17,17 +17,17 @@ use std::time::Duration;
 use super::Wake;
 use super::mailbox::Mailbox;
 use super::questions::MotionAnswer;
-use kinefront_model::evaluation::{Evaluation, GridChoice, TaskSample};
+use kinefront_model::evaluation::{Evaluation, GridChoice};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 use kinefront_recording::{FrontPoint, LiveScene, Pinned, RecordingError, Shown, Viewpoint, VisibleLayers};
-use kinefront_scene::{FieldLegend, WorkspaceProof, workspace_proof};
+use kinefront_scene::{FieldLegend, MotionPath, WorkspaceProof, workspace_proof};
 use kinefront_study::PreparedStudy;
 
 /// Time without a newer design after which a design is verified.
 const RESTING: Duration = Duration::from_millis(150);
 
-/// The motion that is shown. Two answers are different, so that their samples need not be compared.
+/// The motion that is shown. Two answers are different, so that their contents need not be compared.
 #[derive(Debug, Clone)]
 pub struct MotionShown(pub Arc<MotionAnswer>);
 
@@ -38,9 +38,8 @@ impl PartialEq for MotionShown {
 }
 
 impl MotionShown {
-    fn samples(&self) -> &[TaskSample] {
-        let followed = self.0.as_ref().as_ref().ok().and_then(Option::as_ref);
-        followed.map_or(&[], |followed| &followed.samples)
+    fn path(&self) -> Option<&MotionPath> {
+        self.0.as_ref().as_ref().ok()?.as_ref()?.path.as_ref()
     }
 }
 
@@ -369,7 +368,7 @@ fn draw(
             .proof
             .as_deref()
             .filter(|proof| proof.design == known.evaluation.design),
-        motion: request.motion.as_ref().map_or(&[], MotionShown::samples),
+        path: request.motion.as_ref().and_then(MotionShown::path),
         pose: request.pose,
         heatmap_phi: request.heatmap_phi,
         layers: &request.layers,

@@ -89,7 +89,7 @@ fn what_is_no_longer_drawn_disappears() {
             model: &model,
             evaluation: &evaluation,
             proof: Some(&proof),
-            motion: &[],
+            path: None,
             pose: None,
             heatmap_phi: None,
             layers,

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Motion;
+use crate::polygon::Polygon;
 use crate::spatial::Pose;
 
 /// What the platform moves along.
@@ -75,12 +76,14 @@ pub struct Task {
 }
 
 /// The workspace to which a path is scaled.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct TaskFrame {
     /// Centre \[m\].
     pub centre: DVec2,
     /// `R_w` \[m\].
     pub radius: f64,
+    /// Outline of a prescribed region that is no disc, about the centre: it holds more than the disc.
+    pub polygon: Option<Polygon>,
     /// `φ_c` \[rad\].
     pub home_phi: f64,
     /// Half the rotation range \[rad\].

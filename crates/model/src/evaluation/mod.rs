@@ -34,7 +34,7 @@ pub use parts::{CutBar, Part};
 pub use pose::{PoseEvaluation, PosedDesign, PosedDynamics, Unreachable};
 pub use quantity::{Bound, LimitResult, Objective, Quantity, QuantityLimit, QuantitySet, QuantityValues};
 pub use sizing::{SizingRanges, WorkspaceTarget};
-pub use task::{TaskFailure, TaskFault, TaskFigures, TaskOutcome, TaskSample};
+pub use task::{TaskFailure, TaskFault, TaskFigures, TaskOutcome, TaskSample, largest_of_legs};
 
 use crate::clearance::Clearance;
 use crate::mechanism::Design;

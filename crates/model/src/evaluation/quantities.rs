@@ -2,11 +2,10 @@
 
 use glam::DVec2;
 
-use super::{Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues};
+use super::{Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues, largest_of_legs};
 use crate::dynamics::TaskFrame;
 use crate::mechanism::{Design, Leg};
 use crate::pose::{PoseChecker, ScalarSet};
-use crate::spatial::LEGS;
 use crate::workspace::{Grid, Positions, RegularWorkspace, ValueColumns};
 
 /// Returns the quantities of a design that its constraints and dimensions determine, as far as the study asks for them.
@@ -112,16 +111,15 @@ pub(super) fn add_of_task(values: &mut QuantityValues, model: &Model, design: &D
             return;
         }
     };
-    let largest = |values: [f64; LEGS]| values.into_iter().fold(0.0, f64::max);
     for quantity in asked {
         let value = match quantity {
             Quantity::CycleTime => motion.cycle_time(),
             Quantity::PathReach => figures.path_reach,
             Quantity::CycleEnergy => figures.energy_shared,
             Quantity::CornerPower => figures.corner_power,
-            Quantity::PathSpeed | Quantity::PathRate => largest(figures.peak_speed),
-            Quantity::PathForce | Quantity::PathTorque => largest(figures.peak_force),
-            _ => largest(figures.rms_force),
+            Quantity::PathSpeed | Quantity::PathRate => largest_of_legs(figures.peak_speed),
+            Quantity::PathForce | Quantity::PathTorque => largest_of_legs(figures.peak_force),
+            _ => largest_of_legs(figures.rms_force),
         };
         values.set(quantity, quantity.is_of(design).then_some(value));
     }

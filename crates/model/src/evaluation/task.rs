@@ -101,6 +101,11 @@ struct Tally {
     squares: [f64; LEGS],
 }
 
+/// Returns the largest absolute value that any of the three legs has.
+pub fn largest_of_legs(values: [f64; LEGS]) -> f64 {
+    values.iter().fold(0.0f64, |most, value| most.max(value.abs()))
+}
+
 fn larger(most: &mut [f64; LEGS], values: &[f64; LEGS]) {
     for (most, value) in most.iter_mut().zip(values) {
         *most = most.max(value.abs());
@@ -167,8 +172,7 @@ impl Tally {
         let time = motion.cycle_time();
         let figures = &mut self.figures;
         figures.rms_force = self.squares.map(|square| (square / time).sqrt());
-        let largest = |values: &[f64; LEGS]| values.iter().fold(0.0f64, |most, value| most.max(*value));
-        figures.corner_power = largest(&figures.peak_force) * largest(&figures.peak_speed);
+        figures.corner_power = largest_of_legs(figures.peak_force) * largest_of_legs(figures.peak_speed);
         figures.stroke = [0, 1, 2].map(|leg: usize| {
             let values = self.samples.iter().map(|sample| sample.actuators[leg]);
             let [least, most] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| {
@@ -190,17 +194,7 @@ impl Model {
     pub fn follow(&self, evaluation: &Evaluation, task: &Task) -> (TaskOutcome, Vec<TaskSample>) {
         let home_phi_deg = evaluation.home_phi_deg.unwrap_or(0.0);
         let frame = self.task_frame(&evaluation.design, evaluation.workspace_radius(), home_phi_deg);
-        let (mut outcome, samples) = self.posed(&evaluation.design).follow(task, &frame);
-        // A prescribed polygon holds more than the disc to which a path is scaled.
-        if let (Region::Polygon(polygon), Some(Ok(figures))) = (&self.settings().workspace.region, &mut outcome.result)
-        {
-            figures.inside_workspace = samples.iter().all(|sample| {
-                let at = sample.instant.pose.position - frame.centre;
-                let is_held = polygon.contains(at) || polygon.distance_to_boundary(at) <= 1e-9 * frame.radius;
-                is_held && frame.holds_orientation(&sample.instant)
-            });
-        }
-        (outcome, samples)
+        self.posed(&evaluation.design).follow(task, &frame)
     }
 
     /// Returns the workspace of a design to which a motion is scaled.
@@ -209,6 +203,10 @@ impl Model {
         TaskFrame {
             centre: workspace.centre,
             radius,
+            polygon: match &workspace.region {
+                Region::Polygon(polygon) => Some(polygon.clone()),
+                Region::Largest | Region::Disc(_) => None,
+            },
             home_phi: home_phi_deg.to_radians(),
             half_range: 0.5 * workspace.rotation_range_deg.to_radians(),
             lever: design.platform_radius(),
@@ -328,13 +326,12 @@ impl PosedDesign {
 impl TaskFrame {
     /// Returns whether a moment of a motion lies in the workspace, up to rounding.
     fn contains(&self, instant: &TaskInstant) -> bool {
-        let distance = instant.pose.position.distance(self.centre);
-        distance <= self.radius * (1.0 + 1e-9) && self.holds_orientation(instant)
-    }
-
-    /// Returns whether the orientation of a moment lies in the rotation range, up to rounding.
-    fn holds_orientation(&self, instant: &TaskInstant) -> bool {
+        let at = instant.pose.position - self.centre;
+        let is_held = match &self.polygon {
+            Some(polygon) => polygon.contains(at) || polygon.distance_to_boundary(at) <= 1e-9 * self.radius,
+            None => at.length() <= self.radius * (1.0 + 1e-9),
+        };
         let turn = libm::remainder(instant.pose.phi - self.home_phi, 2.0 * std::f64::consts::PI);
-        turn.abs() <= self.half_range * (1.0 + 1e-9) + 1e-12
+        is_held && turn.abs() <= self.half_range * (1.0 + 1e-9) + 1e-12
     }
 }

@@ -286,6 +286,7 @@ fn motions_agree() {
             let frame = TaskFrame {
                 centre: DVec2::ZERO,
                 radius: case["workspace_radius_m"].as_f64().unwrap_or(0.0),
+                polygon: None,
                 home_phi: case["home_phi_deg"].as_f64().unwrap_or(0.0).to_radians(),
                 half_range: 10f64.to_radians(),
                 lever: design.platform_radius(),

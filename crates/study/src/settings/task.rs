@@ -103,6 +103,11 @@ pub enum MotionLawChoice {
     Trapezoid,
 }
 
+/// Values that an editor starts from: time of a cycle \[s\], speed \[m/s\] and acceleration \[m/s²\] of `P`.
+const FIRST_CYCLE: f64 = 2.0;
+const FIRST_SPEED: f64 = 1.0;
+const FIRST_ACCELERATION: f64 = 10.0;
+
 section! {
     /// A motion that the platform makes again and again.
     pub struct TaskSection in "task" {
@@ -131,11 +136,11 @@ section! {
             /// Points of the path, as [x in metres, y in metres, φ in degrees]; angles are not wrapped.
             waypoints: Vec<[f64; 3]>, Check::Within(-1e6, 1e6, ""), Initial::AsText;
             /// Time of the whole cycle with its rests; if omitted, the motion is as fast as its limits allow.
-            cycle_time_s: f64, Check::Positive, Initial::Number(2.0);
+            cycle_time_s: f64, Check::Positive, Initial::Number(FIRST_CYCLE);
             /// Largest speed of `P`.
-            v_max_m_per_s: f64, Check::Positive, Initial::Number(1.0);
+            v_max_m_per_s: f64, Check::Positive, Initial::Number(FIRST_SPEED);
             /// Largest acceleration of `P`.
-            a_max_m_per_s2: f64, Check::Positive, Initial::Number(10.0);
+            a_max_m_per_s2: f64, Check::Positive, Initial::Number(FIRST_ACCELERATION);
             /// Largest rate of rotation of the platform.
             omega_max_rad_per_s: f64, Check::Positive, Initial::Number(1.0);
             /// Largest angular acceleration of the platform.
@@ -175,10 +180,10 @@ impl TaskSection {
                 self.alpha_max_rad_per_s2 = None;
             }
             (false, false) if before.cycle_time_s.is_some() => {
-                self.v_max_m_per_s = Some(1.0);
-                self.a_max_m_per_s2 = Some(10.0);
+                self.v_max_m_per_s = Some(FIRST_SPEED);
+                self.a_max_m_per_s2 = Some(FIRST_ACCELERATION);
             }
-            (false, false) => self.cycle_time_s = Some(2.0),
+            (false, false) => self.cycle_time_s = Some(FIRST_CYCLE),
             _ => {}
         }
     }
