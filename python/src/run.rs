@@ -93,9 +93,9 @@ impl PyRun {
         let columns: Vec<Column> = Column::of_front(&self.study).collect();
         let objectives: Vec<_> = front.iter().map(|entry| entry.row.objectives).collect();
         let marks = front_marks(&self.study, &objectives);
-        let sections = self.study.sections.cross_sections();
+        let catalogues = self.study.catalogues();
         let cell =
-            |place: usize, column: Column, entry: &TableRow| column.cell_of_front(entry, &marks[place], &sections);
+            |place: usize, column: Column, entry: &TableRow| column.cell_of_front(entry, &marks[place], &catalogues);
         let made = Py::new(py, PyTable::with(py, &columns, front, cell)?)?;
         Ok(self.front_table.get_or_init(|| made).clone_ref(py))
     }

@@ -14,13 +14,15 @@ use super::{Ending, Failure, exists_already, say};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Formats of a design: gltf (.glb), mjcf (.xml), sdf, urdf, dxf, json, csv-parts (.csv: what has to be ordered and cut), step (an assembly for CAD).
+Formats of a design: gltf (.glb), mjcf (.xml), sdf, urdf, dxf, json, csv-parts (.csv: what has to be ordered and cut), step (an assembly for CAD), csv-trajectory
+(.csv: the motion of the study every millisecond, for a controller).
 Formats of a front: csv, parquet; specify the run folder instead of a design.
 
 Examples:
   kinefront export --design \"3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056\" --out design.glb
   kinefront export run/front.csv#12 --format mjcf --out design.xml
   kinefront export run/front.csv#12 --out parts.csv
+  kinefront export run/front.csv#12 --format csv-trajectory --out trajectory.csv
   kinefront export run --out front.parquet")]
 pub struct ExportArguments {
     #[command(flatten)]
@@ -148,7 +150,10 @@ fn design(arguments: &ExportArguments, format: Format) -> Result<Vec<u8>, Failur
         pose: arguments.pose,
     };
     export(&subject, format).map_err(|error| match error {
-        ExportError::Unreachable { .. } | ExportError::NoBar(_) | ExportError::NotFinite(_) => Failure::input(error),
+        ExportError::Unreachable { .. }
+        | ExportError::NoBar(_)
+        | ExportError::NoMotion(_)
+        | ExportError::NotFinite(_) => Failure::input(error),
         ExportError::Format { .. } => Failure::runtime(error),
     })
 }

@@ -53,6 +53,7 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
             study.name
         )));
     };
+    let catalogue = &model.settings().drive_catalogue;
     let mut out = std::io::stdout().lock();
     // A motion that ends early has no curves that stop in the middle.
     let is_complete = matches!(outcome.result, Some(Ok(_)));
@@ -61,7 +62,7 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
         let json = TaskReportJson {
             design: design.to_string(),
             study: study.name.clone(),
-            task: TaskJson::from(&outcome),
+            task: TaskJson::new(&outcome, catalogue),
             samples: rows.collect(),
         };
         writeln!(out, "{}", to_json(&json).map_err(Failure::Runtime)?)?;
@@ -71,7 +72,11 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
             say(format_args!("{design}: {reason}"));
         }
     } else {
-        writeln!(out, "{}", tables::task(&design, &outcome, text::motion_fault(&outcome)))?;
+        writeln!(
+            out,
+            "{}",
+            tables::task(&design, &outcome, catalogue, text::motion_fault(&outcome))
+        )?;
     }
     Ok(Ending::Done)
 }

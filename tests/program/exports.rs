@@ -321,7 +321,7 @@ fn exports_say_what_is_wrong() {
     fails(&["--design", &DESIGN.replace("rj=0.036", "rj=0")], "radius 0");
     fails(
         &["--design", DESIGN, "--format", "iges"],
-        "expected one of gltf, mjcf, sdf, urdf, dxf, json, csv-parts, step, csv, parquet",
+        "expected one of gltf, mjcf, sdf, urdf, dxf, json, csv-parts, step, csv-trajectory, csv, parquet",
     );
     fails(&["--design", DESIGN, "--format", "parquet"], "specify the run folder");
     fails(&["run/front.csv#1", "--format", "csv"], "specify the run folder");

@@ -7,7 +7,7 @@ use predicates::str::contains;
 use serde_json::Value;
 
 use super::exports::{DESIGNS, OTHERS};
-use super::support::{DESIGN, folder, json, kinefront, python, script};
+use super::support::{DESIGN, folder, json, kinefront, optimize, python, sample, script};
 
 /// The settings of the first independent case of the model's fixture `task_cases.json`.
 const STUDY: &str = r#"
@@ -193,6 +193,8 @@ fn mujoco_needs_the_same_forces() {
     let folder = folder();
     let study = folder.path().join("study.toml");
     let text = "[joints]\nrevolute_kg = 0.5\ncarriage_kg = 1.5\nmotor_kg = 2.5\n\
+                [payload]\nmass_kg = 4.0\ninertia_kg_m2 = 0.2\ncentre_m = [0.11, -0.07]\n\
+                [drives]\nslider_mass_kg = 1.2\nprismatic_inertia_kg = 0.7\nrevolute_inertia_kg_m2 = 0.3\n\
                 [loads]\ngravity_m_per_s2 = [1.5, -4.0, -9.81]\n";
     fs::write(&study, text).expect("a study");
     let motion = folder.path().join("motion.json");
@@ -253,6 +255,79 @@ fn mujoco_needs_the_same_forces() {
     }
 }
 
+/// A controller that takes the reference trajectory moves the exported mechanism along its path in MuJoCo, with the payload and the rotors,
+/// and the keyframes are the poses at which it rests.
+#[test]
+fn mujoco_follows_the_reference_trajectory() {
+    let Some(_) = python(&["mujoco", "numpy"]) else { return };
+    let folder = folder();
+    let study = folder.path().join("study.toml");
+    let text = "[joints]\nrevolute_kg = 0.5\ncarriage_kg = 1.5\nmotor_kg = 2.5\n\
+                [payload]\nmass_kg = 4.0\ninertia_kg_m2 = 0.2\ncentre_m = [0.11, -0.07]\n\
+                [drives]\nslider_mass_kg = 1.2\nprismatic_inertia_kg = 2.0\nrevolute_inertia_kg_m2 = 2.0\n\
+                [loads]\ngravity_m_per_s2 = [0.0, -9.81, 0.0]\n\
+                [task]\nshape = \"star\"\nshare = 0.5\ncycle_time_s = 4.0\ndwell_s = 0.05\n";
+    fs::write(&study, text).expect("a study");
+    let designs: Vec<&str> = DESIGNS.iter().map(|(design, _)| *design).chain(OTHERS).collect();
+    sample(designs.into_iter(), 6).for_each(|design| {
+        let name = design.split(' ').next().expect("a name");
+        let [model, trajectory] = [("mjcf", "xml"), ("csv-trajectory", "csv")].map(|(format, extension)| {
+            let file = folder.path().join(format!("{name}.{extension}"));
+            kinefront()
+                .args(["export", "--design", design, "--format", format, "--study"])
+                .arg(&study)
+                .arg("--out")
+                .arg(&file)
+                .assert()
+                .success();
+            file
+        });
+        let python = python(&["mujoco", "numpy"]).expect("Python, which was found before");
+        let found: Value =
+            serde_json::from_str(&script(python, "mujoco_motion.py", &[&model, &trajectory])).expect("JSON");
+        let number = |key: &str| found[key].as_f64().expect("a number");
+        assert!(number("farthest_m") < 1e-3, "{design}: {found}");
+        assert!(number("turned_rad") < 1e-3, "{design}: {found}");
+        assert!(
+            number("open_m") < 1e-9,
+            "{design}: the keyframes do not close the loops: {found}"
+        );
+        assert!(number("off_rest_m") < 1e-9, "{design}: {found}");
+        assert!(number("travelled_m") > 0.1, "{design}: {found}");
+        assert_eq!(found["rests"], 6, "{design}");
+        assert_eq!(found["rows"], 4001, "{design}");
+    });
+    // Without a motion, and with one that leaves the reach, there is no trajectory.
+    let export = |study: &std::path::Path| {
+        let mut command = kinefront();
+        command.args([
+            "export",
+            "--design",
+            DESIGN,
+            "--format",
+            "csv-trajectory",
+            "--out",
+            "-",
+            "--study",
+        ]);
+        command.arg(study).assert()
+    };
+    fs::write(&study, "name = \"still\"\n").expect("a study");
+    export(&study)
+        .code(2)
+        .stdout("")
+        .stderr(contains("the study `still` states no motion in [task]"));
+    fs::write(
+        &study,
+        "[task]\nshape = \"waypoints\"\nwaypoints = [[0, 0, 30], [9, 0, 30]]\ncycle_time_s = 2\n",
+    )
+    .expect("a study");
+    export(&study)
+        .code(2)
+        .stdout("")
+        .stderr(contains("the motion ends in piece 1 at"));
+}
+
 /// Whether a motion lies in a prescribed rectangle is asked of the rectangle, not of the disc within it.
 #[test]
 fn a_motion_within_a_prescribed_rectangle_is_inside() {
@@ -269,4 +344,180 @@ fn a_motion_within_a_prescribed_rectangle_is_inside() {
     };
     assert_eq!(inside(0.3), true, "up to the side of the rectangle");
     assert_eq!(inside(0.301), false, "beyond it");
+}
+
+/// A study whose drives are selected from a catalogue, for machines whose motors stand and whose motors move.
+const SELECTING: &str = r#"
+    name = "selecting"
+    architectures = ["3-PRR", "3-R_RR"]
+    objectives = [{ minimize = "mass_kg" }, { minimize = "drive_mass_kg" }]
+    [payload]
+    mass_kg = 5.0
+    [task]
+    shape = "waypoints"
+    waypoints = [[-0.15, 0.0, 0.0], [0.15, 0.0, 0.0]]
+    cycle_time_s = 1.0
+    [workspace]
+    home_phi_deg = 0.0
+    [workspace.region]
+    kind = "rectangle"
+    width_m = 0.4
+    height_m = 0.2
+    [bounds]
+    R_m = [0.3, 1.5]
+    r_m = [0.05, 0.6]
+    Lb_m = [0.2, 1.5]
+    [optimizer]
+    evaluations = 300
+"#;
+
+/// A run selects drives, its table and its parts name them, and readers of the table know them again.
+#[test]
+fn a_run_selects_drives_from_a_catalogue() {
+    let folder = folder();
+    let study = folder.path().join("study.toml");
+    fs::write(
+        &study,
+        format!("{SELECTING}\n[drives]\ncatalogue = \"generic-drives\"\n"),
+    )
+    .expect("a study");
+    let run = folder.path().join("run");
+    optimize(&study, &run, &[]);
+    let mut table = csv::Reader::from_path(run.join("front.csv")).expect("a table");
+    let header = table.headers().expect("a header").clone();
+    assert_eq!(header.iter().next_back(), Some("drive"));
+    let rows: Vec<csv::StringRecord> = table.records().map(|row| row.expect("a row")).collect();
+    assert!(!rows.is_empty());
+    let of = |row: &csv::StringRecord, name: &str| {
+        let place = header.iter().position(|title| title == name).expect("a column");
+        row[place].to_owned()
+    };
+    let row = rows
+        .iter()
+        .find(|row| of(row, "architecture") == "3-R_RR")
+        .unwrap_or(&rows[0]);
+    let drive = of(row, "drive");
+    assert!(!drive.is_empty());
+    assert!(
+        rows.iter()
+            .all(|row| of(row, "drive_utilization").parse::<f64>().expect("a number") <= 1.0)
+    );
+    // Evaluated anew, it is the same design with the same drive.
+    let design = format!(
+        "{} R={} r={} Lb={} rj={} rp={}",
+        of(row, "architecture"),
+        of(row, "R"),
+        of(row, "r"),
+        of(row, "Lb"),
+        of(row, "rj"),
+        of(row, "rp")
+    );
+    let path = study.to_str().expect("a path");
+    let found = json([
+        "evaluate", "--design", &design, "--study", path, "--grid", "fine", "--json",
+    ]);
+    assert_eq!(
+        found["mass_kg"].as_f64().expect("a mass").to_string(),
+        of(row, "mass_kg")
+    );
+    assert_eq!(found["task"]["drive"], drive);
+    assert_eq!(
+        found["quantities"]["drive_mass_kg"].to_string().parse::<f64>(),
+        of(row, "drive_mass_kg").parse()
+    );
+    kinefront()
+        .args(["task", "--design", &design, "--study", path, "--grid", "fine"])
+        .assert()
+        .success()
+        .stdout(contains(&*drive).and(contains("of which the motion uses")));
+    let entry = format!("{}#{}", run.join("front.csv").display(), of(row, "id"));
+    kinefront()
+        .args(["export", &entry, "--format", "csv-parts", "--out", "-"])
+        .assert()
+        .success()
+        .stdout(contains(&*drive));
+    kinefront().arg("check").arg(&run).assert().success();
+    // A table that names a drive that the catalogue does not have is not that of the run.
+    let text = fs::read_to_string(run.join("front.csv")).expect("a table");
+    fs::write(run.join("front.csv"), text.replace(&drive, "perpetual motion")).expect("a table");
+    kinefront()
+        .args(["export", &entry, "--format", "csv-parts", "--out", "-"])
+        .assert()
+        .code(2);
+}
+
+/// A catalogue beside the study is read with its comments, and what is wrong in it is told with its line.
+#[test]
+fn catalogues_of_drives_are_checked() {
+    let folder = folder();
+    let (study, catalogue) = (folder.path().join("study.toml"), folder.path().join("motors.csv"));
+    fs::write(&study, format!("{SELECTING}\n[drives]\ncatalogue = \"motors.csv\"\n")).expect("a study");
+    let header = "# Source: a maker\nname,kind,rated,peak,speed,inertia,mass_kg\n";
+    let check = |rows: &str| {
+        fs::write(&catalogue, format!("{header}{rows}")).expect("a catalogue");
+        let mut command = kinefront();
+        command.args(["study", "check"]).arg(&study).assert()
+    };
+    let slide = "axis,prismatic,100,300,2,1,4\n";
+    check(&format!("{slide}joint, revolute, 100, 300, 20, 0.1, 4\n")).success();
+    for (rows, words) in [
+        (
+            slide.to_owned(),
+            "has no drive of the kind revolute, but the actuators of 3-R_RR turn",
+        ),
+        (
+            format!("{slide}joint,rotary,1,2,3,0,1\n"),
+            "line 4 is not an entry of a catalogue; its columns are name, kind",
+        ),
+        (format!("{slide}joint,revolute,9,2,3,0,1\n"), "`joint` is no drive"),
+        (format!("{slide}joint,revolute,1,2,NaN,0,1\n"), "`joint` is no drive"),
+        (
+            format!("{slide}axis,revolute,1,2,3,0,1\n"),
+            "`axis` is the name of two drives",
+        ),
+        (String::new(), "has no entries"),
+    ] {
+        check(&rows).code(2).stderr(contains(words).and(contains("catalogue")));
+    }
+    fs::write(&catalogue, format!("{header}{slide}")).expect("a catalogue");
+    for (text, words) in [
+        (
+            "[drives]\ncatalogue = \"motors.csv\"\n",
+            "has no effect without a motion",
+        ),
+        (
+            "[drives]\ncatalogue = \"engines.csv\"\n",
+            "give the path of a CSV file beside the study, or \"generic-drives\"",
+        ),
+        (
+            "[constraints]\ndrive_mass_kg = { at_most = 3 }\n[task]\nshape = \"circle\"\ncycle_time_s = 2\n",
+            "has no value without a catalogue of drives",
+        ),
+    ] {
+        fs::write(&study, format!("architectures = [\"3-PRR\"]\n{text}")).expect("a study");
+        let mut command = kinefront();
+        command
+            .args(["study", "check"])
+            .arg(&study)
+            .assert()
+            .code(2)
+            .stderr(contains(words));
+    }
+    // No drive is strong enough: the design is infeasible, and the program says by how much.
+    fs::write(&catalogue, format!("{header}axis,prismatic,0.1,0.2,2,1,4\n")).expect("a catalogue");
+    let text = SELECTING.replace(", \"3-R_RR\"", "");
+    fs::write(&study, format!("{text}\n[drives]\ncatalogue = \"motors.csv\"\n")).expect("a study");
+    let design = "3-PRR R=1.0 r=0.3 Lb=0.7 rj=0.03 rp=0.04";
+    let path = study.to_str().expect("a path");
+    kinefront()
+        .args(["task", "--design", design, "--study", path])
+        .assert()
+        .success()
+        .stdout(contains(
+            "none of the catalogue carries the motion; axis misses by least",
+        ));
+    let found = json(["evaluate", "--design", design, "--study", path, "--json"]);
+    assert_eq!(found["feasible"], false);
+    assert!(found["task"]["drive"].is_null());
+    assert!(found["task"]["drive_utilization"].as_f64().expect("a number") > 1.0);
 }

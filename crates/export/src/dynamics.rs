@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::pose::PoseJson;
-use kinefront_model::dynamics::{DynamicsReport, Motion};
-use kinefront_model::evaluation::{OverWorkspace, PosedDynamics, TaskOutcome, TaskSample};
+use kinefront_model::dynamics::{DriveCatalogue, DynamicsReport, Motion};
+use kinefront_model::evaluation::{OverWorkspace, PosedDynamics, SelectedDrive, TaskOutcome, TaskSample};
 
 /// Frequencies, masses, gains and errors in the output of `kinefront pose --json`.
 #[derive(Debug, Serialize)]
@@ -154,10 +154,15 @@ pub struct TaskJson {
     energy_shared_j: Option<f64>,
     energy_net_j: Option<f64>,
     stroke: Option<[f64; 3]>,
+    /// Drive of the catalogue that the design selects for the motion; nothing if none carries it, or without a catalogue.
+    drive: Option<String>,
+    /// Largest share of its limits that the motion uses, or that of the drive that misses by least.
+    drive_utilization: Option<f64>,
 }
 
-impl From<&TaskOutcome> for TaskJson {
-    fn from(outcome: &TaskOutcome) -> Self {
+impl TaskJson {
+    /// Creates the output for a motion, whose drive is one of a catalogue.
+    pub fn new(outcome: &TaskOutcome, catalogue: &DriveCatalogue) -> Self {
         let motion = outcome.motion.as_ref();
         let figures = outcome.result.as_ref().and_then(|result| result.as_ref().ok());
         let failure = outcome.result.as_ref().and_then(|result| result.as_ref().err());
@@ -187,6 +192,11 @@ impl From<&TaskOutcome> for TaskJson {
             energy_shared_j: figures.map(|figures| figures.energy_shared),
             energy_net_j: figures.map(|figures| figures.energy_net),
             stroke: figures.map(|figures| figures.stroke),
+            drive: outcome
+                .drive
+                .filter(SelectedDrive::carries)
+                .and_then(|drive| Some(catalogue.get(drive.place)?.name.clone())),
+            drive_utilization: outcome.drive.map(|drive| drive.utilization),
         }
     }
 }

@@ -93,6 +93,10 @@ impl Format {
             words +=
                 &format!(" The study counts {counted} of the three platform bars; their masses are scaled to match.");
         }
+        let payload = subject.model.settings().dynamics.payload.mass;
+        if payload > 0.0 {
+            words += &format!(" The platform carries the payload of {payload} kg.");
+        }
         if self.joints_from_zero {
             words += "\nJoint values are relative to the exported pose, at which they are 0.";
         }

@@ -8,6 +8,7 @@
 //! | `urdf` | bodies with masses; a tree, so the loops are cut |
 //! | `step` | an assembly of exact solids in millimetres, for CAD |
 //! | `dxf` | the plan view in layers, in millimetres |
+//! | `csv-trajectory` | the motion of the study in equal steps of time, as a controller of the actuators takes it |
 //! | `json` | evaluation, bodies, joints, and a tour with its actuator values |
 //!
 //! Every format except the plan view takes its bodies from [`kinefront_scene::linkage()`], so the formats agree.
@@ -26,6 +27,7 @@ mod step;
 mod strength;
 #[cfg(feature = "parquet")]
 mod table;
+mod trajectory;
 mod urdf;
 mod wire;
 mod xml;
@@ -54,6 +56,7 @@ impl Format {
         json::FORMAT,
         parts::FORMAT,
         step::FORMAT,
+        trajectory::FORMAT,
     ];
 }
 
@@ -69,6 +72,9 @@ pub enum ExportError {
     /// A bar has radius 0, but the format requires masses and shapes; contains the format's short name.
     #[error("a bar of radius 0 has no mass and no shape; {0} needs r_j and r_p above 0")]
     NoBar(&'static str),
+    /// The format is one of a motion, which the study does not state or the design does not follow; contains why.
+    #[error("{0}")]
+    NoMotion(String),
     /// A number of the file would not be finite; contains the format's short name.
     #[error(
         "the dimensions of the design are too large or too small for {0}: a number in the file would not be finite"
@@ -105,7 +111,8 @@ pub struct ExportSubject<'a> {
 ///
 /// # Errors
 /// [`ExportError`] when the design does not reach the pose, when a simulator format is requested for a design with a
-/// bar of radius 0, when a number would not be finite, or when the format cannot be written.
+/// bar of radius 0, when a format of a motion is requested without one, when a number would not be finite, or when the format cannot be
+/// written.
 pub fn export(subject: &ExportSubject, format: Format) -> Result<Vec<u8>, ExportError> {
     let prepared = Prepared::new(subject)?;
     let design = &subject.evaluation.design;
@@ -115,9 +122,12 @@ pub fn export(subject: &ExportSubject, format: Format) -> Result<Vec<u8>, Export
     if !prepared.is_finite() {
         return Err(ExportError::NotFinite(format.key));
     }
-    let written = (format.write)(&prepared).map_err(|cause| ExportError::Format {
-        format: format.key,
-        cause,
+    let written = (format.write)(&prepared).map_err(|cause| match cause.downcast::<ExportError>() {
+        Ok(own) => *own,
+        Err(cause) => ExportError::Format {
+            format: format.key,
+            cause,
+        },
     })?;
     // A number that the writer itself derives may be beyond all doubles, too.
     if format.is_text && prepared::has_number_that_is_none(&written) {

@@ -1,12 +1,14 @@
 //! MJCF for MuJoCo: legs as trees, the platform free in the plane, the connections at `C_1` to `C_3` as equality constraints, and
-//! actuators as position servos whose gain is the study's actuator stiffness.
+//! actuators as position servos whose gain is the study's actuator stiffness. The payload is part of the platform, the inertia of the
+//! rotors is that of the joints, and where the study states a motion, a keyframe has each pose at which it rests.
 
 use super::format::{AnyError, Format};
 use super::prepared::{Prepared, inertial, joint_axis, joint_name, rgba};
 use super::xml::Element;
 use glam::DVec2;
+use kinefront_model::dynamics::TaskInstant;
 use kinefront_model::mechanism::JointKind;
-use kinefront_scene::{Body, Joint, Solid, SolidShape};
+use kinefront_scene::{Body, Frame, Joint, Linkage, Solid, SolidShape, linkage};
 
 pub(super) const FORMAT: Format = Format {
     key: "mjcf",
@@ -23,7 +25,7 @@ pub(super) const FORMAT: Format = Format {
 fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let root = Element::new("mujoco")
         .with("model", subject.identifier())
-        .children(settings())
+        .children(settings(subject))
         .child(world(subject))
         .child(Element::new("equality").children(closures(subject)))
         .child(Element::new("actuator").children(servos(subject)))
@@ -32,12 +34,12 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
                 .with("name", format!("platform_{axis}_value"))
                 .with("joint", format!("platform_{axis}"))
         })))
-        .child(Element::new("keyframe").child(start(subject)));
+        .child(Element::new("keyframe").child(start(subject)).children(rests(subject)));
     root.document(&FORMAT.preamble(subject))
 }
 
-/// Units, integrator, no contacts, and the stiffness of the closures.
-fn settings() -> [Element; 3] {
+/// Units, integrator, gravity, no contacts, and the stiffness of the closures.
+fn settings(subject: &Prepared) -> [Element; 3] {
     [
         Element::new("compiler")
             .with("angle", "radian")
@@ -46,7 +48,7 @@ fn settings() -> [Element; 3] {
         Element::new("option")
             .with("timestep", "0.0001")
             .with("integrator", "implicitfast")
-            .with("gravity", "0 0 -9.81"),
+            .with_numbers("gravity", &subject.model.settings().dynamics.gravity),
         Element::new("default")
             .child(Element::new("geom").with("contype", "0").with("conaffinity", "0"))
             .child(
@@ -161,6 +163,49 @@ fn start(subject: &Prepared) -> Element {
     Element::new("key").with("name", "start").with_numbers("ctrl", &values)
 }
 
+/// Largest number of poses of a motion that have a keyframe.
+const MOST_RESTS: usize = 100;
+
+/// The poses at which the motion of the study rests, as far as the design reaches them, with the values of all joints.
+fn rests(subject: &Prepared) -> Vec<Element> {
+    let Ok(motion) = subject.motion() else {
+        return Vec::new();
+    };
+    let rests = motion.rests().take(MOST_RESTS).enumerate();
+    let key = |(place, rest): (usize, TaskInstant)| {
+        let there = linkage(&subject.model, &subject.evaluation.design, &rest.pose).ok()?;
+        let [positions, controls] = values(&subject.linkage, &there);
+        let key = Element::new("key")
+            .with("name", format!("rest_{place}"))
+            .with_numbers("time", &[rest.time])
+            .with_numbers("qpos", &positions)
+            .with_numbers("ctrl", &controls);
+        Some(key)
+    };
+    rests.filter_map(key).collect()
+}
+
+/// Returns the values of all joints and those of the actuated ones at the pose of a linkage, in the order of the document. Angles are those
+/// nearest to the exported pose.
+fn values(exported: &Linkage, there: &Linkage) -> [Vec<f64>; 2] {
+    let (mut positions, mut controls) = (Vec::new(), Vec::new());
+    for (before, body) in exported.bodies.iter().zip(&there.bodies) {
+        let (Some(reference), Some(joint)) = (before.joint, body.joint) else {
+            let Frame { origin, angle } = body.frame;
+            positions.extend([origin.x, origin.y, angle]);
+            continue;
+        };
+        let turned = there.local_frame(body).angle - exported.local_frame(before).angle;
+        let value = match joint.kind {
+            JointKind::Prismatic => joint.value,
+            JointKind::Revolute => reference.value + libm::remainder(turned, 2.0 * std::f64::consts::PI),
+        };
+        positions.push(value);
+        controls.extend(joint.actuated.then_some(value));
+    }
+    [positions, controls]
+}
+
 fn element(subject: &Prepared, body: &Body) -> Element {
     let frame = subject.linkage.local_frame(body);
     let mut element = Element::new("body")
@@ -178,6 +223,10 @@ fn element(subject: &Prepared, body: &Body) -> Element {
             hinge = hinge.with_numbers("ref", &[joint.value]);
             if let Some(limits) = joint.limits {
                 hinge = hinge.with_numbers("range", &limits);
+            }
+            let rotor = subject.model.settings().dynamics.drives.of(joint.kind);
+            if joint.actuated && rotor > 0.0 {
+                hinge = hinge.with_numbers("armature", &[rotor]);
             }
             element.push(hinge);
         }

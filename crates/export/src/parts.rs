@@ -35,7 +35,10 @@ const HEADINGS: [&str; 10] = [
 fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(HEADINGS)?;
-    for part in subject.model.parts(&subject.evaluation.design) {
+    for part in subject
+        .model
+        .parts(&subject.evaluation.design, subject.evaluation.drive)
+    {
         writer.write_record(record(&part))?;
     }
     Ok(writer.into_inner()?)
@@ -47,7 +50,10 @@ fn record(part: &Part) -> [String; HEADINGS.len()] {
     let micrometres = |length: f64| format!("{:.3}", MM * length);
     [
         part.name.to_owned(),
-        text(&|bar| bar.catalogue_name().unwrap_or_default().to_owned()),
+        match &part.drive {
+            Some(drive) => drive.clone(),
+            None => text(&|bar| bar.catalogue_name().unwrap_or_default().to_owned()),
+        },
         text(&|bar| shape(bar).to_owned()),
         text(&|bar| micrometres(2.0 * bar.radius)),
         text(&|bar| micrometres(wall(bar))),

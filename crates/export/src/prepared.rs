@@ -1,8 +1,11 @@
 //! What every format is written from, and what several of them need.
 
+use std::borrow::Cow;
+
 use glam::{DVec2, DVec3};
 
 use super::ExportSubject;
+use kinefront_model::dynamics::TaskMotion;
 use kinefront_model::evaluation::{Evaluation, Model, Unreachable};
 use kinefront_model::mechanism::JointKind;
 use kinefront_model::spatial::Pose;
@@ -19,7 +22,8 @@ const TOUR_STEPS: usize = 72;
 /// A subject prepared for every format.
 pub(super) struct Prepared<'a> {
     pub(super) study: &'a Study,
-    pub(super) model: &'a Model,
+    /// The model of the study, with the drive that the design selects.
+    pub(super) model: Cow<'a, Model>,
     pub(super) evaluation: &'a Evaluation,
     pub(super) pose: Pose,
     pub(super) linkage: Linkage,
@@ -39,25 +43,38 @@ impl<'a> Prepared<'a> {
             evaluation,
             pose,
         } = *subject;
-        let (study, model) = (study.study(), study.model());
+        let (study, model) = (study.study(), study.model().driven_by(evaluation.drive));
         let design = &evaluation.design;
         let pose = pose.unwrap_or_else(|| model.home(evaluation));
-        let linkage = linkage(model, design, &pose)?;
-        let scene = manipulator(model, design, &pose)?;
+        let linkage = linkage(&model, design, &pose)?;
+        let scene = manipulator(&model, design, &pose)?;
         let cylinder = regular_workspace(evaluation, study.workspace.rotation_range_deg);
-        let tour = cylinder.and_then(|cylinder| tour(model, design, &cylinder, TOUR_STEPS));
+        let tour = cylinder.and_then(|cylinder| tour(&model, design, &cylinder, TOUR_STEPS));
         Ok(Self {
             study,
-            model,
             evaluation,
             pose,
             linkage,
             base: scene.base_bars(design.base_radius()),
             scene,
-            corners: cylinder.and_then(|_| region_corners(model)),
+            corners: cylinder.and_then(|_| region_corners(&model)),
             cylinder,
             tour,
+            model,
         })
+    }
+
+    /// Returns the motion of the study, scaled to the workspace of the design.
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    pub(super) fn motion(&self) -> Result<TaskMotion, String> {
+        let Some(task) = &self.model.settings().task else {
+            return Err(format!("the study `{}` states no motion in [task]", self.study.name));
+        };
+        let frame = self.model.frame_of_task(self.evaluation);
+        task.motion(&frame)
+            .ok_or_else(|| kinefront_scene::text::NO_MOTION.to_owned())
     }
 
     /// Whether every length, mass and moment of inertia is finite, as a double and with the single precision of triangles.

@@ -12,7 +12,7 @@ pub(super) const FORMAT: Format = Format {
     name: "SDF",
     title: "SDF, for Gazebo",
     lost: Some(
-        "the stiffness of the actuators, and which joints are actuated; Gazebo's default physics engine does not close loops, that \
+        "the stiffness of the actuators and the inertia of their rotors, and which joints are actuated; Gazebo's default physics engine does not close loops, that \
          of Gazebo Classic does",
     ),
     is_text: true,

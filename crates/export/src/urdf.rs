@@ -15,7 +15,7 @@ pub(super) const FORMAT: Format = Format {
     title: "URDF, for ROS",
     lost: Some(
         "the closed loops (URDF describes trees, so the platform is attached to leg 1, and legs 2 and 3 end free at C2 and C3); the \
-         stiffness of the actuators, and which joints are actuated; the effort and velocity limits are placeholders",
+         stiffness of the actuators and the inertia of their rotors, and which joints are actuated; the effort and velocity limits are placeholders",
     ),
     is_text: true,
     needs_bars: true,

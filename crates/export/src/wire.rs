@@ -169,7 +169,7 @@ impl EvaluationJson {
     /// poses of the reference grid.
     pub fn with_dynamics(mut self, model: &Model, evaluation: &Evaluation) -> Self {
         let followed = model.follow_task(evaluation);
-        self.task = followed.map(|(outcome, _)| TaskJson::from(&outcome));
+        self.task = followed.map(|(outcome, _)| TaskJson::new(&outcome, &model.settings().drive_catalogue));
         let over_workspace = model.over_workspace(evaluation);
         self.over_workspace = over_workspace.as_ref().map(OverWorkspaceJson::from);
         self

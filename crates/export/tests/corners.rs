@@ -47,7 +47,7 @@ fn no_format_has_a_number_that_is_not_finite() {
                             }
                         }
                         Err(ExportError::NotFinite(_)) => refused += 1,
-                        Err(ExportError::Unreachable { .. } | ExportError::NoBar(_)) => {}
+                        Err(ExportError::Unreachable { .. } | ExportError::NoBar(_) | ExportError::NoMotion(_)) => {}
                         Err(error) => panic!("{design}: {format:?}: {error}"),
                     }
                 }

@@ -4,9 +4,11 @@ use glam::DVec2;
 
 use super::Solid;
 use super::manipulator::Sizes;
+use kinefront_model::dynamics::Payload;
 use kinefront_model::evaluation::{Model, Unreachable};
 use kinefront_model::mechanism::{
-    AnyLeg, ChainPosture, CrossSection, Design, JointKind, JointPoint, LegBody, LegPart, Manipulator, MemberKind,
+    AnyLeg, ChainPosture, CrossSection, Design, JointKind, JointPart, JointPoint, LegBody, LegPart, Manipulator,
+    MemberKind,
 };
 use kinefront_model::spatial::{LEGS, Pose, Rotation};
 
@@ -67,30 +69,40 @@ pub struct Body {
     pub bars: Vec<MassBar>,
     /// Joints and motors that move with the body: where they are \[m\], and their masses \[kg\]. They have none in the paper.
     pub joints: Vec<(DVec2, f64)>,
+    /// What the body carries: the payload of the study, on the platform.
+    pub payload: Payload,
     /// The solids to draw, in the frame of the body.
     pub solids: Vec<Solid>,
 }
 
 impl Body {
-    /// Returns the mass \[kg\].
+    /// Returns the mass with that of the payload \[kg\].
     pub fn mass(&self) -> f64 {
         let bars = self.bars.iter().fold(0.0, |sum, bar| sum + bar.mass);
-        self.joints.iter().fold(bars, |sum, (_, mass)| sum + mass)
+        self.points().fold(bars, |sum, (_, mass)| sum + mass)
+    }
+
+    /// Joints, motors and the payload: where their centres of mass are \[m\], and their masses \[kg\].
+    fn points(&self) -> impl Iterator<Item = (DVec2, f64)> {
+        let payload = (DVec2::from(self.payload.centre), self.payload.mass);
+        self.joints.iter().copied().chain([payload])
     }
 
     /// Returns the centre of mass in the body's frame \[m\]; the origin if the body has no mass.
     pub fn centre_of_mass(&self) -> DVec2 {
         let mass = self.mass();
         let bars: DVec2 = self.bars.iter().map(|bar| 0.5 * (bar.from + bar.to) * bar.mass).sum();
-        let weighted = self.joints.iter().fold(bars, |sum, (at, mass)| sum + *at * *mass);
+        let weighted = self.points().fold(bars, |sum, (at, mass)| sum + at * mass);
         if mass > 0.0 { weighted / mass } else { DVec2::ZERO }
     }
 
     /// Computes the elements `xx, yy, zz, xy` of the inertia tensor about the centre of mass in the body's axes
-    /// \[kg·m²\], with the bars as prisms of their cross-sections; `xy` is `−∫xy dm`.
+    /// \[kg·m²\], with the bars as prisms of their cross-sections; `xy` is `−∫xy dm`. The payload has half of its moment of inertia
+    /// about x and about y, as in the natural frequencies.
     pub fn inertia(&self) -> [f64; 4] {
         let centre = self.centre_of_mass();
-        let mut inertia = [0.0; 4];
+        let of_payload = self.payload.inertia;
+        let mut inertia = [0.5 * of_payload, 0.5 * of_payload, of_payload, 0.0];
         for bar in &self.bars {
             let way = bar.to - bar.from;
             let length = way.length();
@@ -107,8 +119,8 @@ impl Body {
             inertia[2] += across + bar.mass * offset.length_squared();
             inertia[3] += (along - across) * cs - bar.mass * offset.x * offset.y;
         }
-        for (at, mass) in &self.joints {
-            let offset = *at - centre;
+        for (at, mass) in self.points() {
+            let offset = at - centre;
             inertia[0] += mass * offset.y * offset.y;
             inertia[1] += mass * offset.x * offset.x;
             inertia[2] += mass * offset.length_squared();
@@ -265,18 +277,26 @@ fn leg_body(
         joint: Some(joint),
         bars: bars.collect(),
         joints: Vec::new(),
+        payload: Payload::default(),
         solids: body.parts.iter().map(solid).collect(),
     }
 }
 
-/// Gives the bodies of a leg the masses of its joints and of its motor that move: a joint belongs to the body that it carries, and to the
+/// Gives the bodies of a leg the masses of its joints, of its slider and of its motor that move: a joint belongs to the body that it carries, and to the
 /// last one if that is the platform; a motor belongs to the body before its joint.
 fn add_joints(model: &Model, design: &Design, bodies: &mut [Body], chain: &ChainPosture) {
     let architecture = design.architecture();
     let description = architecture.chain();
     let tube = model.settings().legs.tube_length(design.link_length());
     let last = bodies.len() - 1;
-    let parts = model.settings().joints.of_leg(architecture);
+    let slider = description.is_on_rails().then_some(JointPart {
+        place: 0,
+        kind: JointKind::Prismatic,
+        is_motor: false,
+        moves: true,
+        mass: model.settings().dynamics.drives.slider_mass,
+    });
+    let parts = model.settings().joints.of_leg(architecture).chain(slider);
     for part in parts.filter(|part| part.moves && part.mass > 0.0) {
         let is_bush = part.kind == JointKind::Prismatic && description.distal == MemberKind::TelescopicLeg;
         let at = match description.points[part.place] {
@@ -312,6 +332,7 @@ fn mount(sizes: &Sizes, index: usize, at: DVec2, phi: f64, value: f64, parent: u
         }),
         bars: Vec::new(),
         joints: Vec::new(),
+        payload: Payload::default(),
         solids: Vec::new(),
     }
 }
@@ -371,6 +392,7 @@ fn platform_body(
         joint: None,
         bars: bars.to_vec(),
         joints: Vec::new(),
+        payload: model.settings().dynamics.payload,
         solids: (0..LEGS).map(solid).collect(),
     }
 }

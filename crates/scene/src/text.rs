@@ -1,7 +1,8 @@
 //! Formatting of numbers and names for display.
 
 use kinefront_model::clearance::Clearance;
-use kinefront_model::evaluation::{Quantity, QuantityValues, TaskFault, TaskOutcome};
+use kinefront_model::dynamics::DriveCatalogue;
+use kinefront_model::evaluation::{Evaluation, Model, Quantity, QuantityValues, TaskFailure, TaskFault, TaskOutcome};
 use kinefront_model::mechanism::{Architecture, CrossSections, Design, DesignVariable};
 use kinefront_model::workspace::Region;
 
@@ -51,9 +52,22 @@ pub fn region(region: &Region) -> String {
     }
 }
 
-/// Writes the bars that a design selects from catalogues, each with what it is for, for example `bars of the legs` and
+/// Writes the bars and drives that a design selects from catalogues, each with what it is for, for example `bars of the legs` and
 /// `DN 25 M, 33.7 × 3.2 mm`.
-pub fn catalogue_bars(sections: &CrossSections, design: &Design) -> impl Iterator<Item = [String; 2]> {
+pub fn selected_parts(model: &Model, evaluation: &Evaluation) -> impl Iterator<Item = [String; 2]> {
+    let drive = evaluation
+        .drive
+        .and_then(|place| model.settings().drive_catalogue.get(place));
+    let drive = drive.map(|drive| {
+        [
+            "drives".to_owned(),
+            format!("3 × {}, {} kg each", drive.name, number(drive.mass)),
+        ]
+    });
+    catalogue_bars(&model.settings().sections, &evaluation.design).chain(drive)
+}
+
+fn catalogue_bars(sections: &CrossSections, design: &Design) -> impl Iterator<Item = [String; 2]> {
     let bars = [
         ("legs", &sections.legs, design.leg_bar_radius()),
         ("platform", &sections.platform, design.platform_bar_radius()),
@@ -111,17 +125,35 @@ pub fn architecture(architecture: Architecture) -> String {
     }
 }
 
+/// Says that a path gives no motion.
+pub const NO_MOTION: &str =
+    "there is no motion: the path has no length, or it is scaled to a workspace that the design does not have";
+
 /// Returns why a design does not follow its motion, in words.
 pub fn motion_fault(outcome: &TaskOutcome) -> Option<String> {
     let Some(result) = &outcome.result else {
-        return Some(
-            "there is no motion: the path has no length, or it is scaled to a workspace that the design does not have"
-                .to_owned(),
-        );
+        return Some(NO_MOTION.to_owned());
     };
-    let failure = result.as_ref().err()?;
+    result.as_ref().err().map(motion_failure)
+}
+
+/// Writes which drive of a catalogue carries a motion and how much of its limits the motion uses, or that none does; `None` without a
+/// catalogue.
+pub fn selected_drive(catalogue: &DriveCatalogue, outcome: &TaskOutcome) -> Option<String> {
+    let selected = outcome.drive?;
+    let name = &catalogue.get(selected.place)?.name;
+    let used = number(100.0 * selected.utilization);
+    Some(if selected.carries() {
+        format!("3 × {name}, of which the motion uses {used} %")
+    } else {
+        format!("none of the catalogue carries the motion; {name} misses by least: the motion needs {used} % of it")
+    })
+}
+
+/// Returns where a motion ends early, and why.
+pub fn motion_failure(failure: &TaskFailure) -> String {
     let place = format!("piece {} at {:.4} s", failure.piece + 1, failure.time);
-    Some(match failure.leg {
+    match failure.leg {
         Some(leg) => format!(
             "the motion ends in {place}: leg {} is {:.6} m beyond its {}",
             leg + 1,
@@ -132,7 +164,7 @@ pub fn motion_fault(outcome: &TaskOutcome) -> Option<String> {
             }
         ),
         None => format!("the motion ends in {place}: it meets a parallel singularity"),
-    })
+    }
 }
 
 #[cfg(test)]

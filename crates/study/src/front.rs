@@ -93,6 +93,7 @@ impl FrontMember {
             row: Row::new(self.generation, &self.evaluation),
             reference_radius: Some(self.reference_radius),
             certified: self.certified,
+            drive: self.evaluation.drive,
         }
     }
 

@@ -72,14 +72,14 @@ pub use run_folder::{
 pub use search::{SearchError, StudySearch, keep_runners_up};
 pub use settings::{
     ActuatorSection, AlgorithmName, Bounds, BuiltinCatalogue, BuiltinMaterial, CATALOGUES, CatalogueChoice,
-    CatalogueFault, CatalogueRow, Check, DriveSection, FileScope, GridSection, Grids, HypervolumeSection, Initial,
-    JointSection, LengthChoice, LimitChoice, Limits, LoadSection, LoadShapeChoice, MATERIALS, MaterialSection,
-    ModelSection, ObjectiveChoice, OptimizerSection, PayloadSection, ReferenceDesign, RegionKind, RegionSection,
-    RequirementSection, SectionChoice, SectionKind, SectionsSection, Setting, Stagnation, StiffnessChoice,
-    StrengthSection, TaskSection, TaskShapeChoice, TelescopicBar, Tie, VariableChoice, Variables, WHOLE_FRONT,
-    WorkspaceSection, is_shown, settings,
+    CatalogueFault, CatalogueRow, Check, DRIVE_CATALOGUES, DriveKind, DriveRow, DriveSection, FileScope, GridSection,
+    Grids, HypervolumeSection, Initial, JointSection, LengthChoice, LimitChoice, Limits, LoadSection, LoadShapeChoice,
+    MATERIALS, MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, PayloadSection, ReferenceDesign,
+    RegionKind, RegionSection, RequirementSection, SectionChoice, SectionKind, SectionsSection, Setting, Stagnation,
+    StiffnessChoice, StrengthSection, TaskSection, TaskShapeChoice, TelescopicBar, Tie, VariableChoice, Variables,
+    WHOLE_FRONT, WorkspaceSection, is_shown, settings,
 };
-pub use study::{Fault, SettingDifference, Study, StudyError};
+pub use study::{Catalogues, Fault, SettingDifference, Study, StudyError};
 pub use sum::{Difference, FileSum};
 pub use table::{
     Cell, Column, ColumnType, Row, RowError, TableContents, TableError, TableFault, TableRow, read_design,

@@ -49,7 +49,8 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         format!(
             "{:.3} kg (legs {:.3}, platform {:.3})",
             evaluation.mass(),
-            model.legs_mass(design),
+            // Motors that move have the mass of the selected drive.
+            evaluation.mass() - model.platform_mass(design),
             model.platform_mass(design)
         ),
     ]);
@@ -72,7 +73,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             facts.add_row(["regular workspace", "none: the design is infeasible"]);
         }
     }
-    for bar in text::catalogue_bars(&model.settings().sections, design) {
+    for bar in text::selected_parts(model, evaluation) {
         facts.add_row(bar);
     }
     let told_elsewhere = [

@@ -1,9 +1,9 @@
 //! Tables of the motion of a design.
 
-use kinefront_model::dynamics::Motion;
+use kinefront_model::dynamics::{DriveCatalogue, Motion};
 use kinefront_model::evaluation::{PosedDynamics, TaskOutcome};
 use kinefront_model::mechanism::Design;
-use kinefront_scene::text::number;
+use kinefront_scene::text::{self, number};
 
 use super::table;
 
@@ -71,7 +71,7 @@ pub fn dynamics(design: &Design, dynamics: &PosedDynamics<'_>, motion: Option<&M
 }
 
 /// Formats what a motion asks of the drives.
-pub fn task(design: &Design, outcome: &TaskOutcome, why_not: Option<String>) -> String {
+pub fn task(design: &Design, outcome: &TaskOutcome, catalogue: &DriveCatalogue, why_not: Option<String>) -> String {
     let mut facts = table(["design", &design.to_string()], &[]);
     if let Some(motion) = &outcome.motion {
         facts.add_row(["cycle time".to_owned(), format!("{} s", number(motion.cycle_time()))]);
@@ -83,6 +83,9 @@ pub fn task(design: &Design, outcome: &TaskOutcome, why_not: Option<String>) -> 
             return facts.to_string();
         }
     };
+    if let Some(drive) = text::selected_drive(catalogue, outcome) {
+        facts.add_row(["drives".to_owned(), drive]);
+    }
     let inside = if figures.inside_workspace { "yes" } else { "no" };
     facts.add_row(["inside the workspace".to_owned(), inside.to_owned()]);
     facts.add_row([

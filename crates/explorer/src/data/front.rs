@@ -20,6 +20,8 @@ pub struct FrontEntry {
     pub verified: bool,
     /// What is proved about `R_w`.
     pub certified: Option<CertifiedWorkspace>,
+    /// Place of the drive that the design selects from the catalogue of the study.
+    pub drive: Option<usize>,
     /// Its evaluation on the fine grid, if the run is in the window; a table holds no evaluations.
     pub evaluation: Option<Arc<Evaluation>>,
 }
@@ -33,6 +35,7 @@ impl FrontEntry {
             reference_radius: member.reference_radius,
             verified: true,
             certified: member.certified,
+            drive: member.evaluation.drive,
             evaluation: Some(Arc::new(member.evaluation.clone())),
         }
     }
@@ -45,6 +48,7 @@ impl FrontEntry {
             reference_radius: entry.reference_radius.unwrap_or(entry.row.workspace_radius()),
             verified,
             certified: entry.certified,
+            drive: entry.drive,
             evaluation: None,
         }
     }
@@ -57,6 +61,7 @@ impl FrontEntry {
             row,
             verified: false,
             certified: None,
+            drive: None,
             evaluation: None,
         }
     }
@@ -68,6 +73,7 @@ impl FrontEntry {
             row: self.row,
             reference_radius: Some(self.reference_radius),
             certified: self.certified,
+            drive: self.drive,
         }
     }
 

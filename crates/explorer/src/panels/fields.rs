@@ -236,6 +236,7 @@ fn initial_value(initial: Initial) -> Option<Value> {
     match initial {
         Initial::Number(number) => Some(Value::Float(number)),
         Initial::Count(count) => Some(Value::Integer(count)),
+        Initial::Name(name) => Some(Value::String(name.to_owned())),
         Initial::AsText => None,
     }
 }

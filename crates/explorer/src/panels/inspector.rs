@@ -195,7 +195,7 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
             });
         });
         ui.end_row();
-        for [part, bar] in text::catalogue_bars(&model.settings().sections, &evaluation.design) {
+        for [part, bar] in text::selected_parts(model, evaluation) {
             ui.label(part);
             ui.label(bar);
             ui.end_row();

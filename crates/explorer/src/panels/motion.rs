@@ -145,7 +145,12 @@ impl MotionPanel {
         self.play(ui, session, &answer, cycle);
         self.choose(ui, session, actuator, followed);
         summary(ui, figures, cycle, actuator);
-        self.plots(ui, session, &answer, (&drawn, figures, actuator));
+        if let Some(words) = &followed.drive_in_words {
+            let carries = followed.outcome.drive.is_some_and(|drive| drive.carries());
+            let color = if carries { theme::good(ui) } else { theme::bad(ui) };
+            ui.colored_label(color, format!("drives: {words}"));
+        }
+        self.plots(ui, session, &answer, (&drawn, followed, figures, actuator));
         self.drawn = Some(drawn);
     }
 
@@ -227,7 +232,7 @@ impl MotionPanel {
         ui: &mut Ui,
         session: &mut Session,
         answer: &MotionAnswer,
-        (drawn, figures, actuator): (&Drawn, &TaskFigures, JointKind),
+        (drawn, followed, figures, actuator): (&Drawn, &FollowedMotion, &TaskFigures, JointKind),
     ) {
         let height = (ui.available_height() - 4.0).max(110.0);
         ui.columns(2, |columns| {
@@ -250,7 +255,10 @@ impl MotionPanel {
             }
             let [along, across] = [MotionCurve::Speed, MotionCurve::Force].map(|curve| curve.title(actuator));
             let name = format!("{across} over {along}");
-            let (limits, words) = drive_box(session, figures, actuator);
+            let (limits, words) = match &followed.drive {
+                Some(drive) => ([drive.speed, drive.peak], drive.name.as_str()),
+                None => drive_box(session, figures, actuator),
+            };
             let response = plot(&name, &along, &across, height)
                 .show(speed, |plot| {
                     for (leg, points) in drawn.over_speed.iter().enumerate() {

@@ -5,6 +5,7 @@
 //! velocities and accelerations of the bodies, and virtual work gives the forces. Everything is written over [`Real`], so that a report
 //! of one pose and an evaluation of many use the same formulas.
 
+mod drive;
 mod effort;
 mod error;
 mod inverse;
@@ -14,6 +15,7 @@ mod report;
 mod settings;
 mod task;
 
+pub use drive::{Drive, DriveCatalogue, DriveCatalogueError};
 pub(crate) use effort::{MotionJob, MotionValue};
 pub(crate) use legs::DynamicsInputs;
 pub use report::{Accuracy, DynamicsReport, Gains, Motion, Response};

@@ -25,6 +25,14 @@ pub struct DriveInertia {
 }
 
 impl DriveInertia {
+    /// Sets the reflected inertia of the actuators of the given kind \[kg or kg·m²\].
+    pub(crate) fn set(&mut self, actuator: JointKind, inertia: f64) {
+        match actuator {
+            JointKind::Prismatic => self.prismatic = inertia,
+            JointKind::Revolute => self.revolute = inertia,
+        }
+    }
+
     /// Returns the reflected inertia of an actuator of the given kind \[kg or kg·m²\].
     pub fn of(&self, actuator: JointKind) -> f64 {
         match actuator {

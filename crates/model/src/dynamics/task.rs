@@ -363,24 +363,53 @@ impl TaskMotion {
     /// Iterates over the samples, both ends of each piece included.
     pub fn instants(&self) -> impl Iterator<Item = TaskInstant> + '_ {
         let mut begin = 0.0;
-        self.pieces
-            .iter()
-            .zip(&self.durations)
-            .enumerate()
-            .flat_map(move |(place, (piece, &duration))| {
-                let start = begin;
-                begin += duration + self.dwell;
-                (0..=self.samples).map(move |sample| {
-                    let share = sample as f64 / self.samples as f64;
-                    let [way, speed, acceleration] = self.law.at(share);
-                    let (pose, motion) = piece.at([way, speed / duration, acceleration / (duration * duration)]);
-                    TaskInstant {
-                        time: start + share * duration,
-                        piece: place,
-                        pose,
-                        motion,
-                    }
-                })
-            })
+        self.durations.iter().enumerate().flat_map(move |(place, &duration)| {
+            let start = begin;
+            begin += duration + self.dwell;
+            (0..=self.samples).map(move |sample| self.instant(place, start, sample as f64 / self.samples as f64))
+        })
+    }
+
+    /// Iterates over the cycle in equal steps of time \[s\], and ends with the end of the cycle. After each piece the platform rests.
+    pub fn at_steps(&self, step: f64) -> impl Iterator<Item = TaskInstant> + '_ {
+        let cycle = self.cycle_time();
+        let steps = (cycle / step).ceil() as usize;
+        let (mut place, mut start) = (0, 0.0);
+        (0..=steps).map(move |count| {
+            let time = (count as f64 * step).min(cycle);
+            while place + 1 < self.durations.len() && time >= start + self.durations[place] + self.dwell {
+                start += self.durations[place] + self.dwell;
+                place += 1;
+            }
+            let share = ((time - start) / self.durations[place]).clamp(0.0, 1.0);
+            TaskInstant {
+                time,
+                ..self.instant(place, start, share)
+            }
+        })
+    }
+
+    /// Iterates over the moments at which the platform comes to rest: the beginning, and the end of each piece.
+    pub fn rests(&self) -> impl Iterator<Item = TaskInstant> + '_ {
+        let mut begin = 0.0;
+        let ends = self.durations.iter().enumerate().map(move |(place, &duration)| {
+            let start = begin;
+            begin += duration + self.dwell;
+            self.instant(place, start, 1.0)
+        });
+        std::iter::once(self.instant(0, 0.0, 0.0)).chain(ends)
+    }
+
+    /// Returns the moment at a share of the time of a piece, which begins at `start` \[s\].
+    fn instant(&self, place: usize, start: f64, share: f64) -> TaskInstant {
+        let duration = self.durations[place];
+        let [way, speed, acceleration] = self.law.at(share);
+        let (pose, motion) = self.pieces[place].at([way, speed / duration, acceleration / (duration * duration)]);
+        TaskInstant {
+            time: start + share * duration,
+            piece: place,
+            pose,
+            motion,
+        }
     }
 }

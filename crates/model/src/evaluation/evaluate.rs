@@ -1,7 +1,7 @@
 //! The one call by which all other code evaluates a design.
 
 use super::worst::ConstraintSearch;
-use super::{Constraint, Evaluation, GridChoice, LimitResult, Model, quantities};
+use super::{Constraint, Evaluation, GridChoice, LimitResult, Model, SelectedDrive, quantities};
 use crate::lanes::InstructionSet;
 use crate::mechanism::{Design, Leg};
 use crate::pose::PoseChecker;
@@ -61,12 +61,13 @@ fn evaluate<L: Leg>(
     let workspace_radius = if home.is_some() { found.radius } else { 0.0 };
     let height = checker.bodies.height();
     let mut quantities = quantities::known(model, height, design, workspace_radius, &constraints);
+    let mut drive = None;
     if let Some(home) = home {
         let positions = reporter.positions(grid);
         quantities::add_of_region(&mut quantities, model, checker, &found, home, &positions, grid);
         let home_phi_deg = found.orientations[home].phi_deg;
         let frame = model.task_frame(design, workspace_radius, home_phi_deg);
-        quantities::add_of_task(&mut quantities, model, design, &frame);
+        drive = quantities::add_of_task(&mut quantities, model, design, &frame);
     }
     let mut limits: Vec<LimitResult> = model
         .settings()
@@ -88,6 +89,7 @@ fn evaluate<L: Leg>(
         nearest: constraints[Constraint::Clearance as usize]
             .pose
             .and_then(|pose| reporter.nearest(pose)),
+        drive: drive.filter(SelectedDrive::carries).map(|drive| drive.place),
         constraints,
         objectives: model
             .settings()

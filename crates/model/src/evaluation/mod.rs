@@ -10,6 +10,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod drives;
 mod evaluate;
 mod members;
 mod model;
@@ -27,6 +28,7 @@ pub use crate::pose::{
     Reference, Scale, Scope, Thresholds,
 };
 pub use crate::stiffness::Contribution;
+pub use drives::SelectedDrive;
 pub use members::MemberReport;
 pub use model::{GridChoice, Model, ModelSettings};
 pub use over_workspace::{At, OverWorkspace};
@@ -51,6 +53,9 @@ pub struct Evaluation {
     pub home_phi_deg: Option<f64>,
     /// The nearest pair of members that are not joined, at the pose of the smallest clearance; `None` if no pose has one.
     pub nearest: Option<Clearance>,
+    /// Place of the drive that the design selects from the catalogue of the study; `None` without a catalogue, and if no drive carries the
+    /// motion.
+    pub drive: Option<usize>,
     /// Reports of the constraints, in the order of [`Constraint::ALL`].
     pub constraints: [ConstraintResult; Constraint::COUNT],
     /// Quantities: those that an evaluation always determines, and those that the study asks for.

@@ -8,7 +8,7 @@ use super::{
     Better, Bound, Constraint, Evaluation, Objective, PoseScalar, Quantity, QuantityLimit, QuantitySet, Thresholds,
 };
 use crate::clearance::{Barrier, Bodies, BodySettings, Surroundings};
-use crate::dynamics::{DynamicsBasis, DynamicsModel, DynamicsSettings, MotionValue, Task};
+use crate::dynamics::{Drive, DriveCatalogue, DynamicsBasis, DynamicsModel, DynamicsSettings, MotionValue, Task};
 use crate::kinematics::{CharacteristicLength, Jacobian};
 use crate::lanes::{InstructionSet, Planar, Real};
 use crate::mechanism::{
@@ -56,6 +56,8 @@ pub struct ModelSettings {
     pub loads: Loads,
     /// Payload, drives, motion and tolerances.
     pub dynamics: DynamicsSettings,
+    /// Drives of which a design selects the lightest one that carries the motion; none if there is no catalogue.
+    pub drive_catalogue: DriveCatalogue,
     /// Motion that the platform makes again and again, if one is asked for.
     pub task: Option<Task>,
     /// Region, centre, home orientation and rotation range of the workspace.
@@ -137,6 +139,7 @@ impl Default for ModelSettings {
             in_plane_force: 100.0,
             loads: Loads::default(),
             dynamics: DynamicsSettings::default(),
+            drive_catalogue: DriveCatalogue::default(),
             task: None,
             workspace: WorkspaceSpec {
                 region: Region::Largest,
@@ -186,6 +189,14 @@ impl Model {
     pub fn with_all_quantities(mut self) -> Self {
         self.settings.quantities = QuantitySet::all();
         self
+    }
+
+    /// Returns the model with the motors and rotors of a drive in place of those that the study states.
+    pub(super) fn with_drive(&self, drive: &Drive) -> Self {
+        let mut model = self.clone();
+        model.settings.joints.motor = drive.mass;
+        model.settings.dynamics.drives.set(drive.kind, drive.inertia);
+        model
     }
 
     /// The workspace to be found, sampled on the chosen grid.
@@ -343,12 +354,23 @@ impl Model {
     }
 
     fn dynamics(&self, design: &Design, stiffness: &StiffnessModel) -> DynamicsModel {
+        self.dynamics_with(design, stiffness, &self.settings.dynamics, self.settings.joints)
+    }
+
+    /// Returns the motion of a design whose drives and motors are other ones than the study states.
+    pub(super) fn dynamics_with(
+        &self,
+        design: &Design,
+        stiffness: &StiffnessModel,
+        settings: &DynamicsSettings,
+        joints: JointMasses,
+    ) -> DynamicsModel {
         let basis = DynamicsBasis {
-            settings: &self.settings.dynamics,
+            settings,
             legs: &self.settings.legs,
             material: &self.settings.material,
             sections: &self.settings.sections,
-            joints: self.settings.joints,
+            joints,
             platform_bars: self.settings.platform_bars,
         };
         DynamicsModel::new(design, &basis, stiffness)

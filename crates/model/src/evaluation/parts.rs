@@ -1,7 +1,8 @@
 //! The parts that a design is made of: what has to be ordered and cut (docs/model.md, section 5.1).
 
 use super::Model;
-use crate::mechanism::{Architecture, CrossSection, Design, JointKind, MemberKind};
+use crate::dynamics::Drive;
+use crate::mechanism::{Architecture, CrossSection, Design, JointKind, JointMasses, MemberKind};
 use crate::spatial::LEGS;
 
 /// Equal parts of a design.
@@ -11,6 +12,8 @@ pub struct Part {
     pub name: &'static str,
     /// The bar that it is cut from; `None` for a joint or a motor.
     pub bar: Option<CutBar>,
+    /// The drive that is ordered, if it is a motor that a catalogue has.
+    pub drive: Option<String>,
     /// How many there are.
     pub pieces: usize,
     /// Mass of one \[kg\]; that of a platform bar as it counts in the mass of the design.
@@ -55,8 +58,9 @@ fn add(parts: &mut Vec<Part>, part: Part) {
 
 impl Model {
     /// Returns the bars and rails of a design, from the base to the platform, then its joints and motors if the study gives them a
-    /// mass. The masses of those that count sum to the mass of the design.
-    pub fn parts(&self, design: &Design) -> Vec<Part> {
+    /// mass. The masses of those that count sum to the mass of the design. The motors are the drive at a place of the catalogue, if one is
+    /// selected.
+    pub fn parts(&self, design: &Design, drive: Option<usize>) -> Vec<Part> {
         let settings = self.settings();
         let chain = design.architecture().chain();
         let mut parts = Vec::new();
@@ -94,12 +98,18 @@ impl Model {
             part.mass *= f64::from(settings.platform_bars) / LEGS as f64;
             add(&mut parts, part);
         }
-        self.add_joints(&mut parts, design.architecture());
+        let drive = drive.and_then(|place| settings.drive_catalogue.get(place));
+        self.add_joints(&mut parts, design.architecture(), drive);
         parts
     }
 
-    fn add_joints(&self, parts: &mut Vec<Part>, architecture: Architecture) {
-        let of_leg = self.settings().joints.of_leg(architecture);
+    fn add_joints(&self, parts: &mut Vec<Part>, architecture: Architecture, drive: Option<&Drive>) {
+        let stated = self.settings().joints;
+        let joints = JointMasses {
+            motor: drive.map_or(stated.motor, |drive| drive.mass),
+            ..stated
+        };
+        let of_leg = joints.of_leg(architecture);
         for part in of_leg.filter(|part| part.mass > 0.0) {
             let name = match (part.is_motor, part.kind, part.moves) {
                 (true, _, true) => "motor",
@@ -111,6 +121,7 @@ impl Model {
             let pieces = Part {
                 name,
                 bar: None,
+                drive: drive.filter(|_| part.is_motor).map(|drive| drive.name.clone()),
                 pieces: LEGS,
                 mass: part.mass,
                 counts: part.moves,
@@ -127,6 +138,7 @@ impl Model {
                 radius,
                 length,
             }),
+            drive: None,
             pieces: 1,
             mass: self.bar_mass(section, radius, length),
             counts: true,
@@ -166,7 +178,7 @@ mod tests {
             let values = [1.0, 0.3, 1.4, 0.02, 0.03];
             let design = Design::new(architecture, WorkingMode::ALL_PLUS, values).expect("a design");
             for (model, joints) in [(&Model::default(), 0), (&general, 12)] {
-                let parts = model.parts(&design);
+                let parts = model.parts(&design, None);
                 let counted = parts.iter().filter(|part| part.counts);
                 let total: f64 = counted.map(|part| part.total_mass()).sum();
                 let mass = model.mass(&design);
@@ -187,7 +199,7 @@ mod tests {
             let design: Design = format!("{name} R=1 r=0.3 Lb=1 rj=0.02 rp=0.02")
                 .parse()
                 .expect("a design");
-            let parts = general.parts(&design);
+            let parts = general.parts(&design, None);
             let motor = parts.iter().find(|part| part.name.starts_with("motor"));
             assert_eq!(motor.expect("a motor").counts, moves, "{name}");
         }

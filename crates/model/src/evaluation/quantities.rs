@@ -2,7 +2,9 @@
 
 use glam::DVec2;
 
-use super::{Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues, largest_of_legs};
+use super::{
+    Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues, SelectedDrive, largest_of_legs,
+};
 use crate::dynamics::TaskFrame;
 use crate::mechanism::{Design, Leg};
 use crate::pose::{PoseChecker, ScalarSet};
@@ -88,41 +90,57 @@ pub(super) fn add_of_region<L: Leg>(
     }
 }
 
-/// Adds those quantities of the motion of a study that it asks for.
-pub(super) fn add_of_task(values: &mut QuantityValues, model: &Model, design: &Design, frame: &TaskFrame) {
+/// Adds those quantities of the motion of a study that it asks for, and returns the drive that the design selects for it. A motor that
+/// moves has the mass of that drive.
+pub(super) fn add_of_task(
+    values: &mut QuantityValues,
+    model: &Model,
+    design: &Design,
+    frame: &TaskFrame,
+) -> Option<SelectedDrive> {
+    let settings = model.settings();
     let asked = Quantity::OF_TASK
         .into_iter()
-        .filter(|quantity| model.settings().quantities.contains(*quantity));
+        .filter(|quantity| settings.quantities.contains(*quantity));
     let asked: Vec<Quantity> = asked.collect();
-    let Some(task) = model.settings().task.as_ref().filter(|_| !asked.is_empty()) else {
-        return;
-    };
-    let posed = model.posed(design);
-    let (outcome, _) = posed.follow(task, frame);
-    let (Some(motion), Some(result)) = (outcome.motion, outcome.result) else {
-        return;
-    };
-    let figures = match result {
+    let task = settings.task.as_ref()?;
+    if asked.is_empty() && settings.drive_catalogue.is_empty() {
+        return None;
+    }
+    let (outcome, _) = model.follow_driven(design, task, frame);
+    let figures = match outcome.result? {
         Ok(figures) => figures,
         Err(failure) => {
             if asked.contains(&Quantity::PathReach) {
                 values.set(Quantity::PathReach, Some(failure.path_reach));
             }
-            return;
+            return None;
         }
     };
+    let cycle_time = outcome.motion?.cycle_time();
+    let selected = outcome
+        .drive
+        .and_then(|selected| Some((selected, settings.drive_catalogue.get(selected.place)?)));
     for quantity in asked {
         let value = match quantity {
-            Quantity::CycleTime => motion.cycle_time(),
-            Quantity::PathReach => figures.path_reach,
-            Quantity::CycleEnergy => figures.energy_shared,
-            Quantity::CornerPower => figures.corner_power,
-            Quantity::PathSpeed | Quantity::PathRate => largest_of_legs(figures.peak_speed),
-            Quantity::PathForce | Quantity::PathTorque => largest_of_legs(figures.peak_force),
-            _ => largest_of_legs(figures.rms_force),
+            Quantity::CycleTime => Some(cycle_time),
+            Quantity::PathReach => Some(figures.path_reach),
+            Quantity::CycleEnergy => Some(figures.energy_shared),
+            Quantity::CornerPower => Some(figures.corner_power),
+            Quantity::PathSpeed | Quantity::PathRate => Some(largest_of_legs(figures.peak_speed)),
+            Quantity::PathForce | Quantity::PathTorque => Some(largest_of_legs(figures.peak_force)),
+            Quantity::DriveMass => selected.map(|(_, drive)| drive.mass),
+            Quantity::DriveUtilization => selected.map(|(selected, _)| selected.utilization),
+            _ => Some(largest_of_legs(figures.rms_force)),
         };
-        values.set(quantity, quantity.is_of(design).then_some(value));
+        values.set(quantity, value.filter(|_| quantity.is_of(design)));
     }
+    let (selected, drive) = selected?;
+    let more = model.drive_mass(design.architecture(), drive);
+    for quantity in [Quantity::Mass, Quantity::LegsMass] {
+        values.set(quantity, values.get(quantity).map(|mass| mass + more));
+    }
+    Some(selected)
 }
 
 /// Returns the mean inverse condition number over the region and the window: each position is weighted by its area, and each

@@ -94,6 +94,14 @@ quantities! {
     PathTorqueRms = QuantityEntry::new("path_rms_torque_nm", "N·m", "RMS torque on the path", Scope::Region, Better::Lower,
         "Largest root mean square of the torque of a revolute actuator over a cycle of the motion.")
         .above_zero().logarithmic().reference(Reference::Number(1e6));
+    /// Mass of the selected drive.
+    DriveMass = QuantityEntry::new("drive_mass_kg", "kg", "mass of a drive", Scope::Region, Better::Lower,
+        "Mass of the lightest drive of the catalogue that carries the motion, one of three equal ones.")
+        .above_zero().logarithmic().reference(Reference::Number(1e4));
+    /// Largest share of the limits of the selected drive that the motion uses.
+    DriveUtilization = QuantityEntry::new("drive_utilization", "", "utilization of the drives", Scope::Region, Better::Lower,
+        "Largest share of the peak, rated force and speed of the selected drive that the motion uses; above 1, no drive of the catalogue \
+         carries it.").above_zero();
     /// Length that a leg and the platform bridge, the value of g1.
     Assembly = QuantityEntry::new("assembly_m", "m", "assembly", Scope::Design, Better::Higher,
         "Length that a leg and the platform bridge together, of which g1 requires the distance from the base to O.");
@@ -144,7 +152,7 @@ impl Quantity {
     }
 
     /// Quantities of the motion that a study states.
-    pub const OF_TASK: [Quantity; 10] = [
+    pub const OF_TASK: [Quantity; 12] = [
         Quantity::CycleTime,
         Quantity::PathReach,
         Quantity::CycleEnergy,
@@ -155,6 +163,8 @@ impl Quantity {
         Quantity::PathTorque,
         Quantity::PathForceRms,
         Quantity::PathTorqueRms,
+        Quantity::DriveMass,
+        Quantity::DriveUtilization,
     ];
 
     /// Returns the kind of actuators that have the quantity; `None` if it is one of all designs.

@@ -1,6 +1,6 @@
 //! What a motion asks of the drives of a design (docs/model.md, section 15.6).
 
-use super::{Evaluation, Model, PosedDesign};
+use super::{Evaluation, Model, PosedDesign, SelectedDrive};
 use crate::dynamics::{Response, Task, TaskFrame, TaskInstant, TaskMotion};
 use crate::mechanism::{Design, JointKind, ReachReason};
 use crate::spatial::LEGS;
@@ -92,6 +92,8 @@ pub struct TaskOutcome {
     pub motion: Option<TaskMotion>,
     /// The figures, or where the motion ends; `None` without a motion.
     pub result: Option<Result<TaskFigures, TaskFailure>>,
+    /// The drive that the design selects for the motion, if the study has a catalogue.
+    pub drive: Option<SelectedDrive>,
 }
 
 /// Sums over a motion.
@@ -126,7 +128,48 @@ impl TaskSample {
     }
 }
 
+impl TaskFigures {
+    /// Returns the figures of a motion whose samples have other forces; nothing is said of reach and workspace.
+    pub(super) fn with_forces(
+        samples: &[TaskSample],
+        forces: impl Iterator<Item = [f64; LEGS]>,
+        motion: &TaskMotion,
+    ) -> TaskFigures {
+        let mut tally = Tally::new();
+        for (sample, forces) in samples.iter().zip(forces) {
+            let response = Response {
+                forces,
+                ..sample.response
+            };
+            tally.add(TaskSample { response, ..*sample });
+        }
+        tally.finish(motion).0
+    }
+}
+
 impl Tally {
+    fn new() -> Self {
+        Self {
+            samples: Vec::new(),
+            figures: TaskFigures {
+                path_reach: f64::INFINITY,
+                inside_workspace: true,
+                peak_speed: [0.0; LEGS],
+                peak_acceleration: [0.0; LEGS],
+                peak_force: [0.0; LEGS],
+                rms_force: [0.0; LEGS],
+                peak_power: [0.0; LEGS],
+                corner_power: 0.0,
+                peak_power_total: 0.0,
+                energy_each: 0.0,
+                energy_shared: 0.0,
+                energy_net: 0.0,
+                stroke: [0.0; LEGS],
+            },
+            squares: [0.0; LEGS],
+        }
+    }
+
     fn add(&mut self, sample: TaskSample) {
         let figures = &mut self.figures;
         larger(&mut figures.peak_speed, &sample.response.speeds);
@@ -192,9 +235,13 @@ impl Model {
 
     /// Moves an evaluated design along any motion, scaled to its workspace.
     pub fn follow(&self, evaluation: &Evaluation, task: &Task) -> (TaskOutcome, Vec<TaskSample>) {
+        self.follow_driven(&evaluation.design, task, &self.frame_of_task(evaluation))
+    }
+
+    /// Returns the workspace of an evaluated design, to which a motion is scaled.
+    pub fn frame_of_task(&self, evaluation: &Evaluation) -> TaskFrame {
         let home_phi_deg = evaluation.home_phi_deg.unwrap_or(0.0);
-        let frame = self.task_frame(&evaluation.design, evaluation.workspace_radius(), home_phi_deg);
-        self.posed(&evaluation.design).follow(task, &frame)
+        self.task_frame(&evaluation.design, evaluation.workspace_radius(), home_phi_deg)
     }
 
     /// Returns the workspace of a design to which a motion is scaled.
@@ -221,6 +268,7 @@ impl PosedDesign {
             let nothing = TaskOutcome {
                 motion: None,
                 result: None,
+                drive: None,
             };
             return (nothing, Vec::new());
         };
@@ -234,30 +282,27 @@ impl PosedDesign {
         let outcome = TaskOutcome {
             motion: Some(motion),
             result: Some(result),
+            drive: None,
         };
         (outcome, samples)
     }
 
+    /// Moves the design along a motion in equal steps of time \[s\], and returns the samples.
+    ///
+    /// # Errors
+    /// Where the motion ends early, and why.
+    pub fn trajectory(&self, motion: &TaskMotion, step: f64) -> Result<Vec<TaskSample>, TaskFailure> {
+        let mut samples: Vec<TaskSample> = Vec::new();
+        let mut sign = None;
+        for instant in motion.at_steps(step) {
+            let (sample, _) = self.sample(&instant, &mut sign, samples.last())?;
+            samples.push(sample);
+        }
+        Ok(samples)
+    }
+
     fn tally(&self, motion: &TaskMotion, frame: &TaskFrame) -> Result<Tally, (TaskFailure, Vec<TaskSample>)> {
-        let mut tally = Tally {
-            samples: Vec::new(),
-            figures: TaskFigures {
-                path_reach: f64::INFINITY,
-                inside_workspace: true,
-                peak_speed: [0.0; LEGS],
-                peak_acceleration: [0.0; LEGS],
-                peak_force: [0.0; LEGS],
-                rms_force: [0.0; LEGS],
-                peak_power: [0.0; LEGS],
-                corner_power: 0.0,
-                peak_power_total: 0.0,
-                energy_each: 0.0,
-                energy_shared: 0.0,
-                energy_net: 0.0,
-                stroke: [0.0; LEGS],
-            },
-            squares: [0.0; LEGS],
-        };
+        let mut tally = Tally::new();
         let mut sign = None;
         for instant in motion.instants() {
             match self.sample(&instant, &mut sign, tally.samples.last()) {

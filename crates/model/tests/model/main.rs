@@ -4,6 +4,7 @@ mod assembly;
 mod beyond;
 mod certify;
 mod clearance;
+mod drives;
 mod dynamics;
 mod enclosure;
 mod forms;

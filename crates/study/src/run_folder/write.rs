@@ -212,10 +212,10 @@ impl RunWriter {
 
 /// Returns the verified front as a table.
 pub(super) fn front_table(study: &Study, summary: &RunSummary) -> io::Result<Vec<u8>> {
-    let sections = study.sections.cross_sections();
+    let catalogues = study.catalogues();
     let rows = summary.front.iter().zip(summary.marks(study)).map(|(member, mark)| {
         let entry = member.row();
-        let cell = |column: Column| column.cell_of_front(&entry, &mark, &sections);
+        let cell = |column: Column| column.cell_of_front(&entry, &mark, &catalogues);
         Column::of_front(study).map(cell).collect()
     });
     table_bytes(Column::of_front(study), rows)

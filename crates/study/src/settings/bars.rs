@@ -1,12 +1,10 @@
 //! The cross-sections of the bars, and catalogues of bars (docs/interfaces.md).
 
-use std::path::Path;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::declare::wrong_name;
-use crate::read_regular;
+use super::catalogue::{BuiltinCatalogue, CatalogueChoice, CatalogueFault, CatalogueItem};
 use kinefront_model::mechanism::{Catalogue, CatalogueEntry, CrossSection, CrossSections, Wall};
 
 /// Shape of a cross-section.
@@ -37,16 +35,6 @@ pub struct CatalogueRow {
     pub kg_per_m: Option<f64>,
 }
 
-/// A catalogue: the name of one that comes with the program, the path of a CSV file, or the entries themselves.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum CatalogueChoice {
-    /// Name or path.
-    Named(String),
-    /// The entries.
-    Rows(Vec<CatalogueRow>),
-}
-
 /// Cross-section of the bars of the legs or of the platform, or of the rails.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -61,7 +49,7 @@ pub struct SectionChoice {
     pub wall_m: Option<f64>,
     /// Catalogue that the bars are selected from.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub catalogue: Option<CatalogueChoice>,
+    pub catalogue: Option<CatalogueChoice<CatalogueRow>>,
 }
 
 /// The section `[sections]` of a study.
@@ -76,90 +64,29 @@ pub struct SectionsSection {
     pub rails: SectionChoice,
 }
 
-/// A catalogue that comes with the program.
-#[derive(Debug, Clone, Copy)]
-pub struct BuiltinCatalogue {
-    /// Name in study files.
-    pub name: &'static str,
-    /// Where its figures come from.
-    pub source: &'static str,
-    text: &'static str,
-}
-
-/// All catalogues that come with the program.
+/// All catalogues of bars that come with the program.
 pub const CATALOGUES: [BuiltinCatalogue; 1] = [BuiltinCatalogue {
     name: "en-10255-medium",
     source: "EN 10255:2004, table 2: steel tubes for welding and threading, medium series (M)",
     text: include_str!("../../assets/catalogues/en-10255-medium.csv"),
 }];
 
-/// Why a catalogue cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum CatalogueFault {
-    /// The file cannot be read.
-    #[error("cannot be read: {0}; give the path of a CSV file beside the study, or {known}", known = builtin_names())]
-    Read(std::io::Error),
-    /// The file is neither in the folder of the study nor below it.
-    #[error(
-        "is a file outside the folder of the study, which is not read unless you say so: move it there, or pass --outside-files"
-    )]
-    Outside,
-    /// A line is not an entry of a catalogue.
-    #[error("line {0} is not an entry of a catalogue; its columns are name, outer_mm, wall_mm and, if known, kg_per_m")]
-    Row(usize),
-    /// The name of an entry is wrong.
-    #[error("line {0}: the name {1}")]
-    Name(usize, String),
-    /// The entries do not form a catalogue.
-    #[error(transparent)]
-    Entries(#[from] kinefront_model::mechanism::CatalogueError),
-}
+impl CatalogueItem for CatalogueRow {
+    const COLUMNS: &'static str = "name, outer_mm, wall_mm and, if known, kg_per_m";
+    const BUILTIN: &'static [BuiltinCatalogue] = &CATALOGUES;
 
-fn builtin_names() -> String {
-    let names: Vec<String> = CATALOGUES
-        .iter()
-        .map(|builtin| format!("\"{}\"", builtin.name))
-        .collect();
-    names.join(", ")
-}
-
-/// Which files a study may name.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum FileScope {
-    /// Those in its folder and below it.
-    #[default]
-    BesideStudy,
-    /// Any file.
-    Anywhere,
-}
-
-impl CatalogueChoice {
-    /// Replaces the path of a file, relative to `folder`, by the entries of the file, if the file is within the scope.
-    ///
-    /// # Errors
-    /// [`CatalogueFault`].
-    pub(crate) fn load(&mut self, folder: &Path, scope: FileScope) -> Result<(), CatalogueFault> {
-        if let Self::Named(name) = self
-            && !CATALOGUES.iter().any(|builtin| builtin.name == name)
-        {
-            *self = Self::Rows(read_rows(folder, name, scope)?);
-        }
-        Ok(())
+    fn name(&self) -> &str {
+        &self.name
     }
+}
 
+impl CatalogueChoice<CatalogueRow> {
     /// Returns the catalogue.
     ///
     /// # Errors
     /// [`CatalogueFault`].
     pub fn catalogue(&self) -> Result<Catalogue, CatalogueFault> {
-        let rows = match self {
-            Self::Rows(rows) => rows.clone(),
-            Self::Named(name) => match CATALOGUES.iter().find(|builtin| builtin.name == name) {
-                Some(builtin) => rows(builtin.text)?,
-                None => read_rows(Path::new(""), name, FileScope::BesideStudy)?,
-            },
-        };
-        let entries = rows.into_iter().map(|row| CatalogueEntry {
+        let entries = self.rows()?.into_iter().map(|row| CatalogueEntry {
             name: row.name,
             radius: 0.0005 * row.outer_mm,
             wall: 0.001 * row.wall_mm,
@@ -167,40 +94,6 @@ impl CatalogueChoice {
         });
         Ok(Catalogue::new(entries.collect())?)
     }
-}
-
-/// Largest catalogue \[bytes\].
-const LARGEST_CATALOGUE: u64 = 1 << 20;
-
-fn rows(text: &str) -> Result<Vec<CatalogueRow>, CatalogueFault> {
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
-    // What is in a file that is not a catalogue is not told.
-    let row = |(row, line): (Result<CatalogueRow, csv::Error>, usize)| {
-        let row = row.map_err(|_| CatalogueFault::Row(line))?;
-        match wrong_name(&row.name) {
-            Some(message) => Err(CatalogueFault::Name(line, message)),
-            None => Ok(row),
-        }
-    };
-    reader.deserialize().zip(2..).map(row).collect()
-}
-
-/// Reads the catalogue in a file that a study names.
-fn read_rows(folder: &Path, name: &str, scope: FileScope) -> Result<Vec<CatalogueRow>, CatalogueFault> {
-    let path = folder.join(name);
-    if scope == FileScope::BesideStudy {
-        let folder = match folder.as_os_str().is_empty() {
-            true => Path::new("."),
-            false => folder,
-        };
-        // A link may lead out of the folder.
-        let [folder, file] = [folder, &path].map(|path| path.canonicalize().map_err(CatalogueFault::Read));
-        if !file?.starts_with(folder?) {
-            return Err(CatalogueFault::Outside);
-        }
-    }
-    let text = read_regular(&path, LARGEST_CATALOGUE).map_err(CatalogueFault::Read)?;
-    rows(&String::from_utf8(text).map_err(|_| CatalogueFault::Row(1))?)
 }
 
 impl SectionChoice {
@@ -271,7 +164,7 @@ impl SectionsSection {
     }
 
     /// The catalogues of the section.
-    pub(crate) fn catalogues(&mut self) -> impl Iterator<Item = (&'static str, &mut CatalogueChoice)> {
+    pub(crate) fn catalogues(&mut self) -> impl Iterator<Item = (&'static str, &mut CatalogueChoice<CatalogueRow>)> {
         [
             ("sections.legs.catalogue", &mut self.legs),
             ("sections.platform.catalogue", &mut self.platform),

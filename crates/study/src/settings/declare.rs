@@ -26,6 +26,8 @@ pub enum Initial {
     Number(f64),
     /// A whole number.
     Count(i64),
+    /// A name.
+    Name(&'static str),
     /// None: the setting is edited as text.
     AsText,
 }

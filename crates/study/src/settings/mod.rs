@@ -2,7 +2,9 @@
 //! of studies follow.
 
 mod bars;
+mod catalogue;
 mod declare;
+mod drives;
 mod joints;
 mod list;
 mod material;
@@ -15,12 +17,12 @@ mod surroundings;
 mod task;
 mod variables;
 
-pub use bars::{
-    BuiltinCatalogue, CATALOGUES, CatalogueChoice, CatalogueFault, CatalogueRow, FileScope, SectionChoice, SectionKind,
-    SectionsSection,
-};
+pub use bars::{CATALOGUES, CatalogueRow, SectionChoice, SectionKind, SectionsSection};
+pub(crate) use catalogue::LoadCatalogue;
+pub use catalogue::{BuiltinCatalogue, CatalogueChoice, CatalogueFault, FileScope};
 pub(crate) use declare::wrong_name;
 pub use declare::{Check, Initial, Setting, is_shown};
+pub use drives::{DRIVE_CATALOGUES, DriveKind, DriveRow, DriveSection};
 pub use joints::JointSection;
 pub use list::settings;
 pub use material::{BuiltinMaterial, MATERIALS, MaterialSection};
@@ -35,7 +37,6 @@ pub use sections::{
 pub use strength::{LoadShapeChoice, StrengthSection};
 pub use surroundings::{ObstacleSection, RoomSection};
 pub use task::{
-    AnywhereSection, DriveSection, DynamicsSections, LoadSection, PayloadSection, TaskSection, TaskShapeChoice,
-    ToleranceSection,
+    AnywhereSection, DynamicsSections, LoadSection, PayloadSection, TaskSection, TaskShapeChoice, ToleranceSection,
 };
 pub use variables::{Tie, VariableChoice, Variables};

@@ -1,7 +1,8 @@
-//! Payload, drives, motion and tolerances (docs/model.md, section 15).
+//! Payload, motion and tolerances (docs/model.md, section 15).
 
 use serde::{Deserialize, Serialize};
 
+use super::DriveSection;
 use super::declare::{Check, Initial, section};
 use kinefront_model::dynamics::{
     Anywhere, DriveInertia, DynamicsSettings, MotionLaw, Payload, Task, TaskShape, TaskTiming, Tolerances,
@@ -16,18 +17,6 @@ section! {
         inertia_kg_m2: f64 = 0.0, Check::Within(0.0, 1e12, " kg·m²");
         /// Centre of mass of the payload from `P`, in the axes of the platform.
         centre_m: [f64; 2] = [0.0; 2], Check::Within(-1e6, 1e6, " m");
-    }
-}
-
-section! {
-    /// What the drives move besides the members.
-    pub struct DriveSection in "drives" {
-        /// Mass of a slider on a rail of the base, besides that of its carriage in `joints`.
-        slider_mass_kg: f64 = 0.0, Check::Within(0.0, 1e12, " kg");
-        /// Inertia of the rotor, as a mass that moves with a prismatic actuator.
-        prismatic_inertia_kg: f64 = 0.0, Check::Within(0.0, 1e12, " kg");
-        /// Inertia of the rotor, as one that turns with a revolute actuator.
-        revolute_inertia_kg_m2: f64 = 0.0, Check::Within(0.0, 1e12, " kg·m²");
     }
 }
 

@@ -29,7 +29,7 @@ impl Fault {
 }
 
 /// Rules about several settings at once, each of which adds what it finds.
-const RULES: [fn(&Study, &mut Vec<Fault>); 18] = [
+const RULES: [fn(&Study, &mut Vec<Fault>); 19] = [
     check_characteristic_length,
     check_slider,
     check_bounds,
@@ -47,6 +47,7 @@ const RULES: [fn(&Study, &mut Vec<Fault>); 18] = [
     check_constraints,
     check_inputs,
     check_task,
+    check_drives,
     check_surroundings,
 ];
 
@@ -343,6 +344,9 @@ fn missing_input(study: &Study, quantity: Quantity) -> Option<String> {
         Quantity::Worst(
             PoseScalar::ActuatorSpeed | PoseScalar::ActuatorRate | PoseScalar::MotionForce | PoseScalar::MotionTorque,
         ) if study.anywhere == AnywhereSection::default() => "is 0 without a motion; state it in [anywhere]",
+        Quantity::DriveMass | Quantity::DriveUtilization if study.drives.catalogue.is_none() => {
+            "has no value without a catalogue of drives; state it in drives.catalogue"
+        }
         other if Quantity::OF_TASK.contains(&other) && study.task.shape.is_none() => {
             "has no value without a motion; state it in [task]"
         }
@@ -358,6 +362,35 @@ fn check_task(study: &Study, faults: &mut Vec<Fault>) {
     }
     let found = study.task.faults().into_iter();
     faults.extend(found.map(|(key, message)| Fault::new(format!("task.{key}"), message)));
+}
+
+fn check_drives(study: &Study, faults: &mut Vec<Fault>) {
+    if study.drives.catalogue.is_none() {
+        return;
+    }
+    let mut fault = |message: String| faults.push(Fault::new("drives.catalogue", message));
+    let drives = match study.drives.drives() {
+        Ok(drives) => drives,
+        Err(error) => return fault(error.to_string()),
+    };
+    if study.task.shape.is_none() {
+        fault(
+            "has no effect without a motion, for which drives are selected; state it in [task], or omit it".to_owned(),
+        );
+    }
+    for (kind, name, moves) in [
+        (JointKind::Prismatic, "prismatic", "slide"),
+        (JointKind::Revolute, "revolute", "turn"),
+    ] {
+        let mut architectures = study.architectures.iter();
+        if let Some(architecture) = architectures.find(|architecture| architecture.actuator() == kind)
+            && drives.of_kind(kind).next().is_none()
+        {
+            fault(format!(
+                "has no drive of the kind {name}, but the actuators of {architecture} {moves}; add one, or omit the architecture"
+            ));
+        }
+    }
 }
 
 fn check_variables(study: &Study, faults: &mut Vec<Fault>) {

@@ -22,12 +22,22 @@ use serde::{Deserialize, Serialize};
 
 use crate::settings::{
     ActuatorSection, AlgorithmName, AnywhereSection, Bounds, DriveSection, GeometrySection, Grids, HypervolumeSection,
-    JointSection, Limits, LoadSection, MaterialSection, ModelSection, ObjectiveChoice, ObstacleSection,
+    JointSection, Limits, LoadCatalogue, LoadSection, MaterialSection, ModelSection, ObjectiveChoice, ObstacleSection,
     OptimizerSection, PayloadSection, RailSection, ReferenceDesign, RequirementSection, RoomSection, SectionsSection,
     StrengthSection, TaskSection, ToleranceSection, Variables, WorkspaceSection,
 };
 use kinefront_model::clearance::BodySettings;
-use kinefront_model::mechanism::{Architecture, WorkingMode};
+use kinefront_model::dynamics::DriveCatalogue;
+use kinefront_model::mechanism::{Architecture, CrossSections, WorkingMode};
+
+/// What the bars and drives of designs are selected from.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Catalogues {
+    /// Cross-sections of the bars, with their catalogues.
+    pub sections: CrossSections,
+    /// Drives.
+    pub drives: DriveCatalogue,
+}
 
 /// A study: the requirements, the manipulators to search, and the settings of the search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -144,6 +154,22 @@ impl Default for Study {
 }
 
 impl Study {
+    /// The catalogues that the study names, with their keys.
+    fn catalogue_choices(&mut self) -> impl Iterator<Item = (&'static str, &mut dyn LoadCatalogue)> {
+        let of_bars = self.sections.catalogues();
+        let of_bars = of_bars.map(|(key, choice)| (key, choice as &mut dyn LoadCatalogue));
+        let of_drives = self.drives.catalogue.as_mut();
+        of_bars.chain(of_drives.map(|choice| ("drives.catalogue", choice as &mut dyn LoadCatalogue)))
+    }
+
+    /// Returns what the designs of a study without faults are selected from.
+    pub fn catalogues(&self) -> Catalogues {
+        Catalogues {
+            sections: self.sections.cross_sections(),
+            drives: self.drives.drives().unwrap_or_default(),
+        }
+    }
+
     /// Returns the study with one architecture alone.
     pub fn with_one_architecture(&self, architecture: Architecture) -> Self {
         Self {

@@ -61,6 +61,7 @@ impl Study {
                 anywhere: &self.anywhere,
                 tolerances: &self.tolerances,
             }),
+            drive_catalogue: self.catalogues().drives,
             task: self.task.task(),
             objectives: self.objectives(),
             limits: self.limits_of_designs(),

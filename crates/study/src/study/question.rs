@@ -35,7 +35,17 @@ impl Study {
         let of_limits = self.limits().map(|limit| limit.quantity);
         let reported = self.quantities.iter().filter_map(|key| Quantity::find(key));
         let of_task = self.task.shape.map(|_| Quantity::PathReach);
-        of_objectives.chain(of_limits).chain(reported).chain(of_task).collect()
+        let of_drives = self
+            .drives
+            .catalogue
+            .iter()
+            .flat_map(|_| [Quantity::DriveMass, Quantity::DriveUtilization]);
+        of_objectives
+            .chain(of_limits)
+            .chain(reported)
+            .chain(of_task)
+            .chain(of_drives)
+            .collect()
     }
 
     /// Returns the quantities that describe a design of the study in brief: mass and workspace radius, which every design has, then
@@ -50,14 +60,21 @@ impl Study {
     /// Returns the limits that hold for the region as a whole, not for each of its poses.
     pub fn limits_of_designs(&self) -> Vec<QuantityLimit> {
         let stated = self.limits().filter(|limit| limited_scalar(limit).is_none());
-        // A design that does not follow the motion of the study is infeasible.
-        let followed = QuantityLimit {
-            quantity: Quantity::PathReach,
-            bound: Bound::AtLeast(0.0),
-        };
-        let is_stated = |limit: &QuantityLimit| limit.quantity == Quantity::PathReach;
-        let of_task = self.task.shape.is_some() && !self.limits().any(|limit| is_stated(&limit));
-        stated.chain(of_task.then_some(followed)).collect()
+        // A design is infeasible that does not follow the motion of the study, or for which no drive of the catalogue carries it.
+        let implied = [
+            (self.task.shape.is_some(), Quantity::PathReach, Bound::AtLeast(0.0)),
+            (
+                self.drives.catalogue.is_some(),
+                Quantity::DriveUtilization,
+                Bound::AtMost(1.0),
+            ),
+        ];
+        let implied = implied.into_iter().filter(|(is_asked, quantity, _)| {
+            let is_stated = |limit: QuantityLimit| limit.quantity == *quantity;
+            *is_asked && !self.limits().any(is_stated)
+        });
+        let implied = implied.map(|(_, quantity, bound)| QuantityLimit { quantity, bound });
+        stated.chain(implied).collect()
     }
 
     /// Applies the limits that hold for each pose to thresholds.

@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::error::LONGEST_LINE;
 use super::{Fault, Study};
-use crate::settings::{CatalogueChoice, FileScope, is_shown};
+use crate::settings::{FileScope, LoadCatalogue, is_shown};
 use crate::{Builtin, StudyError};
 
 /// Largest size of a study file \[bytes\].
@@ -110,11 +110,11 @@ impl Study {
             span: error.span().map(SourceSpan::from),
         })?;
         study.material.take_named_values(|key| states(text, "material", key));
-        let load = |(key, catalogue): (&'static str, &mut CatalogueChoice)| {
+        let load = |(key, catalogue): (&'static str, &mut dyn LoadCatalogue)| {
             let message = catalogue.load(folder, scope).err()?.to_string();
             Some(Fault::new(key, message))
         };
-        let mut faults: Vec<Fault> = study.sections.catalogues().filter_map(load).collect();
+        let mut faults: Vec<Fault> = study.catalogue_choices().filter_map(load).collect();
         if faults.is_empty() {
             faults = study.faults();
         }

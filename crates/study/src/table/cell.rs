@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::fmt;
 
 use super::{Column, TableRow};
+use crate::Catalogues;
 use kinefront_model::evaluation::Constraint;
-use kinefront_model::mechanism::CrossSections;
 
 /// One value of a row.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,11 +41,11 @@ impl fmt::Display for Cell {
 }
 
 impl Column {
-    /// The value of an entry of a front, whose design is marked with `mark` and has bars of the given sections.
-    pub fn cell_of_front(self, entry: &TableRow, mark: &str, sections: &CrossSections) -> Cell {
+    /// The value of an entry of a front, whose design is marked with `mark` and selected from catalogues.
+    pub fn cell_of_front(self, entry: &TableRow, mark: &str, catalogues: &Catalogues) -> Cell {
         let name = match self {
             Self::Mark => Some(mark),
-            column => column.section_of(sections, &entry.row.design),
+            column => column.selected_of(catalogues, entry),
         };
         name.map_or_else(|| self.cell(entry), |name| Cell::Text(name.to_owned().into()))
     }
@@ -74,6 +74,7 @@ impl Column {
             Self::Mark
             | Self::LegSection
             | Self::PlatformSection
+            | Self::Drive
             | Self::OnJointFront
             | Self::Verified
             | Self::Starred

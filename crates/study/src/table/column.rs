@@ -2,9 +2,10 @@
 
 use std::borrow::Cow;
 
-use crate::Study;
+use super::TableRow;
+use crate::{Catalogues, Study};
 use kinefront_model::evaluation::{Better, Constraint, Quantity, QuantitySet, Scale};
-use kinefront_model::mechanism::{CrossSections, DESIGN_VARIABLES, Design, DesignVariable, FURTHER_VARIABLES};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable, FURTHER_VARIABLES};
 
 /// A column of a table of designs.
 ///
@@ -55,6 +56,8 @@ pub enum Column {
     LegSection,
     /// Name of the bars of the platform in the catalogue that they are selected from.
     PlatformSection,
+    /// Name of the drive in the catalogue that it is selected from.
+    Drive,
     /// Whether the design is on the front of all architectures together.
     OnJointFront,
     /// Whether the design was verified on the fine grid.
@@ -109,15 +112,16 @@ impl Column {
             .chain(Self::OF_FRONT)
             .chain(Self::further(study.named_quantities()))
             .chain(study.bounds.further_variables().map(Self::Dimension))
-            .chain(Self::sections(study))
+            .chain(Self::selected(study))
     }
 
-    /// The columns of those bars that are selected from a catalogue.
-    fn sections(study: &Study) -> impl Iterator<Item = Column> + use<> {
+    /// The columns of those bars and drives that are selected from a catalogue.
+    fn selected(study: &Study) -> impl Iterator<Item = Column> + use<> {
         let sections = &study.sections;
         let legs = sections.legs.catalogue.is_some().then_some(Self::LegSection);
         let platform = sections.platform.catalogue.is_some().then_some(Self::PlatformSection);
-        legs.into_iter().chain(platform)
+        let drive = study.drives.catalogue.is_some().then_some(Self::Drive);
+        legs.into_iter().chain(platform).chain(drive)
     }
 
     /// The columns that `front.csv` has besides those of `designs.csv`.
@@ -141,7 +145,7 @@ impl Column {
             .chain(Self::OF_FRONT)
             .chain(Self::further(QuantitySet::all()))
             .chain(FURTHER_VARIABLES.map(Self::Dimension))
-            .chain([Self::LegSection, Self::PlatformSection])
+            .chain([Self::LegSection, Self::PlatformSection, Self::Drive])
             .chain([Self::OnJointFront, Self::Verified, Self::Starred, Self::Note])
     }
 
@@ -195,6 +199,7 @@ impl Column {
             Self::Certificate => "certificate",
             Self::LegSection => "leg_section",
             Self::PlatformSection => "platform_section",
+            Self::Drive => "drive",
             Self::OnJointFront => "on_joint_front",
             Self::Verified => "verified",
             Self::Starred => "starred",
@@ -202,11 +207,13 @@ impl Column {
         })
     }
 
-    /// Returns the name of the bars of a design that the column states, if it is one of those of catalogues.
-    pub(super) fn section_of<'a>(self, sections: &'a CrossSections, design: &Design) -> Option<&'a str> {
+    /// Returns the name of the bars or of the drive of an entry that the column states, if it is one of those of catalogues.
+    pub(super) fn selected_of<'a>(self, catalogues: &'a Catalogues, entry: &TableRow) -> Option<&'a str> {
+        let (sections, design) = (&catalogues.sections, &entry.row.design);
         match self {
             Self::LegSection => sections.legs.catalogue_name(design.leg_bar_radius()),
             Self::PlatformSection => sections.platform.catalogue_name(design.platform_bar_radius()),
+            Self::Drive => catalogues.drives.get(entry.drive?).map(|drive| drive.name.as_str()),
             _ => None,
         }
     }
@@ -222,6 +229,7 @@ impl Column {
             | Self::Certificate
             | Self::LegSection
             | Self::PlatformSection
+            | Self::Drive
             | Self::Note => ColumnType::Text,
             Self::Feasible | Self::OnJointFront | Self::Verified | Self::Starred => ColumnType::Flag,
             Self::Dimension(_)

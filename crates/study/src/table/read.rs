@@ -250,7 +250,16 @@ impl<'a> Fields<'a> {
             row,
             reference_radius: self.number(Column::ReferenceRadius),
             certified: self.certified(study)?,
+            drive: self.drive(study)?,
         })
+    }
+
+    fn drive(&self, study: &Study) -> Result<Option<usize>, RowError> {
+        let Some(name) = self.text(Column::Drive).filter(|name| !name.is_empty()) else {
+            return Ok(None);
+        };
+        let place = study.catalogues().drives.find(name);
+        place.map(Some).ok_or(RowError::Value(Column::Drive))
     }
 }
 

@@ -192,6 +192,8 @@ pub struct TableRow {
     pub reference_radius: Option<f64>,
     /// What is proved about `R_w`, in a front whose workspaces were proved.
     pub certified: Option<CertifiedWorkspace>,
+    /// Place of the selected drive in the catalogue of the study, in a verified front.
+    pub drive: Option<usize>,
 }
 
 impl TableRow {
@@ -202,6 +204,7 @@ impl TableRow {
             row,
             reference_radius: None,
             certified: None,
+            drive: None,
         }
     }
 }

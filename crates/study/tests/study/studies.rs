@@ -113,6 +113,7 @@ fn value_of(initial: Initial) -> Option<toml::Value> {
     match initial {
         Initial::Number(number) => Some(number.into()),
         Initial::Count(count) => Some(count.into()),
+        Initial::Name(name) => Some(name.into()),
         Initial::AsText => None,
     }
 }

@@ -1,0 +1,127 @@
+//! The selection of a drive: the lightest one of a catalogue that carries the motion of a study (docs/model.md, section 15.9).
+
+use std::borrow::Cow;
+
+use super::{Model, TaskFigures, TaskOutcome, TaskSample, largest_of_legs};
+use crate::dynamics::{Drive, Task, TaskFrame};
+use crate::mechanism::{Architecture, Design};
+use crate::spatial::LEGS;
+
+/// A drive of the catalogue, for all actuators of a design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SelectedDrive {
+    /// Its place in the catalogue.
+    pub place: usize,
+    /// Largest share of its limits that the motion uses; above 1, no drive of the catalogue carries the motion, and this one misses by
+    /// least.
+    pub utilization: f64,
+}
+
+impl SelectedDrive {
+    /// Returns whether the drive carries the motion.
+    pub fn carries(&self) -> bool {
+        self.utilization <= 1.0
+    }
+}
+
+/// Share by which the utilization may differ from what is estimated from other drives.
+const ROUNDING: f64 = 1e-9;
+
+/// Forces of the actuators at a sample of a motion: without a drive, and what each kilogram of a motor adds.
+struct Parts {
+    without: [f64; LEGS],
+    per_mass: [f64; LEGS],
+}
+
+impl Drive {
+    /// Returns the largest share of the limits that a motion with this drive uses.
+    fn utilization(&self, figures: &TaskFigures) -> f64 {
+        let peak = largest_of_legs(figures.peak_force) / self.peak;
+        let rated = largest_of_legs(figures.rms_force) / self.rated;
+        let speed = largest_of_legs(figures.peak_speed) / self.speed;
+        peak.max(rated).max(speed)
+    }
+}
+
+impl Model {
+    /// Returns the model in which the motors and rotors are those of the drive at a place of the catalogue; the model itself without one.
+    pub fn driven_by(&self, drive: Option<usize>) -> Cow<'_, Model> {
+        let Some(drive) = drive.and_then(|place| self.settings().drive_catalogue.get(place)) else {
+            return Cow::Borrowed(self);
+        };
+        Cow::Owned(self.with_drive(drive))
+    }
+
+    /// Returns what a drive adds to the mass in motion \[kg\], in place of the motors that the study states.
+    pub(super) fn drive_mass(&self, architecture: Architecture, drive: &Drive) -> f64 {
+        let motor = self.settings().joints.of_leg(architecture).find(|part| part.is_motor);
+        let moves = motor.filter(|motor| motor.moves);
+        moves.map_or(0.0, |motor| LEGS as f64 * (drive.mass - motor.mass))
+    }
+
+    /// Moves a design along a task with the lightest drive that carries it, if the study has a catalogue, or with the motors and rotors
+    /// that it states. The forces are linear in the mass and in the inertia of a drive, so that two motions tell which drives are worth
+    /// a motion of their own.
+    pub(super) fn follow_driven(
+        &self,
+        design: &Design,
+        task: &Task,
+        frame: &TaskFrame,
+    ) -> (TaskOutcome, Vec<TaskSample>) {
+        let mut posed = self.posed(design);
+        let drives: Vec<(usize, &Drive)> = self.settings().drive_catalogue.of_kind(posed.actuator()).collect();
+        if drives.is_empty() {
+            return posed.follow(task, frame);
+        }
+        let mut followed = |mass: f64, inertia: f64| {
+            self.set_drive(&mut posed, mass, inertia);
+            posed.follow(task, frame)
+        };
+        let (outcome, samples) = followed(0.0, 0.0);
+        // Whether the design reaches the path does not depend on its drives.
+        let (Some(motion), Some(Ok(_))) = (&outcome.motion, &outcome.result) else {
+            return (outcome, samples);
+        };
+        let moves = design.architecture().driven() > 0;
+        let heavier = moves.then(|| followed(1.0, 0.0).1);
+        let parts: Vec<Parts> = (0..samples.len())
+            .map(|place| {
+                let without = samples[place].response.forces;
+                let with_mass = heavier.as_ref().and_then(|samples| samples.get(place));
+                let per_mass = with_mass.map_or([0.0; LEGS], |sample| {
+                    [0, 1, 2].map(|leg: usize| sample.response.forces[leg] - without[leg])
+                });
+                Parts { without, per_mass }
+            })
+            .collect();
+        let estimate = |drive: &Drive| {
+            let forces = samples.iter().zip(&parts).map(|(sample, parts)| {
+                let rates = sample.response.accelerations;
+                [0, 1, 2].map(|leg: usize| {
+                    parts.without[leg] + drive.mass * parts.per_mass[leg] + drive.inertia * rates[leg]
+                })
+            });
+            drive.utilization(&TaskFigures::with_forces(&samples, forces, motion))
+        };
+        let estimated: Vec<f64> = drives.iter().map(|(_, drive)| estimate(drive)).collect();
+        let mut selected = |index: usize| {
+            let (place, drive) = drives[index];
+            let (mut outcome, samples) = followed(drive.mass, drive.inertia);
+            if let Some(Ok(figures)) = &outcome.result {
+                let utilization = drive.utilization(figures);
+                outcome.drive = Some(SelectedDrive { place, utilization });
+            }
+            (outcome, samples)
+        };
+        for index in 0..drives.len() {
+            if estimated[index] <= 1.0 + ROUNDING {
+                let found = selected(index);
+                if found.0.drive.is_some_and(|drive| drive.carries()) {
+                    return found;
+                }
+            }
+        }
+        let nearest = (0..drives.len()).min_by(|&a, &b| estimated[a].total_cmp(&estimated[b]));
+        selected(nearest.unwrap_or(0))
+    }
+}

@@ -1,0 +1,156 @@
+//! The drive that a design selects is the lightest one that carries its motion, as each drive by itself tells it.
+
+use kinefront_model::dynamics::{Drive, DriveCatalogue, MotionLaw, Task, TaskShape, TaskTiming};
+use kinefront_model::evaluation::{
+    Bound, GridChoice, Model, ModelSettings, Quantity, QuantityLimit, TaskFigures, largest_of_legs,
+};
+use kinefront_model::mechanism::{Design, JointKind, JointMasses};
+use kinefront_testkit::numbers as random_numbers;
+
+/// Designs with motors on the base, at the elbow and at the platform, that slide and that turn.
+const DESIGNS: [&str; 6] = [
+    "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
+    "3-RRR R=2.0 r=0.6 Lb=1.6 rj=0.05 rp=0.04",
+    "3-R_RR R=2.25 r=0.74 Lb=1.52 rj=0.040 rp=0.060",
+    "3-RR_R R=1.64 r=0.77 Lb=1.42 rj=0.051 rp=0.058",
+    "3-RPR R=2.0 r=0.5 Lb=3.0 rj=0.03 rp=0.03",
+    "3-RP_R R=1.00 r=0.84 Lb=1.63 rj=0.053 rp=0.052",
+];
+
+fn settings() -> ModelSettings {
+    let mut settings = ModelSettings {
+        joints: JointMasses {
+            revolute: 0.5,
+            carriage: 1.0,
+            motor: 3.0,
+        },
+        task: Some(Task {
+            shape: TaskShape::Star,
+            share: 0.5,
+            angle: 0.2,
+            closed: true,
+            law: MotionLaw::Quintic,
+            dwell: 0.05,
+            samples: 60,
+            timing: TaskTiming::Cycle(3.0),
+        }),
+        limits: vec![QuantityLimit {
+            quantity: Quantity::DriveUtilization,
+            bound: Bound::AtMost(1.0),
+        }],
+        quantities: [Quantity::DriveMass, Quantity::DriveUtilization].into_iter().collect(),
+        ..ModelSettings::default()
+    };
+    settings.dynamics.payload.mass = 15.0;
+    settings.dynamics.gravity = [0.0, -9.81, 0.0];
+    settings
+}
+
+/// Returns what a drive by itself gives: the figures of the motion with its mass and inertia, and the mass in motion.
+fn alone(design: &Design, drive: &Drive) -> (TaskFigures, f64) {
+    let mut settings = settings();
+    settings.limits.clear();
+    settings.joints.motor = drive.mass;
+    settings.dynamics.drives.prismatic = drive.inertia;
+    settings.dynamics.drives.revolute = drive.inertia;
+    let model = Model::new(settings).expect("a model");
+    let evaluation = model.evaluate(design, GridChoice::Reference);
+    assert!(evaluation.drive.is_none());
+    let (outcome, _) = model.follow_task(&evaluation).expect("a motion");
+    (
+        outcome.result.expect("a motion").expect("it is followed"),
+        evaluation.mass(),
+    )
+}
+
+fn utilization(drive: &Drive, figures: &TaskFigures) -> f64 {
+    let shares = [
+        largest_of_legs(figures.peak_force) / drive.peak,
+        largest_of_legs(figures.rms_force) / drive.rated,
+        largest_of_legs(figures.peak_speed) / drive.speed,
+    ];
+    shares.into_iter().fold(0.0, f64::max)
+}
+
+#[test]
+fn the_lightest_drive_that_carries_the_motion_is_selected() {
+    let mut random = random_numbers(7);
+    let mut counts = [0; 2];
+    for text in DESIGNS {
+        let design: Design = text.parse().expect("a design");
+        let kind = design.architecture().actuator();
+        for round in 0..4 {
+            // Weak ones, strong ones, and those of the other kind, which must not be selected.
+            let scale = if kind == JointKind::Prismatic { 400.0 } else { 900.0 };
+            let weakness = if round == 3 { 0.02 } else { 1.0 };
+            let mut drives = Vec::new();
+            for place in 0..12 {
+                let size = 0.05 + 3.0 * random() * random();
+                drives.push(Drive {
+                    name: format!("drive {place}"),
+                    kind: if place % 4 == 3 { other(kind) } else { kind },
+                    rated: weakness * scale * size,
+                    peak: weakness * scale * size * (1.2 + random()),
+                    speed: 0.5 + 4.0 * random(),
+                    inertia: 3.0 * size * random(),
+                    mass: 0.2 + 20.0 * size * random(),
+                });
+            }
+            let catalogue = DriveCatalogue::new(drives).expect("a catalogue");
+            let model = Model::new(ModelSettings {
+                drive_catalogue: catalogue.clone(),
+                ..settings()
+            })
+            .expect("a model");
+            let evaluation = model.evaluate(&design, GridChoice::Reference);
+            let tried: Vec<(usize, f64, f64)> = catalogue
+                .of_kind(kind)
+                .map(|(place, drive)| {
+                    let (figures, mass) = alone(&design, drive);
+                    (place, utilization(drive, &figures), mass)
+                })
+                .collect();
+            let wanted = tried.iter().find(|(_, used, _)| *used <= 1.0);
+            assert_eq!(
+                evaluation.drive,
+                wanted.map(|(place, ..)| *place),
+                "{design}: {tried:?}"
+            );
+            assert_eq!(evaluation.is_feasible(), wanted.is_some(), "{design}");
+            let found = evaluation.quantities.get(Quantity::DriveUtilization).expect("a number");
+            let least = || tried.iter().min_by(|a, b| a.1.total_cmp(&b.1)).expect("drives");
+            let (place, used, mass) = wanted.unwrap_or_else(least);
+            assert!(
+                (found - used).abs() <= 1e-9 * used,
+                "{design}: {found} instead of {used}"
+            );
+            let drive = catalogue.get(*place).expect("a drive");
+            assert_eq!(evaluation.quantities.get(Quantity::DriveMass), Some(drive.mass));
+            assert!((evaluation.mass() - mass).abs() <= 1e-12 * mass, "{design}: {mass}");
+            counts[usize::from(wanted.is_some())] += 1;
+            // The parts that are ordered name it, and their masses sum to that of the design.
+            let parts = model.parts(&design, evaluation.drive);
+            let ordered = parts.iter().find_map(|part| part.drive.as_ref());
+            assert_eq!(ordered, wanted.map(|_| &drive.name));
+            if wanted.is_some() {
+                let counted = parts.iter().filter(|part| part.counts);
+                let total: f64 = counted.map(|part| part.total_mass()).sum();
+                assert!((total - mass).abs() <= 1e-12 * mass, "{design}: {total} kg");
+            }
+            // What follows the motion afterwards does so with the same drive.
+            let (outcome, samples) = model.follow_task(&evaluation).expect("a motion");
+            assert_eq!(outcome.drive.expect("a drive").place, *place);
+            let driven = model.driven_by(Some(*place));
+            let (_, again) = driven.follow_task(&evaluation).expect("a motion");
+            assert_eq!(samples, again);
+        }
+    }
+    assert!(counts.iter().all(|count| *count >= 4), "{counts:?}");
+}
+
+fn other(kind: JointKind) -> JointKind {
+    match kind {
+        JointKind::Prismatic => JointKind::Revolute,
+        JointKind::Revolute => JointKind::Prismatic,
+    }
+}

@@ -1,0 +1,187 @@
+//! Catalogues of what can be bought: one that comes with the program, a CSV file beside the study, or entries in the study
+//! (docs/interfaces.md).
+
+use std::path::Path;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use super::declare::wrong_name;
+use crate::read_regular;
+use kinefront_model::dynamics::DriveCatalogueError;
+use kinefront_model::mechanism::CatalogueError;
+
+/// An entry of a catalogue, as in a study file and as a line of a CSV file.
+pub trait CatalogueItem: Clone + DeserializeOwned {
+    /// The columns of a CSV file, in words.
+    const COLUMNS: &'static str;
+    /// The catalogues of such entries that come with the program.
+    const BUILTIN: &'static [BuiltinCatalogue];
+
+    /// Name, as it is ordered.
+    fn name(&self) -> &str;
+}
+
+/// A catalogue: the name of one that comes with the program, the path of a CSV file, or the entries themselves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum CatalogueChoice<Item> {
+    /// Name or path.
+    Named(String),
+    /// The entries.
+    Rows(Vec<Item>),
+}
+
+/// A catalogue that comes with the program.
+#[derive(Debug, Clone, Copy)]
+pub struct BuiltinCatalogue {
+    /// Name in study files.
+    pub name: &'static str,
+    /// Where its figures come from.
+    pub source: &'static str,
+    pub(super) text: &'static str,
+}
+
+/// Why a catalogue cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum CatalogueFault {
+    /// The file cannot be read.
+    #[error("cannot be read: {cause}; give the path of a CSV file beside the study, or {known}")]
+    Read {
+        /// Why.
+        cause: std::io::Error,
+        /// Names of the catalogues that come with the program.
+        known: String,
+    },
+    /// The file is neither in the folder of the study nor below it.
+    #[error(
+        "is a file outside the folder of the study, which is not read unless you say so: move it there, or pass --outside-files"
+    )]
+    Outside,
+    /// A line is not an entry of a catalogue.
+    #[error("line {line} is not an entry of a catalogue; its columns are {columns}")]
+    Row {
+        /// The line.
+        line: u64,
+        /// The columns.
+        columns: &'static str,
+    },
+    /// The name of an entry is wrong.
+    #[error("line {0}: the name {1}")]
+    Name(u64, String),
+    /// The entries do not form a catalogue of bars.
+    #[error(transparent)]
+    Bars(#[from] CatalogueError),
+    /// The entries do not form a catalogue of drives.
+    #[error(transparent)]
+    Drives(#[from] DriveCatalogueError),
+}
+
+/// Which files a study may name.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum FileScope {
+    /// Those in its folder and below it.
+    #[default]
+    BesideStudy,
+    /// Any file.
+    Anywhere,
+}
+
+/// A catalogue whose entries are read from the file that a study names.
+pub(crate) trait LoadCatalogue {
+    /// Replaces the path of a file, relative to `folder`, by the entries of the file, if the file is within the scope.
+    ///
+    /// # Errors
+    /// [`CatalogueFault`].
+    fn load(&mut self, folder: &Path, scope: FileScope) -> Result<(), CatalogueFault>;
+}
+
+impl<Item: CatalogueItem> LoadCatalogue for CatalogueChoice<Item> {
+    fn load(&mut self, folder: &Path, scope: FileScope) -> Result<(), CatalogueFault> {
+        if let Self::Named(name) = self
+            && builtin::<Item>(name).is_none()
+        {
+            *self = Self::Rows(read_rows(folder, name, scope)?);
+        }
+        Ok(())
+    }
+}
+
+impl<Item: CatalogueItem> CatalogueChoice<Item> {
+    /// Returns the entries.
+    pub(super) fn rows(&self) -> Result<Vec<Item>, CatalogueFault> {
+        match self {
+            Self::Rows(rows) => Ok(rows.clone()),
+            Self::Named(name) => match builtin::<Item>(name) {
+                Some(builtin) => rows(builtin.text),
+                None => read_rows(Path::new(""), name, FileScope::BesideStudy),
+            },
+        }
+    }
+}
+
+fn builtin<Item: CatalogueItem>(name: &str) -> Option<&'static BuiltinCatalogue> {
+    Item::BUILTIN.iter().find(|builtin| builtin.name == name)
+}
+
+/// Largest catalogue \[bytes\].
+const LARGEST_CATALOGUE: u64 = 1 << 20;
+
+fn rows<Item: CatalogueItem>(text: &str) -> Result<Vec<Item>, CatalogueFault> {
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let columns = Item::COLUMNS;
+    let headers = reader
+        .headers()
+        .map_err(|_| CatalogueFault::Row { line: 1, columns })?
+        .clone();
+    let mut rows = Vec::new();
+    for record in reader.into_records() {
+        // What is in a file that is not a catalogue is not told.
+        let at = |error: csv::Error| CatalogueFault::Row {
+            line: error.position().map_or(1, |position| position.line()),
+            columns,
+        };
+        let record = record.map_err(at)?;
+        let line = record.position().map_or(1, |position| position.line());
+        let row: Item = record
+            .deserialize(Some(&headers))
+            .map_err(|_| CatalogueFault::Row { line, columns })?;
+        if let Some(message) = wrong_name(row.name()) {
+            return Err(CatalogueFault::Name(line, message));
+        }
+        rows.push(row);
+    }
+    Ok(rows)
+}
+
+/// Reads the catalogue in a file that a study names.
+fn read_rows<Item: CatalogueItem>(folder: &Path, name: &str, scope: FileScope) -> Result<Vec<Item>, CatalogueFault> {
+    let unreadable = |cause| {
+        let known: Vec<String> = Item::BUILTIN
+            .iter()
+            .map(|builtin| format!("\"{}\"", builtin.name))
+            .collect();
+        CatalogueFault::Read {
+            cause,
+            known: known.join(", "),
+        }
+    };
+    let path = folder.join(name);
+    if scope == FileScope::BesideStudy {
+        let folder = match folder.as_os_str().is_empty() {
+            true => Path::new("."),
+            false => folder,
+        };
+        // A link may lead out of the folder.
+        let [folder, file] = [folder, &path].map(|path| path.canonicalize().map_err(unreadable));
+        if !file?.starts_with(folder?) {
+            return Err(CatalogueFault::Outside);
+        }
+    }
+    let text = read_regular(&path, LARGEST_CATALOGUE).map_err(unreadable)?;
+    let columns = Item::COLUMNS;
+    rows(&String::from_utf8(text).map_err(|_| CatalogueFault::Row { line: 1, columns })?)
+}
