@@ -35,7 +35,10 @@ pub use kinefront_study::Row;
 pub use panels::scatter::{ScatterAxis, axes};
 pub use panels::{Panel, Panels};
 pub use pointing::{Description, Pointed, describe};
-pub use session::{Beside, MOST_PINS, MarkedCounts, Notice, Phase, ReferenceMark, Session, ViewState, WhyPoint};
+pub use session::{
+    Beside, MOST_PINS, MarkedCounts, Notice, Phase, PoseDynamics, ReferenceMark, Session, ShownVibration, ViewState,
+    WhyPoint,
+};
 pub use study_editor::StudyEditor;
 pub use theme::dress;
 pub use threads::{Intake, Known, RunMessages, Wake};

@@ -13,6 +13,8 @@ use kinefront_model::evaluation::{OverWorkspace, PosedDynamics, SelectedDrive, T
 pub struct DynamicsJson {
     /// Three in the plane and three out of it, each in increasing order.
     frequencies_hz: Option<[f64; 6]>,
+    /// How the platform moves at each of them.
+    mode_shapes: Option<[[f64; 3]; 6]>,
     bar_frequency_hz: f64,
     /// For `x`, `y`, `φz`.
     mass_in_plane: [[f64; 3]; 3],
@@ -46,6 +48,11 @@ struct PoseErrorJson {
     rms_xy_m: f64,
     rms_phi_rad: f64,
     eta: f64,
+    /// Parts of the largest errors by their sources.
+    budget_xy_m: BTreeMap<&'static str, f64>,
+    budget_phi_rad: BTreeMap<&'static str, f64>,
+    /// Variances along x and along y, and the covariance of both.
+    covariance_m2: [f64; 3],
 }
 
 /// What the actuators do during a motion.
@@ -64,6 +71,7 @@ impl DynamicsJson {
         let accuracy = &report.accuracy;
         Some(Self {
             frequencies_hz: report.frequencies.map(|[[a, b, c], [d, e, f]]| [a, b, c, d, e, f]),
+            mode_shapes: report.shapes.map(|[[a, b, c], [d, e, f]]| [a, b, c, d, e, f]),
             bar_frequency_hz: report.bar_frequency,
             mass_in_plane: report.mass_in_plane,
             mass_out_of_plane: report.mass_out_of_plane,
@@ -84,6 +92,9 @@ impl DynamicsJson {
                 rms_xy_m: accuracy.rms_position,
                 rms_phi_rad: accuracy.rms_orientation,
                 eta: accuracy.nonlinearity,
+                budget_xy_m: accuracy.budget_position.parts().into_iter().collect(),
+                budget_phi_rad: accuracy.budget_orientation.parts().into_iter().collect(),
+                covariance_m2: accuracy.covariance,
             },
             response: motion.map(|motion| {
                 let response = dynamics.response(motion);

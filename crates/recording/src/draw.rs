@@ -17,8 +17,8 @@ use kinefront_model::spatial::{Pose, unit};
 use kinefront_scene::palette;
 use kinefront_scene::text::short;
 use kinefront_scene::{
-    ColorMap, ConfigurationSpace, EllipsoidSet, Heatmap, MotionPath, Nearest, Part, RegularCylinder, Scene, Solid,
-    SolidShape,
+    BentBar, ColorMap, ConfigurationSpace, EllipsoidSet, Heatmap, MotionPath, Nearest, Part, RegularCylinder, Scene,
+    Solid, SolidShape,
 };
 
 type DrawResult = Result<(), RecordingError>;
@@ -397,6 +397,15 @@ impl<'a> Canvas<'a> {
                     .take(points.len().saturating_sub(1)),
             )
             .with_radii([Radius::new_ui_points(2.2)]);
+        self.row(entity, &lines)
+    }
+
+    /// Draws bars that are bent.
+    pub(super) fn bent_bars(&self, entity: &str, bars: &[BentBar]) -> DrawResult {
+        let points = |bar: &BentBar| bar.points.iter().map(|&at| point(at)).collect::<Vec<_>>();
+        let lines = LineStrips3D::new(bars.iter().map(points))
+            .with_colors([rgb(palette::BENT)])
+            .with_radii(bars.iter().map(|bar| Radius::new_scene_units(bar.radius as f32)));
         self.row(entity, &lines)
     }
 

@@ -69,6 +69,7 @@ mod paths {
     pub const LIMITS: &str = "/design/limits";
     pub const PROOF: &str = "/design/proof";
     pub const PATH: &str = "/design/path";
+    pub const VIBRATION: &str = "/design/vibration";
     pub const HEATMAP: &str = "/design/heatmap";
     pub const HEATMAP_LEGEND: &str = "/legend";
     pub const ELLIPSOIDS: &str = "/design/ellipsoids";

@@ -17,8 +17,8 @@ use super::{SceneTarget, blueprint, colors, paths};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::spatial::Pose;
 use kinefront_scene::{
-    EllipsoidKind, Field, FieldLegend, Heatmap, HeatmapSettings, MotionPath, Part, PathColor, Scene, WorkspaceProof,
-    ellipsoids, manipulator,
+    BentBar, EllipsoidKind, Field, FieldLegend, Heatmap, HeatmapSettings, MotionPath, Part, PathColor, Scene,
+    WorkspaceProof, ellipsoids, manipulator,
 };
 use kinefront_study::Study;
 
@@ -94,6 +94,8 @@ pub struct Shown<'a> {
     pub proof: Option<&'a WorkspaceProof>,
     /// The path of the motion that the design follows.
     pub path: Option<&'a MotionPath>,
+    /// The bars as they bend in a vibration; none if no vibration is shown.
+    pub bent: &'a [BentBar],
     /// Pose of the manipulator; the home pose if `None`.
     pub pose: Option<Pose>,
     /// Orientation of the heatmap \[rad\]; the home orientation if `None`.
@@ -403,6 +405,9 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<Option<FieldLegend>, R
     let path = shown.path.filter(|_| layers.path.is_some());
     if let Some(path) = path {
         subject.path(canvas, path)?;
+    }
+    if !shown.bent.is_empty() {
+        canvas.bent_bars(paths::VIBRATION, shown.bent)?;
     }
     if layers.configuration {
         subject.configuration(canvas)?;

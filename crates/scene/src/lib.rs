@@ -12,6 +12,7 @@
 //! | [`linkage`] | the manipulator as rigid bodies with joints and masses |
 //! | [`Mesh`] | a solid as triangles |
 //! | [`MotionPath`], [`MotionCurve`] | the path of a motion with colours, and what the actuators do during it |
+//! | [`Vibrations`] | natural frequencies, and the bars as they bend |
 //! | [`tour`] | poses along the regular workspace, checked by forward kinematics |
 //!
 //! Lengths are in metres in the base frame; z points out of the plane. A shape states which part of the manipulator it
@@ -33,6 +34,7 @@ mod shape;
 mod surroundings;
 pub mod text;
 mod tour;
+mod vibration;
 mod workspace;
 
 pub use color_map::{ColorMap, FieldLegend};
@@ -49,4 +51,5 @@ pub use motion::{MotionCurve, MotionPath, PathColor, drawn_samples, pose_at};
 pub use proof::{ProofCell, WorkspaceProof, workspace_proof};
 pub use shape::{Label, Line, Nearest, Part, Scene, Solid, SolidShape};
 pub use tour::{Tour, tour};
+pub use vibration::{BentBar, VibrationMode, Vibrations};
 pub use workspace::{ConfigurationSpace, RegularCylinder, region_corners, regular_workspace};

@@ -138,8 +138,13 @@ impl<'a> Sizes<'a> {
         self.bodies.height(kind, self.design)
     }
 
+    /// Returns the radius of the bars of a kind of member.
+    pub(super) fn radius(&self, kind: MemberKind) -> f64 {
+        self.bodies.radius(kind, self.design)
+    }
+
     fn bar(&self, kind: MemberKind, from: DVec2, to: DVec2, fraction: f64) -> SolidShape {
-        let (z, outer) = (self.height(kind), self.bodies.radius(kind, self.design));
+        let (z, outer) = (self.height(kind), self.radius(kind));
         let section = match kind {
             MemberKind::PlatformBar => &self.sections.platform,
             _ => &self.sections.legs,

@@ -9,6 +9,9 @@ use kinefront_model::mechanism::Architecture;
 /// Contour at a field's threshold, and its mark in the legend.
 pub const THRESHOLD: [u8; 3] = [255, 70, 200];
 
+/// Bars that bend in a vibration.
+pub const BENT: [u8; 3] = [240, 150, 60];
+
 /// Colours of the series of a chart, which can be told apart on a light and on a dark ground.
 pub const SERIES: [[u8; 3]; 10] = [
     [0, 114, 178],

@@ -7,8 +7,8 @@ use kinefront_model::mechanism::{Architecture, Design, JointKind, JointMasses, M
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::StiffnessDefinition;
 use kinefront_scene::{
-    Body, EllipsoidKind, Field, Heatmap, HeatmapSettings, MotionPath, Part, PathColor, Solid, SolidShape, ellipsoids,
-    linkage, manipulator, pose_at, regular_workspace, tour,
+    Body, EllipsoidKind, Field, Heatmap, HeatmapSettings, MotionPath, Part, PathColor, Solid, SolidShape, Vibrations,
+    ellipsoids, linkage, manipulator, pose_at, regular_workspace, tour,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -637,4 +637,42 @@ fn the_path_of_a_motion_has_its_poses_and_values() {
     assert_eq!(pose_at(&samples, -1.0), Some(samples[0].instant.pose));
     assert_eq!(pose_at(&samples, 1e3), samples.last().map(|sample| sample.instant.pose));
     assert_eq!(pose_at(&[], 0.0), None);
+}
+
+/// Bars that vibrate bend about where they are, and the point that moves most moves by the amplitude.
+#[test]
+fn vibrations_bend_the_bars_by_their_amplitude() {
+    let model = Model::default();
+    for text in [
+        "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
+        "3-RPR R=2.0 r=0.5 Lb=3.0 rj=0.03 rp=0.03",
+        "3-RRR R=2.0 r=0.6 Lb=1.6 rj=0.05 rp=0.04",
+    ] {
+        let design: Design = text.parse().expect("a design");
+        let evaluation = model.evaluate(&design, GridChoice::Reference);
+        let posed = model.posed(&design);
+        let dynamics = posed
+            .dynamics_at(&model.home(&evaluation))
+            .expect("reached")
+            .expect("regular");
+        let report = dynamics.report().expect("regular");
+        let vibrations = Vibrations::new(&model, &design, &dynamics, &report).expect("vibrations");
+        let lowest = report.lowest_frequency().expect("known");
+        assert!((vibrations.modes[0].frequency - lowest).abs() <= 1e-12 * lowest);
+        assert_eq!(vibrations.modes.iter().filter(|mode| mode.is_in_plane).count(), 3);
+        let rest = vibrations.bent(0, 0.0);
+        for mode in 0..6 {
+            let (bent, back) = (vibrations.bent(mode, 0.1), vibrations.bent(mode, -0.1));
+            let mut most = 0.0f64;
+            for ((bent, back), rest) in bent.iter().zip(&back).zip(&rest) {
+                for ((bent, back), rest) in bent.points.iter().zip(&back.points).zip(&rest.points) {
+                    most = most.max(bent.distance(*rest));
+                    assert!((*bent + *back - 2.0 * *rest).length() < 1e-12, "{text}");
+                    let moves_up = (bent.z - rest.z).abs() > 1e-12;
+                    assert!(!moves_up || !vibrations.modes[mode].is_in_plane, "{text}");
+                }
+            }
+            assert!((most - 0.1).abs() < 1e-12, "{text}: mode {mode} moves by {most}");
+        }
+    }
 }

@@ -76,8 +76,8 @@ pub use settings::{
     Grids, HypervolumeSection, Initial, JointSection, LengthChoice, LimitChoice, Limits, LoadSection, LoadShapeChoice,
     MATERIALS, MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, PayloadSection, ReferenceDesign,
     RegionKind, RegionSection, RequirementSection, SectionChoice, SectionKind, SectionsSection, Setting, Stagnation,
-    StiffnessChoice, StrengthSection, TaskSection, TaskShapeChoice, TelescopicBar, Tie, VariableChoice, Variables,
-    WHOLE_FRONT, WorkspaceSection, is_shown, settings,
+    StiffnessChoice, StrengthSection, TaskSection, TaskShapeChoice, TelescopicBar, Tie, ToleranceSection,
+    VariableChoice, Variables, WHOLE_FRONT, WorkspaceSection, is_shown, settings,
 };
 pub use study::{Catalogues, Fault, SettingDifference, Study, StudyError};
 pub use sum::{Difference, FileSum};

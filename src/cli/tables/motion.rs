@@ -34,6 +34,14 @@ pub fn dynamics(design: &Design, dynamics: &PosedDynamics<'_>, motion: Option<&M
         facts.add_row(["largest error of the position".to_owned(), position]);
         let orientation = format!("{}°", number(accuracy.worst_orientation.to_degrees()));
         facts.add_row(["largest error of the orientation".to_owned(), orientation]);
+        let share = |part: f64| number(100.0 * part / accuracy.worst_position);
+        let parts = accuracy
+            .budget_position
+            .parts()
+            .into_iter()
+            .filter(|(_, part)| *part > 0.0);
+        let parts: Vec<String> = parts.map(|(name, part)| format!("{name} {} %", share(part))).collect();
+        facts.add_row(["sources of the error of the position".to_owned(), parts.join(", ")]);
     }
     let actuator = design.architecture().actuator();
     for (name, value, unit) in [

@@ -1,5 +1,6 @@
 //! The panels, one per file.
 
+mod accuracy;
 mod beside;
 mod choose;
 mod compare;
@@ -22,6 +23,7 @@ pub mod scatter;
 mod sketch;
 mod space;
 mod study;
+mod vibration;
 mod what_if;
 mod why_not;
 mod wish;
@@ -148,6 +150,10 @@ panels! {
     Choose = choose: choose::ChoosePanel, "Choose", Design;
     /// The pose of the selected design.
     Pose = pose: pose::PosePanel, "Pose", Pose;
+    /// Natural frequencies at the pose, and how the machine vibrates at each.
+    Vibration = vibration: vibration::VibrationPanel, "Vibration", Pose;
+    /// Errors of the pose, and what causes them.
+    Accuracy = accuracy: accuracy::AccuracyPanel, "Accuracy", Pose;
     /// Layers that are drawn in 3-D.
     Layers = layers: layers::LayersPanel, "Layers", Pose;
     /// The front as a table.

@@ -357,6 +357,7 @@ impl Session {
     fn ask(&mut self) {
         self.draw_front();
         let motion = self.shown_motion();
+        let bent = self.bent();
         let document = self.history.present();
         let design = document.selected.as_ref().map(|selected| selected.design);
         let request = Request {
@@ -367,6 +368,7 @@ impl Session {
             design,
             pose: self.view.pose,
             heatmap_phi: self.view.heatmap_phi,
+            bent,
             layers: self.view.layers,
             pins: document.pins.iter().map(|pin| (pin.name.clone(), pin.design)).collect(),
             comparing: self.view.comparing,

@@ -7,6 +7,7 @@ mod control;
 mod motion;
 mod pose;
 mod selection;
+mod vibration;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -17,6 +18,7 @@ use self::asking::Asking;
 pub use self::asking::WhyPoint;
 pub use self::beside::Beside;
 pub use self::selection::MarkedCounts;
+pub use self::vibration::{PoseDynamics, ShownVibration};
 use super::data::{DesignOrigin, Document, History, Named, Selected};
 use super::files::Purpose;
 use super::threads::{Answer, Known, Running, SceneThread, Wake, Writing};
@@ -94,6 +96,8 @@ pub struct ViewState {
     pub light: bool,
     /// Direction from which the manipulator is seen, and how often one was chosen.
     pub viewpoint: (Viewpoint, u64),
+    /// The vibration that is shown.
+    pub vibration: Option<ShownVibration>,
     /// Whether a click in the plan view adds a waypoint to the motion.
     pub drawing_path: bool,
 }
@@ -127,6 +131,7 @@ pub struct Session {
     references: Vec<ReferenceMark>,
     scene: SceneThread,
     asking: Asking,
+    pose_dynamics: Option<PoseDynamics>,
     beside: Option<Beside>,
     answer: Answer,
     requested: u64,
@@ -169,6 +174,7 @@ impl Session {
             generation_times: Vec::new(),
             scene: SceneThread::start(scene, move || waking())?,
             asking: Asking::new(&wake),
+            pose_dynamics: None,
             beside: None,
             answer: Answer::default(),
             requested: 0,

@@ -21,7 +21,7 @@ use kinefront_model::evaluation::{Evaluation, GridChoice};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 use kinefront_recording::{FrontPoint, LiveScene, Pinned, RecordingError, Shown, Viewpoint, VisibleLayers};
-use kinefront_scene::{FieldLegend, MotionPath, WorkspaceProof, workspace_proof};
+use kinefront_scene::{BentBar, FieldLegend, MotionPath, WorkspaceProof, workspace_proof};
 use kinefront_study::PreparedStudy;
 
 /// Time without a newer design after which a design is verified.
@@ -70,6 +70,8 @@ pub struct Request {
     pub proof: Option<Arc<WorkspaceProof>>,
     /// The motion that it follows, if it is known.
     pub motion: Option<MotionShown>,
+    /// The bars as they bend in the vibration that is shown.
+    pub bent: Arc<Vec<BentBar>>,
     /// The current front.
     pub front: Arc<Vec<FrontPoint>>,
 }
@@ -369,6 +371,7 @@ fn draw(
             .as_deref()
             .filter(|proof| proof.design == known.evaluation.design),
         path: request.motion.as_ref().and_then(MotionShown::path),
+        bent: &request.bent,
         pose: request.pose,
         heatmap_phi: request.heatmap_phi,
         layers: &request.layers,

@@ -130,7 +130,7 @@ impl DynamicsModel {
 
     /// Returns the largest error in a direction.
     #[inline(always)]
-    fn worst_along<V: Real>(&self, legs: &[LegErrors<V>; LEGS], direction: &[V; 3]) -> V {
+    pub(super) fn worst_along<V: Real>(&self, legs: &[LegErrors<V>; LEGS], direction: &[V; 3]) -> V {
         let mut worst = direction[0].splat(0.0);
         let mut shares = [worst; LEGS];
         for leg in 0..LEGS {
@@ -172,6 +172,27 @@ impl DynamicsModel {
         self.worst_along(legs, &[zero, zero, zero.splat(1.0)])
     }
 
+    /// Returns the variance of the error in a direction, in which the errors along the lines of the legs displace the platform by shares.
+    #[inline(always)]
+    fn variance<V: Real>(&self, legs: &[LegErrors<V>; LEGS], shares: &[V; LEGS]) -> V {
+        let mut variance = shares[0].splat(0.0);
+        for leg in 0..LEGS {
+            variance = variance + shares[leg] * shares[leg] * legs[leg].variance;
+        }
+        let base = self.settings.tolerances.base;
+        for end in self.base_errors(legs, shares) {
+            variance = variance + end.dot(end) * variance.splat(0.25 * base * base);
+        }
+        variance
+    }
+
+    /// Returns the variances of the error of the position along x and along y, and their covariance.
+    pub(super) fn covariance(&self, legs: &[LegErrors<f64>; LEGS]) -> [f64; 3] {
+        let along = |x: f64, y: f64| self.variance(legs, &legs.map(|leg| x * leg.column[0] + y * leg.column[1]));
+        let [xx, yy] = [along(1.0, 0.0), along(0.0, 1.0)];
+        [xx, yy, 0.25 * (along(1.0, 1.0) - along(1.0, -1.0))]
+    }
+
     /// Returns the error of the pose.
     #[inline(always)]
     pub(super) fn pose_errors<V: Real>(&self, legs: &[LegErrors<V>; LEGS]) -> PoseErrors<V> {
@@ -182,12 +203,8 @@ impl DynamicsModel {
             let mut shares = [zero; LEGS];
             for leg in 0..LEGS {
                 shares[leg] = legs[leg].column[component];
-                *variance = *variance + shares[leg] * shares[leg] * legs[leg].variance;
             }
-            let base = self.settings.tolerances.base;
-            for end in self.base_errors(legs, &shares) {
-                *variance = *variance + end.dot(end) * zero.splat(0.25 * base * base);
-            }
+            *variance = self.variance(legs, &shares);
         }
         PoseErrors {
             worst_position,

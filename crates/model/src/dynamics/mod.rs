@@ -18,7 +18,7 @@ mod task;
 pub use drive::{Drive, DriveCatalogue, DriveCatalogueError};
 pub(crate) use effort::{MotionJob, MotionValue};
 pub(crate) use legs::DynamicsInputs;
-pub use report::{Accuracy, DynamicsReport, Gains, Motion, Response};
+pub use report::{Accuracy, DynamicsReport, ErrorBudget, Gains, Motion, Response, VibratingBar, VibratingPoint};
 pub use settings::{Anywhere, DriveInertia, DynamicsSettings, Payload, Tolerances};
 pub use task::{MotionLaw, Task, TaskFrame, TaskInstant, TaskMotion, TaskShape, TaskTiming};
 

@@ -11,7 +11,7 @@ use crate::stiffness::add_bar;
 use crate::strength::path::{BARS, BarLanes, DISTAL, PLATFORM};
 
 /// How a displacement depends on the three of the platform.
-type Row<V> = [V; 3];
+pub(super) type Row<V> = [V; 3];
 
 /// Displacements of a body at `P`, each as a row: two components and the rotation, or that along z and both rotations.
 type Displacement<V> = [Row<V>; 3];
@@ -28,7 +28,7 @@ const GAUSS: [[f64; 2]; 4] = [
 type Cubic<V> = [Row<V>; 4];
 
 /// Displacements of the ends of a bar, and how it moves between them.
-struct BarShape<V> {
+pub(super) struct BarShape<V> {
     /// Between the ends, before the base, and beyond the tip, where a guide goes on straight.
     across: [Cubic<V>; 3],
     /// Displacement along the bar, or rotation about it, at each end.
@@ -99,6 +99,14 @@ impl<V: Real> BarShape<V> {
             along,
             per_length,
         }
+    }
+
+    /// Returns the displacement across the bar at a share of its length, and that along it.
+    #[inline(always)]
+    pub(super) fn at_share(&self, length: V, share: V) -> [Row<V>; 2] {
+        let [across, _] = at(&self.across[0], length * share);
+        let rest = share.splat(1.0) - share;
+        [across, combined(&self.along[0], rest, &self.along[1], share)]
     }
 
     /// Adds what a stretch of the bar, or of a guide beyond its ends, contributes to the mass.
@@ -184,7 +192,8 @@ impl<V: Real> LaneJob for LegInPlane<'_, V> {
     #[inline(always)]
     fn run(self) -> [V; 6] {
         let mut mass = [self.compliance.splat(0.0); 6];
-        self.model.add_leg_in_plane(&mut mass, self.leg, self.compliance);
+        self.model
+            .add_leg_in_plane(&mut mass, self.leg, self.compliance, |_, _| {});
         mass
     }
 }
@@ -202,7 +211,8 @@ impl<V: Real> LaneJob for LegOutOfPlane<'_, V> {
     #[inline(always)]
     fn run(self) -> [V; 6] {
         let mut mass = [self.stiffness[0].splat(0.0); 6];
-        self.model.add_leg_out_of_plane(&mut mass, self.leg, self.stiffness);
+        self.model
+            .add_leg_out_of_plane(&mut mass, self.leg, self.stiffness, |_, _| {});
         mass
     }
 }
@@ -316,9 +326,15 @@ impl DynamicsModel {
         [moved.x, moved.y, turn]
     }
 
-    /// Adds what a leg contributes to the mass in the plane.
+    /// Adds what a leg contributes to the mass in the plane, and shows how each of its bars moves.
     #[inline(always)]
-    fn add_leg_in_plane<V: Real>(&self, mass: &mut [V; 6], leg: &MovingLeg<V>, compliance: V) {
+    pub(super) fn add_leg_in_plane<V: Real>(
+        &self,
+        mass: &mut [V; 6],
+        leg: &MovingLeg<V>,
+        compliance: V,
+        mut show: impl FnMut(usize, &BarShape<V>),
+    ) {
         let like = leg.transmission;
         let zero = like.splat(0.0);
         let force = scaled(&leg.wrench, like.splat(1.0) / compliance);
@@ -376,6 +392,7 @@ impl DynamicsModel {
                 ],
             );
             shape.add_pieces(mass, lanes, self.gyration(bar), false, self.is_telescopic(bar));
+            show(bar, &shape);
         }
     }
 
@@ -431,9 +448,15 @@ impl DynamicsModel {
         mass
     }
 
-    /// Adds what a leg of the given stiffness contributes to the mass out of the plane.
+    /// Adds what a leg of the given stiffness contributes to the mass out of the plane, and shows how each of its bars moves.
     #[inline(always)]
-    fn add_leg_out_of_plane<V: Real>(&self, mass: &mut [V; 6], leg: &MovingLeg<V>, stiffness: &[V; 6]) {
+    pub(super) fn add_leg_out_of_plane<V: Real>(
+        &self,
+        mass: &mut [V; 6],
+        leg: &MovingLeg<V>,
+        stiffness: &[V; 6],
+        mut show: impl FnMut(usize, &BarShape<V>),
+    ) {
         let like = leg.transmission;
         let zero = like.splat(0.0);
         let platform = identity(like);
@@ -460,6 +483,7 @@ impl DynamicsModel {
                 [rotation(&base, lanes.axis), rotation(&tip, lanes.axis)],
             );
             shape.add_pieces(mass, lanes, self.gyration(bar), true, self.is_telescopic(bar));
+            show(bar, &shape);
             for point in self.points.iter().flatten() {
                 let joint = &self.paths[0].joints[point.joint];
                 if joint.before != bar {

@@ -5,9 +5,11 @@ use super::effort::norm;
 use super::error::{LegErrors, PoseErrors};
 use super::inverse::DriveMotion;
 use super::legs::{DynamicsInputs, MovingLeg};
-use super::modes::{full, lowest_frequency};
+use super::modes::{Row, full, lowest_frequency};
+use super::settings::Tolerances;
 use crate::mechanism::AnyLeg;
 use crate::spatial::{LEGS, Pose, Rotation};
+use crate::strength::path::BARS;
 use glam::DVec2;
 use nalgebra::{Matrix3, SymmetricEigen};
 
@@ -42,6 +44,34 @@ pub struct Gains {
     pub inertia: [f64; 2],
 }
 
+/// Parts of an error by what causes them; they sum to the error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorBudget {
+    /// Errors of the actuators.
+    pub encoders: f64,
+    /// Errors of the lengths of the links.
+    pub links: f64,
+    /// Errors of the places of the base joints.
+    pub base: f64,
+    /// Errors of the places of the platform joints.
+    pub platform: f64,
+    /// Clearance of the revolute joints.
+    pub play: f64,
+}
+
+impl ErrorBudget {
+    /// Returns the parts with their names, in the order of the settings.
+    pub fn parts(&self) -> [(&'static str, f64); 5] {
+        [
+            ("encoders", self.encoders),
+            ("links", self.links),
+            ("base", self.base),
+            ("platform", self.platform),
+            ("play", self.play),
+        ]
+    }
+}
+
 /// Error of the pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accuracy {
@@ -53,6 +83,12 @@ pub struct Accuracy {
     pub rms_position: f64,
     /// Root mean square of the error of the orientation \[rad\].
     pub rms_orientation: f64,
+    /// Variances of the error of the position along x and along y, and their covariance \[m²\].
+    pub covariance: [f64; 3],
+    /// Parts of the largest error of the position that each source has, in the direction in which it occurs \[m\].
+    pub budget_position: ErrorBudget,
+    /// Parts of the largest error of the orientation that each source has \[rad\].
+    pub budget_orientation: ErrorBudget,
     /// Largest relative change of `det A` within the error: the errors are right to a tenth up to 0.1, and unreliable above 0.3.
     pub nonlinearity: f64,
 }
@@ -62,6 +98,8 @@ pub struct Accuracy {
 pub struct DynamicsReport {
     /// Natural frequencies: three in the plane, and three out of it, each in increasing order \[Hz\]; `None` on rails that bend.
     pub frequencies: Option<[[f64; 3]; 2]>,
+    /// How the platform moves in each of these vibrations, to any scale: `x`, `y`, `φz` in the plane, and `z`, `φx`, `φy` out of it.
+    pub shapes: Option<[[[f64; 3]; 3]; 2]>,
     /// Frequency of the bending of the leg bars themselves, which the natural frequencies do not contain \[Hz\].
     pub bar_frequency: f64,
     /// Mass that a vibration moves in the plane, at `P`, for `x`, `y`, `φz` \[kg, kg·m, kg·m²\].
@@ -88,24 +126,33 @@ impl DynamicsReport {
     }
 }
 
-/// Returns the natural frequencies of a block with its mass, in increasing order \[Hz\]; `None` where the mass is not positive definite.
-fn frequencies(stiffness: &[f64; 6], mass: &[f64; 6]) -> Option<[f64; 3]> {
+/// Natural frequencies of a block with its mass, in increasing order \[Hz\], and how the platform moves at each.
+struct Vibrations {
+    frequencies: [f64; 3],
+    shapes: [[f64; 3]; 3],
+}
+
+/// Returns the vibrations of a block with its mass; `None` where the mass is not positive definite.
+fn vibrations(stiffness: &[f64; 6], mass: &[f64; 6]) -> Option<Vibrations> {
     let matrix = |m: &[f64; 6]| Matrix3::from(full(m));
     let factor = matrix(mass).cholesky()?.l();
     let half = factor.solve_lower_triangular(&matrix(stiffness))?;
     let reduced = factor.solve_lower_triangular(&half.transpose())?;
     let symmetric = (reduced + reduced.transpose()) * 0.5;
-    let values = SymmetricEigen::new(symmetric).eigenvalues;
-    let mut found: [f64; 3] = values
-        .map(|value| value.max(0.0).sqrt() / (2.0 * std::f64::consts::PI))
-        .into();
-    found.sort_by(f64::total_cmp);
+    let found = SymmetricEigen::new(symmetric);
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a: &usize, &b: &usize| found.eigenvalues[a].total_cmp(&found.eigenvalues[b]));
+    let mut frequencies = order.map(|k| found.eigenvalues[k].max(0.0).sqrt() / (2.0 * std::f64::consts::PI));
     // The smallest one is most accurate from the inverse.
     let lowest = lowest_frequency(stiffness, mass);
     if lowest.is_finite() {
-        found[0] = lowest;
+        frequencies[0] = lowest;
     }
-    Some(found)
+    let shapes = factor.tr_solve_lower_triangular(&found.eigenvectors)?;
+    Some(Vibrations {
+        frequencies,
+        shapes: order.map(|k| shapes.column(k).into_owned().into()),
+    })
 }
 
 /// Returns the largest length of the linear part of some rows, and the largest magnitude of their rotational part.
@@ -113,6 +160,36 @@ fn largest(rows: &[[f64; 3]; LEGS]) -> [f64; 2] {
     rows.iter().fold([0.0, 0.0], |[linear, angular]: [f64; 2], row| {
         [linear.max(norm(row)), angular.max(row[2].abs())]
     })
+}
+
+/// A point of a bar, and how a displacement of the platform at `P` moves it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VibratingPoint {
+    /// Where it is \[m\].
+    pub place: DVec2,
+    /// Displacement along x and along y for a unit of `x`, `y` and `φz`.
+    pub in_plane: [[f64; 3]; 2],
+    /// Displacement along z for a unit of `z`, `φx` and `φy`.
+    pub lift: [f64; 3],
+}
+
+/// A bar of a leg or of the platform in a vibration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VibratingBar {
+    /// Leg, from 0.
+    pub leg: usize,
+    /// Place of the bar: 0 for that at the base, 1 for the one that ends at `C`, and 2 for that of the platform.
+    pub bar: usize,
+    /// Points from the base towards the platform.
+    pub points: Vec<VibratingPoint>,
+}
+
+/// Number of stretches into which a bar is divided to show how it bends.
+const STRETCHES: usize = 12;
+
+/// Shares of the length of a bar at which it is shown.
+fn shares() -> impl Iterator<Item = f64> {
+    (0..=STRETCHES).map(|count| count as f64 / STRETCHES as f64)
 }
 
 impl DynamicsModel {
@@ -145,15 +222,19 @@ impl DynamicsModel {
         let errors = self.leg_errors(inputs, &legs);
         let found = self.pose_errors(&errors);
         let longest = self.longest_bar(&legs);
-        let frequencies = match self.is_on_bending_rails {
+        let vibrations = match self.is_on_bending_rails {
             true => None,
             false => Some([
-                frequencies(&inputs.legs.in_plane(), &in_plane)?,
-                frequencies(&inputs.legs.out_of_plane(), &out_of_plane)?,
+                vibrations(&inputs.legs.in_plane(), &in_plane)?,
+                vibrations(&inputs.legs.out_of_plane(), &out_of_plane)?,
             ]),
         };
+        let of_both = |[in_plane, out_of_plane]: &[Vibrations; 2]| [in_plane.frequencies, out_of_plane.frequencies];
+        let shapes_of_both = |[in_plane, out_of_plane]: &[Vibrations; 2]| [in_plane.shapes, out_of_plane.shapes];
+        let direction = [found.direction.x, found.direction.y, 0.0];
         let report = DynamicsReport {
-            frequencies,
+            frequencies: vibrations.as_ref().map(of_both),
+            shapes: vibrations.as_ref().map(shapes_of_both),
             bar_frequency: std::f64::consts::FRAC_PI_2 * (self.bar_bending / (longest * longest * longest)).sqrt(),
             mass_in_plane: full(&in_plane),
             mass_out_of_plane: full(&out_of_plane),
@@ -170,10 +251,78 @@ impl DynamicsModel {
                 worst_orientation: found.worst_orientation,
                 rms_position: found.rms[0],
                 rms_orientation: found.rms[1],
+                covariance: self.covariance(&errors),
+                budget_position: self.budget(inputs, &legs, direction),
+                budget_orientation: self.budget(inputs, &legs, [0.0, 0.0, 1.0]),
                 nonlinearity: self.nonlinearity(&errors, &found, pose, legs_of, actuators),
             },
         };
         report.anywhere_force.is_finite().then_some(report)
+    }
+
+    /// Returns the parts of the largest error in a direction: that of each source is the error without all others, because errors add up.
+    fn budget(&self, inputs: &DynamicsInputs<f64>, legs: &[MovingLeg<f64>; LEGS], direction: [f64; 3]) -> ErrorBudget {
+        let all = self.settings.tolerances;
+        let part = |tolerances: Tolerances| {
+            let mut alone = *self;
+            alone.settings.tolerances = tolerances;
+            alone.worst_along(&alone.leg_errors(inputs, legs), &direction)
+        };
+        let none = Tolerances::default();
+        ErrorBudget {
+            encoders: part(Tolerances {
+                encoder_prismatic: all.encoder_prismatic,
+                encoder_revolute: all.encoder_revolute,
+                ..none
+            }),
+            links: part(Tolerances { link: all.link, ..none }),
+            base: part(Tolerances { base: all.base, ..none }),
+            platform: part(Tolerances {
+                platform: all.platform,
+                ..none
+            }),
+            play: part(Tolerances { play: all.play, ..none }),
+        }
+    }
+
+    /// Returns how the bars move with the platform in a vibration.
+    pub fn vibrating_bars(&self, inputs: &DynamicsInputs<f64>) -> Vec<VibratingBar> {
+        let legs = self.legs(inputs);
+        let mut bars = Vec::new();
+        for (index, leg) in legs.iter().enumerate() {
+            let mut unused = [0.0; 6];
+            let mut in_plane = [const { Vec::new() }; BARS];
+            self.add_leg_in_plane(&mut unused, leg, inputs.legs.along[index], |bar, shape| {
+                let lanes = &leg.path.bars[bar];
+                let axis = lanes.axis;
+                let moved = |share: f64| {
+                    let [across, along] = shape.at_share(lanes.length, share);
+                    let towards = |of_axis: f64, of_normal: f64| {
+                        [0, 1, 2].map(|k: usize| of_axis * along[k] + of_normal * across[k])
+                    };
+                    [towards(axis.x, -axis.y), towards(axis.y, axis.x)]
+                };
+                in_plane[bar] = shares().map(moved).collect();
+            });
+            let stiffness = &inputs.legs.stiffness[index].at_platform;
+            self.add_leg_out_of_plane(&mut unused, leg, stiffness, |bar, shape| {
+                let lanes = &leg.path.bars[bar];
+                let point = |(share, in_plane): (f64, &[Row<f64>; 2])| {
+                    let place = inputs.position.plus(lanes.place(lanes.length * share));
+                    VibratingPoint {
+                        place: DVec2::new(place.x, place.y),
+                        in_plane: *in_plane,
+                        lift: shape.at_share(lanes.length, share)[0],
+                    }
+                };
+                bars.push(VibratingBar {
+                    leg: index,
+                    bar,
+                    points: shares().zip(&in_plane[bar]).map(point).collect(),
+                });
+            });
+        }
+        bars
     }
 
     /// Returns the length of the longest bar of any leg \[m\].

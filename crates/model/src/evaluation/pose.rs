@@ -5,7 +5,7 @@ use nalgebra::Matrix6;
 
 use super::{Constraint, Model, PoseScalar, PoseValues};
 use crate::clearance::Clearance;
-use crate::dynamics::{DynamicsInputs, DynamicsModel, DynamicsReport, Motion, Response};
+use crate::dynamics::{DynamicsInputs, DynamicsModel, DynamicsReport, Motion, Response, VibratingBar};
 use crate::kinematics::Jacobian;
 use crate::lanes::Planar;
 use crate::mechanism::{AnyLeg, Design, JointKind, JointMasses, Posture, ReachReason, Shortfall};
@@ -239,6 +239,11 @@ impl PosedDynamics<'_> {
     /// Returns what the actuators do during a motion.
     pub fn response(&self, motion: &Motion) -> Response {
         self.dynamics.response(&self.inputs, motion)
+    }
+
+    /// Returns how the bars move with the platform in a vibration.
+    pub fn vibrating_bars(&self) -> Vec<VibratingBar> {
+        self.dynamics.vibrating_bars(&self.inputs)
     }
 
     /// Returns frequencies, masses, gains and errors; `None` at a singular pose.

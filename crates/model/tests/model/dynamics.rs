@@ -3,8 +3,8 @@
 
 use glam::DVec2;
 use kinefront_model::dynamics::{
-    Anywhere, DriveInertia, DynamicsSettings, Motion, MotionLaw, Payload, Task, TaskFrame, TaskShape, TaskTiming,
-    Tolerances,
+    Anywhere, DriveInertia, DynamicsSettings, ErrorBudget, Motion, MotionLaw, Payload, Task, TaskFrame, TaskShape,
+    TaskTiming, Tolerances,
 };
 use kinefront_model::evaluation::{Model, TaskSample};
 use kinefront_model::mechanism::{Architecture, Design, JointKind};
@@ -196,6 +196,16 @@ fn poses_agree() {
                 (accuracy.nonlinearity, "eta"),
             ] {
                 agree(&[found], &[number(&wanted["error"][key])], 1e-7, &name(key));
+            }
+            // The parts of an error sum to it, and the ellipse has the root mean square of the error as its size.
+            let sum = |budget: ErrorBudget| budget.parts().iter().map(|(_, part)| part).sum::<f64>();
+            let [xx, yy, _] = accuracy.covariance;
+            for (found, whole) in [
+                (sum(accuracy.budget_position), accuracy.worst_position),
+                (sum(accuracy.budget_orientation), accuracy.worst_orientation),
+                ((xx + yy).sqrt(), accuracy.rms_position),
+            ] {
+                agree(&[found], &[whole], 1e-12, &name("budget"));
             }
         }
     }

@@ -601,3 +601,62 @@ fn the_mass_of_vibrations_is_that_of_a_frame() {
         }
     });
 }
+
+/// Each vibration balances the forces of stiffness and of mass, and moves the bars continuously, from rest at the base to the platform.
+#[test]
+fn vibrations_are_balanced_and_continuous() {
+    for_all([0.0, 0.0, -9.81], |subject| {
+        let posed = subject.model.posed(&subject.design);
+        let dynamics = posed.dynamics_at(&subject.pose).expect("reached").expect("regular");
+        let report = dynamics.report().expect("regular");
+        let found = posed.at(&subject.pose).expect("reached");
+        let (frequencies, shapes) = (report.frequencies.expect("known"), report.shapes.expect("known"));
+        for (block, places) in [[0, 1, 5], [2, 3, 4]].into_iter().enumerate() {
+            let mass = [report.mass_in_plane, report.mass_out_of_plane][block];
+            for (frequency, shape) in frequencies[block].into_iter().zip(shapes[block]) {
+                let square = (2.0 * std::f64::consts::PI * frequency).powi(2);
+                let (mut off, mut scale) = (0.0f64, 0.0f64);
+                for row in 0..3 {
+                    let of_stiffness: f64 = (0..3)
+                        .map(|k| found.stiffness[(places[row], places[k])] * shape[k])
+                        .sum();
+                    let of_mass: f64 = (0..3).map(|k| mass[row][k] * shape[k]).sum();
+                    off = off.max((of_stiffness - square * of_mass).abs());
+                    let largest = (0..3).map(|k| (found.stiffness[(places[row], places[k])] * shape[k]).abs());
+                    scale = largest.fold(scale, f64::max);
+                }
+                assert!(
+                    off <= 1e-7 * scale,
+                    "{}: {frequency} Hz is off by {off} of {scale}",
+                    subject.design
+                );
+            }
+        }
+        let bars = dynamics.vibrating_bars();
+        for leg in 0..3 {
+            let of_leg: Vec<_> = bars.iter().filter(|bar| bar.leg == leg).collect();
+            let last = of_leg.last().and_then(|bar| bar.points.last()).expect("a point");
+            // The bar of the platform ends at P, which moves as the platform does.
+            assert!(last.place.distance(subject.pose.position) < 1e-9, "{}", subject.design);
+            for (found, wanted) in [
+                (last.in_plane[0], [1.0, 0.0, 0.0]),
+                (last.in_plane[1], [0.0, 1.0, 0.0]),
+                (last.lift, [1.0, 0.0, 0.0]),
+            ] {
+                let off = (0..3).map(|k| f64::abs(found[k] - wanted[k])).fold(0.0, f64::max);
+                assert!(off < 1e-6, "{}: {found:?}", subject.design);
+            }
+            // Out of the plane, one bar goes on where the one before ends.
+            for pair in of_leg.windows(2) {
+                let (before, after) = (pair[0].points.last().expect("a point"), pair[1].points[0]);
+                let off = (0..3)
+                    .map(|k| (before.lift[k] - after.lift[k]).abs())
+                    .fold(0.0, f64::max);
+                let is_joined = before.place.distance(after.place) < 1e-9;
+                assert!(!is_joined || off < 1e-6, "{}: {before:?} and {after:?}", subject.design);
+            }
+            let first = of_leg[0].points[0];
+            assert!(first.lift.iter().all(|part| part.abs() < 1e-9), "{}", subject.design);
+        }
+    });
+}

@@ -1,0 +1,117 @@
+//! The vibration panel: the natural frequencies of the selected design at its pose, and each vibration as a slow motion in 3-D.
+
+use egui::{Grid, ScrollArea, Slider, Ui};
+use kinefront_scene::{VibrationMode, text::number};
+
+use super::{fields, named};
+use crate::{Session, ShownVibration, theme};
+
+/// Vibrations shown per second.
+const SHOWN_RATE: f64 = 0.7;
+
+/// The vibration panel.
+pub struct VibrationPanel {
+    /// Whether the vibration is being played.
+    is_playing: bool,
+    /// Displacement of the point that moves most, as a share of `R`.
+    amplitude: f64,
+    /// Phase of the vibration \[turns\].
+    phase: f64,
+}
+
+impl Default for VibrationPanel {
+    fn default() -> Self {
+        Self {
+            is_playing: true,
+            amplitude: 0.08,
+            phase: 0.0,
+        }
+    }
+}
+
+impl VibrationPanel {
+    /// Draws the panel.
+    pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        let Some(known) = session.known() else {
+            ui.weak("Click a design in the scatter: here are its natural frequencies, and how it vibrates.");
+            return;
+        };
+        let lever = known.evaluation.design.platform_radius();
+        let dynamics = session.pose_dynamics();
+        let report = dynamics.and_then(|known| known.report);
+        let modes = dynamics.and_then(|known| Some(known.vibrations.as_ref()?.modes.clone()));
+        ScrollArea::vertical().show(ui, |ui| {
+            match (report, modes) {
+                (Some(report), Some(modes)) => {
+                    self.modes(ui, session, &modes, lever);
+                    let bars = number(report.bar_frequency);
+                    ui.weak(format!(
+                        "The leg bars themselves bend at {bars} Hz or more, which is not part of these."
+                    ));
+                }
+                (Some(_), None) => {
+                    ui.label("On rails that bend, the natural frequencies are not known.");
+                }
+                (None, _) => {
+                    ui.colored_label(theme::bad(ui), "At a singular pose there are no natural frequencies.");
+                }
+            }
+            ui.separator();
+            ui.weak("With the payload, joints and drives of the study being edited:");
+            fields::of_sections(ui, session, &["payload", "joints", "drives"]);
+        });
+    }
+
+    /// Shows the frequencies, and the one that is selected as a motion.
+    fn modes(&mut self, ui: &mut Ui, session: &mut Session, modes: &[VibrationMode], lever: f64) {
+        let mut selected = session.view().vibration.map(|shown| shown.mode);
+        Grid::new("natural frequencies")
+            .num_columns(3)
+            .spacing([14.0, 3.0])
+            .show(ui, |ui| {
+                for (place, mode) in modes.iter().enumerate() {
+                    let is_selected = selected == Some(place);
+                    let name = format!("{} Hz", number(mode.frequency));
+                    if ui.selectable_label(is_selected, name).clicked() {
+                        selected = (!is_selected).then_some(place);
+                    }
+                    ui.label(mode.words(lever));
+                    ui.weak(if mode.is_in_plane { "in the plane" } else { "out of it" });
+                    ui.end_row();
+                }
+            });
+        let Some(mode) = selected else {
+            session.view_mut().vibration = None;
+            ui.weak(
+                "Select a frequency: the bars bend in 3-D as they do in that vibration, much enlarged and slowed down.",
+            );
+            return;
+        };
+        ui.horizontal(|ui| {
+            let (symbol, name) = if self.is_playing {
+                ("⏸", "Pause")
+            } else {
+                ("▶", "Play")
+            };
+            if named(ui.add(theme::toggle(self.is_playing, symbol)), name).clicked() {
+                self.is_playing = !self.is_playing;
+            }
+            let label = ui.label("amplitude").id;
+            let slider =
+                Slider::new(&mut self.amplitude, 0.01..=0.3).custom_formatter(|share, _| format!("{share:.2} R"));
+            ui.add(slider).labelled_by(label);
+            if ui.button("Hide").clicked() {
+                selected = None;
+            }
+        });
+        if self.is_playing {
+            let passed = f64::from(ui.input(|input| input.stable_dt));
+            self.phase = (self.phase + SHOWN_RATE * passed).fract();
+            ui.ctx().request_repaint();
+        }
+        // Still, the bars are shown where they bend most.
+        let turn = if self.is_playing { self.phase } else { 0.25 };
+        let share = self.amplitude * libm::sin(2.0 * std::f64::consts::PI * turn);
+        session.view_mut().vibration = selected.map(|_| ShownVibration { mode, share });
+    }
+}

@@ -1,0 +1,102 @@
+//! Frequencies, vibrations and errors of the selected design at its pose.
+
+use std::sync::Arc;
+
+use super::Session;
+use kinefront_model::dynamics::DynamicsReport;
+use kinefront_model::mechanism::Design;
+use kinefront_model::spatial::Pose;
+use kinefront_scene::{BentBar, Vibrations};
+use kinefront_study::{DriveSection, JointSection, PayloadSection, PreparedStudy, Study, ToleranceSection};
+
+/// A vibration that is shown, to a scale that can be seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShownVibration {
+    /// Place of the mode, from the lowest frequency.
+    pub mode: usize,
+    /// Displacement of the point that moves most, as a share of `R`; negative in the other half of the vibration.
+    pub share: f64,
+}
+
+/// What is known of a design at a pose, with the payload, the drives, the joints and the tolerances of the study being edited.
+#[derive(Debug, Clone)]
+pub struct PoseDynamics {
+    asked: Asked,
+    /// Frequencies, masses and errors; `None` at a singular or unreachable pose.
+    pub report: Option<DynamicsReport>,
+    /// The vibrations; `None` also on rails that bend.
+    pub vibrations: Option<Arc<Vibrations>>,
+}
+
+/// What that depends on.
+#[derive(Debug, Clone, PartialEq)]
+struct Asked {
+    study: Arc<PreparedStudy>,
+    payload: PayloadSection,
+    drives: DriveSection,
+    joints: JointSection,
+    tolerances: ToleranceSection,
+    design: Design,
+    pose: Pose,
+}
+
+impl Asked {
+    fn answered(self) -> PoseDynamics {
+        let study = Study {
+            payload: self.payload.clone(),
+            drives: self.drives.clone(),
+            joints: self.joints.clone(),
+            tolerances: self.tolerances.clone(),
+            ..self.study.study().clone()
+        };
+        let (mut report, mut vibrations) = (None, None);
+        if let Ok(model) = study.model()
+            && let Ok(Some(posed)) = model.posed(&self.design).dynamics_at(&self.pose)
+            && let Some(found) = posed.report()
+        {
+            vibrations = Vibrations::new(&model, &self.design, &posed, &found).map(Arc::new);
+            report = Some(found);
+        }
+        PoseDynamics {
+            asked: self,
+            report,
+            vibrations,
+        }
+    }
+}
+
+impl Session {
+    /// Returns what is known of the selected design at its pose; `None` without a design.
+    pub fn pose_dynamics(&mut self) -> Option<&PoseDynamics> {
+        let edited = self.editor.study();
+        let asked = Asked {
+            study: self.prepared(),
+            payload: edited.payload.clone(),
+            drives: edited.drives.clone(),
+            joints: edited.joints.clone(),
+            tolerances: edited.tolerances.clone(),
+            design: self.known()?.evaluation.design,
+            pose: self.pose()?,
+        };
+        if self.pose_dynamics.as_ref().is_none_or(|known| known.asked != asked) {
+            self.pose_dynamics = Some(asked.answered());
+        }
+        self.pose_dynamics.as_ref()
+    }
+
+    /// Returns the bars of the selected design as they bend in the vibration that is shown; none if none is shown.
+    pub(super) fn bent(&mut self) -> Arc<Vec<BentBar>> {
+        let Some(shown) = self.view.vibration else {
+            return Arc::default();
+        };
+        let Some(known) = self.pose_dynamics() else {
+            return Arc::default();
+        };
+        let amplitude = shown.share * known.asked.design.base_radius();
+        let bent = known
+            .vibrations
+            .as_ref()
+            .map(|vibrations| vibrations.bent(shown.mode, amplitude));
+        Arc::new(bent.unwrap_or_default())
+    }
+}

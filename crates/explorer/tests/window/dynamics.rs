@@ -1,0 +1,98 @@
+//! Natural frequencies and errors of the selected design at its pose.
+
+use egui_kittest::kittest::Queryable as _;
+use kinefront_explorer::{Panel, ShownVibration};
+
+use super::support::{Window, opened_window};
+
+fn shown(window: &Window) -> Option<ShownVibration> {
+    window.state().session().view().vibration
+}
+
+/// Selecting a frequency bends the bars as a slow motion, which pauses, and the payload of the study being edited lowers the frequencies at
+/// once.
+#[test]
+fn a_vibration_is_played_and_follows_the_payload() {
+    let mut window = opened_window();
+    window.state_mut().show(Panel::Vibration);
+    window.run_steps(3);
+    assert_eq!(shown(&window), None);
+    let frequencies = |window: &mut Window| {
+        let known = window.state_mut().session_mut().pose_dynamics().cloned();
+        let modes = known
+            .and_then(|known| known.vibrations)
+            .expect("vibrations")
+            .modes
+            .clone();
+        modes.iter().map(|mode| mode.frequency).collect::<Vec<_>>()
+    };
+    let before = frequencies(&mut window);
+    assert_eq!(before.len(), 6);
+    assert!(before.is_sorted());
+    window
+        .get_by_label(&format!("{} Hz", kinefront_scene::text::number(before[2])))
+        .click();
+    window.run_steps(2);
+    let first = shown(&window).expect("a vibration");
+    assert_eq!(first.mode, 2);
+    let mut shares = Vec::new();
+    for _ in 0..90 {
+        window.step();
+        shares.push(shown(&window).expect("a vibration").share);
+    }
+    // A second and a half is a whole vibration: the bars bend both ways.
+    let most = shares.iter().fold(0.0, |most: f64, share| most.max(*share));
+    let least = shares.iter().fold(0.0, |least: f64, share| least.min(*share));
+    assert!(most > 0.07 && least < -0.07, "{least} to {most}");
+    window.get_by_label("Pause").click();
+    window.run_steps(3);
+    let still = shown(&window);
+    window.run_steps(5);
+    assert_eq!(shown(&window), still);
+    window
+        .state_mut()
+        .session_mut()
+        .editor_mut()
+        .change(|study| study.payload.mass_kg = 500.0);
+    window.run_steps(2);
+    let after = frequencies(&mut window);
+    assert!(
+        after.iter().zip(&before).all(|(after, before)| after < before),
+        "{before:?} and {after:?}"
+    );
+    window.get_by_label("Hide").click();
+    window.run_steps(2);
+    assert_eq!(shown(&window), None);
+}
+
+/// Tolerances that are stated in the panel have their errors at once, each source with its part.
+#[test]
+fn errors_follow_the_tolerances() {
+    let mut window = opened_window();
+    window.state_mut().show(Panel::Accuracy);
+    window.run_steps(3);
+    window.get_by_label("State tolerances, and the errors of the pose follow:");
+    window.state_mut().session_mut().editor_mut().change(|study| {
+        study.tolerances.encoder_m = 1e-5;
+        study.tolerances.encoder_rad = 1e-5;
+        study.tolerances.link_m = 5e-5;
+    });
+    window.run_steps(2);
+    let report = window
+        .state_mut()
+        .session_mut()
+        .pose_dynamics()
+        .and_then(|known| known.report);
+    let accuracy = report.expect("a report").accuracy;
+    let budget = accuracy.budget_position;
+    assert_eq!((budget.base, budget.platform, budget.play), (0.0, 0.0, 0.0));
+    assert!(budget.encoders > 0.0 && budget.links > budget.encoders);
+    let percent = 100.0 * budget.links / accuracy.worst_position;
+    let words = format!(
+        "links: {} mm, {percent:.0} %",
+        kinefront_scene::text::number(1e3 * budget.links)
+    );
+    window.get_by_label(&words);
+    assert!(window.query_by_label_contains("platform: ").is_none());
+    window.get_by_label_contains("Error ellipse");
+}
