@@ -37,6 +37,9 @@ struct TaskReportJson {
     study: String,
     #[serde(flatten)]
     task: TaskJson,
+    /// Time of the shortest cycle that the limits of the study allow, and the quantity whose limit sets it.
+    shortest_cycle_s: Option<f64>,
+    shortest_cycle_set_by: Option<&'static str>,
     samples: Vec<TaskRow>,
 }
 
@@ -53,6 +56,7 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
             study.name
         )));
     };
+    let shortest = model.shortest_cycle(&evaluation);
     let catalogue = &model.settings().drive_catalogue;
     let mut out = std::io::stdout().lock();
     // A motion that ends early has no curves that stop in the middle.
@@ -63,6 +67,8 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
             design: design.to_string(),
             study: study.name.clone(),
             task: TaskJson::new(&outcome, catalogue),
+            shortest_cycle_s: shortest.map(|shortest| shortest.time),
+            shortest_cycle_set_by: shortest.map(|shortest| shortest.limit.quantity.entry().key),
             samples: rows.collect(),
         };
         writeln!(out, "{}", to_json(&json).map_err(Failure::Runtime)?)?;
@@ -72,11 +78,8 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
             say(format_args!("{design}: {reason}"));
         }
     } else {
-        writeln!(
-            out,
-            "{}",
-            tables::task(&design, &outcome, catalogue, text::motion_fault(&outcome))
-        )?;
+        let fault = text::motion_fault(&outcome);
+        writeln!(out, "{}", tables::task(&design, &outcome, catalogue, fault, shortest))?;
     }
     Ok(Ending::Done)
 }

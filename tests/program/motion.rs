@@ -429,7 +429,11 @@ fn a_run_selects_drives_from_a_catalogue() {
         .args(["task", "--design", &design, "--study", path, "--grid", "fine"])
         .assert()
         .success()
-        .stdout(contains(&*drive).and(contains("of which the motion uses")));
+        .stdout(
+            contains(&*drive)
+                .and(contains("of which the motion uses"))
+                .and(contains("s, set by the limit of the utilization of the drives")),
+        );
     let entry = format!("{}#{}", run.join("front.csv").display(), of(row, "id"));
     kinefront()
         .args(["export", &entry, "--format", "csv-parts", "--out", "-"])

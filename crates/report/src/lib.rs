@@ -11,6 +11,7 @@ mod error;
 mod figures;
 mod fits;
 mod fronts;
+mod motions;
 mod nearby;
 mod page;
 mod picture;
@@ -28,6 +29,7 @@ pub use assumptions::{ClearanceCost, Variation};
 pub use error::ReportError;
 pub use fits::{AT_BOUND, Fit, Trend, trends};
 pub use fronts::{Front, Fronts, SearchFronts, best_intervals};
+use motions::DesignMotion;
 pub use nearby::Nearby;
 pub use reference::EvaluatedReference;
 pub use side_by_side::SideBySide;
@@ -123,6 +125,8 @@ pub struct Report {
     /// What alternative assumptions change at designs of the front of each architecture.
     nearby: Vec<Nearby>,
     variations: Vec<Variation>,
+    /// What the motion of the study asks of designs of the fronts.
+    motions: Vec<DesignMotion>,
     question: Question,
     figures: Vec<Figure>,
     pictures: Vec<DesignPicture>,
@@ -247,6 +251,7 @@ impl Report {
             Some(evaluations) => assumptions::search_alternatives(&study, evaluations, tell)?,
             None => Vec::new(),
         };
+        let motions = motions::all(&model, &question, &fronts);
         tell("drawing figures and pictures");
         let mut report = Self {
             study,
@@ -261,6 +266,7 @@ impl Report {
             drivers,
             nearby,
             variations,
+            motions,
             question,
             figures: Vec::new(),
             pictures: Vec::new(),

@@ -1,7 +1,7 @@
 //! Tables of the motion of a design.
 
 use kinefront_model::dynamics::{DriveCatalogue, Motion};
-use kinefront_model::evaluation::{PosedDynamics, TaskOutcome};
+use kinefront_model::evaluation::{PosedDynamics, ShortestCycle, TaskOutcome};
 use kinefront_model::mechanism::Design;
 use kinefront_scene::text::{self, number};
 
@@ -79,7 +79,13 @@ pub fn dynamics(design: &Design, dynamics: &PosedDynamics<'_>, motion: Option<&M
 }
 
 /// Formats what a motion asks of the drives.
-pub fn task(design: &Design, outcome: &TaskOutcome, catalogue: &DriveCatalogue, why_not: Option<String>) -> String {
+pub fn task(
+    design: &Design,
+    outcome: &TaskOutcome,
+    catalogue: &DriveCatalogue,
+    why_not: Option<String>,
+    shortest: Option<ShortestCycle>,
+) -> String {
     let mut facts = table(["design", &design.to_string()], &[]);
     if let Some(motion) = &outcome.motion {
         facts.add_row(["cycle time".to_owned(), format!("{} s", number(motion.cycle_time()))]);
@@ -91,6 +97,13 @@ pub fn task(design: &Design, outcome: &TaskOutcome, catalogue: &DriveCatalogue, 
             return facts.to_string();
         }
     };
+    if let Some(shortest) = shortest {
+        let set_by = shortest.limit.quantity.entry().label;
+        facts.add_row([
+            "shortest cycle".to_owned(),
+            format!("{} s, set by the limit of the {set_by}", number(shortest.time)),
+        ]);
+    }
     if let Some(drive) = text::selected_drive(catalogue, outcome) {
         facts.add_row(["drives".to_owned(), drive]);
     }

@@ -69,7 +69,7 @@ fn found(ui: &mut Ui, accuracy: &Accuracy) {
     } else if accuracy.nonlinearity > 0.1 {
         ui.colored_label(
             theme::active(ui),
-            "Near a singularity: the errors are right to a fifth or so.",
+            "Near a singularity: the errors may be off by more than a tenth.",
         );
     }
     picture(ui, accuracy);

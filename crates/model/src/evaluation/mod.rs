@@ -10,6 +10,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod cycle;
 mod drives;
 mod evaluate;
 mod members;
@@ -28,6 +29,7 @@ pub use crate::pose::{
     Reference, Scale, Scope, Thresholds,
 };
 pub use crate::stiffness::Contribution;
+pub use cycle::ShortestCycle;
 pub use drives::SelectedDrive;
 pub use members::MemberReport;
 pub use model::{GridChoice, Model, ModelSettings};

@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use super::{
-    Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues, SelectedDrive, largest_of_legs,
+    Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues, SelectedDrive, TaskFigures,
+    largest_of_legs,
 };
 use crate::dynamics::TaskFrame;
 use crate::mechanism::{Design, Leg};
@@ -122,18 +123,8 @@ pub(super) fn add_of_task(
         .drive
         .and_then(|selected| Some((selected, settings.drive_catalogue.get(selected.place)?)));
     for quantity in asked {
-        let value = match quantity {
-            Quantity::CycleTime => Some(cycle_time),
-            Quantity::PathReach => Some(figures.path_reach),
-            Quantity::CycleEnergy => Some(figures.energy_shared),
-            Quantity::CornerPower => Some(figures.corner_power),
-            Quantity::PathSpeed | Quantity::PathRate => Some(largest_of_legs(figures.peak_speed)),
-            Quantity::PathForce | Quantity::PathTorque => Some(largest_of_legs(figures.peak_force)),
-            Quantity::DriveMass => selected.map(|(_, drive)| drive.mass),
-            Quantity::DriveUtilization => selected.map(|(selected, _)| selected.utilization),
-            _ => Some(largest_of_legs(figures.rms_force)),
-        };
-        values.set(quantity, value.filter(|_| quantity.is_of(design)));
+        let drive = selected.map(|(selected, drive)| (drive.mass, selected.utilization));
+        values.set(quantity, of_task(quantity, design, &figures, cycle_time, drive));
     }
     let (selected, drive) = selected?;
     let more = model.drive_mass(design.architecture(), drive);
@@ -141,6 +132,30 @@ pub(super) fn add_of_task(
         values.set(quantity, values.get(quantity).map(|mass| mass + more));
     }
     Some(selected)
+}
+
+/// Returns a quantity of a motion from its figures, its cycle time, and the mass and the utilization of the selected drive; `None` if the
+/// design does not have it.
+pub(super) fn of_task(
+    quantity: Quantity,
+    design: &Design,
+    figures: &TaskFigures,
+    cycle_time: f64,
+    drive: Option<(f64, f64)>,
+) -> Option<f64> {
+    let value = match quantity {
+        Quantity::CycleTime => Some(cycle_time),
+        Quantity::PathReach => Some(figures.path_reach),
+        Quantity::CycleEnergy => Some(figures.energy_shared),
+        Quantity::CornerPower => Some(figures.corner_power),
+        Quantity::PathSpeed | Quantity::PathRate => Some(largest_of_legs(figures.peak_speed)),
+        Quantity::PathForce | Quantity::PathTorque => Some(largest_of_legs(figures.peak_force)),
+        Quantity::PathForceRms | Quantity::PathTorqueRms => Some(largest_of_legs(figures.rms_force)),
+        Quantity::DriveMass => drive.map(|(mass, _)| mass),
+        Quantity::DriveUtilization => drive.map(|(_, utilization)| utilization),
+        _ => None,
+    };
+    value.filter(|_| quantity.is_of(design))
 }
 
 /// Returns the mean inverse condition number over the region and the window: each position is weighted by its area, and each

@@ -154,3 +154,62 @@ fn other(kind: JointKind) -> JointKind {
         JointKind::Revolute => JointKind::Prismatic,
     }
 }
+
+/// In the shortest cycle all limits are kept, and a cycle that is a little shorter misses the one that sets it.
+#[test]
+fn the_shortest_cycle_just_keeps_the_limits() {
+    let limit = |quantity: Quantity, most: f64| QuantityLimit {
+        quantity,
+        bound: Bound::AtMost(most),
+    };
+    let mut set_by = Vec::new();
+    for text in DESIGNS {
+        let design: Design = text.parse().expect("a design");
+        let (speed, force) = match design.architecture().actuator() {
+            JointKind::Prismatic => (Quantity::PathSpeed, Quantity::PathForce),
+            JointKind::Revolute => (Quantity::PathRate, Quantity::PathTorque),
+        };
+        for limits in [
+            vec![limit(speed, 0.4)],
+            vec![
+                limit(speed, 6.0),
+                limit(force, 6000.0),
+                limit(Quantity::CornerPower, 4000.0),
+            ],
+            vec![limit(Quantity::CycleEnergy, 900.0), limit(speed, 20.0)],
+        ] {
+            let with = |time: f64| {
+                let mut settings = settings();
+                settings.quantities = limits.iter().map(|limit| limit.quantity).collect();
+                settings.limits.clone_from(&limits);
+                settings.task.as_mut().expect("a motion").timing = TaskTiming::Cycle(time);
+                Model::new(settings).expect("a model")
+            };
+            let model = with(3.0);
+            let evaluation = model.evaluate(&design, GridChoice::Reference);
+            let shortest = model.shortest_cycle(&evaluation).expect("a cycle");
+            set_by.push(shortest.limit.quantity);
+            let margin = |time: f64| {
+                let found = with(time).evaluate(&design, GridChoice::Reference);
+                let margins = found.limits.iter().map(|result| result.margin);
+                let of_it = found.limits.iter().find(|result| result.limit == shortest.limit);
+                (margins.fold(f64::INFINITY, f64::min), of_it.expect("a limit").margin)
+            };
+            let (least, _) = margin(shortest.time);
+            assert!(least >= 0.0, "{design}: {shortest:?} misses a limit by {least}");
+            let (_, missed) = margin(0.9999 * shortest.time);
+            assert!(missed < 0.0, "{design}: {shortest:?} could be shorter: {missed}");
+        }
+        // Without a limit there is no shortest cycle, and none keeps a force below the one that gravity asks for.
+        for limits in [Vec::new(), vec![limit(force, 1e-3)]] {
+            let mut settings = settings();
+            settings.limits = limits;
+            let model = Model::new(settings).expect("a model");
+            let evaluation = model.evaluate(&design, GridChoice::Reference);
+            assert_eq!(model.shortest_cycle(&evaluation), None);
+        }
+    }
+    for quantity in [Quantity::PathSpeed, Quantity::PathRate, Quantity::CornerPower] {
+        assert!(set_by.contains(&quantity), "{quantity:?} is among {set_by:?}");
+    }
+}

@@ -6,6 +6,7 @@ mod constraints;
 mod drivers;
 mod fronts;
 mod made;
+mod motion;
 mod paper;
 mod pictures;
 mod question;
@@ -103,6 +104,9 @@ fn sections(report: &Report) -> Vec<Section> {
     if report.drivers.iter().any(|along| !along.designs.is_empty()) {
         let title = format!("What drives the {}", question.name(0));
         sections.push(section("drivers", title, drivers::drivers(report)));
+    }
+    if !report.motions.is_empty() {
+        sections.push(section("motion", "Motion and drives", motion::motion(report)));
     }
     sections.push(section(
         "clearance",
