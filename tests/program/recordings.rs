@@ -143,3 +143,32 @@ fn an_infeasible_design_can_be_looked_at() {
         .code(2)
         .stderr(contains("worst_margin"));
 }
+
+/// The recording of a design of a study with a motion has its curves and poses over the time of the cycle, as the table of the motion
+/// has them.
+#[test]
+fn a_recording_of_a_design_has_the_motion_of_the_study() {
+    let folder = folder();
+    let study = folder.path().join("study.toml");
+    let text = "[task]\nshape = \"waypoints\"\nwaypoints = [[-0.3, 0, 35], [0.3, 0.1, 45]]\ncycle_time_s = 2.5\ndwell_s = 0.25\n[payload]\nmass_kg = 3\n";
+    std::fs::write(&study, text).expect("a study");
+    let recording = folder.path().join("design.rrd");
+    let of = |command: &str| {
+        let mut command_line = kinefront();
+        command_line.args([command, "--design", DESIGN, "--study"]).arg(&study);
+        command_line
+    };
+    of("show").arg("--record").arg(&recording).assert().success();
+    let told = of("task").args(["--csv", "--grid", "fine"]).assert().success();
+    let table = folder.path().join("motion.csv");
+    std::fs::write(&table, &told.get_output().stdout).expect("a table");
+    let Some(python) = python(&["rerun", "pyarrow", "numpy"]) else {
+        return;
+    };
+    let found: serde_json::Value =
+        serde_json::from_str(&script(python, "check_motion.py", &[&recording, &table])).expect("JSON");
+    assert_eq!(found["rows"], 402);
+    assert!(found["poses"].as_u64().expect("a count") > 100, "{found}");
+    assert!(found["off"].as_f64().expect("a number") < 1e-6, "{found}");
+    assert_eq!(found["has_path"], true);
+}

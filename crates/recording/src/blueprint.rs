@@ -12,9 +12,11 @@ use rerun::log::{Chunk, ChunkError, LogMsg, RowId};
 use rerun::{AsComponents, EntityPath, RecordingStream, StoreId, StoreKind, TimePoint, Timeline};
 
 use super::legend::legend_bounds;
+use super::motion::curve_path;
 use super::{APPLICATION_ID, Viewpoint, paths, timelines};
 use kinefront_model::evaluation::PoseScalar;
-use kinefront_scene::Field;
+use kinefront_model::mechanism::JointKind;
+use kinefront_scene::{Field, MotionCurve};
 
 /// Sends the layout of a run's recording; `clouds` are the entities whose rows together form the cloud of designs; `plot`
 /// and `hypervolume` are names of views.
@@ -66,12 +68,14 @@ pub(super) fn send_run_layout(
 
 /// Sends the layout of the recording of one design that extends to the distance `extent` \[m\] from O.
 ///
-/// `fields` have heatmaps, and `first` is the one that is in front; `None` brings the proof of the workspace to the front.
+/// `fields` have heatmaps, and `first` is the one that is in front; `None` brings the proof of the workspace to the front. A design that
+/// follows a motion `moves`: its curves are below the maps, and time is that of the motion.
 pub(super) fn send_design_layout(
     recording: &RecordingStream,
     extent: f64,
     fields: &[Field],
     first: Option<Field>,
+    moves: bool,
 ) -> Result<(), ChunkError> {
     let mut layout = ViewLayout::new();
     let mut maps = Vec::new();
@@ -83,6 +87,7 @@ pub(super) fn send_design_layout(
             format!("+ {}/**", paths::WORKSPACE),
             format!("+ {}/{key}/**", paths::HEATMAP),
             format!("+ {}/**", paths::LIMITS),
+            format!("+ {}/**", paths::PATH),
         ];
         // The heatmaps of in-plane stiffness and displacement also show the ellipsoids of that quantity.
         match field {
@@ -108,7 +113,24 @@ pub(super) fn send_design_layout(
     )?;
     layout.eye(&proof, [0.0, -0.7, 1.9], [0.0, -0.05, 0.0], extent)?;
     maps.insert(if first.is_none() { 0 } else { maps.len() }, proof);
-    let maps = layout.container(ContainerKind::Tabs, &maps, &[])?;
+    let mut maps = layout.container(ContainerKind::Tabs, &maps, &[])?;
+    if moves {
+        let mut curves = Vec::new();
+        for curve in [
+            MotionCurve::Force,
+            MotionCurve::Speed,
+            MotionCurve::Position,
+            MotionCurve::Acceleration,
+            MotionCurve::Power,
+        ] {
+            let name = curve.name(JointKind::Prismatic);
+            let view = layout.curve(name, &curve_path(curve), "+ $origin/**")?;
+            layout.legend(&view)?;
+            curves.push(view);
+        }
+        let curves = layout.container(ContainerKind::Tabs, &curves, &[])?;
+        maps = layout.container(ContainerKind::Vertical, &[maps, curves], &[2.2, 1.0])?;
+    }
     let space = layout.configuration(extent)?;
     let contents = ["axes", "cylinder", "proof"].map(|name| format!("+ {}/{name}/**", paths::CONFIGURATION));
     let boxes = layout.view(
@@ -127,7 +149,8 @@ pub(super) fn send_design_layout(
     let card = layout.text("Design", paths::CARD)?;
     let right = layout.container(ContainerKind::Vertical, &[configuration, card], &[0.8, 1.0])?;
     let root = layout.container(ContainerKind::Horizontal, &[maps, right], &[1.7, 1.0])?;
-    layout.finish(&root, timelines::TOUR, PlayState::Paused)?;
+    let timeline = if moves { timelines::TIME } else { timelines::TOUR };
+    layout.finish(&root, timeline, PlayState::Paused)?;
     layout.send(recording);
     Ok(())
 }

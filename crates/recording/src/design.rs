@@ -6,7 +6,7 @@ use super::card::card;
 use super::draw::Canvas;
 use super::subject::DrawnDesign;
 use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
-use super::{blueprint, paths, timelines};
+use super::{blueprint, motion, paths, timelines};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::spatial::Pose;
 use kinefront_scene::{
@@ -24,7 +24,7 @@ const OUTLINE: HeatmapSettings = HeatmapSettings { cells: 32 };
 /// Number of poses around each rim of a tour.
 const TOUR_STEPS: usize = 72;
 
-/// Records one design with its overlays and its tour to its own file; the tab with the heatmap of the field `first` is in front, or
+/// Records one design with its overlays, its tour and the motion of the study to its own file; the tab with the heatmap of the field `first` is in front, or
 /// that of the proof of its workspace.
 ///
 /// # Errors
@@ -79,7 +79,12 @@ fn draw_design(
     let still = [subject.home()];
     let poses: &[Pose] = tour.as_ref().map_or(&still, |tour| &tour.poses);
     let fields: Vec<Field> = Field::of(model, &evaluation.design).collect();
-    blueprint::send_design_layout(writer.stream(), subject.extent(poses), &fields, first)?;
+    // A motion that ends early has no curves that stop in the middle.
+    let followed = model.follow_task(evaluation);
+    let samples = followed.filter(|(outcome, _)| matches!(outcome.result, Some(Ok(_))));
+    let samples = samples.map(|(_, samples)| samples);
+    let extent = subject.extent(poses);
+    blueprint::send_design_layout(writer.stream(), extent, &fields, first, samples.is_some())?;
     let canvas = Canvas::at(&writer, ALWAYS);
     let floor = subject.floor();
     let home = subject.home();
@@ -119,6 +124,9 @@ fn draw_design(
                 super::colors::ELLIPSOID,
             )?;
         }
+    }
+    if let Some(samples) = &samples {
+        motion::record_motion(&writer, &subject, samples)?;
     }
     let drivers = drivers(study, evaluation);
     writer.text(

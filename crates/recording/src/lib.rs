@@ -34,6 +34,7 @@ mod design;
 mod draw;
 mod legend;
 mod live;
+mod motion;
 mod plot;
 mod point;
 mod pointed;
@@ -69,6 +70,7 @@ mod paths {
     pub const LIMITS: &str = "/design/limits";
     pub const PROOF: &str = "/design/proof";
     pub const PATH: &str = "/design/path";
+    pub const MOTION: &str = "/motion";
     pub const VIBRATION: &str = "/design/vibration";
     pub const HEATMAP: &str = "/design/heatmap";
     pub const HEATMAP_LEGEND: &str = "/legend";
@@ -102,4 +104,6 @@ mod timelines {
     pub const GENERATION: &str = "generation";
     pub const FRONT: &str = "front";
     pub const TOUR: &str = "tour";
+    /// Time of a motion, in nanoseconds.
+    pub const TIME: &str = "time";
 }

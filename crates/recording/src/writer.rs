@@ -13,8 +13,8 @@ use rerun::{
     SerializedComponentColumn, TextDocument, TimeColumn,
 };
 
-use super::APPLICATION_ID;
 use super::sink::RrdFile;
+use super::{APPLICATION_ID, timelines};
 
 /// Why a recording could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -68,7 +68,7 @@ impl From<ChunkError> for RecordingError {
     }
 }
 
-/// The time of a row: a value on each of its timelines; empty for static data.
+/// The time of a row: a value on each of its timelines, a number or, on the timeline `time`, nanoseconds; empty for static data.
 pub(super) type Moment<'a> = &'a [(&'static str, usize)];
 
 /// The moment of static data.
@@ -136,9 +136,10 @@ impl RecordingWriter {
         moment: Moment<'_>,
         batches: Vec<SerializedComponentBatch>,
     ) -> Result<(), RecordingError> {
-        let times = moment
-            .iter()
-            .map(|&(timeline, time)| TimeColumn::new_sequence(timeline, [time as i64]));
+        let times = moment.iter().map(|&(timeline, time)| match timeline {
+            timelines::TIME => TimeColumn::new_duration_nanos(timeline, [time as i64]),
+            _ => TimeColumn::new_sequence(timeline, [time as i64]),
+        });
         let columns: Vec<SerializedComponentColumn> = batches
             .into_iter()
             .map(|batch| {

@@ -1,0 +1,76 @@
+//! Records the motion of a design: the manipulator and the curves of its actuators over the time of a cycle.
+
+use rerun::{Scalars, SeriesLines, TimeColumn};
+
+use super::colors::rgb;
+use super::draw::Canvas;
+use super::subject::DrawnDesign;
+use super::writer::{ALWAYS, RecordingError, RecordingWriter};
+use super::{paths, timelines};
+use kinefront_model::evaluation::TaskSample;
+use kinefront_model::mechanism::JointKind;
+use kinefront_scene::{MotionCurve, MotionPath, PathColor, drawn_samples, manipulator, palette};
+
+/// Largest number of poses at which the manipulator is drawn.
+const MOST_POSES: usize = 240;
+
+/// Nanoseconds of a second, in which the timeline counts.
+const NANOSECONDS: f64 = 1e9;
+
+/// Returns the path of the entities of a curve.
+pub(super) fn curve_path(curve: MotionCurve) -> String {
+    format!("{}/{}", paths::MOTION, curve.name(JointKind::Prismatic))
+}
+
+/// Records the samples of a motion that a design follows.
+pub(super) fn record_motion(
+    writer: &RecordingWriter,
+    subject: &DrawnDesign<'_>,
+    samples: &[TaskSample],
+) -> Result<(), RecordingError> {
+    let nanoseconds = |sample: &TaskSample| (sample.instant.time * NANOSECONDS).round();
+    let actuator = subject.evaluation.design.architecture().actuator();
+    let drawn = drawn_samples(samples);
+    for curve in MotionCurve::ALL {
+        for leg in 0..3 {
+            let entity = format!("{}/leg{}", curve_path(curve), leg + 1);
+            let line = SeriesLines::new()
+                .with_names([format!("leg {}: {}", leg + 1, curve.title(actuator))])
+                .with_colors([rgb(palette::SERIES[leg])]);
+            writer.row(&entity, ALWAYS, &line)?;
+            let times = drawn.iter().map(|sample| nanoseconds(sample) as i64);
+            let values = drawn.iter().map(|sample| curve.values(sample)[leg]);
+            let columns = Scalars::new(values).columns_of_unit_batches();
+            writer.stream().send_columns(
+                entity,
+                [TimeColumn::new_duration_nanos(timelines::TIME, times)],
+                columns.map_err(RecordingError::encode)?,
+            )?;
+        }
+    }
+    let (model, design) = (subject.model, &subject.evaluation.design);
+    let space = subject.space();
+    let step = samples.len().div_ceil(MOST_POSES).max(1);
+    let last = samples.last().filter(|_| (samples.len() - 1) % step != 0);
+    for sample in samples.iter().step_by(step).chain(last) {
+        let pose = sample.instant.pose;
+        let moment = [(timelines::TIME, nanoseconds(sample) as usize)];
+        let canvas = Canvas::at(writer, &moment);
+        if let Ok(scene) = manipulator(model, design, &pose) {
+            canvas.manipulator(paths::MANIPULATOR, &scene)?;
+            let at = space.place(pose.position, pose.phi);
+            canvas.mark(
+                &format!("{}/pose", paths::CONFIGURATION),
+                at,
+                "P",
+                super::colors::ELLIPSOID,
+            )?;
+        }
+    }
+    let canvas = Canvas::at(writer, ALWAYS);
+    if let Some(path) = MotionPath::new(model, design, samples, PathColor::FORCE) {
+        subject.path(&canvas, &path)?;
+        subject.path_in_space(&canvas, &path)?;
+    }
+    Ok(())
+}
