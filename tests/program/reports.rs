@@ -160,6 +160,7 @@ fn runs_are_put_together_where_they_ask_for_the_same() {
     report(&[&first, &third], &beside, &[]).success();
     let page = std::fs::read_to_string(beside.join("index.html")).expect("a page");
     assert!(page.contains("first beside third"));
+    assert!(page.contains("The mass in motion of third differs from that of first by "));
     assert!(page.contains("material.youngs_modulus_pa") && page.contains("70000000000"));
     assert!(!page.contains("optimizer.evaluations"));
     // Softer bars are heavier at every radius that both reach: no change is below zero.

@@ -51,7 +51,7 @@ pub(super) fn record_motion(
     let (model, design) = (subject.model, &subject.evaluation.design);
     let space = subject.space();
     let step = samples.len().div_ceil(MOST_POSES).max(1);
-    let last = samples.last().filter(|_| (samples.len() - 1) % step != 0);
+    let last = samples.last().filter(|_| !(samples.len() - 1).is_multiple_of(step));
     for sample in samples.iter().step_by(step).chain(last) {
         let pose = sample.instant.pose;
         let moment = [(timelines::TIME, nanoseconds(sample) as usize)];

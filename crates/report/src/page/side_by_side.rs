@@ -6,6 +6,7 @@ use super::{Section, change, drawing, section};
 use crate::SideBySide;
 use kinefront_model::evaluation::Better;
 use kinefront_scene::text::{number, short};
+use kinefront_study::EqualLevel;
 
 /// Returns the sections of the page.
 pub(super) fn sections(found: &SideBySide) -> Vec<Section> {
@@ -52,6 +53,9 @@ fn fronts(found: &SideBySide) -> Markup {
 fn levels(found: &SideBySide) -> Markup {
     let first = found.objectives[0].quantity.entry();
     html! {
+        @for other in 1..found.runs.len() {
+            @if let Some(sentence) = compared(found, other) { p { (sentence) } }
+        }
         div.scroll { table {
             caption {
                 "Best " (first.label) " [" (first.unit) "]"
@@ -77,6 +81,39 @@ fn levels(found: &SideBySide) -> Markup {
             } } }
         } }
     }
+}
+
+/// Says in words how the front of a run lies to that of the first one.
+fn compared(found: &SideBySide, other: usize) -> Option<String> {
+    let second = found.objectives.get(1)?;
+    let (entry, names) = (second.quantity.entry(), [&found.runs[0].name, &found.runs[other].name]);
+    let at = |level: &EqualLevel| Some([level.at?, level.costs[other]? / level.costs[0]?]);
+    let ratios: Vec<[f64; 2]> = found.levels.iter().filter_map(at).collect();
+    let least = ratios.iter().min_by(|a, b| a[1].total_cmp(&b[1]))?;
+    let most = ratios.iter().max_by(|a, b| a[1].total_cmp(&b[1]))?;
+    let place = |[level, ratio]: &[f64; 2]| format!("{} at {} {}", change(*ratio), short(*level), entry.unit);
+    let mut words = format!(
+        "The {} of {} differs from that of {} by {} to {}.",
+        found.objectives[0].quantity.entry().label,
+        names[1],
+        names[0],
+        place(least).trim_end(),
+        place(most).trim_end()
+    );
+    for (run, name) in [(0, names[0]), (other, names[1])] {
+        let missed: Vec<f64> = found
+            .levels
+            .iter()
+            .filter(|level| level.costs[run].is_none() && level.costs.iter().any(Option::is_some))
+            .filter_map(|level| level.at)
+            .collect();
+        if let Some(first) = missed.first() {
+            let level = format!("{} {}", short(*first), entry.unit);
+            let more = if missed.len() > 1 { " and beyond" } else { "" };
+            words += &format!(" {name} has no design at {}{more}.", level.trim_end());
+        }
+    }
+    Some(words)
 }
 
 fn made(found: &SideBySide) -> Markup {
