@@ -79,21 +79,23 @@ fn the_lightest_drive_that_carries_the_motion_is_selected() {
     for text in DESIGNS {
         let design: Design = text.parse().expect("a design");
         let kind = design.architecture().actuator();
+        let needed = alone(&design, &light(kind)).0;
+        let force = largest_of_legs(needed.rms_force);
+        let speed = largest_of_legs(needed.peak_speed);
         for round in 0..4 {
-            // Weak ones, strong ones, and those of the other kind, which must not be selected.
-            let scale = if kind == JointKind::Prismatic { 400.0 } else { 900.0 };
-            let weakness = if round == 3 { 0.02 } else { 1.0 };
+            // Weak ones, strong ones, and those of the other kind, which must not be selected. None of the last round is strong enough.
+            let weakness = if round == 3 { 0.05 } else { 1.0 };
             let mut drives = Vec::new();
             for place in 0..12 {
                 let size = 0.05 + 3.0 * random() * random();
                 drives.push(Drive {
                     name: format!("drive {place}"),
                     kind: if place % 4 == 3 { other(kind) } else { kind },
-                    rated: weakness * scale * size,
-                    peak: weakness * scale * size * (1.2 + random()),
-                    speed: 0.5 + 4.0 * random(),
+                    rated: weakness * force * size,
+                    peak: weakness * force * size * (1.5 + random()),
+                    speed: speed * (0.8 + random()),
                     inertia: 3.0 * size * random(),
-                    mass: 0.2 + 20.0 * size * random(),
+                    mass: 0.2 + 10.0 * size * random(),
                 });
             }
             let catalogue = DriveCatalogue::new(drives).expect("a catalogue");
@@ -148,6 +150,19 @@ fn the_lightest_drive_that_carries_the_motion_is_selected() {
     assert!(counts.iter().all(|count| *count >= 4), "{counts:?}");
 }
 
+/// A drive that weighs next to nothing.
+fn light(kind: JointKind) -> Drive {
+    Drive {
+        name: "light".to_owned(),
+        kind,
+        rated: 1.0,
+        peak: 1.0,
+        speed: 1.0,
+        inertia: 0.0,
+        mass: 1e-6,
+    }
+}
+
 fn other(kind: JointKind) -> JointKind {
     match kind {
         JointKind::Prismatic => JointKind::Revolute,
@@ -169,14 +184,20 @@ fn the_shortest_cycle_just_keeps_the_limits() {
             JointKind::Prismatic => (Quantity::PathSpeed, Quantity::PathForce),
             JointKind::Revolute => (Quantity::PathRate, Quantity::PathTorque),
         };
+        // Limits that the cycle of 3 s keeps, and such that it does not.
+        let (now, _) = alone(&design, &light(design.architecture().actuator()));
+        let at = [now.peak_speed, now.peak_force].map(largest_of_legs);
         for limits in [
-            vec![limit(speed, 0.4)],
+            vec![limit(speed, 0.6 * at[0])],
             vec![
-                limit(speed, 6.0),
-                limit(force, 6000.0),
-                limit(Quantity::CornerPower, 4000.0),
+                limit(speed, 4.0 * at[0]),
+                limit(force, 3.0 * at[1]),
+                limit(Quantity::CornerPower, 2.0 * at[0] * at[1]),
             ],
-            vec![limit(Quantity::CycleEnergy, 900.0), limit(speed, 20.0)],
+            vec![
+                limit(Quantity::CycleEnergy, 1.5 * now.energy_shared),
+                limit(speed, 20.0 * at[0]),
+            ],
         ] {
             let with = |time: f64| {
                 let mut settings = settings();
@@ -209,7 +230,7 @@ fn the_shortest_cycle_just_keeps_the_limits() {
             assert_eq!(model.shortest_cycle(&evaluation), None);
         }
     }
-    for quantity in [Quantity::PathSpeed, Quantity::PathRate, Quantity::CornerPower] {
+    for quantity in [Quantity::PathSpeed, Quantity::PathRate, Quantity::CycleEnergy] {
         assert!(set_by.contains(&quantity), "{quantity:?} is among {set_by:?}");
     }
 }
