@@ -273,10 +273,7 @@ impl Model {
         PoseChecker {
             manipulator,
             strength: self.strength_if_asked(design, stiffness.as_ref()),
-            dynamics: stiffness
-                .as_ref()
-                .filter(|_| self.computes_any(PoseScalar::OF_MOTION))
-                .map(|stiffness| self.dynamics(design, stiffness)),
+            dynamics: self.dynamics_if_asked(design, stiffness.as_ref()),
             stiffness,
             definition: self.settings.stiffness_definition,
             length: self.length(design, &manipulator),
@@ -346,11 +343,20 @@ impl Model {
         self.strength_if_asked(design, self.stiffness(design).as_ref())
     }
 
+    /// Returns the motion of a design whose stiffness is known, if an evaluation computes anything of it.
+    pub(super) fn dynamics_if_asked(
+        &self,
+        design: &Design,
+        stiffness: Option<&StiffnessModel>,
+    ) -> Option<DynamicsModel> {
+        stiffness
+            .filter(|_| self.computes_any(PoseScalar::OF_MOTION))
+            .map(|stiffness| self.dynamics(design, stiffness))
+    }
+
     /// Returns the motion of a design, if the study limits anything of it; `None` also if a bar is infinitely compliant.
     pub(crate) fn dynamics_of(&self, design: &Design) -> Option<DynamicsModel> {
-        let stiffness = self.stiffness(design)?;
-        self.computes_any(PoseScalar::OF_MOTION)
-            .then(|| self.dynamics(design, &stiffness))
+        self.dynamics_if_asked(design, self.stiffness(design).as_ref())
     }
 
     fn dynamics(&self, design: &Design, stiffness: &StiffnessModel) -> DynamicsModel {

@@ -112,13 +112,17 @@ impl ValueColumns {
     }
 
     /// Returns the ratio of a scalar to its threshold at the first `count` poses, or of the threshold to the scalar where smaller
-    /// values are better. It is `f64::MAX` where a leg does not reach the pose, because it is not this scalar that is insufficient
+    /// values are better; of a natural frequency the square of that, which grows with the bars as a stiffness does. It is `f64::MAX` where a leg does not reach the pose, because it is not this scalar that is insufficient
     /// there.
     fn ratios(&self, scalar: PoseScalar, threshold: f64, count: usize) -> Vec<f64> {
         let better = scalar.entry().quantity.better;
+        let is_frequency = scalar == PoseScalar::NaturalFrequency;
         let ratio = |value: f64| match better {
             // If one operand is NaN, `max` returns the other one.
-            Better::Higher => (value / threshold.max(f64::MIN_POSITIVE)).max(0.0),
+            Better::Higher => {
+                let ratio = (value / threshold.max(f64::MIN_POSITIVE)).max(0.0);
+                if is_frequency { ratio * ratio } else { ratio }
+            }
             Better::Lower => threshold / value,
         };
         let column = self.scalars[scalar].iter().zip(&self.reachable).take(count);

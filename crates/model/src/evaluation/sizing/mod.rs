@@ -18,6 +18,7 @@ mod sizer;
 
 use super::{GridChoice, Model};
 use crate::mechanism::Design;
+use crate::pose::PoseScalar;
 use sizer::Sizer;
 
 /// What sizing may change.
@@ -67,14 +68,23 @@ impl Model {
             WorkspaceTarget::Radius(_) | WorkspaceTarget::Largest => GridChoice::Reference,
         };
         with_leg!(design.architecture(), L => {
-            let mut sizer = Sizer::<L>::new(self, design, ranges, grid);
-            sizer.set_bars([ranges.leg[1], ranges.platform[1]]);
-            match target {
-                WorkspaceTarget::Radius(radius) => sizer.sized_for_disc(Some(radius)),
-                WorkspaceTarget::Largest => sizer.sized_for_disc(None),
-                WorkspaceTarget::Prescribed(grid) if ranges.is_exact => sizer.sized_exactly(grid),
-                WorkspaceTarget::Prescribed(grid) => sizer.sized_prescribed(grid),
-            }
+            let sized = |with_frequency: bool| {
+                let mut sizer = Sizer::<L>::new(self, design, ranges, grid);
+                if !with_frequency {
+                    sizer.drop_limit(PoseScalar::NaturalFrequency);
+                }
+                sizer.set_bars([ranges.leg[1], ranges.platform[1]]);
+                match target {
+                    WorkspaceTarget::Radius(radius) => sizer.sized_for_disc(Some(radius)),
+                    WorkspaceTarget::Largest => sizer.sized_for_disc(None),
+                    WorkspaceTarget::Prescribed(grid) if ranges.is_exact => sizer.sized_exactly(grid),
+                    WorkspaceTarget::Prescribed(grid) => sizer.sized_prescribed(grid),
+                }
+            };
+            // Beyond some radius, the mass of the bars lowers the natural frequency more than their stiffness raises it: the bars are then
+            // sized for all else, and the design may still have the frequency.
+            let limits_frequency = self.settings().thresholds.get(PoseScalar::NaturalFrequency).is_some();
+            sized(true).or_else(|| limits_frequency.then(|| sized(false)).flatten())
         })
     }
 }

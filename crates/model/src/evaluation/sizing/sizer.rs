@@ -66,6 +66,11 @@ impl<'a, L: Leg> Sizer<'a, L> {
         }
     }
 
+    /// Sizes for all limits but that of a scalar from now on.
+    pub fn drop_limit(&mut self, scalar: PoseScalar) {
+        self.checker.set_threshold(scalar, None);
+    }
+
     /// Returns the radii of the lightest bars for the poses that are laid out.
     pub fn lightest_bars(&mut self, accuracy: SizingAccuracy) -> Option<[f64; 2]> {
         let problem = SizingProblem {
@@ -113,6 +118,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
         let design = self.with_bars(bars);
         self.checker.stiffness = self.model.stiffness(&design);
         self.checker.strength = self.model.strength_if_asked(&design, self.checker.stiffness.as_ref());
+        self.checker.dynamics = self.model.dynamics_if_asked(&design, self.checker.stiffness.as_ref());
     }
 
     pub fn position(&self, radius: f64, angle: f64) -> DVec2 {

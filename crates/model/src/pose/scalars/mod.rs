@@ -329,7 +329,7 @@ pose_scalars! {
             QuantityEntry::new("natural_frequency_hz", "Hz", "natural frequency", Scope::Poses, Better::Higher,
                 "Lowest natural frequency with the payload, the actuators being held.")
                 .above_zero().logarithmic().reference(Reference::Number(1e3)),
-            "natural_frequency").labelled("lowest natural frequency");
+            "natural_frequency").labelled("lowest natural frequency").of_bars();
         /// Largest error of the position \[m\].
         PositionError = PoseScalarEntry::new(
             QuantityEntry::new("position_error_m", "m", "position error", Scope::Poses, Better::Lower,
