@@ -51,13 +51,13 @@ def main():
     stiffness, damping = model.actuator_gainprm[:, 0], -model.actuator_biasprm[:, 2]
     farthest = turned = 0.0
     next_row = 0
-    for step in range(int(round(times[-1] / model.opt.timestep))):
-        now = data.time + model.opt.timestep
-        value, rate, force = (
-            np.array([np.interp(now, times, of[:, leg]) for leg in range(3)]) for of in (positions, rates, forces)
-        )
-        # The servos damp the whole speed, so a controller adds what the trajectory needs to its reference.
-        data.ctrl[:] = value + (damping * rate + force) / stiffness
+    steps = model.opt.timestep * np.arange(1, int(round(times[-1] / model.opt.timestep)) + 1)
+    value, rate, force = (
+        np.stack([np.interp(steps, times, of[:, leg]) for leg in range(3)], axis=1) for of in (positions, rates, forces)
+    )
+    # The servos damp the whole speed, so a controller adds what the trajectory needs to its reference.
+    for control in value + (damping * rate + force) / stiffness:
+        data.ctrl[:] = control
         mujoco.mj_step(model, data)
         while next_row < len(times) and times[next_row] <= data.time + 1e-9:
             away = data.qpos[places] - path[next_row]

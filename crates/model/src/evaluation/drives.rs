@@ -2,27 +2,10 @@
 
 use std::borrow::Cow;
 
-use super::{Model, TaskFigures, TaskOutcome, TaskSample, largest_of_legs};
+use super::{Model, SelectedDrive, TaskFigures, TaskOutcome, TaskSample, largest_of_legs};
 use crate::dynamics::{Drive, Task, TaskFrame};
 use crate::mechanism::{Architecture, Design};
 use crate::spatial::LEGS;
-
-/// A drive of the catalogue, for all actuators of a design.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SelectedDrive {
-    /// Its place in the catalogue.
-    pub place: usize,
-    /// Largest share of its limits that the motion uses; above 1, no drive of the catalogue carries the motion, and this one misses by
-    /// least.
-    pub utilization: f64,
-}
-
-impl SelectedDrive {
-    /// Returns whether the drive carries the motion.
-    pub fn carries(&self) -> bool {
-        self.utilization <= 1.0
-    }
-}
 
 /// Share by which the utilization may differ from what is estimated from other drives.
 const ROUNDING: f64 = 1e-9;

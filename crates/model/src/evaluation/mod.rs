@@ -30,7 +30,6 @@ pub use crate::pose::{
 };
 pub use crate::stiffness::Contribution;
 pub use cycle::ShortestCycle;
-pub use drives::SelectedDrive;
 pub use members::MemberReport;
 pub use model::{GridChoice, Model, ModelSettings};
 pub use over_workspace::{At, OverWorkspace};
@@ -38,7 +37,7 @@ pub use parts::{CutBar, Part};
 pub use pose::{PoseEvaluation, PosedDesign, PosedDynamics, Unreachable};
 pub use quantity::{Bound, LimitResult, Objective, Quantity, QuantityLimit, QuantitySet, QuantityValues};
 pub use sizing::{SizingRanges, WorkspaceTarget};
-pub use task::{TaskFailure, TaskFault, TaskFigures, TaskOutcome, TaskSample, largest_of_legs};
+pub use task::{SelectedDrive, TaskFailure, TaskFault, TaskFigures, TaskOutcome, TaskSample, largest_of_legs};
 
 use crate::clearance::Clearance;
 use crate::mechanism::Design;

@@ -1,6 +1,6 @@
 //! What a motion asks of the drives of a design (docs/model.md, section 15.6).
 
-use super::{Evaluation, Model, PosedDesign, SelectedDrive};
+use super::{Evaluation, Model, PosedDesign};
 use crate::dynamics::{Response, Task, TaskFrame, TaskInstant, TaskMotion};
 use crate::mechanism::{Design, JointKind, ReachReason};
 use crate::spatial::LEGS;
@@ -83,6 +83,23 @@ pub struct TaskFigures {
     pub energy_net: f64,
     /// Range of the values of each actuator \[m or rad\].
     pub stroke: [f64; LEGS],
+}
+
+/// A drive of the catalogue, for all actuators of a design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SelectedDrive {
+    /// Its place in the catalogue.
+    pub place: usize,
+    /// Largest share of its limits that the motion uses; above 1, no drive of the catalogue carries the motion, and this one misses by
+    /// least.
+    pub utilization: f64,
+}
+
+impl SelectedDrive {
+    /// Returns whether the drive carries the motion.
+    pub fn carries(&self) -> bool {
+        self.utilization <= 1.0
+    }
 }
 
 /// What came of a motion.

@@ -1,6 +1,8 @@
 //! Compares the lightest bars for a geometry with evaluations and an exhaustive search.
 
-use kinefront_model::evaluation::{GridChoice, Model, SizingRanges, WorkspaceTarget};
+use kinefront_model::evaluation::{
+    GridChoice, Model, ModelSettings, PoseScalar, Quantity, SizingRanges, WorkspaceTarget,
+};
 use kinefront_model::mechanism::{Design, DesignVariable, WorkingMode};
 use proptest::prelude::*;
 
@@ -70,6 +72,69 @@ fn no_lighter_pair_of_radii_is_found_by_trying_all() {
             "{text}: {least} kg, but {lightest} kg is sufficient"
         );
     }
+}
+
+/// Bars are as thick as a natural frequency requires, and no lighter pair of a lattice has it over the same workspace.
+#[test]
+fn bars_are_sized_for_a_natural_frequency() {
+    const FREQUENCY: PoseScalar = PoseScalar::NaturalFrequency;
+    let mut sized_for_it = 0;
+    for (text, target) in [
+        ("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056", 1.2),
+        ("3-PRR R=1.412 r=0.319 Lb=0.620 rj=0.026 rp=0.023", 0.22),
+        ("3-RPR R=1.5636 r=0.1006 Lb=2.2135 rj=0.017 rp=0.021", 0.54),
+        ("3-RRR R=0.7 r=0.11 Lb=0.56 rj=0.03 rp=0.02", 0.45),
+    ] {
+        let design: Design = text.parse().expect("a design");
+        let limited_to = |frequency: Option<f64>| {
+            let mut settings = ModelSettings {
+                quantities: [Quantity::Worst(FREQUENCY)].into_iter().collect(),
+                ..ModelSettings::default()
+            };
+            settings.dynamics.payload.mass = 10.0;
+            settings.thresholds.set(FREQUENCY, frequency);
+            Model::new(settings).expect("a model")
+        };
+        let worst = |model: &Model, design: &Design| {
+            let evaluation = model.evaluate(design, GridChoice::Reference);
+            let frequency = evaluation.quantities.get(Quantity::Worst(FREQUENCY));
+            (evaluation.workspace_radius(), frequency.unwrap_or(0.0))
+        };
+        let free = limited_to(None);
+        let stiff = sized(&free, &design, WorkspaceTarget::Radius(target)).expect("there are such bars");
+        let (_, before) = worst(&free, &stiff);
+        let wanted = 1.2 * before;
+        let model = limited_to(Some(wanted));
+        let found = sized(&model, &design, WorkspaceTarget::Radius(target)).expect("there are such bars");
+        if found == stiff {
+            // Where the thickest bars miss the frequency, the bars are those for all else.
+            continue;
+        }
+        sized_for_it += 1;
+        let (reached, frequency) = worst(&model, &found);
+        assert!(reached >= 0.995 * target, "{text}: {reached} instead of {target}");
+        assert!(
+            frequency >= wanted && frequency < 1.02 * wanted,
+            "{text}: {frequency} Hz instead of {wanted}, and {before} Hz without a limit"
+        );
+        let least = model.mass(&found);
+        assert!(least > model.mass(&stiff), "{text}");
+        let factors = (-8..=8).map(|k| 1.0 + 0.025 * f64::from(k));
+        let pairs = factors
+            .clone()
+            .flat_map(|leg| factors.clone().map(move |platform| [leg, platform]));
+        let lighter = pairs
+            .map(|[leg, platform]| {
+                with_bars(
+                    &found,
+                    [leg * found.leg_bar_radius(), platform * found.platform_bar_radius()],
+                )
+            })
+            .filter(|other| model.mass(other) < 0.99 * least)
+            .find(|other| worst(&model, other).0 >= reached);
+        assert!(lighter.is_none(), "{text}: {least} kg, but {lighter:?} is lighter");
+    }
+    assert!(sized_for_it > 0);
 }
 
 #[test]

@@ -45,7 +45,7 @@ impl Column {
     pub fn cell_of_front(self, entry: &TableRow, mark: &str, catalogues: &Catalogues) -> Cell {
         let name = match self {
             Self::Mark => Some(mark),
-            column => column.selected_of(catalogues, entry),
+            column => column.selected_of(catalogues, &entry.row.design, entry.drive),
         };
         name.map_or_else(|| self.cell(entry), |name| Cell::Text(name.to_owned().into()))
     }

@@ -2,10 +2,9 @@
 
 use std::borrow::Cow;
 
-use super::TableRow;
 use crate::{Catalogues, Study};
 use kinefront_model::evaluation::{Better, Constraint, Quantity, QuantitySet, Scale};
-use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable, FURTHER_VARIABLES};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignVariable, FURTHER_VARIABLES};
 
 /// A column of a table of designs.
 ///
@@ -207,13 +206,18 @@ impl Column {
         })
     }
 
-    /// Returns the name of the bars or of the drive of an entry that the column states, if it is one of those of catalogues.
-    pub(super) fn selected_of<'a>(self, catalogues: &'a Catalogues, entry: &TableRow) -> Option<&'a str> {
-        let (sections, design) = (&catalogues.sections, &entry.row.design);
+    /// Returns the name of the bars of a design, or of its drive at a place of the catalogue, that the column states, if it is one of those of catalogues.
+    pub(super) fn selected_of<'a>(
+        self,
+        catalogues: &'a Catalogues,
+        design: &Design,
+        drive: Option<usize>,
+    ) -> Option<&'a str> {
+        let sections = &catalogues.sections;
         match self {
             Self::LegSection => sections.legs.catalogue_name(design.leg_bar_radius()),
             Self::PlatformSection => sections.platform.catalogue_name(design.platform_bar_radius()),
-            Self::Drive => catalogues.drives.get(entry.drive?).map(|drive| drive.name.as_str()),
+            Self::Drive => catalogues.drives.get(drive?).map(|drive| drive.name.as_str()),
             _ => None,
         }
     }
