@@ -94,8 +94,6 @@ pub struct Shown<'a> {
     pub proof: Option<&'a WorkspaceProof>,
     /// The path of the motion that the design follows.
     pub path: Option<&'a MotionPath>,
-    /// The bars as they bend in a vibration; none if no vibration is shown.
-    pub bent: &'a [BentBar],
     /// Pose of the manipulator; the home pose if `None`.
     pub pose: Option<Pose>,
     /// Orientation of the heatmap \[rad\]; the home orientation if `None`.
@@ -139,6 +137,7 @@ pub struct LiveScene {
     /// Whether text is dark: the viewer draws it on a light background.
     light: bool,
     design: Stage,
+    bent: Stage,
     pins: Stage,
     front: Stage,
 }
@@ -158,6 +157,7 @@ impl LiveScene {
             viewpoint: Viewpoint::default(),
             light: false,
             design: Stage::default(),
+            bent: Stage::default(),
             pins: Stage::default(),
             front: Stage::default(),
         };
@@ -244,6 +244,19 @@ impl LiveScene {
         }
         self.design.show(&self.writer, rows.into_inner())?;
         Ok(legend)
+    }
+
+    /// Shows the bars of the design as they bend in a vibration, or none. It is drawn apart from the design, because it changes with every
+    /// frame.
+    ///
+    /// # Errors
+    /// [`RecordingError::Encode`] when the scene cannot be encoded.
+    pub fn bend(&mut self, bars: &[BentBar]) -> Result<(), RecordingError> {
+        let rows = RefCell::new(Rows::default());
+        if !bars.is_empty() {
+            Canvas::collecting(&rows, self.light).bent_bars(paths::VIBRATION, bars)?;
+        }
+        self.bent.show(&self.writer, rows.into_inner())
     }
 
     /// Shows the pinned designs side by side, each at its home pose with its regular workspace.
@@ -405,9 +418,6 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<Option<FieldLegend>, R
     let path = shown.path.filter(|_| layers.path.is_some());
     if let Some(path) = path {
         subject.path(canvas, path)?;
-    }
-    if !shown.bent.is_empty() {
-        canvas.bent_bars(paths::VIBRATION, shown.bent)?;
     }
     if layers.configuration {
         subject.configuration(canvas)?;

@@ -76,7 +76,11 @@ impl VibrationPanel {
                         selected = (!is_selected).then_some(place);
                     }
                     ui.label(mode.words(lever));
-                    ui.weak(if mode.is_in_plane { "in the plane" } else { "out of it" });
+                    ui.weak(if mode.is_in_plane {
+                        "in the plane"
+                    } else {
+                        "out of the plane"
+                    });
                     ui.end_row();
                 }
             });

@@ -76,6 +76,14 @@ pub struct Request {
     pub front: Arc<Vec<FrontPoint>>,
 }
 
+impl Request {
+    /// Whether another request asks for the same but for the vibration.
+    fn differs_by_its_vibration(&self, other: &Self) -> bool {
+        let bent = Arc::clone(&other.bent);
+        self.bent != bent && Self { bent, ..self.clone() } == *other
+    }
+}
+
 /// Evaluation of the selected design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Known {
@@ -245,6 +253,8 @@ struct SceneState {
     scene: Option<LiveScene>,
     request: Option<Request>,
     known: Option<Known>,
+    /// The evaluation whose values the scene shows.
+    drawn: Option<Arc<Evaluation>>,
     legend: Option<FieldLegend>,
     pins: Vec<Evaluation>,
     /// The design sent last to the verify thread.
@@ -344,6 +354,7 @@ fn step(state: &mut SceneState, shared: &Shared, request: &Request) -> Result<()
     };
     let drawn = draw(&mut scene, state, before.as_ref(), request, new_pins);
     state.scene = Some(scene);
+    state.drawn = state.known.as_ref().map(|known| Arc::clone(&known.evaluation));
     let drawn = drawn.map(|legend| state.legend = legend);
     drawn.map_err(|error| format!("the scene cannot be drawn: {error}").into())
 }
@@ -362,6 +373,16 @@ fn draw(
     if before.is_some_and(|before| before.viewpoint != request.viewpoint) {
         scene.look_from(request.viewpoint.0)?;
     }
+    if before.is_none_or(|before| before.bent != request.bent) {
+        scene.bend(&request.bent)?;
+    }
+    let as_drawn = match (&state.known, &state.drawn) {
+        (Some(known), Some(drawn)) => Arc::ptr_eq(&known.evaluation, drawn),
+        _ => false,
+    };
+    if as_drawn && before.is_some_and(|before| before.differs_by_its_vibration(request)) {
+        return Ok(state.legend);
+    }
     let model = request.study.model();
     let shown = state.known.as_ref().map(|known| Shown {
         model,
@@ -371,7 +392,6 @@ fn draw(
             .as_deref()
             .filter(|proof| proof.design == known.evaluation.design),
         path: request.motion.as_ref().and_then(MotionShown::path),
-        bent: &request.bent,
         pose: request.pose,
         heatmap_phi: request.heatmap_phi,
         layers: &request.layers,

@@ -90,7 +90,6 @@ fn what_is_no_longer_drawn_disappears() {
             evaluation: &evaluation,
             proof: Some(&proof),
             path: None,
-            bent: &[],
             pose: None,
             heatmap_phi: None,
             layers,
