@@ -29,12 +29,17 @@ fn a_vibration_is_played_and_follows_the_payload() {
     let before = frequencies(&mut window);
     assert_eq!(before.len(), 6);
     assert!(before.is_sorted());
-    window
-        .get_by_label(&format!("{} Hz", kinefront_scene::text::number(before[2])))
-        .click();
+    // A symmetric design has pairs of equal frequencies.
+    let names: Vec<String> = before
+        .iter()
+        .map(|frequency| format!("{} Hz", kinefront_scene::text::number(*frequency)))
+        .collect();
+    let is_single = |place: &usize| names.iter().filter(|name| **name == names[*place]).count() == 1;
+    let place = (0..6).find(is_single).expect("a single frequency");
+    window.get_by_label(&names[place]).click();
     window.run_steps(2);
     let first = shown(&window).expect("a vibration");
-    assert_eq!(first.mode, 2);
+    assert_eq!(first.mode, place);
     let mut shares = Vec::new();
     for _ in 0..90 {
         window.step();
@@ -56,10 +61,12 @@ fn a_vibration_is_played_and_follows_the_payload() {
         .change(|study| study.payload.mass_kg = 500.0);
     window.run_steps(2);
     let after = frequencies(&mut window);
-    assert!(
-        after.iter().zip(&before).all(|(after, before)| after < before),
-        "{before:?} and {after:?}"
-    );
+    // A mass at P moves with neither the tilts nor the turn.
+    let lower = after
+        .iter()
+        .zip(&before)
+        .filter(|(after, before)| **after < 0.999 * **before);
+    assert_eq!(lower.count(), 3, "{before:?} and {after:?}");
     window.get_by_label("Hide").click();
     window.run_steps(2);
     assert_eq!(shown(&window), None);

@@ -217,7 +217,7 @@ fn the_design_is_exported_for_other_programs() {
         other => panic!("how does {other} begin?"),
     };
     for &format in Format::ALL {
-        let path = folder.path().join(format!("design.{}", format.extension()));
+        let path = folder.path().join(format!("{}.{}", format.key(), format.extension()));
         window
             .state_mut()
             .act(&ctx, Purpose::ExportDesign(format), path.clone());
