@@ -129,6 +129,7 @@ fn is_alternative(setting: &Setting) -> bool {
         "material.name",
         "task.waypoints",
         "task.cycle_time_s",
+        "drives.catalogue",
     ];
     let of_some_chains = setting.section == "bounds" && setting.initial.is_some();
     of_sections
