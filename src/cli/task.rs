@@ -56,13 +56,14 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
             study.name
         )));
     };
-    let shortest = model.shortest_cycle(&evaluation);
+    let shortest = || model.shortest_cycle(&evaluation);
     let catalogue = &model.settings().drive_catalogue;
     let mut out = std::io::stdout().lock();
     // A motion that ends early has no curves that stop in the middle.
-    let is_complete = matches!(outcome.result, Some(Ok(_)));
+    let is_complete = outcome.figures().is_some();
     let rows = samples.iter().filter(|_| is_complete).map(TaskRow::from);
     if arguments.json {
+        let shortest = shortest();
         let json = TaskReportJson {
             design: design.to_string(),
             study: study.name.clone(),
@@ -79,7 +80,7 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
         }
     } else {
         let fault = text::motion_fault(&outcome);
-        writeln!(out, "{}", tables::task(&design, &outcome, catalogue, fault, shortest))?;
+        writeln!(out, "{}", tables::task(&design, &outcome, catalogue, fault, shortest()))?;
     }
     Ok(Ending::Done)
 }

@@ -5,7 +5,7 @@ use std::fs;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 
-use super::support::{folder, json, kinefront};
+use super::support::{design_of, folder, json, kinefront};
 
 /// The lightest 3-PRR for a disc of 1.2 m, and its home orientation, as an independent solver found them.
 const OPTIMUM: &str = "3-PRR R=3.8908964188791515 r=0.7103100290509872 Lb=2.5672756542491637 rj=0.024643653700447767 rp=0.03482665497108131";
@@ -153,17 +153,7 @@ fn a_front_answers_wishes_and_reasons() {
 
     let had = json(["wish", &subject, "--set", "mass_kg <= 1e5", "--json"]);
     assert_eq!(had["outcome"], "had");
-    let text_of_row = |row: &csv::StringRecord| {
-        let value = |name: &str| row[place(name)].to_owned();
-        format!(
-            "3-PRR R={} r={} Lb={} rj={} rp={}",
-            value("R"),
-            value("r"),
-            value("Lb"),
-            value("rj"),
-            value("rp")
-        )
-    };
+    let text_of_row = |row: &csv::StringRecord| design_of(|name| row[place(name)].to_owned());
     assert_eq!(had["design"], text_of_row(row));
 
     let refused = json(["wish", &subject, "--set", "workspace_radius_m >= 9", "--json"]);

@@ -7,7 +7,7 @@ use predicates::str::contains;
 use serde_json::Value;
 
 use super::exports::{DESIGNS, OTHERS};
-use super::support::{DESIGN, folder, json, kinefront, optimize, python, sample, script};
+use super::support::{DESIGN, design_of, folder, json, kinefront, optimize, python, sample, script};
 
 /// The settings of the first independent case of the model's fixture `task_cases.json`.
 const STUDY: &str = r#"
@@ -183,6 +183,17 @@ fn motions_that_are_impossible_are_told() {
     assert!(found["peak_force"][0].as_f64().expect("a number") > 1e8);
 }
 
+/// Exports a design for a study in a format.
+fn export_to(file: &std::path::Path, design: &str, study: &std::path::Path, format: &str) {
+    kinefront()
+        .args(["export", "--design", design, "--format", format, "--study"])
+        .arg(study)
+        .arg("--out")
+        .arg(file)
+        .assert()
+        .success();
+}
+
 /// MuJoCo needs the same forces of the actuators for the same motion of the exported mechanisms, with joints, motors and gravity in the
 /// plane: it knows their bodies alone.
 #[test]
@@ -205,13 +216,7 @@ fn mujoco_needs_the_same_forces() {
     let designs: Vec<&str> = DESIGNS.iter().map(|(design, _)| *design).chain(others).collect();
     let files = designs.iter().enumerate().map(|(index, design)| {
         let file = folder.path().join(format!("{index}.xml"));
-        kinefront()
-            .args(["export", "--design", design, "--study"])
-            .arg(&study)
-            .arg("--out")
-            .arg(&file)
-            .assert()
-            .success();
+        export_to(&file, design, &study, "mjcf");
         file
     });
     let files: Vec<std::path::PathBuf> = std::iter::once(motion.clone()).chain(files).collect();
@@ -273,13 +278,7 @@ fn mujoco_follows_the_reference_trajectory() {
         let name = design.split(' ').next().expect("a name");
         let [model, trajectory] = [("mjcf", "xml"), ("csv-trajectory", "csv")].map(|(format, extension)| {
             let file = folder.path().join(format!("{name}.{extension}"));
-            kinefront()
-                .args(["export", "--design", design, "--format", format, "--study"])
-                .arg(&study)
-                .arg("--out")
-                .arg(&file)
-                .assert()
-                .success();
+            export_to(&file, design, &study, format);
             file
         });
         let python = python(&["mujoco", "numpy"]).expect("Python, which was found before");
@@ -403,15 +402,7 @@ fn a_run_selects_drives_from_a_catalogue() {
             .all(|row| of(row, "drive_utilization").parse::<f64>().expect("a number") <= 1.0)
     );
     // Evaluated anew, it is the same design with the same drive.
-    let design = format!(
-        "{} R={} r={} Lb={} rj={} rp={}",
-        of(row, "architecture"),
-        of(row, "R"),
-        of(row, "r"),
-        of(row, "Lb"),
-        of(row, "rj"),
-        of(row, "rp")
-    );
+    let design = design_of(|name| of(row, name));
     let path = study.to_str().expect("a path");
     let found = json([
         "evaluate", "--design", &design, "--study", path, "--grid", "fine", "--json",
@@ -440,6 +431,14 @@ fn a_run_selects_drives_from_a_catalogue() {
         .assert()
         .success()
         .stdout(contains(&*drive));
+    // A file for other programs states the same of the poses.
+    let told = kinefront()
+        .args(["export", &entry, "--format", "json", "--out", "-"])
+        .assert()
+        .success();
+    let exported: Value = serde_json::from_slice(&told.get_output().stdout).expect("JSON");
+    assert_eq!(exported["evaluation"]["over_workspace"], found["over_workspace"]);
+    assert_eq!(exported["evaluation"]["task"], found["task"]);
     kinefront().arg("check").arg(&run).assert().success();
     // A table that names a drive that the catalogue does not have is not that of the run.
     let text = fs::read_to_string(run.join("front.csv")).expect("a table");

@@ -7,7 +7,7 @@ use predicates::prelude::*;
 use predicates::str::contains;
 use serde_json::Value;
 
-use super::support::{DESIGN, check, folder, json, kinefront, optimize};
+use super::support::{DESIGN, check, design_of, folder, json, kinefront, optimize};
 
 const POSE: &str = "x=0.1 y=0.2 phi_deg=30";
 
@@ -89,15 +89,7 @@ fn the_cell_of_a_builder_is_proved() {
     assert_ne!(moved, study);
     fs::write(&nearer, moved).expect("written");
     let row = &rows[0];
-    let design = format!(
-        "{} R={} r={} Lb={} rj={} rp={}",
-        of(row, "architecture"),
-        of(row, "R"),
-        of(row, "r"),
-        of(row, "Lb"),
-        of(row, "rj"),
-        of(row, "rp")
-    );
+    let design = design_of(|name| of(row, name));
     let nearer = nearer.to_str().expect("a path");
     let found = json(["evaluate", "--design", &design, "--study", nearer, "--json"]);
     assert_eq!(found["feasible"], false);

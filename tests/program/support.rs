@@ -176,3 +176,9 @@ pub fn report(run: &Path) -> serde_json::Value {
     assert!(object.remove("times").is_some() && object.remove("threads").is_some());
     report
 }
+
+/// Returns the design of a row of a table as text, by a function that gives the value of a column.
+pub fn design_of(value: impl Fn(&str) -> String) -> String {
+    let dimensions = ["R", "r", "Lb", "rj", "rp"].map(|name| format!(" {name}={}", value(name)));
+    value("architecture") + &dimensions.concat()
+}

@@ -7,26 +7,15 @@ and the card.
 """
 
 import json
-import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
-import rerun
-from rerun.experimental import RrdReader
+from rrd import open_verified, tables_of
 
 path = Path(sys.argv[1])
-command = Path(rerun.__file__).parent.parent / "rerun_cli" / "rerun"
-verified = subprocess.run([str(command), "rrd", "verify", str(path)], capture_output=True, text=True)
-assert verified.returncode == 0 and "1 file verified without error" in verified.stderr, verified.stderr
-
-reader = RrdReader(str(path))
-entities = {}
-for chunk in reader.stream():
-    batch = chunk.to_record_batch()
-    entities.setdefault(str(chunk.entity_path), []).append(pa.Table.from_batches([batch.replace_schema_metadata(None)]))
-tables = {entity: pa.concat_tables(parts, promote_options="default") for entity, parts in entities.items()}
+reader = open_verified(path)
+tables = tables_of(reader.stream())
 
 fields = ["inverse_condition", "k_xy", "k_z", "k_phi_z", "displacement", "worst_margin", "clearance"]
 wanted = ["/card", "/configuration/axes/lines", "/configuration/cylinder/outline", "/design/workspace/outline"]

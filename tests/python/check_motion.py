@@ -8,25 +8,16 @@ Prints one JSON object: rows of the curves, poses of the manipulator, and the la
 
 import csv
 import json
-import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-import rerun
-from rerun.experimental import RrdReader
+import pyarrow.compute as pc
+from rrd import open_verified, tables_of
 
 path, table_path = map(Path, sys.argv[1:])
-command = Path(rerun.__file__).parent.parent / "rerun_cli" / "rerun"
-verified = subprocess.run([str(command), "rrd", "verify", str(path)], capture_output=True, text=True)
-assert verified.returncode == 0 and "1 file verified without error" in verified.stderr, verified.stderr
-
-reader = RrdReader(str(path))
-entities = {}
-for chunk in reader.stream():
-    batch = chunk.to_record_batch()
-    entities.setdefault(str(chunk.entity_path), []).append(pa.Table.from_batches([batch.replace_schema_metadata(None)]))
+entities = tables_of(open_verified(path).stream())
 
 with open(table_path, encoding="utf-8") as file:
     rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
@@ -34,8 +25,9 @@ times = np.array([row["t_s"] for row in rows])
 
 
 def moving(entity):
-    parts = [part for part in entities[entity] if "time" in part.schema.names]
-    return pa.concat_tables(parts, promote_options="default").sort_by("time")
+    """Return the rows of an entity on the timeline of the motion, in their order."""
+    rows = entities[entity]
+    return rows.filter(pc.is_valid(rows["time"])).sort_by("time")
 
 
 columns = {"position": "q", "speed": "qd", "acceleration": "qdd", "force": "tau", "power": "p"}

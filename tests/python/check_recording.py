@@ -2,34 +2,24 @@
 
 import csv
 import json
-import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
-import rerun
-from rerun.experimental import RrdReader
+from rrd import open_verified, tables_of
 
 run = Path(sys.argv[1])
 path = run / "recording.rrd"
 
-command = Path(rerun.__file__).parent.parent / "rerun_cli" / "rerun"
-verified = subprocess.run([str(command), "rrd", "verify", str(path)], capture_output=True, text=True)
-assert verified.returncode == 0, verified.stderr
-assert "1 file verified without error" in verified.stderr, verified.stderr
-
-reader = RrdReader(str(path))
+reader = open_verified(path)
 
 
 def table(entity):
-    batches = []
-    for chunk in reader.stream().filter(content=entity):
-        batch = chunk.to_record_batch()
-        batches.append(pa.Table.from_batches([batch.replace_schema_metadata(None)]))
-    assert batches, f"no rows at {entity}"
-    return pa.concat_tables(batches, promote_options="default")
+    found = tables_of(reader.stream().filter(content=entity))
+    assert entity in found, f"no rows at {entity}"
+    return found[entity]
 
 
 def column(rows, name):

@@ -175,7 +175,7 @@ impl TaskJson {
     /// Creates the output for a motion, whose drive is one of a catalogue.
     pub fn new(outcome: &TaskOutcome, catalogue: &DriveCatalogue) -> Self {
         let motion = outcome.motion.as_ref();
-        let figures = outcome.result.as_ref().and_then(|result| result.as_ref().ok());
+        let figures = outcome.figures();
         let failure = outcome.result.as_ref().and_then(|result| result.as_ref().err());
         Self {
             ok: figures.is_some(),

@@ -76,7 +76,7 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
             .poses
             .iter()
             .map(|pose| {
-                let at = linkage(&subject.model, design, pose)?;
+                let at = linkage(subject.model, design, pose)?;
                 Ok(at.bodies.iter().map(|body| body.frame).collect())
             })
             .collect::<Result<_, kinefront_model::evaluation::Unreachable>>()?;

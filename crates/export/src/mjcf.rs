@@ -173,7 +173,7 @@ fn rests(subject: &Prepared) -> Vec<Element> {
     };
     let rests = motion.rests().take(MOST_RESTS).enumerate();
     let key = |(place, rest): (usize, TaskInstant)| {
-        let there = linkage(&subject.model, &subject.evaluation.design, &rest.pose).ok()?;
+        let there = linkage(&subject.driven, &subject.evaluation.design, &rest.pose).ok()?;
         let [positions, controls] = values(&subject.linkage, &there);
         let key = Element::new("key")
             .with("name", format!("rest_{place}"))
@@ -224,7 +224,7 @@ fn element(subject: &Prepared, body: &Body) -> Element {
             if let Some(limits) = joint.limits {
                 hinge = hinge.with_numbers("range", &limits);
             }
-            let rotor = subject.model.settings().dynamics.drives.of(joint.kind);
+            let rotor = subject.driven.settings().dynamics.drives.of(joint.kind);
             if joint.actuated && rotor > 0.0 {
                 hinge = hinge.with_numbers("armature", &[rotor]);
             }

@@ -22,8 +22,9 @@ const TOUR_STEPS: usize = 72;
 /// A subject prepared for every format.
 pub(super) struct Prepared<'a> {
     pub(super) study: &'a Study,
-    /// The model of the study, with the drive that the design selects.
-    pub(super) model: Cow<'a, Model>,
+    pub(super) model: &'a Model,
+    /// The model with the motors and rotors of the drive that the design selects, for what moves as a whole.
+    pub(super) driven: Cow<'a, Model>,
     pub(super) evaluation: &'a Evaluation,
     pub(super) pose: Pose,
     pub(super) linkage: Linkage,
@@ -43,24 +44,26 @@ impl<'a> Prepared<'a> {
             evaluation,
             pose,
         } = *subject;
-        let (study, model) = (study.study(), study.model().driven_by(evaluation.drive));
+        let (study, model) = (study.study(), study.model());
+        let driven = model.driven_by(evaluation.drive);
         let design = &evaluation.design;
         let pose = pose.unwrap_or_else(|| model.home(evaluation));
-        let linkage = linkage(&model, design, &pose)?;
-        let scene = manipulator(&model, design, &pose)?;
+        let linkage = linkage(&driven, design, &pose)?;
+        let scene = manipulator(model, design, &pose)?;
         let cylinder = regular_workspace(evaluation, study.workspace.rotation_range_deg);
-        let tour = cylinder.and_then(|cylinder| tour(&model, design, &cylinder, TOUR_STEPS));
+        let tour = cylinder.and_then(|cylinder| tour(model, design, &cylinder, TOUR_STEPS));
         Ok(Self {
             study,
+            model,
             evaluation,
             pose,
             linkage,
             base: scene.base_bars(design.base_radius()),
             scene,
-            corners: cylinder.and_then(|_| region_corners(&model)),
+            corners: cylinder.and_then(|_| region_corners(model)),
             cylinder,
             tour,
-            model,
+            driven,
         })
     }
 

@@ -42,7 +42,7 @@ fn samples(subject: &Prepared) -> Result<Vec<TaskSample>, ExportError> {
     let motion = subject.motion().map_err(ExportError::NoMotion)?;
     let step = STEP * (motion.cycle_time() / STEP / MOST_STEPS).ceil();
     let followed = subject
-        .model
+        .driven
         .posed(&subject.evaluation.design)
         .trajectory(&motion, step);
     followed.map_err(|failure| ExportError::NoMotion(kinefront_scene::text::motion_failure(&failure)))

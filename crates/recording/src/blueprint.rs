@@ -115,14 +115,11 @@ pub(super) fn send_design_layout(
     maps.insert(if first.is_none() { 0 } else { maps.len() }, proof);
     let mut maps = layout.container(ContainerKind::Tabs, &maps, &[])?;
     if moves {
+        let others = MotionCurve::ALL
+            .into_iter()
+            .filter(|curve| *curve != MotionCurve::Force);
         let mut curves = Vec::new();
-        for curve in [
-            MotionCurve::Force,
-            MotionCurve::Speed,
-            MotionCurve::Position,
-            MotionCurve::Acceleration,
-            MotionCurve::Power,
-        ] {
+        for curve in std::iter::once(MotionCurve::Force).chain(others) {
             let name = curve.name(JointKind::Prismatic);
             let view = layout.curve(name, &curve_path(curve), "+ $origin/**")?;
             layout.legend(&view)?;

@@ -24,8 +24,8 @@ const OUTLINE: HeatmapSettings = HeatmapSettings { cells: 32 };
 /// Number of poses around each rim of a tour.
 const TOUR_STEPS: usize = 72;
 
-/// Records one design with its overlays, its tour and the motion of the study to its own file; the tab with the heatmap of the field `first` is in front, or
-/// that of the proof of its workspace.
+/// Records one design with its overlays, its tour and the motion of the study to its own file; the tab with the heatmap of the field
+/// `first` is in front, or that of the proof of its workspace.
 ///
 /// # Errors
 /// [`RecordingError::Write`] when the file exists or cannot be written; [`RecordingError::Encode`] otherwise.
@@ -81,7 +81,7 @@ fn draw_design(
     let fields: Vec<Field> = Field::of(model, &evaluation.design).collect();
     // A motion that ends early has no curves that stop in the middle.
     let followed = model.follow_task(evaluation);
-    let samples = followed.filter(|(outcome, _)| matches!(outcome.result, Some(Ok(_))));
+    let samples = followed.filter(|(outcome, _)| outcome.figures().is_some());
     let samples = samples.map(|(_, samples)| samples);
     let extent = subject.extent(poses);
     blueprint::send_design_layout(writer.stream(), extent, &fields, first, samples.is_some())?;
@@ -109,21 +109,9 @@ fn draw_design(
         subject.proof_in_space(&canvas, proof)?;
     }
 
-    let space = subject.space();
     for (index, pose) in poses.iter().enumerate() {
         let moment = [(timelines::TOUR, index)];
-        let canvas = Canvas::at(&writer, &moment);
-        // At an unreachable pose the viewer keeps showing the previous one; only an infeasible design has such a pose.
-        if let Ok(scene) = manipulator(model, &evaluation.design, pose) {
-            canvas.manipulator(paths::MANIPULATOR, &scene)?;
-            let at = space.place(pose.position, pose.phi);
-            canvas.mark(
-                &format!("{}/pose", paths::CONFIGURATION),
-                at,
-                "P",
-                super::colors::ELLIPSOID,
-            )?;
-        }
+        subject.at_pose(&Canvas::at(&writer, &moment), pose)?;
     }
     if let Some(samples) = &samples {
         motion::record_motion(&writer, &subject, samples)?;

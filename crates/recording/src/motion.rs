@@ -9,7 +9,7 @@ use super::writer::{ALWAYS, RecordingError, RecordingWriter};
 use super::{paths, timelines};
 use kinefront_model::evaluation::TaskSample;
 use kinefront_model::mechanism::JointKind;
-use kinefront_scene::{MotionCurve, MotionPath, PathColor, drawn_samples, manipulator, palette};
+use kinefront_scene::{MotionCurve, MotionPath, PathColor, drawn_samples, palette};
 
 /// Largest number of poses at which the manipulator is drawn.
 const MOST_POSES: usize = 240;
@@ -48,27 +48,14 @@ pub(super) fn record_motion(
             )?;
         }
     }
-    let (model, design) = (subject.model, &subject.evaluation.design);
-    let space = subject.space();
     let step = samples.len().div_ceil(MOST_POSES).max(1);
     let last = samples.last().filter(|_| !(samples.len() - 1).is_multiple_of(step));
     for sample in samples.iter().step_by(step).chain(last) {
-        let pose = sample.instant.pose;
         let moment = [(timelines::TIME, nanoseconds(sample) as usize)];
-        let canvas = Canvas::at(writer, &moment);
-        if let Ok(scene) = manipulator(model, design, &pose) {
-            canvas.manipulator(paths::MANIPULATOR, &scene)?;
-            let at = space.place(pose.position, pose.phi);
-            canvas.mark(
-                &format!("{}/pose", paths::CONFIGURATION),
-                at,
-                "P",
-                super::colors::ELLIPSOID,
-            )?;
-        }
+        subject.at_pose(&Canvas::at(writer, &moment), &sample.instant.pose)?;
     }
     let canvas = Canvas::at(writer, ALWAYS);
-    if let Some(path) = MotionPath::new(model, design, samples, PathColor::FORCE) {
+    if let Some(path) = MotionPath::new(subject.model, &subject.evaluation.design, samples, PathColor::FORCE) {
         subject.path(&canvas, &path)?;
         subject.path_in_space(&canvas, &path)?;
     }

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use super::draw::Canvas;
 use super::legend::draw_legend;
-use super::paths;
 use super::writer::RecordingError;
+use super::{colors, paths};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
@@ -148,6 +148,17 @@ impl DrawnDesign<'_> {
     /// Draws the proof of the workspace in the configuration space.
     pub(super) fn proof_in_space(&self, canvas: &Canvas<'_>, proof: &WorkspaceProof) -> Result<(), RecordingError> {
         canvas.proof_in_space(&format!("{}/proof", paths::CONFIGURATION), proof, &self.space())
+    }
+
+    /// Draws the manipulator at a pose, and its place in the configuration space. At a pose that it does not reach, nothing is drawn, so that
+    /// a viewer keeps showing the pose before.
+    pub(super) fn at_pose(&self, canvas: &Canvas<'_>, pose: &Pose) -> Result<(), RecordingError> {
+        let Ok(scene) = manipulator(self.model, self.design(), pose) else {
+            return Ok(());
+        };
+        canvas.manipulator(paths::MANIPULATOR, &scene)?;
+        let at = self.space().place(pose.position, pose.phi);
+        canvas.mark(&format!("{}/pose", paths::CONFIGURATION), at, "P", colors::ELLIPSOID)
     }
 
     /// Draws the path of a motion, above the disc of the workspace.

@@ -47,17 +47,15 @@ impl DesignMotion {
         let drive = evaluation
             .drive
             .and_then(|place| model.settings().drive_catalogue.get(place));
-        let figures = match (&outcome.motion, &outcome.result) {
-            (Some(motion), Some(Ok(figures))) => Some(MotionFigures {
-                cycle_time: motion.cycle_time(),
-                speed: largest_of_legs(figures.peak_speed),
-                force: largest_of_legs(figures.peak_force),
-                rms_force: largest_of_legs(figures.rms_force),
-                power: figures.corner_power,
-                energy: figures.energy_shared,
-            }),
-            _ => None,
-        };
+        let found = outcome.motion.as_ref().zip(outcome.figures());
+        let figures = found.map(|(motion, figures)| MotionFigures {
+            cycle_time: motion.cycle_time(),
+            speed: largest_of_legs(figures.peak_speed),
+            force: largest_of_legs(figures.peak_force),
+            rms_force: largest_of_legs(figures.rms_force),
+            power: figures.corner_power,
+            energy: figures.energy_shared,
+        });
         Some(Self {
             design: evaluation.design,
             objectives: (0..question.objectives.len())

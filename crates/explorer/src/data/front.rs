@@ -20,8 +20,6 @@ pub struct FrontEntry {
     pub verified: bool,
     /// What is proved about `R_w`.
     pub certified: Option<CertifiedWorkspace>,
-    /// Place of the drive that the design selects from the catalogue of the study.
-    pub drive: Option<usize>,
     /// Its evaluation on the fine grid, if the run is in the window; a table holds no evaluations.
     pub evaluation: Option<Arc<Evaluation>>,
 }
@@ -35,7 +33,6 @@ impl FrontEntry {
             reference_radius: member.reference_radius,
             verified: true,
             certified: member.certified,
-            drive: member.evaluation.drive,
             evaluation: Some(Arc::new(member.evaluation.clone())),
         }
     }
@@ -48,7 +45,6 @@ impl FrontEntry {
             reference_radius: entry.reference_radius.unwrap_or(entry.row.workspace_radius()),
             verified,
             certified: entry.certified,
-            drive: entry.drive,
             evaluation: None,
         }
     }
@@ -61,7 +57,6 @@ impl FrontEntry {
             row,
             verified: false,
             certified: None,
-            drive: None,
             evaluation: None,
         }
     }
@@ -69,11 +64,9 @@ impl FrontEntry {
     /// Returns the entry as a row of a table.
     pub fn to_table_row(&self) -> TableRow {
         TableRow {
-            id: self.id,
-            row: self.row,
             reference_radius: Some(self.reference_radius),
             certified: self.certified,
-            drive: self.drive,
+            ..TableRow::new(self.id, self.row)
         }
     }
 

@@ -41,6 +41,14 @@ pub(super) fn named(button: egui::Response, name: &str) -> egui::Response {
     button.on_hover_text(name)
 }
 
+/// Shows the button that starts and pauses a playback.
+pub(super) fn play_button(ui: &mut Ui, is_playing: &mut bool) {
+    let (symbol, name) = if *is_playing { ("⏸", "Pause") } else { ("▶", "Play") };
+    if named(ui.add(crate::theme::toggle(*is_playing, symbol)), name).clicked() {
+        *is_playing = !*is_playing;
+    }
+}
+
 /// Makes a field of a number take what is typed as a whole, when it is left or Enter is pressed: half of a number is often invalid.
 /// Escape restores the value.
 pub(super) fn typed<'a>(ui: &egui::Ui, field: egui::DragValue<'a>) -> egui::DragValue<'a> {

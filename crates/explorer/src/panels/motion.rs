@@ -10,7 +10,7 @@ use kinefront_model::mechanism::JointKind;
 use kinefront_scene::{MotionCurve, PathColor, drawn_samples, text};
 use kinefront_study::{TaskSection, TaskShapeChoice};
 
-use super::{fields, named};
+use super::{fields, play_button};
 use crate::threads::{FollowedMotion, MotionAnswer};
 use crate::{Session, theme};
 
@@ -145,7 +145,7 @@ impl MotionPanel {
         self.play(ui, session, &answer, cycle);
         self.choose(ui, session, actuator, followed);
         summary(ui, figures, cycle, actuator);
-        if let Some(words) = &followed.drive_in_words {
+        if let Some(words) = text::selected_drive(&followed.catalogue, &followed.outcome) {
             let carries = followed.outcome.drive.is_some_and(|drive| drive.carries());
             let color = if carries { theme::good(ui) } else { theme::bad(ui) };
             ui.colored_label(color, format!("drives: {words}"));
@@ -157,14 +157,7 @@ impl MotionPanel {
     /// Shows the buttons and the slider of the playback, and moves the platform while it is played.
     fn play(&mut self, ui: &mut Ui, session: &mut Session, answer: &MotionAnswer, cycle: f64) {
         ui.horizontal(|ui| {
-            let (symbol, name) = if self.is_playing {
-                ("⏸", "Pause")
-            } else {
-                ("▶", "Play")
-            };
-            if named(ui.add(theme::toggle(self.is_playing, symbol)), name).clicked() {
-                self.is_playing = !self.is_playing;
-            }
+            play_button(ui, &mut self.is_playing);
             let rate = ui.label("rate").id;
             ComboBox::from_id_salt("rate of playback")
                 .width(56.0)
@@ -255,7 +248,9 @@ impl MotionPanel {
             }
             let [along, across] = [MotionCurve::Speed, MotionCurve::Force].map(|curve| curve.title(actuator));
             let name = format!("{across} over {along}");
-            let (limits, words) = match &followed.drive {
+            let selected = followed.outcome.drive;
+            let drive = selected.and_then(|selected| followed.catalogue.get(selected.place));
+            let (limits, words) = match drive {
                 Some(drive) => ([drive.speed, drive.peak], drive.name.as_str()),
                 None => drive_box(session, figures, actuator),
             };

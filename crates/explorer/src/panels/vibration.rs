@@ -3,7 +3,7 @@
 use egui::{Grid, ScrollArea, Slider, Ui};
 use kinefront_scene::{VibrationMode, text::number};
 
-use super::{fields, named};
+use super::{fields, play_button};
 use crate::{Session, ShownVibration, theme};
 
 /// Vibrations shown per second.
@@ -92,14 +92,7 @@ impl VibrationPanel {
             return;
         };
         ui.horizontal(|ui| {
-            let (symbol, name) = if self.is_playing {
-                ("⏸", "Pause")
-            } else {
-                ("▶", "Play")
-            };
-            if named(ui.add(theme::toggle(self.is_playing, symbol)), name).clicked() {
-                self.is_playing = !self.is_playing;
-            }
+            play_button(ui, &mut self.is_playing);
             let label = ui.label("amplitude").id;
             let slider =
                 Slider::new(&mut self.amplitude, 0.01..=0.3).custom_formatter(|share, _| format!("{share:.2} R"));

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use super::Session;
+use crate::threads::StudyOfRun;
 use kinefront_model::dynamics::DynamicsReport;
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 use kinefront_scene::{BentBar, Vibrations};
-use kinefront_study::{DriveSection, JointSection, PayloadSection, PreparedStudy, Study, ToleranceSection};
+use kinefront_study::{DriveSection, JointSection, PayloadSection, Study, ToleranceSection};
 
 /// A vibration that is shown, to a scale that can be seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +32,7 @@ pub struct PoseDynamics {
 /// What that depends on.
 #[derive(Debug, Clone, PartialEq)]
 struct Asked {
-    study: Arc<PreparedStudy>,
+    study: StudyOfRun,
     payload: PayloadSection,
     drives: DriveSection,
     joints: JointSection,
@@ -47,7 +48,7 @@ impl Asked {
             drives: self.drives.clone(),
             joints: self.joints.clone(),
             tolerances: self.tolerances.clone(),
-            ..self.study.study().clone()
+            ..self.study.0.study().clone()
         };
         let (mut report, mut vibrations) = (None, None);
         if let Ok(model) = study.model()
@@ -70,7 +71,7 @@ impl Session {
     pub fn pose_dynamics(&mut self) -> Option<&PoseDynamics> {
         let edited = self.editor.study();
         let asked = Asked {
-            study: self.prepared(),
+            study: StudyOfRun(self.prepared()),
             payload: edited.payload.clone(),
             drives: edited.drives.clone(),
             joints: edited.joints.clone(),

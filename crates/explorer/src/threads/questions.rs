@@ -4,10 +4,10 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use kinefront_model::dynamics::Drive;
+use kinefront_model::dynamics::DriveCatalogue;
 use kinefront_model::evaluation::{Evaluation, Quantity, TaskOutcome, TaskSample};
 use kinefront_model::mechanism::Design;
-use kinefront_scene::{MotionPath, PathColor, text};
+use kinefront_scene::{MotionPath, PathColor};
 use kinefront_study::{
     DesignProblem, DriveSection, Drivers, DriversAlong, DriversOptions, Hindrance, LoadSection, PayloadSection,
     PreparedStudy, Study, TaskSection, Wish, WishOutcome,
@@ -16,7 +16,7 @@ use kinefront_study::{
 use super::answering::Question;
 
 /// The study of a question. Two runs of one study are different.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct StudyOfRun(pub Arc<PreparedStudy>);
 
 impl PartialEq for StudyOfRun {
@@ -209,10 +209,8 @@ pub struct FollowedMotion {
     pub samples: Vec<TaskSample>,
     /// The path with its colours.
     pub path: Option<MotionPath>,
-    /// The drive that the design selects from the catalogue of the study, or the one that misses by least.
-    pub drive: Option<Drive>,
-    /// That, in words.
-    pub drive_in_words: Option<String>,
+    /// The catalogue that the drive of the outcome is one of.
+    pub catalogue: DriveCatalogue,
 }
 
 /// The answer: no motion if the study states none.
@@ -236,13 +234,12 @@ impl Question for MotionQuestion {
         };
         let color = self.color;
         let path = color.and_then(|color| MotionPath::new(&model, &self.evaluation.design, &samples, color));
-        let catalogue = &model.settings().drive_catalogue;
+        let catalogue = model.settings().drive_catalogue.clone();
         Ok(Some(FollowedMotion {
-            drive: outcome.drive.and_then(|drive| catalogue.get(drive.place)).cloned(),
-            drive_in_words: text::selected_drive(catalogue, &outcome),
             outcome,
             samples,
             path,
+            catalogue,
         }))
     }
 }

@@ -1,6 +1,6 @@
 //! The shortest cycle of a motion that the limits of a study allow a design (docs/model.md, section 15.10).
 
-use super::{Evaluation, Model, Quantity, QuantityLimit, TaskOutcome, quantities};
+use super::{Bound, Evaluation, Model, Quantity, QuantityLimit, quantities};
 use crate::dynamics::{Task, TaskTiming};
 
 /// The shortest cycle that a design can be asked for.
@@ -18,20 +18,6 @@ const MOST: f64 = 1e3;
 /// Number of halvings of the interval of the logarithm of the time: the result is right to a millionth.
 const HALVINGS: u32 = 24;
 
-/// Quantities that a faster motion makes worse.
-const GROWING: [Quantity; 10] = [
-    Quantity::CycleEnergy,
-    Quantity::CornerPower,
-    Quantity::PathSpeed,
-    Quantity::PathRate,
-    Quantity::PathForce,
-    Quantity::PathTorque,
-    Quantity::PathForceRms,
-    Quantity::PathTorqueRms,
-    Quantity::DriveMass,
-    Quantity::DriveUtilization,
-];
-
 impl Model {
     /// Returns the shortest cycle of the motion of the study in which an evaluated design keeps all limits of the motion, by bisection: a
     /// faster motion is taken to ask for more. `None` without a motion that the design follows, without a limit of it, and if no cycle
@@ -39,90 +25,66 @@ impl Model {
     pub fn shortest_cycle(&self, evaluation: &Evaluation) -> Option<ShortestCycle> {
         let task = self.settings().task.as_ref()?;
         let limits = self.settings().limits.iter().filter(|limit| {
-            limit.margin(f64::INFINITY) < 0.0
-                && GROWING.contains(&limit.quantity)
-                && limit.quantity.is_of(&evaluation.design)
+            let is_worse_if_faster = Quantity::OF_TASK.contains(&limit.quantity)
+                && ![Quantity::CycleTime, Quantity::PathReach].contains(&limit.quantity);
+            let is_upper = matches!(limit.bound, Bound::AtMost(_));
+            is_worse_if_faster && is_upper && limit.quantity.is_of(&evaluation.design)
         });
         let limits: Vec<QuantityLimit> = limits.copied().collect();
-        if limits.is_empty() {
-            return None;
+        let now = task.motion(&self.frame_of_task(evaluation))?.cycle_time();
+        let worst = |factor: f64| self.worst_limit(evaluation, task, now * factor, &limits);
+        let (margin, mut limit) = worst(1.0)?;
+        let is_kept = margin >= 0.0;
+        // A cycle that keeps all limits becomes shorter until one is missed, and another one longer until none is.
+        let ratio = if is_kept { 0.5 } else { 2.0 };
+        let (mut near, mut beyond) = (1.0, ratio);
+        loop {
+            if !(1.0 / MOST..=MOST).contains(&beyond) {
+                return None;
+            }
+            let (margin, found) = worst(beyond)?;
+            if margin < 0.0 {
+                limit = found;
+            }
+            if (margin >= 0.0) != is_kept {
+                break;
+            }
+            (near, beyond) = (beyond, beyond * ratio);
         }
-        let (outcome, _) = self.follow(evaluation, task);
-        let now = outcome.motion?.cycle_time();
-        let missed = |factor: f64| self.missed(evaluation, task, now * factor, &limits);
-        let (mut slow, mut fast) = (1.0, 1.0);
-        let mut set_by = missed(1.0)?;
-        match set_by {
-            // A cycle that keeps all limits becomes shorter until one is missed, and another one longer until none is.
-            None => loop {
-                fast *= 0.5;
-                if fast * MOST < 1.0 {
-                    return None;
-                }
-                match missed(fast) {
-                    Some(None) => slow = fast,
-                    Some(found) => {
-                        set_by = found;
-                        break;
-                    }
-                    // The rests alone take longer.
-                    None => return None,
-                }
-            },
-            Some(_) => loop {
-                slow *= 2.0;
-                if slow > MOST {
-                    return None;
-                }
-                match missed(slow)? {
-                    None => break,
-                    found => (fast, set_by) = (slow, found),
-                }
-            },
-        }
+        let (mut slow, mut fast) = if is_kept { (near, beyond) } else { (beyond, near) };
         for _ in 0..HALVINGS {
             let middle = (slow * fast).sqrt();
-            match missed(middle)? {
-                None => slow = middle,
-                found => (fast, set_by) = (middle, found),
+            let (margin, found) = worst(middle)?;
+            if margin >= 0.0 {
+                slow = middle;
+            } else {
+                (fast, limit) = (middle, found);
             }
         }
         Some(ShortestCycle {
             time: now * slow,
-            limit: set_by?,
+            limit,
         })
     }
 
-    /// Returns the limit that a cycle of a time misses by most, or that it misses none; `None` if there is no such cycle.
-    fn missed(
+    /// Returns the limit with the least margin in a cycle of a time, and this margin; `None` if the design does not follow such a cycle.
+    fn worst_limit(
         &self,
         evaluation: &Evaluation,
         task: &Task,
         time: f64,
         limits: &[QuantityLimit],
-    ) -> Option<Option<QuantityLimit>> {
+    ) -> Option<(f64, QuantityLimit)> {
         let task = Task {
             timing: TaskTiming::Cycle(time),
             ..task.clone()
         };
         let (outcome, _) = self.follow(evaluation, &task);
         let margin = |limit: &QuantityLimit| {
-            self.value_in(limit.quantity, evaluation, &outcome)
-                .map(|value| limit.margin(value))
+            let value = quantities::of_task(limit.quantity, self, &evaluation.design, &outcome)?;
+            Some((limit.margin(value), *limit))
         };
-        let margins: Option<Vec<f64>> = limits.iter().map(margin).collect();
-        let worst = margins?.into_iter().zip(limits).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some(Some(*worst.1).filter(|_| worst.0 < 0.0))
-    }
-
-    /// Returns a quantity of a motion that came out.
-    fn value_in(&self, quantity: Quantity, evaluation: &Evaluation, outcome: &TaskOutcome) -> Option<f64> {
-        let figures = outcome.result.as_ref()?.as_ref().ok()?;
-        let time = outcome.motion.as_ref()?.cycle_time();
-        let drive = outcome.drive.and_then(|selected| {
-            let drive = self.settings().drive_catalogue.get(selected.place)?;
-            Some((drive.mass, selected.utilization))
-        });
-        quantities::of_task(quantity, &evaluation.design, figures, time, drive)
+        let margins: Option<Vec<(f64, QuantityLimit)>> = limits.iter().map(margin).collect();
+        margins?.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
     }
 }

@@ -10,12 +10,6 @@ use crate::spatial::LEGS;
 /// Share by which the utilization may differ from what is estimated from other drives.
 const ROUNDING: f64 = 1e-9;
 
-/// Forces of the actuators at a sample of a motion: without a drive, and what each kilogram of a motor adds.
-struct Parts {
-    without: [f64; LEGS],
-    per_mass: [f64; LEGS],
-}
-
 impl Drive {
     /// Returns the largest share of the limits that a motion with this drive uses.
     fn utilization(&self, figures: &TaskFigures) -> f64 {
@@ -62,26 +56,18 @@ impl Model {
         };
         let (outcome, samples) = followed(0.0, 0.0);
         // Whether the design reaches the path does not depend on its drives.
-        let (Some(motion), Some(Ok(_))) = (&outcome.motion, &outcome.result) else {
+        let (Some(motion), Some(_)) = (&outcome.motion, outcome.figures()) else {
             return (outcome, samples);
         };
         let moves = design.architecture().driven() > 0;
         let heavier = moves.then(|| followed(1.0, 0.0).1);
-        let parts: Vec<Parts> = (0..samples.len())
-            .map(|place| {
-                let without = samples[place].response.forces;
-                let with_mass = heavier.as_ref().and_then(|samples| samples.get(place));
-                let per_mass = with_mass.map_or([0.0; LEGS], |sample| {
-                    [0, 1, 2].map(|leg: usize| sample.response.forces[leg] - without[leg])
-                });
-                Parts { without, per_mass }
-            })
-            .collect();
         let estimate = |drive: &Drive| {
-            let forces = samples.iter().zip(&parts).map(|(sample, parts)| {
-                let rates = sample.response.accelerations;
+            let forces = samples.iter().enumerate().map(|(place, sample)| {
+                let of_unit = heavier.as_ref().and_then(|samples| samples.get(place));
+                let (without, rates) = (sample.response.forces, sample.response.accelerations);
                 [0, 1, 2].map(|leg: usize| {
-                    parts.without[leg] + drive.mass * parts.per_mass[leg] + drive.inertia * rates[leg]
+                    let per_mass = of_unit.map_or(0.0, |of_unit| of_unit.response.forces[leg] - without[leg]);
+                    without[leg] + drive.mass * per_mass + drive.inertia * rates[leg]
                 })
             });
             drive.utilization(&TaskFigures::with_forces(&samples, forces, motion))
@@ -90,10 +76,8 @@ impl Model {
         let mut selected = |index: usize| {
             let (place, drive) = drives[index];
             let (mut outcome, samples) = followed(drive.mass, drive.inertia);
-            if let Some(Ok(figures)) = &outcome.result {
-                let utilization = drive.utilization(figures);
-                outcome.drive = Some(SelectedDrive { place, utilization });
-            }
+            let utilization = outcome.figures().map(|figures| drive.utilization(figures));
+            outcome.drive = utilization.map(|utilization| SelectedDrive { place, utilization });
             (outcome, samples)
         };
         for index in 0..drives.len() {

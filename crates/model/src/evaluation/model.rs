@@ -12,8 +12,8 @@ use crate::dynamics::{Drive, DriveCatalogue, DynamicsBasis, DynamicsModel, Dynam
 use crate::kinematics::{CharacteristicLength, Jacobian};
 use crate::lanes::{InstructionSet, Planar, Real};
 use crate::mechanism::{
-    AnyLeg, Architecture, Assembly, CrossSection, CrossSections, Design, Geometry, JointMasses, Leg, LegSettings,
-    Manipulator,
+    AnyLeg, Architecture, Assembly, CrossSection, CrossSections, Design, Geometry, JointKind, JointMasses, Leg,
+    LegSettings, Manipulator,
 };
 use crate::pose::{PoseChecker, ScalarSet, computed};
 use crate::spatial::{LEGS, Pose, Rotation};
@@ -193,10 +193,19 @@ impl Model {
 
     /// Returns the model with the motors and rotors of a drive in place of those that the study states.
     pub(super) fn with_drive(&self, drive: &Drive) -> Self {
+        let (dynamics, joints) = self.driven(drive.kind, drive.mass, drive.inertia);
         let mut model = self.clone();
-        model.settings.joints.motor = drive.mass;
-        model.settings.dynamics.drives.set(drive.kind, drive.inertia);
+        (model.settings.dynamics, model.settings.joints) = (dynamics, joints);
         model
+    }
+
+    /// Returns the settings of the motion and the masses of the joints with motors of a mass \[kg\] and rotors of an inertia
+    /// \[kg or kg·m²\] in place of those that the study states.
+    pub(super) fn driven(&self, actuator: JointKind, mass: f64, inertia: f64) -> (DynamicsSettings, JointMasses) {
+        let (mut dynamics, mut joints) = (self.settings.dynamics, self.settings.joints);
+        dynamics.drives.set(actuator, inertia);
+        joints.motor = mass;
+        (dynamics, joints)
     }
 
     /// The workspace to be found, sampled on the chosen grid.

@@ -8,7 +8,7 @@ use crate::clearance::Clearance;
 use crate::dynamics::{DynamicsInputs, DynamicsModel, DynamicsReport, Motion, Response, VibratingBar};
 use crate::kinematics::Jacobian;
 use crate::lanes::Planar;
-use crate::mechanism::{AnyLeg, Design, JointKind, JointMasses, Posture, ReachReason, Shortfall};
+use crate::mechanism::{AnyLeg, Design, JointKind, Posture, ReachReason, Shortfall};
 use crate::pose::{PoseChecker, ScalarSet};
 use crate::spatial::{LEGS, Pose};
 use crate::strength::StrengthReport;
@@ -71,12 +71,7 @@ impl Model {
 
     /// Gives a prepared design motors of a mass \[kg\] and rotors of an inertia \[kg or kg·m²\] in place of those of the study.
     pub(super) fn set_drive(&self, posed: &mut PosedDesign, mass: f64, inertia: f64) {
-        let mut settings = self.settings().dynamics;
-        settings.drives.set(posed.actuator(), inertia);
-        let joints = JointMasses {
-            motor: mass,
-            ..self.settings().joints
-        };
+        let (settings, joints) = self.driven(posed.actuator(), mass, inertia);
         let stiffness = posed.checker.stiffness.as_ref();
         posed.checker.dynamics =
             stiffness.map(|stiffness| self.dynamics_with(&posed.design, stiffness, &settings, joints));

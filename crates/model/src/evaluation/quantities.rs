@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{
-    Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues, SelectedDrive, TaskFigures,
+    Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues, SelectedDrive, TaskOutcome,
     largest_of_legs,
 };
 use crate::dynamics::TaskFrame;
@@ -109,24 +109,17 @@ pub(super) fn add_of_task(
         return None;
     }
     let (outcome, _) = model.follow_driven(design, task, frame);
-    let figures = match outcome.result? {
-        Ok(figures) => figures,
-        Err(failure) => {
-            if asked.contains(&Quantity::PathReach) {
-                values.set(Quantity::PathReach, Some(failure.path_reach));
-            }
-            return None;
-        }
-    };
-    let cycle_time = outcome.motion?.cycle_time();
-    let selected = outcome
-        .drive
-        .and_then(|selected| Some((selected, settings.drive_catalogue.get(selected.place)?)));
-    for quantity in asked {
-        let drive = selected.map(|(selected, drive)| (drive.mass, selected.utilization));
-        values.set(quantity, of_task(quantity, design, &figures, cycle_time, drive));
+    if let Some(Err(failure)) = &outcome.result
+        && asked.contains(&Quantity::PathReach)
+    {
+        values.set(Quantity::PathReach, Some(failure.path_reach));
+        return None;
     }
-    let (selected, drive) = selected?;
+    for quantity in asked {
+        values.set(quantity, of_task(quantity, model, design, &outcome));
+    }
+    let selected = outcome.drive?;
+    let drive = settings.drive_catalogue.get(selected.place)?;
     let more = model.drive_mass(design.architecture(), drive);
     for quantity in [Quantity::Mass, Quantity::LegsMass] {
         values.set(quantity, values.get(quantity).map(|mass| mass + more));
@@ -134,28 +127,22 @@ pub(super) fn add_of_task(
     Some(selected)
 }
 
-/// Returns a quantity of a motion from its figures, its cycle time, and the mass and the utilization of the selected drive; `None` if the
-/// design does not have it.
-pub(super) fn of_task(
-    quantity: Quantity,
-    design: &Design,
-    figures: &TaskFigures,
-    cycle_time: f64,
-    drive: Option<(f64, f64)>,
-) -> Option<f64> {
+/// Returns a quantity of a motion; `None` if the design does not follow the motion, or if it does not have the quantity.
+pub(super) fn of_task(quantity: Quantity, model: &Model, design: &Design, outcome: &TaskOutcome) -> Option<f64> {
+    let figures = outcome.figures()?;
     let value = match quantity {
-        Quantity::CycleTime => Some(cycle_time),
-        Quantity::PathReach => Some(figures.path_reach),
-        Quantity::CycleEnergy => Some(figures.energy_shared),
-        Quantity::CornerPower => Some(figures.corner_power),
-        Quantity::PathSpeed | Quantity::PathRate => Some(largest_of_legs(figures.peak_speed)),
-        Quantity::PathForce | Quantity::PathTorque => Some(largest_of_legs(figures.peak_force)),
-        Quantity::PathForceRms | Quantity::PathTorqueRms => Some(largest_of_legs(figures.rms_force)),
-        Quantity::DriveMass => drive.map(|(mass, _)| mass),
-        Quantity::DriveUtilization => drive.map(|(_, utilization)| utilization),
-        _ => None,
+        Quantity::CycleTime => outcome.motion.as_ref()?.cycle_time(),
+        Quantity::PathReach => figures.path_reach,
+        Quantity::CycleEnergy => figures.energy_shared,
+        Quantity::CornerPower => figures.corner_power,
+        Quantity::PathSpeed | Quantity::PathRate => largest_of_legs(figures.peak_speed),
+        Quantity::PathForce | Quantity::PathTorque => largest_of_legs(figures.peak_force),
+        Quantity::PathForceRms | Quantity::PathTorqueRms => largest_of_legs(figures.rms_force),
+        Quantity::DriveMass => model.settings().drive_catalogue.get(outcome.drive?.place)?.mass,
+        Quantity::DriveUtilization => outcome.drive?.utilization,
+        _ => return None,
     };
-    value.filter(|_| quantity.is_of(design))
+    quantity.is_of(design).then_some(value)
 }
 
 /// Returns the mean inverse condition number over the region and the window: each position is weighted by its area, and each

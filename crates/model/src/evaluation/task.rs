@@ -113,6 +113,13 @@ pub struct TaskOutcome {
     pub drive: Option<SelectedDrive>,
 }
 
+impl TaskOutcome {
+    /// Returns the figures of a motion that the design follows to its end.
+    pub fn figures(&self) -> Option<&TaskFigures> {
+        self.result.as_ref()?.as_ref().ok()
+    }
+}
+
 /// Sums over a motion.
 struct Tally {
     samples: Vec<TaskSample>,

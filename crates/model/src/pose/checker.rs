@@ -66,8 +66,23 @@ impl<L: Leg> PoseChecker<L> {
     /// Sets the limit of a scalar, or removes it.
     pub fn set_threshold(&mut self, scalar: PoseScalar, limit: Option<f64>) {
         self.thresholds.set(scalar, limit);
+        self.follow_thresholds();
+    }
+
+    /// Determines what the limits require to be computed.
+    fn follow_thresholds(&mut self) {
         self.computed = computed(&self.thresholds, self.asked);
         self.examines_all = self.thresholds.need_all_scalars();
+    }
+
+    /// Removes the limits of some scalars.
+    pub fn drop_limits(&mut self, is_dropped: impl Fn(PoseScalar) -> bool) {
+        for &scalar in PoseScalar::ALL {
+            if is_dropped(scalar) {
+                self.thresholds.set(scalar, None);
+            }
+        }
+        self.follow_thresholds();
     }
 
     /// Computes a scalar besides those that every evaluation determines and those that are limited.

@@ -112,11 +112,11 @@ impl ValueColumns {
     }
 
     /// Returns the ratio of a scalar to its threshold at the first `count` poses, or of the threshold to the scalar where smaller
-    /// values are better; of a natural frequency the square of that, which grows with the bars as a stiffness does. It is `f64::MAX` where a leg does not reach the pose, because it is not this scalar that is insufficient
-    /// there.
+    /// values are better; of a frequency the square of that, which grows with the bars as a stiffness does. It is `f64::MAX` where a leg
+    /// does not reach the pose, because it is not this scalar that is insufficient there.
     fn ratios(&self, scalar: PoseScalar, threshold: f64, count: usize) -> Vec<f64> {
+        let is_frequency = scalar.entry().is_frequency;
         let better = scalar.entry().quantity.better;
-        let is_frequency = scalar == PoseScalar::NaturalFrequency;
         let ratio = |value: f64| match better {
             // If one operand is NaN, `max` returns the other one.
             Better::Higher => {

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::Study;
+use super::{Catalogues, Study};
 use crate::settings::{DynamicsSections, LengthChoice, StiffnessChoice, TelescopicBar};
 use kinefront_model::dynamics::DynamicsSettings;
 use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar, Thresholds};
@@ -19,9 +19,10 @@ impl Study {
     /// read without faults has none.
     pub fn model(&self) -> Result<Model, GridError> {
         let model = &self.model;
+        let Catalogues { sections, drives } = self.catalogues();
         Model::new(ModelSettings {
             material: Material::from(&self.material),
-            sections: self.sections.cross_sections(),
+            sections,
             rails: self
                 .rails
                 .rails(self.sections.rails.cross_section().unwrap_or_default()),
@@ -61,7 +62,7 @@ impl Study {
                 anywhere: &self.anywhere,
                 tolerances: &self.tolerances,
             }),
-            drive_catalogue: self.catalogues().drives,
+            drive_catalogue: drives,
             task: self.task.task(),
             objectives: self.objectives(),
             limits: self.limits_of_designs(),

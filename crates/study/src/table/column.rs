@@ -206,7 +206,7 @@ impl Column {
         })
     }
 
-    /// Returns the name of the bars of a design, or of its drive at a place of the catalogue, that the column states, if it is one of those of catalogues.
+    /// Returns the name that the column states of what a design selects from a catalogue: its bars, or the drive at a place of the catalogue.
     pub(super) fn selected_of<'a>(
         self,
         catalogues: &'a Catalogues,

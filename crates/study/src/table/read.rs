@@ -258,7 +258,7 @@ impl<'a> Fields<'a> {
         let Some(name) = self.text(Column::Drive).filter(|name| !name.is_empty()) else {
             return Ok(None);
         };
-        let place = study.catalogues().drives.find(name);
+        let place = study.drives.drives().ok().and_then(|drives| drives.find(name));
         place.map(Some).ok_or(RowError::Value(Column::Drive))
     }
 }

@@ -55,11 +55,7 @@ impl<'a, L: Leg> Growth<'a, L> {
     pub fn new(model: &Model, design: &Design, sampling: &'a WorkspaceSampling) -> Self {
         let mut checker = model.checker::<L>(design);
         // What depends on the bars is left to sizing.
-        for &scalar in PoseScalar::ALL {
-            if scalar.entry().is_of_bars {
-                checker.set_threshold(scalar, None);
-            }
-        }
+        checker.drop_limits(|scalar| scalar.entry().is_of_bars);
         let orientation_grid = *sampling.orientation_grid();
         Self {
             orientation_grid,

@@ -68,10 +68,11 @@ impl Model {
             WorkspaceTarget::Radius(_) | WorkspaceTarget::Largest => GridChoice::Reference,
         };
         with_leg!(design.architecture(), L => {
-            let sized = |with_frequency: bool| {
+            let is_frequency = |scalar: PoseScalar| scalar.entry().is_frequency;
+            let sized = |with_frequencies: bool| {
                 let mut sizer = Sizer::<L>::new(self, design, ranges, grid);
-                if !with_frequency {
-                    sizer.drop_limit(PoseScalar::NaturalFrequency);
+                if !with_frequencies {
+                    sizer.drop_limits(is_frequency);
                 }
                 sizer.set_bars([ranges.leg[1], ranges.platform[1]]);
                 match target {
@@ -83,7 +84,7 @@ impl Model {
             };
             // Beyond some radius, the mass of the bars lowers the natural frequency more than their stiffness raises it: the bars are then
             // sized for all else, and the design may still have the frequency.
-            let limits_frequency = self.settings().thresholds.get(PoseScalar::NaturalFrequency).is_some();
+            let limits_frequency = self.settings().thresholds.iter().any(|(scalar, _)| is_frequency(scalar));
             sized(true).or_else(|| limits_frequency.then(|| sized(false)).flatten())
         })
     }

@@ -66,9 +66,9 @@ impl<'a, L: Leg> Sizer<'a, L> {
         }
     }
 
-    /// Sizes for all limits but that of a scalar from now on.
-    pub fn drop_limit(&mut self, scalar: PoseScalar) {
-        self.checker.set_threshold(scalar, None);
+    /// Sizes for all limits but those of some scalars from now on.
+    pub fn drop_limits(&mut self, is_dropped: impl Fn(PoseScalar) -> bool) {
+        self.checker.drop_limits(is_dropped);
     }
 
     /// Returns the radii of the lightest bars for the poses that are laid out.

@@ -33,6 +33,9 @@ pub struct PoseScalarEntry {
     pub margin: MarginUnit,
     /// Whether thicker bars improve the value and nothing else of the design has to change for that.
     pub is_of_bars: bool,
+    /// Whether the value is the root of a stiffness by a mass: bars are sized by its square, and from some radius on the mass of thicker
+    /// bars makes it worse.
+    pub is_frequency: bool,
 }
 
 /// What a margin is divided by.
@@ -53,6 +56,7 @@ impl PoseScalarEntry {
             at_pose,
             margin: MarginUnit::Threshold,
             is_of_bars: false,
+            is_frequency: false,
         }
     }
 
@@ -73,6 +77,11 @@ impl PoseScalarEntry {
 
     const fn shown_in(mut self, unit: &'static str, factor: f64) -> Self {
         self.shown_in = (unit, factor);
+        self
+    }
+
+    const fn as_frequency(mut self) -> Self {
+        self.is_frequency = true;
         self
     }
 
@@ -329,7 +338,7 @@ pose_scalars! {
             QuantityEntry::new("natural_frequency_hz", "Hz", "natural frequency", Scope::Poses, Better::Higher,
                 "Lowest natural frequency with the payload, the actuators being held.")
                 .above_zero().logarithmic().reference(Reference::Number(1e3)),
-            "natural_frequency").labelled("lowest natural frequency").of_bars();
+            "natural_frequency").labelled("lowest natural frequency").of_bars().as_frequency();
         /// Largest error of the position \[m\].
         PositionError = PoseScalarEntry::new(
             QuantityEntry::new("position_error_m", "m", "position error", Scope::Poses, Better::Lower,
