@@ -1,7 +1,6 @@
 //! The command `kinefront certify`: proves bounds of the workspace radius.
 
 use std::collections::BTreeMap;
-use std::ffi::OsString;
 use std::io::Write;
 use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,26 +10,26 @@ use super::wire::CertificateJson;
 use kinefront_model::certify::{CertifyError, CertifyOptions};
 use kinefront_model::evaluation::GridChoice;
 use kinefront_model::mechanism::{Design, TextError};
-use kinefront_study::PreparedStudy;
+use kinefront_study::{PreparedStudy, Study};
 
 use super::stream::{InputLine, answer, next_line};
+use super::subject::{DESIGN_OR_STREAM, SubjectArguments, exactly_one_of};
 use super::{Ending, Failure, load_study, tables, to_json};
 
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
+#[command(
+    after_help = "\
 The lower bound is the radius of a disc in which every pose is proved feasible, at every orientation of the window; the upper
 bound is the distance of a pose that is proved infeasible. The verdict on the claimed radius is proved, refuted or open.
-If the study prescribes a region, the claim is that every pose of the region is feasible, unless --radius claims a disc.")]
+If the study prescribes a region, the claim is that every pose of the region is feasible, unless --radius claims a disc.",
+    group = exactly_one_of(DESIGN_OR_STREAM)
+)]
 pub struct CertifyArguments {
-    /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
-    #[arg(long, required_unless_present = "stdin", conflicts_with = "stdin")]
-    design: Option<String>,
+    #[command(flatten)]
+    subject: SubjectArguments,
     /// Read one design per line from standard input and write one JSON object per line.
     #[arg(long)]
     stdin: bool,
-    /// Study file, or name of a built-in study [default: paper].
-    #[arg(long, value_name = "FILE")]
-    study: Option<OsString>,
     /// Home orientation in degrees [default: the one that `evaluate --grid fine` reports].
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     phi_deg: Option<f64>,
@@ -53,22 +52,22 @@ pub struct CertifyArguments {
 }
 
 pub fn run(arguments: &CertifyArguments) -> Result<Ending, Failure> {
-    let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
-    let prover = Prover {
-        study: PreparedStudy::new(study).map_err(Failure::runtime)?,
-        arguments,
+    let prover = |study: Study| -> Result<Prover, Failure> {
+        let study = PreparedStudy::new(study).map_err(Failure::runtime)?;
+        Ok(Prover { study, arguments })
     };
-    match &arguments.design {
-        None => prover.serve()?,
-        Some(text) => {
-            let found = prover.certify(text).map_err(Failure::input)?;
-            let mut out = std::io::stdout().lock();
-            if arguments.json {
-                writeln!(out, "{}", to_json(&found).map_err(Failure::Runtime)?)?;
-            } else {
-                writeln!(out, "{}", tables::certificate(&found))?;
-            }
-        }
+    if arguments.stdin {
+        let study = load_study(arguments.subject.study.as_deref()).map_err(Failure::Input)?;
+        prover(study)?.serve()?;
+        return Ok(Ending::Done);
+    }
+    let (study, design, _) = arguments.subject.read().map_err(Failure::Input)?;
+    let found = prover(study)?.certify(&design).map_err(Failure::input)?;
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        writeln!(out, "{}", to_json(&found).map_err(Failure::Runtime)?)?;
+    } else {
+        writeln!(out, "{}", tables::certificate(&found))?;
     }
     Ok(Ending::Done)
 }
@@ -88,11 +87,16 @@ struct Prover<'a> {
 }
 
 impl Prover<'_> {
-    fn certify(&self, text: &str) -> Result<CertificateJson, LineError> {
+    /// Proves the design that a line of the stream states.
+    fn certify_line(&self, text: &str) -> Result<CertificateJson, LineError> {
         let design = Design::parse(text, self.study.study().working_mode)?;
+        Ok(self.certify(&design)?)
+    }
+
+    fn certify(&self, design: &Design) -> Result<CertificateJson, CertifyError> {
         let model = self.study.model();
         let since = Instant::now();
-        let evaluation = model.evaluate(&design, GridChoice::Fine);
+        let evaluation = model.evaluate(design, GridChoice::Fine);
         let home = model.home(&evaluation);
         let phi_deg = self.arguments.phi_deg.or(evaluation.home_phi_deg);
         let options = CertifyOptions {
@@ -104,15 +108,15 @@ impl Prover<'_> {
             is_of_region: self.study.study().workspace.region.is_prescribed() && self.arguments.radius.is_none(),
             ..CertifyOptions::default()
         };
-        let certificate = model.certify(&design, &options)?;
+        let certificate = model.certify(design, &options)?;
         let homes = match self.arguments.all_homes {
-            true => Some(model.bound_of_homes(&design, certificate.lower)?),
+            true => Some(model.bound_of_homes(design, certificate.lower)?),
             false => None,
         };
         let seconds = since.elapsed().as_secs_f64();
         Ok(CertificateJson::new(
             model,
-            &design,
+            design,
             &options,
             &certificate,
             homes,
@@ -135,7 +139,7 @@ impl Prover<'_> {
                         let next = lines.lock().unwrap_or_else(PoisonError::into_inner).recv();
                         let Ok((number, line)) = next else { return };
                         if to_writer
-                            .send((number, answer(line, |text| self.certify(text))))
+                            .send((number, answer(line, |text| self.certify_line(text))))
                             .is_err()
                         {
                             return;

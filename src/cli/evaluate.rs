@@ -1,6 +1,5 @@
 //! The command `kinefront evaluate`.
 
-use std::ffi::OsString;
 use std::io::Write;
 
 use kinefront_export::EvaluationJson;
@@ -9,16 +8,14 @@ use kinefront_model::mechanism::{Design, TextError};
 use kinefront_study::PreparedStudy;
 
 use super::stream::{answer, next_line};
+use super::subject::{DESIGN_OR_STREAM, SubjectArguments, exactly_one_of};
 use super::{Ending, Failure, GridArgument, load_study, tables, to_json};
 
 #[derive(Debug, clap::Args)]
+#[command(group = exactly_one_of(DESIGN_OR_STREAM))]
 pub struct EvaluateArguments {
-    /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
-    #[arg(long, required_unless_present = "stdin", conflicts_with = "stdin")]
-    design: Option<String>,
-    /// Study file, or name of a built-in study [default: paper].
-    #[arg(long, value_name = "FILE")]
-    study: Option<OsString>,
+    #[command(flatten)]
+    subject: SubjectArguments,
     /// Sampling grid of poses.
     #[arg(long, value_enum, default_value = "reference")]
     grid: GridArgument,
@@ -31,28 +28,26 @@ pub struct EvaluateArguments {
 }
 
 pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
-    let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
-    let mut study = PreparedStudy::new(study).map_err(Failure::runtime)?;
-    if arguments.design.is_some() {
-        // One design is told in full; a stream has what its study names.
-        study = study.with_all_quantities();
+    let grid = arguments.grid.into();
+    if arguments.stdin {
+        let study = load_study(arguments.subject.study.as_deref()).map_err(Failure::Input)?;
+        let study = PreparedStudy::new(study).map_err(Failure::runtime)?;
+        Server { study, grid }.serve()?;
+        return Ok(Ending::Done);
     }
-    let server = Server {
-        study,
-        grid: arguments.grid.into(),
-    };
-    match &arguments.design {
-        None => server.serve()?,
-        Some(text) => {
-            let evaluation = server.evaluate(text).map_err(Failure::input)?;
-            let mut out = std::io::stdout().lock();
-            if arguments.json {
-                let json = EvaluationJson::new(&evaluation).with_dynamics(server.study.model(), &evaluation);
-                writeln!(out, "{}", to_json(&json).map_err(Failure::Runtime)?)?;
-            } else {
-                writeln!(out, "{}", tables::evaluation(&evaluation, server.study.model()))?;
-            }
-        }
+    let (study, design, _) = arguments.subject.read().map_err(Failure::Input)?;
+    // One design is told in full; a stream has what its study names.
+    let study = PreparedStudy::new(study)
+        .map_err(Failure::runtime)?
+        .with_all_quantities();
+    let model = study.model();
+    let evaluation = model.evaluate(&design, grid);
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        let json = EvaluationJson::new(&evaluation).with_dynamics(model, &evaluation);
+        writeln!(out, "{}", to_json(&json).map_err(Failure::Runtime)?)?;
+    } else {
+        writeln!(out, "{}", tables::evaluation(&evaluation, model))?;
     }
     Ok(Ending::Done)
 }

@@ -9,7 +9,7 @@ use kinefront_model::spatial::Pose;
 use kinefront_study::{PreparedStudy, read_regular, read_table, write_whole};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
-use super::subject::{SubjectArguments, run_of, study_beside};
+use super::subject::{A_DESIGN, SubjectArguments, exactly_one_of, run_of, study_beside};
 use super::{Ending, Failure, exists_already, say};
 
 #[derive(Debug, clap::Args)]
@@ -24,6 +24,7 @@ Examples:
   kinefront export run/front.csv#12 --out parts.csv
   kinefront export run/front.csv#12 --format csv-trajectory --out trajectory.csv
   kinefront export run --out front.parquet")]
+#[command(group = exactly_one_of(A_DESIGN))]
 pub struct ExportArguments {
     #[command(flatten)]
     subject: SubjectArguments,

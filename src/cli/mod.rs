@@ -2,10 +2,12 @@
 
 mod certify;
 mod check;
+mod completions;
 mod evaluate;
 #[cfg(feature = "explorer")]
 mod explore;
 mod export;
+mod manual;
 mod merge;
 mod optimize;
 mod pose;
@@ -18,9 +20,11 @@ mod show;
 mod signals;
 mod stream;
 mod study;
+mod study_keys;
 mod subject;
 mod tables;
 mod task;
+mod version;
 mod why;
 mod wire;
 mod wish;
@@ -43,7 +47,12 @@ use miette::{IntoDiagnostic, Report, Result, miette};
 
 /// Design explorer for planar parallel manipulators.
 #[derive(Debug, Parser)]
-#[command(name = "kinefront", version, arg_required_else_help = cfg!(not(feature = "explorer")))]
+#[command(
+    name = "kinefront",
+    version = version::version(),
+    arg_required_else_help = cfg!(not(feature = "explorer")),
+    after_help = "docs/tutorial.md, in the sources and in the archives of the program, leads from a question to a first machine in ten minutes."
+)]
 struct ProgramArguments {
     /// Command; without one, the window opens and runs the paper's study.
     #[command(subcommand)]
@@ -61,6 +70,10 @@ enum Command {
     /// Open a study, a run folder or a recording in the window.
     #[cfg(feature = "explorer")]
     Explore(explore::ExploreArguments),
+    /// Say that this build has no window.
+    #[cfg(not(feature = "explorer"))]
+    #[command(hide = true)]
+    Explore(NoWindowArguments),
     /// Compute mass, regular workspace and constraint margins of a design, or of a stream of designs.
     Evaluate(evaluate::EvaluateArguments),
     /// Prove bounds of the workspace radius of a design, or of a stream of designs.
@@ -89,6 +102,10 @@ enum Command {
     Report(report::ReportArguments),
     /// List, show, create and check study files.
     Study(study::StudyArguments),
+    /// Print a script that completes the commands of Kinefront in a shell.
+    Completions(completions::CompletionsArguments),
+    /// Write the manual pages into a folder.
+    Manual(manual::ManualArguments),
     /// Unpack a recording, for the process that asked for it.
     #[command(name = UNPACK_COMMAND, hide = true)]
     UnpackRecording(check::UnpackArguments),
@@ -105,9 +122,19 @@ impl Command {
                 | Command::Pose(_)
                 | Command::Task(_)
                 | Command::Study(_)
+                | Command::Completions(_)
+                | Command::Manual(_)
                 | Command::UnpackRecording(_)
         )
     }
+}
+
+/// What follows `explore` in a build without the window.
+#[cfg(not(feature = "explorer"))]
+#[derive(Debug, clap::Args)]
+struct NoWindowArguments {
+    #[arg(hide = true, trailing_var_arg = true, allow_hyphen_values = true)]
+    _anything: Vec<std::ffi::OsString>,
 }
 
 /// How a command that did not fail has ended.
@@ -209,6 +236,11 @@ fn run_command(command: Option<Command>) -> Result<Ending, Failure> {
         // Not reached: `arg_required_else_help` prints the help if there is no command.
         #[cfg(not(feature = "explorer"))]
         None => Ok(Ending::Done),
+        #[cfg(not(feature = "explorer"))]
+        Some(Command::Explore(_)) => Err(Failure::Input(miette!(
+            help = "use the program with the window, or look at a recording with `rerun run/recording.rrd`",
+            "this build of Kinefront is for servers and has no window"
+        ))),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
         Some(Command::Certify(arguments)) => certify::run(&arguments),
         Some(Command::Pose(arguments)) => pose::run(&arguments),
@@ -224,6 +256,8 @@ fn run_command(command: Option<Command>) -> Result<Ending, Failure> {
         Some(Command::UnpackRecording(arguments)) => check::unpack(&arguments),
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::Study(arguments)) => study::run(&arguments),
+        Some(Command::Completions(arguments)) => completions::run(&arguments),
+        Some(Command::Manual(arguments)) => manual::run(&arguments),
     }
 }
 

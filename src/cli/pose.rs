@@ -1,31 +1,27 @@
 //! The command `kinefront pose`.
 
-use std::ffi::OsString;
 use std::io::Write;
 
 use super::wire::AssemblyModesJson;
 use kinefront_export::{DynamicsJson, PoseReportJson};
 use kinefront_model::dynamics::Motion;
 use kinefront_model::kinematics::assembly_modes;
-use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::{Acceleration, JointValues, Pose, Twist, Wrench};
 
-use super::{Ending, Failure, load_study, tables, to_json};
+use super::subject::{A_DESIGN, SubjectArguments, exactly_one_of};
+use super::{Ending, Failure, tables, to_json};
 
 #[derive(Debug, clap::Args)]
+#[command(group = exactly_one_of(A_DESIGN))]
 pub struct PoseArguments {
-    /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
-    #[arg(long)]
-    design: String,
+    #[command(flatten)]
+    subject: SubjectArguments,
     /// Pose, as in "x=0.1 y=0.2 phi_deg=30" (metres and degrees).
     #[arg(long, required_unless_present = "actuators", conflicts_with = "actuators")]
     pose: Option<String>,
     /// Values of the driven joints, as in "q1=0.9 q2=1.0 q3=1.1" (metres or radians): prints all poses that they allow.
     #[arg(long, value_name = "VALUES")]
     actuators: Option<String>,
-    /// Study file, or name of a built-in study [default: paper].
-    #[arg(long, value_name = "FILE")]
-    study: Option<OsString>,
     /// Wrench on the platform in place of the loads of the study, as in "fx=100 fy=0 mz=-5" (N and N·m; absent parts are 0).
     #[arg(long, conflicts_with = "actuators")]
     wrench: Option<String>,
@@ -41,8 +37,7 @@ pub struct PoseArguments {
 }
 
 pub fn run(arguments: &PoseArguments) -> Result<Ending, Failure> {
-    let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
-    let design = Design::parse(&arguments.design, study.working_mode).map_err(Failure::input)?;
+    let (study, design, _) = arguments.subject.read().map_err(Failure::Input)?;
     let model = study.model().map_err(Failure::runtime)?;
     let mut out = std::io::stdout().lock();
     let Some(pose) = &arguments.pose else {

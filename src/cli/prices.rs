@@ -9,7 +9,7 @@ use kinefront_study::{
 };
 use miette::miette;
 
-use super::subject::SubjectArguments;
+use super::subject::{A_DESIGN, SubjectArguments, exactly_one_of};
 use super::{Ending, Failure, tables, to_json};
 
 #[derive(Debug, clap::Args)]
@@ -20,6 +20,7 @@ values of the design. A requirement that costs nothing there is listed with the 
 
 Without #ID, the prices of all designs of the table are determined: what drives the first objective along the front, in sentences; with
 --csv, the table of the designs with a column price_* for each parameter.")]
+#[command(group = exactly_one_of(A_DESIGN))]
 pub struct PricesArguments {
     #[command(flatten)]
     subject: SubjectArguments,

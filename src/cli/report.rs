@@ -111,7 +111,11 @@ pub fn run(arguments: &ReportArguments) -> Result<Ending, Failure> {
         ProgressBar::new_spinner()
     };
     keep_ticking(&spinner);
-    let mut tell = |words: &str| spinner.set_message(words.to_owned());
+    let mut tell = |words: &str| match spinner.is_hidden() && !arguments.quiet {
+        // A file or a pipe, where no line is drawn again: each part of the work has one of its own.
+        true => say(words),
+        false => spinner.set_message(words.to_owned()),
+    };
     let report = if arguments.paper {
         let study = load_study(None).map_err(Failure::Input)?;
         Report::from_scratch(&study, options, &mut tell)

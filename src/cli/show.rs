@@ -9,10 +9,11 @@ use kinefront_scene::Field;
 
 use kinefront_study::PreparedStudy;
 
-use super::subject::SubjectArguments;
+use super::subject::{A_DESIGN, SubjectArguments, exactly_one_of};
 use super::{Ending, Failure, exists_already};
 
 #[derive(Debug, clap::Args)]
+#[command(group = exactly_one_of(A_DESIGN))]
 pub struct ShowArguments {
     #[command(flatten)]
     subject: SubjectArguments,

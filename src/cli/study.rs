@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use kinefront_study::{BUILTIN, Builtin, Study, write_whole};
 use miette::miette;
 
-use super::{Ending, Failure, exists_already, load_study, question};
+use super::{Ending, Failure, exists_already, load_study, question, study_keys};
 
 #[derive(Debug, clap::Args)]
 pub struct StudyArguments {
@@ -35,6 +35,11 @@ enum StudyCommand {
         /// Ask for the study on the terminal instead of copying one.
         #[arg(long, conflicts_with = "from")]
         question: bool,
+    },
+    /// Print the reference of all keys of a study and of all quantities, in Markdown.
+    Keys {
+        /// Part of a key or section, as in `requirements` or `clearance`.
+        part: Option<String>,
     },
     /// Check a study file, and report its errors or what it leaves open.
     Check {
@@ -88,6 +93,10 @@ pub fn run(arguments: &StudyArguments) -> Result<Ending, Failure> {
             }
             write_whole(file, text.as_bytes()).map_err(Failure::runtime)?;
             writeln!(out, "wrote {}", file.display())?;
+        }
+        StudyCommand::Keys { part } => {
+            let reference = study_keys::reference(part.as_deref()).map_err(Failure::Input)?;
+            write!(out, "{reference}")?;
         }
         StudyCommand::Check { file } => {
             let study: Study = load_study(Some(file.as_os_str())).map_err(Failure::Input)?;

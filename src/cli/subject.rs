@@ -3,20 +3,30 @@
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
+use clap::ArgGroup;
 use kinefront_model::mechanism::Design;
-use kinefront_study::{RunFolder, Study, read_designs};
+use kinefront_study::{RunFolder, Study, is_row_name, named_row, read_designs, read_table, row_names};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use super::load_study;
 
+/// The ways to specify a design, of which a command requires one; with the arguments of the command that take its place.
+pub fn exactly_one_of(arguments: &'static [&'static str]) -> ArgGroup {
+    ArgGroup::new("subject").required(true).args(arguments)
+}
+
+/// The names of the arguments that specify a design.
+pub const A_DESIGN: &[&str] = &["row", "design"];
+
+/// The same for a command that also reads a stream of designs.
+pub const DESIGN_OR_STREAM: &[&str] = &["row", "design", "stdin"];
+
 #[derive(Debug, clap::Args)]
+#[group(skip)]
 pub struct SubjectArguments {
-    /// Design in a table, as in run/front.csv#12 for the row with the id 12.
-    #[arg(
-        value_name = "TABLE#ID",
-        required_unless_present = "design",
-        conflicts_with = "design"
-    )]
+    /// Design in a table: run/front.csv#12 is the row with the id 12, and #best (in the first objective), #knee and #largest
+    /// (workspace) exist in every table of a run.
+    #[arg(value_name = "TABLE#ID")]
     pub row: Option<OsString>,
     /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
     #[arg(long)]
@@ -134,6 +144,9 @@ fn study_name(table: &Path) -> String {
 
 /// Returns the design in the row with the given id.
 fn find_design(table: &Path, study: &Study, id: &str) -> Result<Design> {
+    if is_row_name(id) {
+        return find_named(table, study, id);
+    }
     let rows = designs_of(table, study)?;
     if let Some((_, design)) = rows.iter().find(|(found, _)| found.to_string() == id) {
         return Ok(*design);
@@ -141,8 +154,28 @@ fn find_design(table: &Path, study: &Study, id: &str) -> Result<Design> {
     let some: Vec<String> = rows.iter().take(8).map(|(id, _)| id.to_string()).collect();
     let more = if rows.len() > some.len() { ", …" } else { "" };
     Err(miette!(
+        help = "#best, #knee and #largest are names that every table of a run has",
         "{} has no design #{id}; it has #{}{more}",
         table.display(),
         some.join(", #")
     ))
+}
+
+/// Returns the design with the given name.
+fn find_named(table: &Path, study: &Study, name: &str) -> Result<Design> {
+    let rows = read_table(table, study).into_diagnostic()?.rows;
+    if !rows.iter().any(|row| row.row.is_feasible()) {
+        return Err(miette!(
+            "{} has no feasible design, and so none is #{name}",
+            table.display()
+        ));
+    }
+    let found = named_row(&rows, study, name).ok_or_else(|| {
+        miette!(
+            "{} has no design #{name}; its names are #{}",
+            table.display(),
+            row_names(&rows, study).join(", #")
+        )
+    })?;
+    Ok(found.row.design)
 }

@@ -1,24 +1,23 @@
 //! The command `kinefront task`.
 
-use std::ffi::OsString;
 use std::io::Write;
 
 use kinefront_export::{TaskJson, TaskRow};
-use kinefront_model::mechanism::Design;
 use kinefront_scene::text;
 use miette::miette;
 use serde::Serialize;
 
-use super::{Ending, Failure, GridArgument, load_study, say, tables, to_json};
+use super::subject::{A_DESIGN, SubjectArguments, exactly_one_of};
+use super::{Ending, Failure, GridArgument, say, tables, to_json};
 
 #[derive(Debug, clap::Args)]
+#[command(
+    group = exactly_one_of(A_DESIGN),
+    after_help = "The section `task` of the study states the motion."
+)]
 pub struct TaskArguments {
-    /// Design, as in "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056" (metres; optional mode=+++).
-    #[arg(long)]
-    design: String,
-    /// Study file, or name of a built-in study; its section `task` states the motion [default: paper].
-    #[arg(long, value_name = "FILE")]
-    study: Option<OsString>,
+    #[command(flatten)]
+    subject: SubjectArguments,
     /// Sampling grid that determines the workspace to which the motion is scaled.
     #[arg(long, value_enum, default_value = "reference")]
     grid: GridArgument,
@@ -44,8 +43,7 @@ struct TaskReportJson {
 }
 
 pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
-    let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
-    let design = Design::parse(&arguments.design, study.working_mode).map_err(Failure::input)?;
+    let (study, design, _) = arguments.subject.read().map_err(Failure::Input)?;
     let model = study.model().map_err(Failure::runtime)?;
     let evaluation = model.evaluate(&design, arguments.grid.into());
     let Some((outcome, samples)) = model.follow_task(&evaluation) else {

@@ -6,13 +6,14 @@ use kinefront_model::evaluation::Quantity;
 use kinefront_study::{Condition, DesignProblem, Wish};
 use miette::miette;
 
-use super::subject::SubjectArguments;
+use super::subject::{A_DESIGN, SubjectArguments, exactly_one_of};
 use super::{Ending, Failure, tables, to_json};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 The objectives of the study keep the values that the design has, unless the wish names them; the first objective is improved as far as
 the wish allows. The design that is found is verified on the fine grid and proved.")]
+#[command(group = exactly_one_of(A_DESIGN))]
 pub struct WishArguments {
     #[command(flatten)]
     subject: SubjectArguments,

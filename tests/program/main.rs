@@ -2,6 +2,7 @@
 
 mod commands;
 mod damage;
+mod documents;
 mod drivers;
 mod exports;
 mod faults;

@@ -77,11 +77,11 @@ pub use settings::{
     MATERIALS, MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, PayloadSection, ReferenceDesign,
     RegionKind, RegionSection, RequirementSection, SectionChoice, SectionKind, SectionsSection, Setting, Stagnation,
     StiffnessChoice, StrengthSection, TaskSection, TaskShapeChoice, TelescopicBar, Tie, ToleranceSection,
-    VariableChoice, Variables, WHOLE_FRONT, WorkspaceSection, is_shown, settings,
+    VariableChoice, Variables, WHOLE_FRONT, WorkspaceSection, is_shown, settings, settings_of_surroundings,
 };
 pub use study::{Catalogues, Fault, SettingDifference, Study, StudyError};
 pub use sum::{Difference, FileSum};
 pub use table::{
-    Cell, Column, ColumnType, Row, RowError, TableContents, TableError, TableFault, TableRow, read_design,
-    read_designs, read_run_table, read_table, table_bytes,
+    Cell, Column, ColumnType, Row, RowError, TableContents, TableError, TableFault, TableRow, is_row_name, named_row,
+    read_design, read_designs, read_run_table, read_table, row_names, table_bytes,
 };

@@ -35,7 +35,7 @@ pub use sections::{
     RailSupportChoice, ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
 };
 pub use strength::{LoadShapeChoice, StrengthSection};
-pub use surroundings::{ObstacleSection, RoomSection};
+pub use surroundings::{ObstacleSection, RoomSection, settings_of_surroundings};
 pub use task::{
     AnywhereSection, DynamicsSections, LoadSection, PayloadSection, TaskSection, TaskShapeChoice, ToleranceSection,
 };

@@ -1,57 +1,62 @@
 //! What stands beside the manipulator: obstacles and a room (docs/model.md, section 8.3).
 
 use glam::DVec2;
-use serde::{Deserialize, Serialize};
 
+use super::declare::{Check, Initial, Setting, section};
 use super::{RegionKind, RegionSection, wrong_name};
 use kinefront_model::clearance::{Obstacle, ObstacleShape};
 use kinefront_model::polygon::Polygon;
 use kinefront_model::workspace::Region;
 
-/// One of the sections `[[obstacles]]`: an upright body that no member may touch.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct ObstacleSection {
-    /// Name, as messages show it.
-    pub name: String,
-    /// Outline: a disc, a rectangle or a polygon.
-    pub kind: RegionKind,
-    /// Middle of a disc or a rectangle, and origin of the corners of a polygon, in the base frame.
-    pub centre_m: [f64; 2],
-    /// Radius of a disc.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub radius_m: Option<f64>,
-    /// Width of a rectangle along `Ox`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub width_m: Option<f64>,
-    /// Height of a rectangle along `Oy`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub height_m: Option<f64>,
-    /// Corners of a polygon.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub corners_m: Option<Vec<[f64; 2]>>,
-    /// Lowest and highest point above the layer of the platform bars; if omitted, the body has no end.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub heights_m: Option<[f64; 2]>,
+section! {
+    /// One of the sections `[[obstacles]]`: an upright body that no member may touch.
+    pub struct ObstacleSection in "obstacles" {
+        /// Name, as messages show it.
+        name: String = String::new(), Check::Name;
+        /// Outline: a disc, a rectangle or a polygon.
+        kind: RegionKind = RegionKind::default(), Check::Choice(OUTLINES);
+        /// Middle of a disc or a rectangle, and origin of the corners of a polygon, in the base frame.
+        centre_m: [f64; 2] = [0.0; 2], Check::Finite;
+        optional {
+            /// Radius of a disc.
+            radius_m: f64, Check::Positive, Initial::AsText;
+            /// Width of a rectangle along `Ox`.
+            width_m: f64, Check::Positive, Initial::AsText;
+            /// Height of a rectangle along `Oy`.
+            height_m: f64, Check::Positive, Initial::AsText;
+            /// Corners of a polygon.
+            corners_m: Vec<[f64; 2]>, Check::Finite, Initial::AsText;
+            /// Lowest and highest point above the layer of the platform bars; if omitted, the body has no end.
+            heights_m: [f64; 2], Check::Finite, Initial::AsText;
+        }
+    }
 }
 
-/// The section `[room]`: the outline that no member may leave.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct RoomSection {
-    /// Outline: a rectangle or a polygon.
-    pub kind: RegionKind,
-    /// Middle of a rectangle, and origin of the corners of a polygon, in the base frame.
-    pub centre_m: [f64; 2],
-    /// Width of a rectangle along `Ox`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub width_m: Option<f64>,
-    /// Height of a rectangle along `Oy`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub height_m: Option<f64>,
-    /// Corners of a polygon.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub corners_m: Option<Vec<[f64; 2]>>,
+section! {
+    /// The section `[room]`: the outline that no member may leave.
+    pub struct RoomSection in "room" {
+        /// Outline: a rectangle or a polygon.
+        kind: RegionKind = RegionKind::default(), Check::Choice(OUTLINES_OF_ROOM);
+        /// Middle of a rectangle, and origin of the corners of a polygon, in the base frame.
+        centre_m: [f64; 2] = [0.0; 2], Check::Finite;
+        optional {
+            /// Width of a rectangle along `Ox`.
+            width_m: f64, Check::Positive, Initial::AsText;
+            /// Height of a rectangle along `Oy`.
+            height_m: f64, Check::Positive, Initial::AsText;
+            /// Corners of a polygon.
+            corners_m: Vec<[f64; 2]>, Check::Finite, Initial::AsText;
+        }
+    }
+}
+
+const OUTLINES: &[&str] = &["disc", "rectangle", "polygon"];
+const OUTLINES_OF_ROOM: &[&str] = &["rectangle", "polygon"];
+
+/// Iterates over the settings of an obstacle and of the room, which [`super::settings`] does not hold: their sections may be absent, or
+/// occur several times, and are checked as a whole.
+pub fn settings_of_surroundings() -> impl Iterator<Item = &'static Setting> {
+    ObstacleSection::SETTINGS.iter().chain(RoomSection::SETTINGS)
 }
 
 /// A key that is at fault, and what is wrong.

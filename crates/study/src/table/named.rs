@@ -1,0 +1,68 @@
+//! Names of designs that every table of a run has, so that a command can be written down before the ids are known.
+
+use kinefront_model::evaluation::Quantity;
+use kinefront_optimize::{Archive, Objectives, Outcome};
+
+use super::TableRow;
+use crate::{Study, front_marks};
+
+/// The design that is best in the first objective.
+const BEST: &str = "best";
+/// The knee of the front; with one objective, the best design.
+const KNEE: &str = "knee";
+/// The design with the largest regular workspace.
+const LARGEST: &str = "largest";
+
+/// Returns whether a text is the name of a design rather than an id.
+pub fn is_row_name(text: &str) -> bool {
+    text.starts_with(|first: char| first.is_ascii_lowercase())
+}
+
+/// Returns the names that [`named_row`] finds in a table: `best`, `knee`, `largest`, and the marks of the front.
+pub fn row_names(rows: &[TableRow], study: &Study) -> Vec<String> {
+    let mut names: Vec<String> = [BEST, KNEE, LARGEST].map(str::to_owned).into();
+    let (_, marks) = front_of(rows, study);
+    names.extend(marks.into_iter().filter(|mark| !mark.is_empty()));
+    let mut seen = Vec::new();
+    names.retain(|name| {
+        let is_new = !seen.contains(name);
+        seen.push(name.clone());
+        is_new
+    });
+    names
+}
+
+/// Returns the row with a name, among equals the first: `best` (in the first objective), a mark of the front, as in the column `mark` of
+/// `front.csv`, or `largest` (regular workspace). `None` if the table has no feasible design or the name is none of these.
+pub fn named_row<'a>(rows: &'a [TableRow], study: &Study, name: &str) -> Option<&'a TableRow> {
+    let (front, marks) = front_of(rows, study);
+    let marked = || Some(front[marks.iter().position(|mark| mark == name)?]);
+    match name {
+        BEST => front.first().copied(),
+        KNEE => marked().or(front.first().copied()),
+        LARGEST => marked().or_else(|| largest(rows)),
+        _ => marked(),
+    }
+}
+
+fn largest(rows: &[TableRow]) -> Option<&TableRow> {
+    let radius = |row: &TableRow| row.row.quantities.get(Quantity::WorkspaceRadius).unwrap_or(0.0);
+    let feasible = rows.iter().filter(|row| row.row.is_feasible());
+    // Of equal keys, `min_by` returns the first.
+    feasible.min_by(|a, b| radius(b).total_cmp(&radius(a)))
+}
+
+/// Returns the rows that no other dominates, in the order of the first objective, and their marks.
+fn front_of<'a>(rows: &'a [TableRow], study: &Study) -> (Vec<&'a TableRow>, Vec<String>) {
+    let mut archive = Archive::default();
+    for (place, row) in rows.iter().enumerate() {
+        let outcome = Outcome {
+            objectives: row.row.objectives,
+            violation: row.row.violation,
+        };
+        archive.insert(place, &[], &outcome);
+    }
+    let objectives: Vec<Objectives> = archive.iter().map(|member| member.objectives).collect();
+    let front = archive.iter().map(|member| &rows[member.id]).collect();
+    (front, front_marks(study, &objectives))
+}

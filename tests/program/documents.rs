@@ -1,0 +1,251 @@
+//! The documents as a new user follows them: their commands run, and what is made from the program is current.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::support::{folder, kinefront, optimize, small_study};
+
+fn document(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+fn printed(arguments: &[&str]) -> String {
+    let told = kinefront().args(arguments).assert().success();
+    String::from_utf8(told.get_output().stdout.clone()).expect("UTF-8")
+}
+
+/// The commands of `kinefront` in the shell blocks of a document, without comments.
+fn commands(text: &str) -> Vec<String> {
+    let blocks = text
+        .split("```sh\n")
+        .skip(1)
+        .filter_map(|rest| rest.split("```").next());
+    blocks
+        .flat_map(|block| {
+            block
+                .replace("\\\n", " ")
+                .lines()
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
+        })
+        .map(|line| line.split("  #").next().unwrap_or_default().trim().to_owned())
+        .filter(|line| line.starts_with("kinefront "))
+        .collect()
+}
+
+/// The reference of keys is what the program prints.
+#[test]
+fn the_reference_of_keys_is_current() {
+    let text = document("docs/study.md");
+    let (_, reference) = text
+        .split_once("<!-- kinefront study keys -->\n\n")
+        .expect("the mark of what the program prints");
+    assert_eq!(
+        reference,
+        printed(&["study", "keys"]),
+        "write the output of `kinefront study keys` behind the mark in docs/study.md"
+    );
+}
+
+/// A part of a key leads to its section, and an unknown one is an error.
+#[test]
+fn keys_are_found_by_a_part() {
+    let found = printed(&["study", "keys", "clearance"]);
+    assert!(
+        found.contains("`clearance_min_m`") && found.contains("`clearance_m`"),
+        "{found}"
+    );
+    assert!(!found.contains("density_kg_per_m3"), "{found}");
+    let told = kinefront().args(["study", "keys", "torsion"]).assert().code(2);
+    assert!(String::from_utf8_lossy(&told.get_output().stderr).contains("torsion"));
+}
+
+/// The tutorial, command by command, in an empty folder.
+#[test]
+fn the_tutorial_runs() {
+    let text = document("docs/tutorial.md");
+    let folder = folder();
+    for rest in text.split("<!-- file: ").skip(1) {
+        let (name, rest) = rest.split_once(" -->").expect("the end of a mark");
+        let contents = rest.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next());
+        fs::write(folder.path().join(name), contents.expect("a file")).expect("written");
+    }
+    let mut run = 0;
+    for command in commands(&text) {
+        if command.starts_with("kinefront explore") {
+            continue;
+        }
+        let words = words(&command);
+        let told = kinefront().current_dir(folder.path()).args(&words[1..]).assert();
+        let output = told.get_output();
+        assert!(
+            output.status.success(),
+            "{command}\n{}{}",
+            String::from_utf8_lossy(&output.stdout),
+            String::from_utf8_lossy(&output.stderr)
+        );
+        run += 1;
+    }
+    assert!(run >= 8, "only {run} commands");
+}
+
+/// Splits a command line at its spaces; quotation marks hold words together.
+fn words(line: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut quoted = false;
+    let mut word = String::new();
+    for letter in line.chars() {
+        match letter {
+            '"' => quoted = !quoted,
+            ' ' if !quoted => words.extend((!word.is_empty()).then(|| std::mem::take(&mut word))),
+            other => word.push(other),
+        }
+    }
+    words.extend((!word.is_empty()).then_some(word));
+    words
+}
+
+/// The commands of the other documents have the options that the program has: each is tried with an option that it cannot have, which is
+/// then the first that it complains about.
+#[test]
+fn commands_of_the_documents_are_known() {
+    let mut count = 0;
+    for name in [
+        "README.md",
+        "docs/howto.md",
+        "docs/exports.md",
+        "docs/troubleshooting.md",
+        "docs/window.md",
+    ] {
+        for command in commands(&document(name)) {
+            // Only the program itself: what is piped into it or out of it is the shell's.
+            if command.contains(['|', '>', '<', '$', ';', '&', '*', '…']) {
+                continue;
+            }
+            let mut arguments = words(&command);
+            arguments.remove(0);
+            arguments.push("--no-such-option".to_owned());
+            let told = kinefront().args(&arguments).assert().code(2);
+            let said = String::from_utf8_lossy(&told.get_output().stderr).into_owned();
+            assert!(said.contains("'--no-such-option'"), "{name}: {command}\n{said}");
+            count += 1;
+        }
+    }
+    assert!(count > 10, "only {count} commands");
+}
+
+/// Every table of a run has designs with names, which are those of its column `mark`.
+#[test]
+fn designs_are_found_by_their_names() {
+    let folder = folder();
+    let run = folder.path().join("run");
+    optimize(
+        &small_study(folder.path()),
+        &run,
+        &["--evaluations", "200", "--no-recording"],
+    );
+    let text = fs::read_to_string(run.join("front.csv")).expect("a front");
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let headers = reader.headers().expect("a header").clone();
+    let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("a row")).collect();
+    let place = |name: &str| headers.iter().position(|header| header == name).expect("a column");
+    let evaluated = |name: &str| {
+        let row = run.join(format!("front.csv#{name}"));
+        printed(&["evaluate", row.to_str().expect("UTF-8"), "--grid", "fine", "--json"])
+    };
+    for name in ["lightest", "knee", "largest"] {
+        let row = rows.iter().find(|row| &row[place("mark")] == name).expect("a mark");
+        assert_eq!(evaluated(name), evaluated(&row[place("id")]), "{name}");
+    }
+    assert_eq!(evaluated("best"), evaluated("lightest"));
+    let mass = |text: &str| serde_json::from_str::<serde_json::Value>(text).expect("JSON")["mass_kg"].as_f64();
+    let least = rows
+        .iter()
+        .filter_map(|row| row[place("mass_kg")].parse::<f64>().ok())
+        .min_by(f64::total_cmp);
+    assert!((mass(&evaluated("best")).expect("a mass") / least.expect("a row") - 1.0).abs() < 1e-12);
+    // The table of all designs has the same names.
+    for name in ["best", "knee", "largest"] {
+        let row = run.join(format!("designs.csv#{name}"));
+        for command in ["evaluate", "certify"] {
+            printed(&[command, row.to_str().expect("UTF-8")]);
+        }
+        let pose = ["--pose", "x=0 y=0 phi_deg=30", "--json"];
+        printed(&[&["pose", row.to_str().expect("UTF-8")], &pose[..]].concat());
+    }
+    let told = kinefront()
+        .arg("evaluate")
+        .arg(run.join("front.csv#heaviest"))
+        .assert()
+        .code(2);
+    let said = String::from_utf8_lossy(&told.get_output().stderr).into_owned();
+    assert!(
+        said.contains("#heaviest") && said.contains("#knee") && said.contains("#lightest"),
+        "{said}"
+    );
+}
+
+/// Each command has a manual page, which names its options, and no page replaces a file.
+#[test]
+fn manual_pages_name_every_command() {
+    let folder = folder();
+    let pages = folder.path().join("man");
+    let argument = pages.to_str().expect("UTF-8");
+    printed(&["manual", argument]);
+    let found: BTreeSet<String> = fs::read_dir(&pages)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    let help = printed(&["--help"]);
+    let commands: Vec<&str> = help
+        .split("Commands:")
+        .nth(1)
+        .expect("the commands")
+        .lines()
+        .skip(1)
+        .map_while(|line| line.strip_prefix("  ")?.split_whitespace().next())
+        .filter(|&name| name != "help")
+        .collect();
+    assert!(commands.contains(&"optimize") && commands.len() > 15, "{commands:?}");
+    for command in commands {
+        assert!(
+            found.contains(&format!("kinefront-{command}.1")),
+            "{command}: {found:?}"
+        );
+    }
+    assert!(found.contains("kinefront-study-new.1"), "{found:?}");
+    let page = fs::read_to_string(pages.join("kinefront-optimize.1")).expect("a page");
+    assert!(page.contains(".TH ") && page.contains("\\-\\-resume"), "{page}");
+    kinefront().args(["manual", argument]).assert().code(2);
+}
+
+/// Scripts for shells complete the commands; bash accepts its own.
+#[test]
+fn completions_are_scripts() {
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        assert!(printed(&["completions", shell]).contains("optimize"), "{shell}");
+    }
+    let folder = folder();
+    let script: PathBuf = folder.path().join("kinefront.bash");
+    fs::write(&script, printed(&["completions", "bash"])).expect("written");
+    if let Ok(status) = std::process::Command::new("bash").arg("-n").arg(&script).status() {
+        assert!(status.success());
+    }
+}
+
+/// The version says which build it is.
+#[test]
+fn the_version_names_the_build() {
+    let version = printed(&["--version"]);
+    let window = match cfg!(feature = "explorer") {
+        true => "with the window",
+        false => "without a window",
+    };
+    assert!(
+        version.starts_with(&format!("kinefront {}", env!("CARGO_PKG_VERSION"))),
+        "{version}"
+    );
+    assert!(version.contains(window), "{version}");
+}
