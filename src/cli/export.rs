@@ -82,7 +82,7 @@ impl ExportArguments {
             _ => design().map(ExportTarget::Design).ok_or_else(|| {
                 miette!(
                     help =
-                        "give --format, or a file that ends in .glb, .xml, .sdf, .urdf, .dxf, .json, .csv or .parquet",
+                        "give --format, or a file that ends in .step, .glb, .xml, .sdf, .urdf, .dxf, .json, .csv or .parquet",
                     "cannot determine the format of {}",
                     self.out.display()
                 )

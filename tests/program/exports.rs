@@ -67,6 +67,8 @@ fn mujoco_follows_the_tour_with_the_loops_closed() {
                 let radius = number(&evaluation["workspace_radius_m"]);
                 assert!(number(&found["farthest_m"]) < 1e-4, "{design}: {found}");
                 assert!(number(&found["turned_rad"]) < 1e-4, "{design}: {found}");
+                // With the controls of 0 that MuJoCo begins with, it stays where it was exported.
+                assert!(number(&found["drift"]) < 1e-5, "{design}: {found}");
                 // The platform did travel to the rim.
                 assert!(number(&found["travelled_m"]) > 0.9 * radius, "{design}: {found}");
                 assert_eq!([&found["closures"], &found["actuators"], &found["warnings"]], [3, 3, 0]);
@@ -101,6 +103,7 @@ fn mujoco_moves_every_other_architecture() {
         let number = |value: &Value| value.as_f64().expect("a number");
         assert!(number(&found["farthest_m"]) < 1e-4, "{design}: {found}");
         assert!(number(&found["turned_rad"]) < 1e-4, "{design}: {found}");
+        assert!(number(&found["drift"]) < 1e-5, "{design}: {found}");
         let radius = number(&exported["evaluation"]["workspace_radius_m"]);
         assert!(number(&found["travelled_m"]) > 0.9 * radius, "{design}: {found}");
         assert_eq!(

@@ -43,10 +43,11 @@ def main():
         there = path[np.argmin(abs(times - model.key(key).time[0]))]
         off = max(off, float(np.hypot(*(data.qpos[places] - there)[:2])))
 
-    # The values of an actuator at the beginning are those of the keyframe, up to whole turns.
+    # A control counts from the exported pose. The values of an actuator at the beginning are those of the keyframe, up to whole turns.
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, rests[0])
     data.time = 0.0
+    positions = positions - model.actuator_biasprm[:, 0] / model.actuator_gainprm[:, 0]
     positions = positions + np.round((data.ctrl - positions[0]) / (2 * np.pi)) * 2 * np.pi * (model.jnt_type[model.actuator_trnid[:, 0]] == 3)
     stiffness, damping = model.actuator_gainprm[:, 0], -model.actuator_biasprm[:, 2]
     farthest = turned = 0.0

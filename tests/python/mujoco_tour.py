@@ -24,14 +24,21 @@ def main():
     tour = design["tour"][:: len(design["tour"]) // POSES]
     places = [model.joint(f"platform_{axis}").qposadr[0] for axis in ("x", "y", "phi")]
     start = data.qpos[places].copy()
-    start_values = model.key("start").ctrl.copy()
+    # A control counts from the exported pose.
+    exported = model.actuator_biasprm[:, 0] / model.actuator_gainprm[:, 0]
 
-    before = start_values
+    # As it is opened, without a keyframe, it stays where it is.
+    for _ in range(HOLD):
+        mujoco.mj_step(model, data)
+    drift = float(abs(data.qpos[places] - start).max())
+    before = np.zeros(model.nu)
     farthest = turned = travelled = 0.0
     for pose in tour:
         target = np.array(pose["actuators"])
         if design["actuator"]["kind"] == "revolute":
-            target = before + np.remainder(target - before + np.pi, 2 * np.pi) - np.pi
+            target = before + np.remainder(target - exported - before + np.pi, 2 * np.pi) - np.pi
+        else:
+            target = target - exported
         for step in range(RAMP + HOLD):
             share = min((step + 1) / RAMP, 1.0)
             data.ctrl[:] = before + (target - before) * share * share * (3.0 - 2.0 * share)
@@ -46,6 +53,7 @@ def main():
         json.dumps(
             {
                 "poses": len(tour),
+                "drift": drift,
                 "farthest_m": farthest,
                 "turned_rad": turned,
                 "travelled_m": travelled,

@@ -83,7 +83,8 @@ impl Format {
     pub(super) fn preamble(&self, subject: &Prepared) -> String {
         let mut words = format!(
             "{}\nWritten by Kinefront {}. Lengths in m, angles in rad, masses in kg; base frame, z out of the plane of motion.\n\
-             Bars are solid cylinders of density {} kg/m^3; bodies without mass in the model are given {MASSLESS} kg.",
+             Masses are those of the cross-sections of the study with a density of {} kg/m^3; bodies without mass in the model are given \
+             {MASSLESS} kg.",
             subject.title(),
             env!("CARGO_PKG_VERSION"),
             subject.model.settings().material.density,

@@ -9,6 +9,7 @@
 //! | `step` | an assembly of exact solids in millimetres, for CAD |
 //! | `dxf` | the plan view in layers, in millimetres |
 //! | `csv-trajectory` | the motion of the study in equal steps of time, as a controller of the actuators takes it |
+//! | `csv-parts` | the bars, joints and drives to be ordered and cut |
 //! | `json` | evaluation, bodies, joints, and a tour with its actuator values |
 //!
 //! Every format except the plan view takes its bodies from [`kinefront_scene::linkage()`], so the formats agree.
@@ -129,8 +130,8 @@ pub fn export(subject: &ExportSubject, format: Format) -> Result<Vec<u8>, Export
             cause,
         },
     })?;
-    // A number that the writer itself derives may be beyond all doubles, too.
-    if format.is_text && prepared::has_number_that_is_none(&written) {
+    // A number that the writer itself derives may be beyond all doubles, too. JSON has no such numbers, but texts of a user.
+    if format.is_text && format.key != json::FORMAT.key && prepared::has_number_that_is_none(&written) {
         return Err(ExportError::NotFinite(format.key));
     }
     Ok(written)

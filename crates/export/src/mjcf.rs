@@ -1,6 +1,7 @@
 //! MJCF for MuJoCo: legs as trees, the platform free in the plane, the connections at `C_1` to `C_3` as equality constraints, and
-//! actuators as position servos whose gain is the study's actuator stiffness. The payload is part of the platform, the inertia of the
-//! rotors is that of the joints, and where the study states a motion, a keyframe has each pose at which it rests.
+//! actuators as position servos whose gain is the study's actuator stiffness. The control of a servo counts from the exported pose, because
+//! MuJoCo begins with controls of 0. The payload is part of the platform, the inertia of the rotors is that of the joints, and where the
+//! study states a motion, a keyframe has each pose at which it rests.
 
 use super::format::{AnyError, Format};
 use super::prepared::{Prepared, inertial, joint_axis, joint_name, rgba};
@@ -125,9 +126,13 @@ fn closures(subject: &Prepared<'_>) -> impl Iterator<Item = Element> {
     let linkage = &subject.linkage;
     let platform = &linkage.bodies[linkage.platform()];
     linkage.closures.iter().enumerate().map(move |(leg, closure)| {
-        let [x, y] = closure.on_leg.to_array();
-        // A weld keeps the relative pose of both bodies in the model as it is written.
-        let kind = if closure.is_rigid { "weld" } else { "connect" };
+        // A weld keeps the relative pose of both bodies in the model as it is written. Its point is one of the second body, that of a
+        // connection one of the first.
+        let (kind, at) = match closure.is_rigid {
+            true => ("weld", closure.on_platform),
+            false => ("connect", closure.on_leg),
+        };
+        let [x, y] = at.to_array();
         Element::new(kind)
             .with("name", format!("C{}", leg + 1))
             .with("body1", linkage.bodies[closure.leg].name.clone())
@@ -142,25 +147,30 @@ fn actuated<'a>(subject: &'a Prepared<'_>) -> impl Iterator<Item = (&'a Body, Jo
     bodies.filter_map(|body| Some((body, body.joint.filter(|joint| joint.actuated)?)))
 }
 
-/// Position servos whose gain is the study's actuator stiffness.
+/// Position servos whose gain is the study's actuator stiffness and whose control is the change of the joint value since the exported pose:
+/// with controls of 0, as MuJoCo begins, they hold it. A positive damping ratio in place of a damping is one that MuJoCo computes.
 fn servos(subject: &Prepared<'_>) -> impl Iterator<Item = Element> {
     actuated(subject).map(|(body, joint)| {
-        let servo = Element::new("position")
+        let stiffness = subject.model.settings().actuators.of(joint.kind);
+        let servo = Element::new("general")
             .with("name", format!("{}_servo", body.name))
             .with("joint", joint_name(body))
-            .with_numbers("kp", &[subject.model.settings().actuators.of(joint.kind)])
-            .with("dampratio", "1");
+            .with_numbers("gainprm", &[stiffness])
+            .with("biastype", "affine")
+            .with_numbers("biasprm", &[stiffness * joint.value, -stiffness, 1.0]);
         match joint.limits {
-            Some(limits) => servo.with_numbers("ctrlrange", &limits),
+            Some(limits) => servo.with_numbers("ctrlrange", &limits.map(|limit| limit - joint.value)),
             None => servo,
         }
     })
 }
 
-/// The actuator values at the exported pose.
+/// The exported pose, at which all controls are 0.
 fn start(subject: &Prepared) -> Element {
-    let values: Vec<f64> = actuated(subject).map(|(_, joint)| joint.value).collect();
-    Element::new("key").with("name", "start").with_numbers("ctrl", &values)
+    let controls: Vec<f64> = actuated(subject).map(|_| 0.0).collect();
+    Element::new("key")
+        .with("name", "start")
+        .with_numbers("ctrl", &controls)
 }
 
 /// Largest number of poses of a motion that have a keyframe.
@@ -185,8 +195,8 @@ fn rests(subject: &Prepared) -> Vec<Element> {
     rests.filter_map(key).collect()
 }
 
-/// Returns the values of all joints and those of the actuated ones at the pose of a linkage, in the order of the document. Angles are those
-/// nearest to the exported pose.
+/// Returns the values of all joints, and the change of the actuated ones since the exported pose, at the pose of a linkage, in the order of
+/// the document. Angles are those nearest to the exported pose.
 fn values(exported: &Linkage, there: &Linkage) -> [Vec<f64>; 2] {
     let (mut positions, mut controls) = (Vec::new(), Vec::new());
     for (before, body) in exported.bodies.iter().zip(&there.bodies) {
@@ -201,7 +211,7 @@ fn values(exported: &Linkage, there: &Linkage) -> [Vec<f64>; 2] {
             JointKind::Revolute => reference.value + libm::remainder(turned, 2.0 * std::f64::consts::PI),
         };
         positions.push(value);
-        controls.extend(joint.actuated.then_some(value));
+        controls.extend(joint.actuated.then_some(value - reference.value));
     }
     [positions, controls]
 }

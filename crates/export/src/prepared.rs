@@ -58,7 +58,7 @@ impl<'a> Prepared<'a> {
             evaluation,
             pose,
             linkage,
-            base: scene.base_bars(design.base_radius()),
+            base: scene.base_bars(design.base_radius(), model.rails_of(design)),
             scene,
             corners: cylinder.and_then(|_| region_corners(model)),
             cylinder,
@@ -115,9 +115,15 @@ impl<'a> Prepared<'a> {
 /// Mass written for a body that has no mass in the model, because simulators require one \[kg\].
 pub(super) const MASSLESS: f64 = 1e-3;
 
+/// Mass up to which simulators refuse a body \[kg\].
+const LEAST_MASS: f64 = 1e-12;
+
 /// Returns the mass, centre of mass and moments of inertia `[xx, yy, zz, xy]` of a body for a simulator.
 pub(super) fn inertial(body: &Body) -> (f64, DVec3, [f64; 4]) {
-    let mass = body.mass().max(MASSLESS);
+    let mass = match body.mass() {
+        mass if mass > LEAST_MASS => mass,
+        _ => MASSLESS,
+    };
     let centre = body.centre_of_mass().extend(body.height);
     let [xx, yy, zz, xy] = body.inertia();
     if !body.bars.is_empty() {

@@ -238,7 +238,7 @@ impl RenderScene {
         let design = &evaluation.design;
         let home = model.home(evaluation);
         let scene = manipulator(model, design, &home)?;
-        let base = scene.base_bars(design.base_radius());
+        let base = scene.base_bars(design.base_radius(), model.rails_of(design));
         let (mut bodies, mut corners) = (Vec::new(), Vec::new());
         let solids = scene.solids.iter().chain(&base);
         for solid in solids.filter(|solid| solid.shape.has_volume()) {

@@ -1,6 +1,7 @@
 //! Named shapes.
 
 use glam::DVec3;
+use kinefront_model::stiffness::RailSettings;
 
 /// The part of the manipulator or drawing that a shape represents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -129,14 +130,15 @@ impl Scene {
         self.solids.iter().filter(move |solid| solid.part == part)
     }
 
-    /// Returns the base triangle, the rails and the edges of obstacles as thin bars for a manipulator of base radius `R` \[m\], for formats and
-    /// renderers that show no lines.
-    pub fn base_bars(&self, base_radius: f64) -> Vec<Solid> {
+    /// Returns the base triangle, the rails and the edges of obstacles as bars for a manipulator of base radius `R` \[m\], for formats and
+    /// renderers that show no lines: rails that have a cross-section with theirs, all others as thin bars.
+    pub fn base_bars(&self, base_radius: f64, rails: Option<&RailSettings>) -> Vec<Solid> {
         let bars = self.lines.iter().flat_map(|line| {
-            let thickness = match line.part {
-                Part::Rail => 0.006,
-                Part::Base | Part::Obstacle => 0.003,
-                _ => 0.0,
+            let [radius, inner] = match (line.part, rails) {
+                (Part::Rail, Some(rails)) => [rails.radius, rails.section.inner_radius(rails.radius)],
+                (Part::Rail, None) => [0.006 * base_radius, 0.0],
+                (Part::Base | Part::Obstacle, _) => [0.003 * base_radius, 0.0],
+                _ => [0.0; 2],
             };
             line.points.windows(2).map(move |ends| Solid {
                 part: line.part,
@@ -144,8 +146,8 @@ impl Scene {
                 shape: SolidShape::Bar {
                     from: ends[0],
                     to: ends[1],
-                    radius: thickness * base_radius,
-                    inner: 0.0,
+                    radius,
+                    inner,
                 },
             })
         });

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
 
-use super::{FrontMember, FrontProofs, Row, Study, TableRow};
+use super::{FrontMember, FrontProofs, Row, Study, TableRow, front_marks};
 use kinefront_optimize::{Objectives, knee, spread};
 
 /// Channel to a listener that receives events.
@@ -163,28 +163,4 @@ impl RunSummary {
     pub fn marks(&self, study: &Study) -> Vec<String> {
         front_marks(study, &self.objectives())
     }
-}
-
-/// Returns the mark of each design of a front: `knee`, what the best designs in the objectives are called, and an empty text for all
-/// others. Where each of several objectives has a word for its best design, as `lightest` and `largest`, these are the marks;
-/// otherwise `best_` with the key of the quantity.
-pub fn front_marks(study: &Study, objectives: &[Objectives]) -> Vec<String> {
-    let asked = study.objectives();
-    let words: Option<Vec<&str>> = asked.iter().map(|objective| objective.superlative()).collect();
-    let words = words.filter(|words| words.len() > 1);
-    let mut marks = vec![String::new(); objectives.len()];
-    for (place, objective) in asked.iter().enumerate().rev() {
-        let value = |member: &usize| objectives[*member][place];
-        let best = (0..marks.len()).min_by(|a, b| value(a).total_cmp(&value(b)));
-        if let Some(best) = best {
-            marks[best] = match &words {
-                Some(words) => words[place].to_owned(),
-                None => format!("best_{}", objective.quantity.entry().key),
-            };
-        }
-    }
-    if let Some(knee) = knee(objectives).filter(|_| objectives[0].len() > 1) {
-        marks[knee] = "knee".to_owned();
-    }
-    marks
 }

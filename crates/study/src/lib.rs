@@ -50,7 +50,7 @@ pub use builtin::{BUILTIN, Builtin};
 pub use certified::CertifiedWorkspace;
 pub use control::RunControl;
 pub use durable::{WriteError, open_regular, read_regular, replace, write_whole};
-pub use events::{Batch, EndReason, Event, GenerationSummary, RunSummary, RunTimes, Started, Subscriber, front_marks};
+pub use events::{Batch, EndReason, Event, GenerationSummary, RunSummary, RunTimes, Started, Subscriber};
 pub use front::{FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
 pub use kinefront_optimum::ParameterKind;
 pub use levels::{EqualLevel, equal_levels, levels_between};
@@ -82,6 +82,6 @@ pub use settings::{
 pub use study::{Catalogues, Fault, SettingDifference, Study, StudyError};
 pub use sum::{Difference, FileSum};
 pub use table::{
-    Cell, Column, ColumnType, Row, RowError, TableContents, TableError, TableFault, TableRow, is_row_name, named_row,
-    read_design, read_designs, read_run_table, read_table, row_names, table_bytes,
+    Cell, Column, ColumnType, Row, RowError, TableContents, TableError, TableFault, TableRow, front_marks, is_row_name,
+    named_row, read_design, read_designs, read_run_table, read_table, row_names, table_bytes,
 };

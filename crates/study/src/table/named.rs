@@ -1,10 +1,10 @@
 //! Names of designs that every table of a run has, so that a command can be written down before the ids are known.
 
 use kinefront_model::evaluation::Quantity;
-use kinefront_optimize::{Archive, Objectives, Outcome};
+use kinefront_optimize::{Archive, Objectives, Outcome, knee};
 
 use super::TableRow;
-use crate::{Study, front_marks};
+use crate::Study;
 
 /// The design that is best in the first objective.
 const BEST: &str = "best";
@@ -65,4 +65,28 @@ fn front_of<'a>(rows: &'a [TableRow], study: &Study) -> (Vec<&'a TableRow>, Vec<
     let objectives: Vec<Objectives> = archive.iter().map(|member| member.objectives).collect();
     let front = archive.iter().map(|member| &rows[member.id]).collect();
     (front, front_marks(study, &objectives))
+}
+
+/// Returns the mark of each design of a front: `knee`, what the best designs in the objectives are called, and an empty text for all
+/// others. Where each of several objectives has a word for its best design, as `lightest` and `largest`, these are the marks;
+/// otherwise `best_` with the key of the quantity.
+pub fn front_marks(study: &Study, objectives: &[Objectives]) -> Vec<String> {
+    let asked = study.objectives();
+    let words: Option<Vec<&str>> = asked.iter().map(|objective| objective.superlative()).collect();
+    let words = words.filter(|words| words.len() > 1);
+    let mut marks = vec![String::new(); objectives.len()];
+    for (place, objective) in asked.iter().enumerate().rev() {
+        let value = |member: &usize| objectives[*member][place];
+        let best = (0..marks.len()).min_by(|a, b| value(a).total_cmp(&value(b)));
+        if let Some(best) = best {
+            marks[best] = match &words {
+                Some(words) => words[place].to_owned(),
+                None => format!("best_{}", objective.quantity.entry().key),
+            };
+        }
+    }
+    if let Some(knee) = knee(objectives).filter(|_| objectives[0].len() > 1) {
+        marks[knee] = "knee".to_owned();
+    }
+    marks
 }
