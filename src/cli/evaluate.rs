@@ -16,9 +16,9 @@ use super::{Ending, Failure, GridArgument, load_study, tables, to_json};
 pub struct EvaluateArguments {
     #[command(flatten)]
     subject: SubjectArguments,
-    /// Sampling grid of poses.
-    #[arg(long, value_enum, default_value = "reference")]
-    grid: GridArgument,
+    /// Sampling grid of poses [default: reference, and fine for a design of a table].
+    #[arg(long, value_enum)]
+    grid: Option<GridArgument>,
     /// Print the result as one JSON object.
     #[arg(long)]
     json: bool,
@@ -28,7 +28,7 @@ pub struct EvaluateArguments {
 }
 
 pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
-    let grid = arguments.grid.into();
+    let grid = arguments.subject.grid(arguments.grid);
     if arguments.stdin {
         let study = load_study(arguments.subject.study.as_deref()).map_err(Failure::Input)?;
         let study = PreparedStudy::new(study).map_err(Failure::runtime)?;

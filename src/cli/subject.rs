@@ -4,11 +4,12 @@ use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
 use clap::ArgGroup;
+use kinefront_model::evaluation::GridChoice;
 use kinefront_model::mechanism::Design;
 use kinefront_study::{RunFolder, Study, is_row_name, named_row, read_designs, read_table, row_names};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
-use super::load_study;
+use super::{GridArgument, load_study};
 
 /// The ways to specify a design, of which a command requires one; with the arguments of the command that take its place.
 pub fn exactly_one_of(arguments: &'static [&'static str]) -> ArgGroup {
@@ -41,6 +42,16 @@ impl SubjectArguments {
     pub fn is_design(&self) -> bool {
         let is_row = |row: &OsString| row.as_encoded_bytes().contains(&b'#');
         self.design.is_some() || self.row.as_ref().is_some_and(is_row)
+    }
+
+    /// Returns the grid on which the design is evaluated. Without one that is stated, a design of a table is evaluated on the grid on which
+    /// fronts are verified: on the coarser one, an optimum may be infeasible.
+    pub fn grid(&self, stated: Option<GridArgument>) -> GridChoice {
+        match (stated, &self.row) {
+            (Some(stated), _) => stated.into(),
+            (None, Some(_)) => GridChoice::Fine,
+            (None, None) => GridChoice::Reference,
+        }
     }
 
     /// Reads the study, the design and a heading for the design.

@@ -18,9 +18,9 @@ use super::{Ending, Failure, GridArgument, say, tables, to_json};
 pub struct TaskArguments {
     #[command(flatten)]
     subject: SubjectArguments,
-    /// Sampling grid that determines the workspace to which the motion is scaled.
-    #[arg(long, value_enum, default_value = "reference")]
-    grid: GridArgument,
+    /// Sampling grid that determines the workspace to which the motion is scaled [default: reference, and fine for a design of a table].
+    #[arg(long, value_enum)]
+    grid: Option<GridArgument>,
     /// Print the curves over time as CSV, a row for each sample.
     #[arg(long, conflicts_with = "json")]
     csv: bool,
@@ -45,7 +45,7 @@ struct TaskReportJson {
 pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
     let (study, design, _) = arguments.subject.read().map_err(Failure::Input)?;
     let model = study.model().map_err(Failure::runtime)?;
-    let evaluation = model.evaluate(&design, arguments.grid.into());
+    let evaluation = model.evaluate(&design, arguments.subject.grid(arguments.grid));
     let Some((outcome, samples)) = model.follow_task(&evaluation) else {
         return Err(Failure::Input(miette!(
             help = "add a section [task], for example with shape = \"pick-and-place\" and cycle_time_s = 2.0, and name the file \

@@ -20,6 +20,8 @@ fn window_with(path: &str) -> Window {
 }
 
 fn until_followed(window: &mut Window) {
+    // The panel asks when it is drawn; before that, the last answer stands.
+    window.run_steps(2);
     until(window, "the motion is followed", |explorer| {
         explorer.session().is_answered()
     });
