@@ -190,7 +190,19 @@ fn plan_view_and_front_are_read_back() {
     assert_eq!(found["faults"], 0);
     assert_eq!(found["release"], "R12");
     let notes = found["notes"].as_array().expect("notes");
-    assert!(notes.iter().any(|note| note == "lengths in mm"), "{notes:?}");
+    for note in ["lengths in mm, scale 1:1", "round 72.0", "platform bar"] {
+        assert!(notes.iter().any(|found| found == note), "{note}: {notes:?}");
+    }
+    // The base, the position of the slider, the link and the platform bar of design II; each dimension shows itself.
+    let dimensions = found["dimensions"].as_array().expect("dimensions");
+    let shown = serde_json::json!(["LINE", "LINE", "LINE", "SOLID", "SOLID", "TEXT"]);
+    for dimension in dimensions {
+        let measured = dimension["measured"].as_f64().expect("a number");
+        assert_eq!(dimension["text"], format!("{measured:.1}"), "{dimension}");
+        assert_eq!((&dimension["shown"], &dimension["style"]), (&shown, &serde_json::json!(true)));
+    }
+    let texts: Vec<&str> = dimensions.iter().filter_map(|found| found["text"].as_str()).collect();
+    assert_eq!([texts[0], texts[2], texts[3]], ["5310.5", "1896.0", "1283.0"], "{texts:?}");
     // The outlines are three links with L_b and 2 r_j of design II, and its three sliders.
     let links: Vec<&Value> = found["legs_mm"].as_array().expect("bars").iter().collect();
     let near = |value: &Value, wanted: f64| (value.as_f64().expect("a number") - wanted).abs() < 1e-9;

@@ -78,11 +78,20 @@ def main():
             {
                 "faults": len(audit.errors) + len(audit.fixes),
                 "release": drawing.acad_release,
-                "notes": [text.dxf.text for text in space.query("TEXT") if len(text.dxf.text) > 2],
+                "notes": [text.dxf.text for text in space.query('TEXT[layer=="TITLE_BLOCK"]')],
                 "layers": sorted(layer.dxf.name for layer in drawing.layers),
                 "legs_mm": bars,
                 "workspace_mm": [circle.dxf.radius for circle in space.query('CIRCLE[layer=="WORKSPACE"]')],
-                "labels": sorted(label.dxf.text for label in space.query("TEXT") if len(label.dxf.text) <= 2),
+                "labels": sorted(label.dxf.text for label in space.query('TEXT[layer=="TEXT"]')),
+                "dimensions": [
+                    {
+                        "text": dimension.dxf.text,
+                        "measured": dimension.dxf.defpoint2.distance(dimension.dxf.defpoint3),
+                        "shown": sorted(entity.dxftype() for entity in dimension.get_geometry_block()),
+                        "style": dimension.dxf.dimstyle in drawing.dimstyles,
+                    }
+                    for dimension in space.query("DIMENSION")
+                ],
                 "rows": table.num_rows,
                 "types": {name: str(table.schema.field(name).type) for name in table.column_names},
                 "differing": differing,

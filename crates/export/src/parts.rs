@@ -50,10 +50,7 @@ fn record(part: &Part) -> [String; HEADINGS.len()] {
     let micrometres = |length: f64| format!("{:.3}", MM * length);
     [
         part.name.to_owned(),
-        match &part.drive {
-            Some(drive) => drive.clone(),
-            None => text(&|bar| bar.catalogue_name().unwrap_or_default().to_owned()),
-        },
+        section_name(part).unwrap_or_default(),
         text(&|bar| shape(bar).to_owned()),
         text(&|bar| micrometres(2.0 * bar.radius)),
         text(&|bar| micrometres(wall(bar))),
@@ -63,6 +60,21 @@ fn record(part: &Part) -> [String; HEADINGS.len()] {
         part.total_mass().to_string(),
         part.counts.to_string(),
     ]
+}
+
+/// Returns the name under which a part is ordered, if it has one: that of a bar of a catalogue, or of a drive.
+pub(super) fn section_name(part: &Part) -> Option<String> {
+    let of_bar = || part.bar.as_ref()?.catalogue_name().map(str::to_owned);
+    part.drive.clone().or_else(of_bar)
+}
+
+/// Returns the section of a bar in words, in millimetres, without characters that drawings lack: `tube 33.7 x 3.2`.
+pub(super) fn outline(bar: &CutBar) -> String {
+    let outer = format!("{:.1}", 2.0 * MM * bar.radius);
+    match shape(bar) {
+        "round" => format!("round {outer}"),
+        shape => format!("{shape} {outer} x {:.1}", MM * wall(bar)),
+    }
 }
 
 fn wall(bar: &CutBar) -> f64 {

@@ -1,5 +1,8 @@
-//! The plan view for CAD, in millimetres, with one layer for each kind of object. The file is DXF release 12, which
-//! every CAD program reads: for later releases the library omits table handles that some programs require.
+//! The plan view for CAD, in millimetres, with dimensions and a title block, and one layer for each kind of object. The file is DXF release
+//! 12, which every CAD program reads: for later releases the library omits table handles that some programs require.
+
+mod dimension;
+mod title;
 
 use ::dxf::entities::{Circle, Entity, EntityType, Line, Polyline, Text, Vertex};
 use ::dxf::enums::AcadVersion;
@@ -9,15 +12,14 @@ use glam::{DVec2, DVec3};
 
 use super::format::{AnyError, Format};
 use super::prepared::Prepared;
-use kinefront_scene::text::number;
 use kinefront_scene::{Part, Scene, SolidShape};
 
 pub(super) const FORMAT: Format = Format {
     key: "dxf",
     file: "design.dxf",
     name: "DXF",
-    title: "DXF, plan view",
-    lost: Some("joints, masses, actuators and heights; the file contains only the plan view"),
+    title: "DXF, plan view with dimensions",
+    lost: Some("joints, actuators and heights; the file contains only the plan view"),
     is_text: true,
     needs_bars: false,
     joints_from_zero: false,
@@ -27,8 +29,11 @@ pub(super) const FORMAT: Format = Format {
 /// Millimetres per metre.
 const MM: f64 = 1e3;
 
+/// Height of texts as a share of `R`.
+const TEXT_HEIGHT: f64 = 0.03;
+
 /// Layers with their colours from the AutoCAD Color Index.
-const LAYERS: [(&str, u8); 9] = [
+const LAYERS: [(&str, u8); 11] = [
     ("BASE", 8),
     ("RAILS", 9),
     ("SURROUNDINGS", 1),
@@ -38,6 +43,8 @@ const LAYERS: [(&str, u8); 9] = [
     ("CENTRE_LINES", 1),
     ("WORKSPACE", 3),
     ("TEXT", 2),
+    ("DIMENSIONS", 2),
+    ("TITLE_BLOCK", 7),
 ];
 
 fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
@@ -50,15 +57,12 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         (None, Some(cylinder)) => sheet.circle("WORKSPACE", cylinder.centre, cylinder.radius),
         (None, None) => {}
     }
-    let height = 0.03 * design.base_radius();
+    let height = TEXT_HEIGHT * design.base_radius();
     for label in &scene.labels {
-        sheet.text(label.at.truncate(), height, &label.text);
+        sheet.text("TEXT", label.at.truncate(), height, &label.text);
     }
-    // Beside the drawing, from the top downwards.
-    let corner = DVec2::new(1.3 * design.base_radius(), design.base_radius());
-    for (line, words) in facts(subject).iter().enumerate() {
-        sheet.text(corner - DVec2::new(0.0, 1.6 * height * line as f64), height, words);
-    }
+    sheet.dimensions(subject, height);
+    sheet.title_block(subject, height);
     let mut bytes = Vec::new();
     sheet.drawing.save(&mut bytes)?;
     Ok(release_12(&String::from_utf8(bytes)?).into_bytes())
@@ -78,32 +82,6 @@ fn release_12(text: &str) -> String {
         }
     }
     kept
-}
-
-fn facts(subject: &Prepared) -> Vec<String> {
-    let (evaluation, pose) = (subject.evaluation, &subject.pose);
-    let mut facts = vec![
-        subject.title(),
-        "lengths in mm".to_owned(),
-        format!("mass in motion {} kg", number(evaluation.mass())),
-    ];
-    if let Some(cylinder) = subject.cylinder {
-        let region = match &subject.corners {
-            Some(_) => "prescribed region".to_owned(),
-            None => format!("regular workspace R_w {} mm", number(MM * cylinder.radius)),
-        };
-        let range = number(cylinder.phi_range.to_degrees());
-        facts.push(format!("{region}, rotation range {range} deg"));
-    }
-    let [x, y] = (pose.position * MM).to_array();
-    let phi = pose.phi.to_degrees();
-    facts.push(format!(
-        "drawn at x {} mm, y {} mm, phi {} deg",
-        number(x),
-        number(y),
-        number(phi)
-    ));
-    facts
 }
 
 struct Sheet {
@@ -139,8 +117,7 @@ impl Sheet {
                 _ => "CENTRE_LINES",
             };
             for ends in line.points.windows(2) {
-                let line = Line::new(point(ends[0].truncate()), point(ends[1].truncate()));
-                self.add(layer, EntityType::Line(line));
+                self.line(layer, ends[0].truncate(), ends[1].truncate());
             }
         }
         for solid in scene.solids.iter().filter(|solid| solid.shape.has_volume()) {
@@ -156,8 +133,7 @@ impl Sheet {
                 }
                 SolidShape::Bar { from, to, radius, .. } => {
                     self.bar(layer, from, to, radius);
-                    let axis = Line::new(point(from.truncate()), point(to.truncate()));
-                    self.add("CENTRE_LINES", EntityType::Line(axis));
+                    self.line("CENTRE_LINES", from.truncate(), to.truncate());
                 }
                 SolidShape::Block {
                     centre,
@@ -198,14 +174,18 @@ impl Sheet {
         self.add(layer, EntityType::Circle(Circle::new(point(centre), MM * radius)));
     }
 
-    fn text(&mut self, at: DVec2, height: f64, words: &str) {
+    fn line(&mut self, layer: &str, from: DVec2, to: DVec2) {
+        self.add(layer, EntityType::Line(Line::new(point(from), point(to))));
+    }
+
+    fn text(&mut self, layer: &str, at: DVec2, height: f64, words: &str) {
         let text = Text {
             location: point(at),
             text_height: MM * height,
             value: words.to_owned(),
             ..Text::default()
         };
-        self.add("TEXT", EntityType::Text(text));
+        self.add(layer, EntityType::Text(text));
     }
 }
 

@@ -1,0 +1,109 @@
+//! The title block beside the plan view: what is drawn, and what has to be ordered and cut for it.
+
+use glam::DVec2;
+
+use super::{MM, Prepared, Sheet};
+use crate::parts::{outline, section_name};
+use kinefront_scene::text::number;
+
+const LAYER: &str = "TITLE_BLOCK";
+
+/// Width of a character and distance of two lines, as multiples of the height of the text.
+const CHARACTER: f64 = 0.9;
+const LINE: f64 = 1.8;
+
+/// Widths of the columns of the list of parts in characters: name, section, length, pieces.
+const COLUMNS: [usize; 4] = [22, 34, 12, 8];
+
+impl Sheet {
+    /// Adds a frame with the facts of the drawing and the list of parts, to the right of it.
+    pub(super) fn title_block(&mut self, subject: &Prepared, height: f64) {
+        let radius = subject.evaluation.design.base_radius();
+        let (facts, parts) = (facts(subject), parts(subject));
+        let longest = facts.iter().map(|words| words.chars().count()).max().unwrap_or(0);
+        let characters = longest.max(COLUMNS.iter().sum());
+        let width = (characters as f64 + 1.0) * CHARACTER * height;
+        let corner = DVec2::new(1.35 * radius, radius);
+        let step = LINE * height;
+        let mut below = corner.y;
+        let rule = |sheet: &mut Sheet, y: f64| {
+            sheet.line(LAYER, DVec2::new(corner.x, y), DVec2::new(corner.x + width, y));
+        };
+        rule(self, below);
+        for words in &facts {
+            below -= step;
+            self.text(
+                LAYER,
+                DVec2::new(corner.x + 0.5 * height, below + 0.4 * height),
+                height,
+                words,
+            );
+        }
+        rule(self, below);
+        for row in &parts {
+            below -= step;
+            let mut at = DVec2::new(corner.x + 0.5 * height, below + 0.4 * height);
+            for (cell, column) in row.iter().zip(COLUMNS) {
+                if !cell.is_empty() {
+                    self.text(LAYER, at, height, cell);
+                }
+                at.x += column as f64 * CHARACTER * height;
+            }
+            rule(self, below);
+        }
+        for x in [corner.x, corner.x + width] {
+            self.line(LAYER, DVec2::new(x, corner.y), DVec2::new(x, below));
+        }
+    }
+}
+
+fn facts(subject: &Prepared) -> Vec<String> {
+    let (evaluation, pose) = (subject.evaluation, &subject.pose);
+    let mut facts = vec![
+        subject.title(),
+        format!("study {}", subject.study.name),
+        "lengths in mm, scale 1:1".to_owned(),
+        format!("mass in motion {} kg", number(evaluation.mass())),
+    ];
+    if let Some(cylinder) = subject.cylinder {
+        let region = match &subject.corners {
+            Some(_) => "prescribed region".to_owned(),
+            None => format!("regular workspace R_w {} mm", number(MM * cylinder.radius)),
+        };
+        let range = number(cylinder.phi_range.to_degrees());
+        facts.push(format!("{region}, rotation range {range} deg"));
+    }
+    let [x, y] = (pose.position * MM).to_array();
+    let phi = pose.phi.to_degrees();
+    facts.push(format!(
+        "drawn at x {} mm, y {} mm, phi {} deg",
+        number(x),
+        number(y),
+        number(phi)
+    ));
+    facts
+}
+
+/// The rows of the list of parts, with its headings.
+fn parts(subject: &Prepared) -> Vec<[String; COLUMNS.len()]> {
+    let headings = ["part", "section", "length", "pieces"].map(str::to_owned);
+    let design = &subject.evaluation.design;
+    let rows = subject
+        .model
+        .parts(design, subject.evaluation.drive)
+        .into_iter()
+        .map(|part| {
+            let [section, length] = match &part.bar {
+                Some(bar) => [
+                    match section_name(&part) {
+                        Some(name) => format!("{name}, {}", outline(bar)),
+                        None => outline(bar),
+                    },
+                    format!("{:.1}", MM * bar.length),
+                ],
+                None => [section_name(&part).unwrap_or_default(), String::new()],
+            };
+            [part.name.to_owned(), section, length, part.pieces.to_string()]
+        });
+    std::iter::once(headings).chain(rows).collect()
+}
