@@ -8,8 +8,8 @@ use std::sync::Arc;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use kinefront_model::mechanism::Architecture;
 use kinefront_study::{
-    AlgorithmName, Overrides, ResumeError, ResumeOptions, Resumption, RunControl, RunFolderError, RunWriter, Study,
-    StudySearch, WHOLE_FRONT, WriteError,
+    AlgorithmName, Overrides, ResumeError, ResumeOptions, Resumption, RunControl, RunFolder, RunFolderError, RunWriter,
+    Study, StudySearch, WHOLE_FRONT, WriteError,
 };
 use miette::miette;
 
@@ -131,6 +131,21 @@ fn resume(
 
 /// Loads the study that the arguments specify and checks it again with the values that they override.
 fn study(arguments: &OptimizeArguments) -> Result<Study, Failure> {
+    if let Some(run) = arguments
+        .study
+        .as_deref()
+        .map(Path::new)
+        .filter(|path| RunFolder::is_at(path))
+    {
+        return Err(Failure::Input(miette!(
+            help = format!(
+                "kinefront optimize --resume {0} continues the run; kinefront optimize {0}/study.toml starts its study again",
+                run.display()
+            ),
+            "{} is a run folder, not a study",
+            run.display()
+        )));
+    }
     let study = load_study(arguments.study.as_deref()).map_err(Failure::Input)?;
     let overrides = Overrides {
         algorithm: arguments.algorithm,

@@ -159,7 +159,7 @@ fn tell(
         }
         writeln!(
             out,
-            "{} evaluations ({} feasible) in {:.1} s{}, verified in {:.1} s; front: {} of {} verified designs kept, \
+            "{} evaluations ({} feasible) in {:.1} s{}, verified in {:.1} s{}; front: {} of {} verified designs kept, \
              {} dropped by verification; hypervolume {:.1} {}",
             last.map_or(0, |last| last.evaluations),
             last.map_or(0, |last| last.feasible),
@@ -170,6 +170,10 @@ fn tell(
                 EndReason::Stagnated => " (stagnated)",
             },
             summary.times.verification_s,
+            match &summary.proofs {
+                Some(_) => format!(", proved in {:.1} s", summary.times.certification_s),
+                None => String::new(),
+            },
             summary.front.len(),
             summary.verified,
             summary.dropped,

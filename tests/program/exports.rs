@@ -199,10 +199,17 @@ fn plan_view_and_front_are_read_back() {
     for dimension in dimensions {
         let measured = dimension["measured"].as_f64().expect("a number");
         assert_eq!(dimension["text"], format!("{measured:.1}"), "{dimension}");
-        assert_eq!((&dimension["shown"], &dimension["style"]), (&shown, &serde_json::json!(true)));
+        assert_eq!(
+            (&dimension["shown"], &dimension["style"]),
+            (&shown, &serde_json::json!(true))
+        );
     }
     let texts: Vec<&str> = dimensions.iter().filter_map(|found| found["text"].as_str()).collect();
-    assert_eq!([texts[0], texts[2], texts[3]], ["5310.5", "1896.0", "1283.0"], "{texts:?}");
+    assert_eq!(
+        [texts[0], texts[2], texts[3]],
+        ["5310.5", "1896.0", "1283.0"],
+        "{texts:?}"
+    );
     // The outlines are three links with L_b and 2 r_j of design II, and its three sliders.
     let links: Vec<&Value> = found["legs_mm"].as_array().expect("bars").iter().collect();
     let near = |value: &Value, wanted: f64| (value.as_f64().expect("a number") - wanted).abs() < 1e-9;

@@ -48,6 +48,8 @@ fn record(part: &Part) -> [String; HEADINGS.len()] {
     let bar = part.bar.as_ref();
     let text = |of: &dyn Fn(&CutBar) -> String| bar.map(of).unwrap_or_default();
     let micrometres = |length: f64| format!("{:.3}", MM * length);
+    // Without the rounding of a sum.
+    let nanokilograms = |mass: f64| ((1e9 * mass).round() / 1e9).to_string();
     [
         part.name.to_owned(),
         section_name(part).unwrap_or_default(),
@@ -56,8 +58,8 @@ fn record(part: &Part) -> [String; HEADINGS.len()] {
         text(&|bar| micrometres(wall(bar))),
         text(&|bar| micrometres(bar.length)),
         part.pieces.to_string(),
-        part.mass.to_string(),
-        part.total_mass().to_string(),
+        nanokilograms(part.mass),
+        nanokilograms(part.total_mass()),
         part.counts.to_string(),
     ]
 }

@@ -73,9 +73,24 @@ fn catalogue_bars(sections: &CrossSections, design: &Design) -> impl Iterator<It
         ("platform", &sections.platform, design.platform_bar_radius()),
     ];
     bars.into_iter().filter_map(|(part, section, radius)| {
-        let name = section.catalogue_name(radius)?;
-        let [outer, wall] = [2.0 * radius, section.wall_ratio(radius) * radius].map(|size| short(1e3 * size));
-        Some([format!("bars of the {part}"), format!("{name}, {outer} × {wall} mm")])
+        let catalogue = section.catalogue()?;
+        let sizes = |radius: f64| {
+            let [outer, wall] = [2.0 * radius, section.wall_ratio(radius) * radius].map(|size| short(1e3 * size));
+            format!("{outer} × {wall} mm")
+        };
+        let words = match section.catalogue_name(radius) {
+            Some(name) => format!("{name}, {}", sizes(radius)),
+            None => {
+                let nearest = catalogue.nearest(radius);
+                format!(
+                    "{}, which the catalogue does not have; the nearest is {}, {}",
+                    sizes(radius),
+                    nearest.name,
+                    sizes(nearest.radius)
+                )
+            }
+        };
+        Some([format!("bars of the {part}"), words])
     })
 }
 

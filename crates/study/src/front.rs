@@ -116,6 +116,12 @@ impl fmt::Display for FrontProofs {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let count = self.proved + self.open;
         write!(f, "{} of {count} workspaces are proved", self.proved)?;
+        if self.open > 0 {
+            write!(
+                f,
+                "; the proofs of the others ended at the limit of boxes, which `kinefront certify TABLE#ID --max-boxes` raises"
+            )?;
+        }
         let thickened = self.refuted.iter().filter(|refuted| refuted.thickened.is_some());
         match (self.refuted.len(), thickened.count()) {
             (0, _) => write!(f, "."),

@@ -387,13 +387,15 @@ pub fn run(subject: InitialContent, script: Option<Script>, at_end_signals: AtEn
     });
     eframe::run_native("kinefront", options, create).map_err(|error| {
         let message = match error {
-        // The library's own message names a line of its source code, which does not help.
-        eframe::Error::WinitEventLoop(_) => format!("cannot connect to the display; {headless}"),
-        eframe::Error::Wgpu(error) => format!(
-            "no graphics card can draw the window ({error}); install a Vulkan or OpenGL driver, or, without a card, a \
-             software renderer such as Debian's mesa-vulkan-drivers; {headless}"
-        ),
-        error => format!("cannot open the window: {error}; {headless}"),
+            // The library's own message names a line of its source code, which does not help.
+            eframe::Error::WinitEventLoop(_) => format!("cannot connect to the display; {headless}"),
+            // The library's list of the reasons may be empty.
+            eframe::Error::Wgpu(error) => format!(
+                "no graphics card can draw the window ({}); install a Vulkan driver, or, without a card, a \
+             software renderer such as Debian's mesa-vulkan-drivers; {headless}",
+                error.to_string().replace(": {}", "")
+            ),
+            error => format!("cannot open the window: {error}; {headless}"),
         };
         message.into()
     })

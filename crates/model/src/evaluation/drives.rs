@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::{Model, SelectedDrive, TaskFigures, TaskOutcome, TaskSample, largest_of_legs};
+use super::{Bound, Model, Quantity, SelectedDrive, TaskFigures, TaskOutcome, TaskSample, largest_of_legs};
 use crate::dynamics::{Drive, Task, TaskFrame};
 use crate::mechanism::{Architecture, Design};
 use crate::spatial::LEGS;
@@ -34,6 +34,17 @@ impl Model {
         let motor = self.settings().joints.of_leg(architecture).find(|part| part.is_motor);
         let moves = motor.filter(|motor| motor.moves);
         moves.map_or(0.0, |motor| LEGS as f64 * (drive.mass - motor.mass))
+    }
+
+    /// Returns the largest share of its limits that a selected drive may use: 1, or what the study allows.
+    fn allowed_utilization(&self) -> f64 {
+        let limits = self.settings().limits.iter();
+        let of_drives = limits.filter(|limit| limit.quantity == Quantity::DriveUtilization);
+        let bounds = of_drives.filter_map(|limit| match limit.bound {
+            Bound::AtMost(most) => Some(most),
+            Bound::AtLeast(_) => None,
+        });
+        bounds.fold(1.0, f64::min)
     }
 
     /// Moves a design along a task with the lightest drive that carries it, if the study has a catalogue, or with the motors and rotors
@@ -80,10 +91,11 @@ impl Model {
             outcome.drive = utilization.map(|utilization| SelectedDrive { place, utilization });
             (outcome, samples)
         };
+        let allowed = self.allowed_utilization();
         for index in 0..drives.len() {
-            if estimated[index] <= 1.0 + ROUNDING {
+            if estimated[index] <= allowed + ROUNDING {
                 let found = selected(index);
-                if found.0.drive.is_some_and(|drive| drive.carries()) {
+                if found.0.drive.is_some_and(|drive| drive.utilization <= allowed) {
                     return found;
                 }
             }

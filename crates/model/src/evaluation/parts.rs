@@ -34,7 +34,7 @@ pub struct CutBar {
 }
 
 impl CutBar {
-    /// Returns the name in the catalogue, if the bar is selected from one.
+    /// Returns the name in the catalogue, if the bar is one of its bars.
     pub fn catalogue_name(&self) -> Option<&str> {
         self.section.catalogue_name(self.radius)
     }

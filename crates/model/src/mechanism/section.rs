@@ -95,6 +95,9 @@ impl Catalogue {
     }
 }
 
+/// Relative difference up to which a radius is that of an entry of a catalogue.
+const SAME_RADIUS: f64 = 1e-6;
+
 /// Cross-section of a bar whose outer radius is a design variable.
 ///
 /// ```
@@ -146,10 +149,11 @@ impl CrossSection {
         }
     }
 
-    /// Returns the name of the entry of the catalogue whose outer radius is nearest, if there is a catalogue.
+    /// Returns the name of the entry of the catalogue that has an outer radius, if there is a catalogue that has one.
     pub fn catalogue_name(&self, radius: f64) -> Option<&str> {
-        self.catalogue()
-            .map(|catalogue| catalogue.nearest(radius).name.as_str())
+        let entry = self.catalogue()?.nearest(radius);
+        let is_equal = (entry.radius - radius).abs() <= SAME_RADIUS * radius;
+        is_equal.then_some(entry.name.as_str())
     }
 
     /// Returns whether all sections are similar, so that the area is in proportion to the squared outer radius.
