@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::support::{folder, kinefront, optimize, small_study};
+use super::support::{folder, is_thorough, kinefront, optimize, python, small_study};
 
 fn document(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
@@ -47,6 +47,23 @@ fn the_reference_of_keys_is_current() {
         printed(&["study", "keys"]),
         "write the output of `kinefront study keys` behind the mark in docs/study.md"
     );
+}
+
+/// The tables of the documents that follow from commands are what the commands print. By day, without those of whole searches.
+#[test]
+fn the_tables_of_the_documents_are_current() {
+    let Some(mut python) = python(&["json"]) else { return };
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/make.py");
+    let names: &[&str] = if is_thorough() { &[] } else { &["published", "studies"] };
+    let program = ["--check", "--program", env!("CARGO_BIN_EXE_kinefront")];
+    let output = python
+        .arg(script)
+        .args(program)
+        .args(names)
+        .output()
+        .expect("Python runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
 }
 
 /// A part of a key leads to its section, and an unknown one is an error.

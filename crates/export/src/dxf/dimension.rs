@@ -164,9 +164,9 @@ fn dimensions(subject: &Prepared, height: f64) -> Vec<Dimension> {
     let base = 0.5 * (anchors[0] + anchors[1]);
     let mut found = vec![outwards(anchors[0], anchors[1], anchors[2], 6.0 * height)];
     let chain = &posture.legs[0].chain;
-    for (from, to) in [(chain.a, chain.b), (chain.b, chain.c)] {
+    for (from, to, middle) in [(chain.a, chain.b, anchors[2]), (chain.b, chain.c, centre)] {
         if from.distance(to) > 4.0 * height {
-            found.push(outwards(from, to, base, 4.0 * height));
+            found.push(outwards(from, to, middle, 3.0 * height));
         }
     }
     if centre.distance(chain.c) > 4.0 * height {
