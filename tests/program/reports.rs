@@ -172,6 +172,27 @@ fn runs_are_put_together_where_they_ask_for_the_same() {
     );
     assert!(beside.join("figures/fronts.svg").exists() && beside.join("figures/fronts-log.png").exists());
 
+    // Architectures of other variables: each run has the bounds of its own alone, and the page those of all.
+    let wide = folder.path().join("wide.toml");
+    let bounds = "[bounds]\nLa_m = [0.5, 4.0]\nalpha_deg = [-30.0, 30.0]\n";
+    std::fs::write(&wide, format!("{text}{bounds}")).expect("a study");
+    let alone = ["3-PRR", "3-RRR", "3-RPR"].map(|architecture| {
+        let path = folder.path().join(architecture);
+        optimize(&wide, &path, &["--evaluations", "90", "--architectures", architecture]);
+        path
+    });
+    let written = std::fs::read_to_string(alone[1].join("study.toml")).expect("a study");
+    assert!(written.contains("La_m") && !written.contains("alpha_deg"), "{written}");
+    let all = folder.path().join("all");
+    report(&[&alone[0], &alone[1], &alone[2]], &all, &[]).success();
+    let page = std::fs::read_to_string(all.join("index.html")).expect("a page");
+    for architecture in ["3-PRR", "3-RPR", "3-RRR"] {
+        assert!(
+            page.contains(&format!("Pareto front of the {architecture}.")),
+            "{architecture}"
+        );
+    }
+
     // Of other objectives there is nothing to compare.
     let other = folder.path().join("other.toml");
     let objectives = "objectives = [{ minimize = \"mass_kg\" }, { maximize = \"k_xy_n_per_m\" }]";

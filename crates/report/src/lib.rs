@@ -322,11 +322,11 @@ impl Report {
 
 /// Returns the study that all sources have in common, with the architectures of all of them.
 fn common_study(sources: &[Source]) -> Result<Study, ReportError> {
-    let Some((first, others)) = sources.split_first() else {
+    let Some(first) = sources.first() else {
         return Err(ReportError::NothingFeasible);
     };
     let mut study = first.study.clone();
-    for other in others {
+    for other in sources {
         let theirs = &other.study;
         if let Some(key) = study.differing_key(theirs) {
             return Err(ReportError::Differing {
@@ -335,10 +335,8 @@ fn common_study(sources: &[Source]) -> Result<Study, ReportError> {
                 key,
             });
         }
-        study.architectures.extend(&theirs.architectures);
+        study.join(theirs);
     }
-    let every = Architecture::ALL.iter().copied();
-    study.architectures = every.filter(|found| study.architectures.contains(found)).collect();
     Ok(study)
 }
 

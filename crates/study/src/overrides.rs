@@ -33,6 +33,8 @@ impl Overrides {
         optimizer.front_designs = self.front_designs.unwrap_or(optimizer.front_designs);
         optimizer.threads = self.threads.or(optimizer.threads);
         if let Some(architectures) = self.architectures {
+            // The study has bounds for its own architectures.
+            study.bounds.omit_unused(&architectures);
             study.architectures = architectures;
         }
         match study.faults().into_iter().next() {

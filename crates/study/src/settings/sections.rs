@@ -6,7 +6,8 @@ use super::RegionSection;
 use super::declare::{Check, Initial, section};
 use kinefront_model::evaluation::Quantity;
 use kinefront_model::mechanism::{
-    Arrangement, CrossSection, DESIGN_VARIABLES, Design, DesignVariable, FURTHER_VARIABLES, TextError, WorkingMode,
+    Architecture, Arrangement, CrossSection, DESIGN_VARIABLES, Design, DesignVariable, FURTHER_VARIABLES, TextError,
+    WorkingMode,
 };
 use kinefront_model::spatial::LEGS;
 use kinefront_model::stiffness::{RailSettings, RailSupports};
@@ -243,14 +244,36 @@ impl Bounds {
 
     /// Returns the variables beyond the five dimensions that have bounds.
     pub fn further_variables(&self) -> impl Iterator<Item = DesignVariable> + use<> {
-        let given = [
-            self.La_m.is_some(),
-            self.alpha_deg.is_some(),
-            self.beta_deg.is_some(),
-            self.gamma_deg.is_some(),
-        ];
+        let given = [self.La_m, self.alpha_deg, self.beta_deg, self.gamma_deg];
         let all = FURTHER_VARIABLES.into_iter().zip(given);
-        all.filter(|(_, is_given)| *is_given).map(|(variable, _)| variable)
+        all.filter(|(_, given)| given.is_some()).map(|(variable, _)| variable)
+    }
+
+    /// The bounds of the variables beyond the five dimensions.
+    fn further(&mut self) -> [(DesignVariable, &mut Option<[f64; 2]>); FURTHER_VARIABLES.len()] {
+        let [proximal, rail, guide, platform] = FURTHER_VARIABLES;
+        [
+            (proximal, &mut self.La_m),
+            (rail, &mut self.alpha_deg),
+            (guide, &mut self.beta_deg),
+            (platform, &mut self.gamma_deg),
+        ]
+    }
+
+    /// Omits the bounds of variables that no architecture has.
+    pub(crate) fn omit_unused(&mut self, architectures: &[Architecture]) {
+        for (variable, bounds) in self.further() {
+            if !architectures.iter().any(|architecture| architecture.has(variable)) {
+                *bounds = None;
+            }
+        }
+    }
+
+    /// Adds the bounds of other variables, which these lack.
+    pub(crate) fn add_missing(&mut self, mut other: Self) {
+        for ((_, bounds), (_, theirs)) in self.further().into_iter().zip(other.further()) {
+            *bounds = bounds.or(*theirs);
+        }
     }
 
     /// Returns the key of the range of a variable.

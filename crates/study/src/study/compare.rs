@@ -3,7 +3,8 @@
 use toml::Table;
 
 use super::Study;
-use crate::settings::settings;
+use crate::settings::{Bounds, settings};
+use kinefront_model::mechanism::{Architecture, DesignVariable, FURTHER_VARIABLES};
 
 /// Settings by which two runs of one problem may differ: names, architectures, the grid of the search, and the search itself.
 fn is_of_search(path: &str) -> bool {
@@ -52,10 +53,28 @@ impl Study {
     /// Returns the first setting that makes another study another problem; `None` if designs of both can be compared:
     /// they are evaluated by the same model, within the same bounds, beside the same reference designs.
     pub fn differing_key(&self, other: &Study) -> Option<String> {
-        self.first_difference(other, is_of_search)
+        self.first_difference(other, |key| is_of_search(key) || self.is_bound_of_one(other, key))
     }
 
-    fn first_difference(&self, other: &Study, may_differ: fn(&str) -> bool) -> Option<String> {
+    /// Adds the architectures of a study of the same problem, and the bounds of the variables that they alone have.
+    pub fn join(&mut self, other: &Study) {
+        self.bounds.add_missing(other.bounds.clone());
+        let both = [&*self, other].map(|study| study.architectures.clone()).concat();
+        let every = Architecture::ALL.iter().copied();
+        self.architectures = every.filter(|found| both.contains(found)).collect();
+    }
+
+    /// Whether a key is that of the bounds of a variable that the architectures of one of the studies do not have.
+    fn is_bound_of_one(&self, other: &Study, key: &str) -> bool {
+        let variable = |variable: &DesignVariable| key.strip_prefix("bounds.") == Some(&Bounds::key(*variable));
+        let Some(variable) = FURTHER_VARIABLES.into_iter().find(variable) else {
+            return false;
+        };
+        let has = |study: &Study| study.architectures.iter().any(|found| found.has(variable));
+        !has(self) || !has(other)
+    }
+
+    fn first_difference(&self, other: &Study, may_differ: impl Fn(&str) -> bool) -> Option<String> {
         let Some(differences) = self.all_differences(other) else {
             // A number beyond the range of TOML is not valid in a study.
             return (self != other).then(|| "optimizer".to_owned());

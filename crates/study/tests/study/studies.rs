@@ -6,7 +6,8 @@ use kinefront_model::mechanism::{BarLength, Design};
 use kinefront_model::stiffness::{Material, StiffnessDefinition};
 use kinefront_optimize::Variable;
 use kinefront_study::{
-    BUILTIN, Builtin, Check, DesignProblem, Initial, MATERIALS, Setting, Stagnation, Study, StudyError, settings,
+    BUILTIN, Builtin, Check, DesignProblem, Initial, MATERIALS, Overrides, Setting, Stagnation, Study, StudyError,
+    settings,
 };
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
@@ -571,6 +572,43 @@ fn questions_that_cannot_be_asked_are_refused_with_the_reason_and_what_would_be_
         }
         assert!(report.contains("mine.toml:"), "{report}");
     }
+}
+
+/// Bounds of a variable that the architectures of one of the studies do not have make no other problem; those of one that both have do.
+#[test]
+fn bounds_of_what_one_study_lacks_do_not_count() {
+    let of = |architectures: &str, bounds: &str| {
+        Study::parse(
+            &format!("architectures = [{architectures}]\n[bounds]\n{bounds}\n"),
+            "mine",
+        )
+        .expect("a study")
+    };
+    let (rails, cranks) = (
+        of("\"3-PRR\"", "alpha_deg = [-30.0, 30.0]"),
+        of("\"3-RRR\"", "La_m = [0.5, 4.0]"),
+    );
+    assert_eq!(rails.differing_key(&cranks), None);
+    let mut both = rails.clone();
+    both.join(&cranks);
+    assert_eq!(both, {
+        let both = of("\"3-PRR\", \"3-RRR\"", "alpha_deg = [-30.0, 30.0]\nLa_m = [0.5, 4.0]");
+        Study {
+            name: rails.name.clone(),
+            ..both
+        }
+    });
+    assert_eq!(both.differing_key(&cranks), None);
+    let narrow = of("\"3-RRR\"", "La_m = [0.5, 2.0]");
+    assert_eq!(narrow.differing_key(&cranks).as_deref(), Some("bounds.La_m"));
+    assert_eq!(narrow.differing_key(&both).as_deref(), Some("bounds.La_m"));
+    // A command that selects architectures omits the bounds that have no effect then.
+    let overrides = Overrides {
+        architectures: Some(cranks.architectures.clone()),
+        ..Overrides::default()
+    };
+    let alone = overrides.apply(both).expect("a study");
+    assert_eq!(alone.bounds, cranks.bounds);
 }
 
 #[test]
