@@ -79,7 +79,7 @@ def studies(kinefront):
     rows = []
     for line in kinefront("study", "list").splitlines():
         name, description = line.split(maxsplit=1)
-        rows.append(f"| `{name}` | {description} |")
+        rows.append(f"| `{name}` | {description.replace(chr(124), chr(92) + chr(124))} |")
     return "\n".join(["| study | question |", "|---|---|", *rows])
 
 
@@ -104,6 +104,8 @@ def main():
             name = match.group(1)
             if arguments.names and name not in arguments.names:
                 return match.group(0)
+            if name not in TABLES:
+                sys.exit(f"{path.name}: there is no table {name}; there are {', '.join(TABLES)}")
             found.add(name)
             return f"<!-- make.py {name} -->\n\n{TABLES[name](kinefront)}\n\n<!-- end -->"
 

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use kinefront_model::mechanism::Architecture;
 use kinefront_study::{
-    AlgorithmName, Overrides, ResumeError, ResumeOptions, Resumption, RunControl, RunFolder, RunFolderError, RunWriter,
-    Study, StudySearch, WHOLE_FRONT, WriteError,
+    AlgorithmName, Builtin, Overrides, ResumeError, ResumeOptions, Resumption, RunControl, RunFolder, RunFolderError,
+    RunWriter, Study, StudySearch, WHOLE_FRONT, WriteError,
 };
 use miette::miette;
 
@@ -131,11 +131,12 @@ fn resume(
 
 /// Loads the study that the arguments specify and checks it again with the values that they override.
 fn study(arguments: &OptimizeArguments) -> Result<Study, Failure> {
-    if let Some(run) = arguments
-        .study
-        .as_deref()
+    let named = arguments.study.as_deref();
+    // A folder with the name of a built-in study does not hide it.
+    let is_builtin = named.and_then(|name| Builtin::find(name.to_str()?)).is_some();
+    if let Some(run) = named
         .map(Path::new)
-        .filter(|path| RunFolder::is_at(path))
+        .filter(|path| !is_builtin && RunFolder::is_at(path))
     {
         return Err(Failure::Input(miette!(
             help = format!(

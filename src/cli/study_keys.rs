@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use kinefront_model::evaluation::{Better, Quantity, Scope};
-use kinefront_study::{Check, Initial, Setting, Study, settings, settings_of_surroundings};
+use kinefront_study::{Check, Setting, Study, settings, settings_of_surroundings};
 use miette::{IntoDiagnostic, Result, miette};
 use toml::{Table, Value};
 
@@ -63,7 +63,7 @@ const SECTIONS: [(&str, &str); 35] = [
     ("model", "Choices of the model."),
     (
         "bodies",
-        "Dimensions of the bodies that are no design variables, for drawings and for the clearance.",
+        "Dimensions of the bodies that are not design variables, for drawings and for the clearance.",
     ),
     (
         "bodies.layers",
@@ -168,30 +168,44 @@ fn valid(setting: &Setting, defaults: &Table) -> String {
         let names: Vec<String> = names.iter().map(|name| format!("`\"{name}\"`")).collect();
         names.join(", ")
     };
+    let form = form(setting, defaults);
     match setting.check {
         Check::Choice(names) => quoted(names),
         Check::Selection(_) => "one or several architectures".to_owned(),
         Check::Name => "text of at most 100 characters".to_owned(),
-        Check::Finite => "number".to_owned(),
-        check => check.range().unwrap_or_else(|| any(setting, defaults).to_owned()),
+        check => match (form, check.range()) {
+            // What an error adds about omitting the key stands in the meaning.
+            (form, Some(range)) => {
+                let range = range.split(", or ").next().unwrap_or_default().to_owned();
+                form.map_or(range.clone(), |form| format!("{form}, each {range}"))
+            }
+            (form, None) => form.unwrap_or("number").to_owned(),
+        },
     }
 }
 
-/// Returns the kind of the values of a setting that other rules check.
-fn any(setting: &Setting, defaults: &Table) -> &'static str {
-    match (setting.value(defaults), setting.initial) {
-        _ if setting.section == "bounds" => "`[lower, upper]`",
-        _ if setting.section == "variables" => {
-            "number, array of numbers, or another variable times a factor, as in `\"0.5 rj\"`"
-        }
-        (Some(Value::Boolean(_)), _) => "`true`, `false`",
-        (Some(Value::String(_)), _) | (None, Some(Initial::Name(_))) => "text",
-        (None, Some(Initial::Number(_))) => "number",
-        (None, _) if setting.key == "corners_m" => "array of `[x, y]`",
-        (None, _) if setting.key == "catalogue" => "text, or array of rows",
-        (None, _) if setting.title().contains('[') => "number above 0",
-        _ => "as described",
-    }
+/// Returns the form of the values of a setting; `None` for a number.
+fn form(setting: &Setting, defaults: &Table) -> Option<&'static str> {
+    Some(match (setting.section, setting.key) {
+        ("", "objectives" | "constraints") | ("", "working_mode") => "as described",
+        ("", "quantities") => "array of quantities",
+        ("bounds", _) => "`[lower, upper]`",
+        ("variables", _) => "number, array of numbers, or another variable times a factor, as in `\"0.5 rj\"`",
+        ("hypervolume", "reference") => "array of numbers, one for each objective",
+        ("task", "waypoints") => "array of `[x_m, y_m, phi_deg]`",
+        (_, "catalogue") => "text, or array of rows",
+        (_, "corners_m") => "array of `[x, y]`",
+        (_, "heights_m") => "`[lowest, highest]`",
+        (_, "centre_m") => "`[x, y]`",
+        ("strength", "force_range_n" | "moment_range_nm") => "array of three numbers",
+        _ => match setting.value(defaults) {
+            Some(Value::Boolean(_)) => "`true`, `false`",
+            Some(Value::String(_)) => "text",
+            Some(Value::Array(values)) if values.len() == 2 => "array of two numbers",
+            Some(Value::Array(_)) => "array of three numbers",
+            _ => return None,
+        },
+    })
 }
 
 /// Returns a row for each quantity whose key contains `part`.
@@ -215,4 +229,18 @@ fn quantities(part: Option<&str>) -> String {
         let _ = writeln!(text, "| `{}` | {unit} | {scope} | {better} | {meaning} |", entry.key);
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A section that is not listed would be missing in the reference.
+    #[test]
+    fn every_section_is_listed() {
+        for setting in settings().chain(settings_of_surroundings()) {
+            let is_listed = SECTIONS.iter().any(|(section, _)| *section == setting.section);
+            assert!(is_listed, "{}", setting.path());
+        }
+    }
 }

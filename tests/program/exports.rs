@@ -199,6 +199,7 @@ fn plan_view_and_front_are_read_back() {
     for dimension in dimensions {
         let measured = dimension["measured"].as_f64().expect("a number");
         assert_eq!(dimension["text"], format!("{measured:.1}"), "{dimension}");
+        assert_eq!(dimension["override"], "", "{dimension}");
         assert_eq!(
             (&dimension["shown"], &dimension["style"]),
             (&shown, &serde_json::json!(true))

@@ -85,7 +85,8 @@ def main():
                 "labels": sorted(label.dxf.text for label in space.query('TEXT[layer=="TEXT"]')),
                 "dimensions": [
                     {
-                        "text": dimension.dxf.text,
+                        "override": dimension.dxf.get("text", ""),
+                        "text": [entity.dxf.text for entity in dimension.get_geometry_block() if entity.dxftype() == "TEXT"][0],
                         "measured": dimension.dxf.defpoint2.distance(dimension.dxf.defpoint3),
                         "shown": sorted(entity.dxftype() for entity in dimension.get_geometry_block()),
                         "style": dimension.dxf.dimstyle in drawing.dimstyles,

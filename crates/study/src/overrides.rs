@@ -33,7 +33,7 @@ impl Overrides {
         optimizer.front_designs = self.front_designs.unwrap_or(optimizer.front_designs);
         optimizer.threads = self.threads.or(optimizer.threads);
         if let Some(architectures) = self.architectures {
-            // The study has bounds for its own architectures.
+            // Bounds of a variable that no architecture has are a fault of a study, not of who selects architectures.
             study.bounds.omit_unused(&architectures);
             study.architectures = architectures;
         }

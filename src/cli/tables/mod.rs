@@ -15,7 +15,6 @@ use kinefront_model::kinematics::AssemblyMode;
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 use kinefront_model::strength::{LARGEST_FACTOR, StrengthReport};
-use kinefront_model::workspace::Region;
 use kinefront_scene::text::{self, number};
 use kinefront_study::{FrontMember, RunSummary, Study};
 
@@ -115,8 +114,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
         ]);
     }
     if let Some(nearest) = &evaluation.nearest {
-        let is_prescribed = !matches!(model.settings().workspace.region, Region::Largest);
-        let where_least = match (evaluation.home, is_prescribed) {
+        let where_least = match (evaluation.home, model.settings().workspace.region.is_prescribed()) {
             (_, true) => "the smallest over the region",
             (Some(_), false) => "the smallest over the workspace",
             (None, false) => "at the centre in the best orientation",

@@ -86,7 +86,8 @@ impl Sheet {
             dimension_type: DimensionType::Aligned,
             attachment_point: AttachmentPoint::MiddleCenter,
             actual_measurement: MM * from.distance(to),
-            text: words,
+            // Empty, so that a CAD program writes what it measures; the block shows the same.
+            text: String::new(),
             dimension_style_name: STYLE.to_owned(),
             ..DimensionBase::default()
         };
@@ -147,6 +148,12 @@ fn text(middle: DVec2, angle: f64, height: f64, words: &str) -> EntityType {
     })
 }
 
+/// Whether four corners are those of a rectangle, up to rounding: its diagonals are equally long and halve each other.
+fn is_rectangle([a, b, c, d]: [DVec2; 4]) -> bool {
+    let size = a.distance(c);
+    (size - b.distance(d)).abs() <= 1e-9 * size && (a + c).distance(b + d) <= 1e-9 * size
+}
+
 fn dimensions(subject: &Prepared, height: f64) -> Vec<Dimension> {
     let design = &subject.evaluation.design;
     let manipulator = Manipulator::<AnyLeg>::new(design, &subject.model.settings().legs);
@@ -172,7 +179,9 @@ fn dimensions(subject: &Prepared, height: f64) -> Vec<Dimension> {
     if centre.distance(chain.c) > 4.0 * height {
         found.push(outwards(centre, chain.c, base, 3.0 * height));
     }
-    if let Some([first, second, third, _]) = subject.corners.as_deref() {
+    if let Some([first, second, third, fourth]) = subject.corners.as_deref()
+        && is_rectangle([*first, *second, *third, *fourth])
+    {
         let middle = 0.5 * (*first + *third);
         found.push(outwards(*first, *second, middle, 2.5 * height));
         found.push(outwards(*second, *third, middle, 2.5 * height));

@@ -12,8 +12,11 @@ const LAYER: &str = "TITLE_BLOCK";
 const CHARACTER: f64 = 0.9;
 const LINE: f64 = 1.8;
 
-/// Widths of the columns of the list of parts in characters: name, section, length, pieces.
-const COLUMNS: [usize; 4] = [22, 34, 12, 8];
+/// Number of columns of the list of parts: name, section, length, pieces.
+const COLUMNS: usize = 4;
+
+/// Distance from the drawing to the title block as a share of `R`.
+const MARGIN: f64 = 0.3;
 
 impl Sheet {
     /// Adds a frame with the facts of the drawing and the list of parts, to the right of it.
@@ -21,9 +24,11 @@ impl Sheet {
         let radius = subject.evaluation.design.base_radius();
         let (facts, parts) = (facts(subject), parts(subject));
         let longest = facts.iter().map(|words| words.chars().count()).max().unwrap_or(0);
-        let characters = longest.max(COLUMNS.iter().sum());
+        let columns: [usize; COLUMNS] =
+            std::array::from_fn(|column| 2 + parts.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
+        let characters = longest.max(columns.iter().sum());
         let width = (characters as f64 + 1.0) * CHARACTER * height;
-        let corner = DVec2::new(1.35 * radius, radius);
+        let corner = DVec2::new(rightmost(subject) + MARGIN * radius, radius);
         let step = LINE * height;
         let mut below = corner.y;
         let rule = |sheet: &mut Sheet, y: f64| {
@@ -43,7 +48,7 @@ impl Sheet {
         for row in &parts {
             below -= step;
             let mut at = DVec2::new(corner.x + 0.5 * height, below + 0.4 * height);
-            for (cell, column) in row.iter().zip(COLUMNS) {
+            for (cell, column) in row.iter().zip(columns) {
                 if !cell.is_empty() {
                     self.text(LAYER, at, height, cell);
                 }
@@ -85,7 +90,7 @@ fn facts(subject: &Prepared) -> Vec<String> {
 }
 
 /// The rows of the list of parts, with its headings.
-fn parts(subject: &Prepared) -> Vec<[String; COLUMNS.len()]> {
+fn parts(subject: &Prepared) -> Vec<[String; COLUMNS]> {
     let headings = ["part", "section", "length", "pieces"].map(str::to_owned);
     let design = &subject.evaluation.design;
     let rows = subject
@@ -106,4 +111,25 @@ fn parts(subject: &Prepared) -> Vec<[String; COLUMNS.len()]> {
             [part.name.to_owned(), section, length, part.pieces.to_string()]
         });
     std::iter::once(headings).chain(rows).collect()
+}
+
+/// Returns the largest x of what is drawn.
+fn rightmost(subject: &Prepared) -> f64 {
+    let scene = &subject.scene;
+    let lines = scene
+        .lines
+        .iter()
+        .flat_map(|line| line.points.iter().map(|point| point.x));
+    let solids = scene
+        .solids
+        .iter()
+        .flat_map(|solid| solid.shape.mesh().positions)
+        .map(|corner| corner.x);
+    let region = subject.corners.iter().flatten().map(|corner| corner.x);
+    let disc = subject.cylinder.map(|cylinder| cylinder.centre.x + cylinder.radius);
+    lines
+        .chain(solids)
+        .chain(region)
+        .chain(disc)
+        .fold(subject.pose.position.x, f64::max)
 }

@@ -31,6 +31,9 @@ impl Model {
             is_worse_if_faster && is_upper && limit.quantity.is_of(&evaluation.design)
         });
         let limits: Vec<QuantityLimit> = limits.copied().collect();
+        if limits.is_empty() {
+            return None;
+        }
         let now = task.motion(&self.frame_of_task(evaluation))?.cycle_time();
         let worst = |factor: f64| self.worst_limit(evaluation, task, now * factor, &limits);
         let (margin, mut limit) = worst(1.0)?;

@@ -47,7 +47,7 @@ impl Model {
         bounds.fold(1.0, f64::min)
     }
 
-    /// Moves a design along a task with the lightest drive that carries it, if the study has a catalogue, or with the motors and rotors
+    /// Moves a design along a task with the lightest drive that keeps the limit of its utilization, if the study has a catalogue, or with the motors and rotors
     /// that it states. The forces are linear in the mass and in the inertia of a drive, so that two motions tell which drives are worth
     /// a motion of their own.
     pub(super) fn follow_driven(

@@ -41,14 +41,14 @@ macro_rules! quantities {
 quantities! {
     /// Mass in motion.
     Mass = QuantityEntry::new("mass_kg", "kg", "mass in motion", Scope::Design, Better::Lower,
-        "Mass of the bars of the legs and of the platform.").logarithmic().reference(Reference::Mass).short("mass").superlative("lightest");
+        "Mass of what moves: bars, and the joints, motors and drives to which the study gives a mass; and of rails with a cross-section.").logarithmic().reference(Reference::Mass).short("mass").superlative("lightest");
     /// Radius of the regular workspace.
     WorkspaceRadius = QuantityEntry::new("workspace_radius_m", "m", "R_w", Scope::Region, Better::Higher,
         "Radius of the regular workspace; for a prescribed region, of the largest disc about the centre within it.")
         .reference(Reference::LinkLength(1.0)).superlative("largest");
     /// Mass of the bars and rails of all legs.
     LegsMass = QuantityEntry::new("legs_mass_kg", "kg", "mass of the legs", Scope::Design, Better::Lower,
-        "Mass of the bars and rails of all legs.").logarithmic().reference(Reference::Mass);
+        "Mass of the bars and rails of all legs, and of what moves of their joints and motors.").logarithmic().reference(Reference::Mass);
     /// Mass of the platform bars.
     PlatformMass = QuantityEntry::new("platform_mass_kg", "kg", "mass of the platform", Scope::Design, Better::Lower,
         "Mass of the platform bars.").logarithmic().reference(Reference::Mass);
@@ -96,7 +96,7 @@ quantities! {
         .above_zero().logarithmic().reference(Reference::Number(1e6));
     /// Mass of the selected drive.
     DriveMass = QuantityEntry::new("drive_mass_kg", "kg", "mass of a drive", Scope::Region, Better::Lower,
-        "Mass of the lightest drive of the catalogue that carries the motion, one of three equal ones.")
+        "Mass of the selected drive, one of three equal ones: the lightest of the catalogue of which the motion uses no more than is allowed.")
         .above_zero().logarithmic().reference(Reference::Number(1e4));
     /// Largest share of the limits of the selected drive that the motion uses.
     DriveUtilization = QuantityEntry::new("drive_utilization", "", "utilization of the drives", Scope::Region, Better::Lower,

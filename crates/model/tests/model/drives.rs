@@ -75,7 +75,7 @@ fn utilization(drive: &Drive, figures: &TaskFigures) -> f64 {
 #[test]
 fn the_lightest_drive_that_carries_the_motion_is_selected() {
     let mut random = random_numbers(7);
-    let mut counts = [0; 2];
+    let (mut counts, mut reserved) = ([0; 2], 0);
     for text in DESIGNS {
         let design: Design = text.parse().expect("a design");
         let kind = design.architecture().actuator();
@@ -119,6 +119,8 @@ fn the_lightest_drive_that_carries_the_motion_is_selected() {
                 })
                 .collect();
             let wanted = tried.iter().find(|(_, used, _)| *used <= allowed);
+            let without_reserve = tried.iter().find(|(_, used, _)| *used <= 1.0);
+            reserved += usize::from(wanted.is_some() && wanted != without_reserve);
             let least = tried.iter().min_by(|a, b| a.1.total_cmp(&b.1)).expect("drives");
             // One that carries the motion without the reserve is selected, but does not make the design feasible.
             let selected = wanted.or(Some(least).filter(|(_, used, _)| *used <= 1.0));
@@ -156,6 +158,7 @@ fn the_lightest_drive_that_carries_the_motion_is_selected() {
         }
     }
     assert!(counts.iter().all(|count| *count >= 4), "{counts:?}");
+    assert!(reserved > 0, "no reserve has changed a selection");
 }
 
 /// A drive that weighs next to nothing.

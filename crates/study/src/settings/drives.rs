@@ -17,8 +17,8 @@ section! {
         /// Inertia of the rotor, as one that turns with a revolute actuator.
         revolute_inertia_kg_m2: f64 = 0.0, Check::Within(0.0, 1e12, " kg·m²");
         optional {
-            /// Catalogue of which each design selects the lightest drive that carries the motion: a built-in name, or the path of a CSV
-            /// file.
+            /// Catalogue of which each design selects the lightest drive that carries the motion, within a limit of `drive_utilization`
+            /// if there is one: a built-in name, the path of a CSV file, or its rows.
             catalogue: CatalogueChoice<DriveRow>, Check::Any, Initial::Name(DRIVE_CATALOGUES[0].name);
         }
     }

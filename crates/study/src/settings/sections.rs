@@ -244,25 +244,25 @@ impl Bounds {
 
     /// Returns the variables beyond the five dimensions that have bounds.
     pub fn further_variables(&self) -> impl Iterator<Item = DesignVariable> + use<> {
-        let given = [self.La_m, self.alpha_deg, self.beta_deg, self.gamma_deg];
-        let all = FURTHER_VARIABLES.into_iter().zip(given);
-        all.filter(|(_, given)| given.is_some()).map(|(variable, _)| variable)
+        let all = FURTHER_VARIABLES
+            .into_iter()
+            .zip(self.clone().further().map(|bounds| *bounds));
+        all.filter(|(_, bounds)| bounds.is_some()).map(|(variable, _)| variable)
     }
 
-    /// The bounds of the variables beyond the five dimensions.
-    fn further(&mut self) -> [(DesignVariable, &mut Option<[f64; 2]>); FURTHER_VARIABLES.len()] {
-        let [proximal, rail, guide, platform] = FURTHER_VARIABLES;
+    /// The bounds of the variables beyond the five dimensions, in the order of [`FURTHER_VARIABLES`].
+    fn further(&mut self) -> [&mut Option<[f64; 2]>; FURTHER_VARIABLES.len()] {
         [
-            (proximal, &mut self.La_m),
-            (rail, &mut self.alpha_deg),
-            (guide, &mut self.beta_deg),
-            (platform, &mut self.gamma_deg),
+            &mut self.La_m,
+            &mut self.alpha_deg,
+            &mut self.beta_deg,
+            &mut self.gamma_deg,
         ]
     }
 
     /// Omits the bounds of variables that no architecture has.
     pub(crate) fn omit_unused(&mut self, architectures: &[Architecture]) {
-        for (variable, bounds) in self.further() {
+        for (variable, bounds) in FURTHER_VARIABLES.into_iter().zip(self.further()) {
             if !architectures.iter().any(|architecture| architecture.has(variable)) {
                 *bounds = None;
             }
@@ -271,7 +271,7 @@ impl Bounds {
 
     /// Adds the bounds of other variables, which these lack.
     pub(crate) fn add_missing(&mut self, mut other: Self) {
-        for ((_, bounds), (_, theirs)) in self.further().into_iter().zip(other.further()) {
+        for (bounds, theirs) in self.further().into_iter().zip(other.further()) {
             *bounds = bounds.or(*theirs);
         }
     }

@@ -116,7 +116,7 @@ section! {
         ramp: f64 = 0.25, Check::Within(1e-3, 0.5, "");
         /// Rest after each piece.
         dwell_s: f64 = 0.0, Check::Within(0.0, 1e6, " s");
-        /// Number of equal intervals in which each piece is sampled.
+        /// Number of equal intervals in which each piece is sampled; all pieces together have at most 10⁶.
         samples: i64 = 200, Check::Count(2, 100_000);
         optional {
             /// Path: straight between `waypoints`, or a `circle`, a `star` or a `pick-and-place` stroke that is scaled to the workspace; if

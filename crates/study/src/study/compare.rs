@@ -56,7 +56,7 @@ impl Study {
         self.first_difference(other, |key| is_of_search(key) || self.is_bound_of_one(other, key))
     }
 
-    /// Adds the architectures of a study of the same problem, and the bounds of the variables that they alone have.
+    /// Adds the architectures of another study of the same problem, and the bounds of variables that this study's architectures lack.
     pub fn join(&mut self, other: &Study) {
         self.bounds.add_missing(other.bounds.clone());
         let both = [&*self, other].map(|study| study.architectures.clone()).concat();

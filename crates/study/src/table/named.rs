@@ -1,6 +1,5 @@
 //! Names of designs that every table of a run has, so that a command can be written down before the ids are known.
 
-use kinefront_model::evaluation::Quantity;
 use kinefront_optimize::{Archive, Objectives, Outcome, knee};
 
 use super::TableRow;
@@ -46,10 +45,9 @@ pub fn named_row<'a>(rows: &'a [TableRow], study: &Study, name: &str) -> Option<
 }
 
 fn largest(rows: &[TableRow]) -> Option<&TableRow> {
-    let radius = |row: &TableRow| row.row.quantities.get(Quantity::WorkspaceRadius).unwrap_or(0.0);
     let feasible = rows.iter().filter(|row| row.row.is_feasible());
     // Of equal keys, `min_by` returns the first.
-    feasible.min_by(|a, b| radius(b).total_cmp(&radius(a)))
+    feasible.min_by(|a, b| b.row.workspace_radius().total_cmp(&a.row.workspace_radius()))
 }
 
 /// Returns the rows that no other dominates, in the order of the first objective, and their marks.
