@@ -86,7 +86,7 @@ fn the_lightest_drive_that_carries_the_motion_is_selected() {
             // Weak ones, strong ones, and those of the other kind, which must not be selected. None of the last round is strong enough.
             let weakness = if round == 3 { 0.05 } else { 1.0 };
             // The study may leave a reserve.
-            let allowed = if round == 2 { 0.6 } else { 1.0 };
+            let allowed = if round == 1 || round == 2 { 0.8 } else { 1.0 };
             let mut drives = Vec::new();
             for place in 0..12 {
                 let size = 0.05 + 3.0 * random() * random();
