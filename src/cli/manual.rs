@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::CommandFactory;
 use clap_mangen::Man;
 use kinefront_study::write_whole;
+use miette::miette;
 
 use super::{Ending, Failure, ProgramArguments, exists_already};
 
@@ -21,7 +22,14 @@ pub struct ManualArguments {
 pub fn run(arguments: &ManualArguments) -> Result<Ending, Failure> {
     let mut program = ProgramArguments::command();
     program.build();
-    std::fs::create_dir_all(&arguments.folder).map_err(Failure::runtime)?;
+    let folder = arguments.folder.display();
+    if arguments.folder.exists() && !arguments.folder.is_dir() {
+        return Err(Failure::Input(miette!(
+            "{folder} is not a folder; choose another path for the pages"
+        )));
+    }
+    std::fs::create_dir_all(&arguments.folder)
+        .map_err(|error| Failure::Runtime(miette!("the folder {folder} cannot be made: {error}")))?;
     let mut pages = Vec::new();
     collect(&program, &mut pages)?;
     for (name, _) in &pages {
@@ -33,7 +41,6 @@ pub fn run(arguments: &ManualArguments) -> Result<Ending, Failure> {
     for (name, page) in &pages {
         write_whole(&arguments.folder.join(name), page).map_err(Failure::runtime)?;
     }
-    let folder = arguments.folder.display();
     writeln!(std::io::stdout(), "wrote {} pages into {folder}", pages.len())?;
     Ok(Ending::Done)
 }

@@ -132,7 +132,7 @@ pub fn reference(part: Option<&str>) -> Result<String> {
                 .value(&defaults)
                 .map_or("–".to_owned(), |value| format!("`{}`", written(value)));
             let valid = valid(setting, &defaults);
-            let meaning = setting.description.trim().replace('|', "\\|");
+            let meaning = cell(setting.description);
             let _ = writeln!(text, "| `{}` | {default} | {valid} | {meaning} |", setting.key);
         }
         text.push('\n');
@@ -148,6 +148,11 @@ pub fn reference(part: Option<&str>) -> Result<String> {
         true => Err(miette!("no key of a study contains `{}`", part.unwrap_or_default())),
         false => Ok(text.trim_end().to_owned() + "\n"),
     }
+}
+
+/// Returns a text as it stands in a cell of a table.
+fn cell(text: &str) -> String {
+    text.trim().replace('|', "\\|")
 }
 
 /// Returns a value as a study file states it, with exponents where they are shorter.
@@ -187,7 +192,7 @@ fn valid(setting: &Setting, defaults: &Table) -> String {
 /// Returns the form of the values of a setting; `None` for a number.
 fn form(setting: &Setting, defaults: &Table) -> Option<&'static str> {
     Some(match (setting.section, setting.key) {
-        ("", "objectives" | "constraints") | ("", "working_mode") => "as described",
+        ("", "objectives" | "constraints" | "working_mode") => "as described",
         ("", "quantities") => "array of quantities",
         ("bounds", _) => "`[lower, upper]`",
         ("variables", _) => "number, array of numbers, or another variable times a factor, as in `\"0.5 rj\"`",
@@ -225,7 +230,7 @@ fn quantities(part: Option<&str>) -> String {
             Better::Lower => "lower",
             Better::Higher => "higher",
         };
-        let meaning = entry.meaning.replace('|', "\\|");
+        let meaning = cell(entry.meaning);
         let _ = writeln!(text, "| `{}` | {unit} | {scope} | {better} | {meaning} |", entry.key);
     }
     text

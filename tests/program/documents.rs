@@ -238,6 +238,9 @@ fn manual_pages_name_every_command() {
     let page = fs::read_to_string(pages.join("kinefront-optimize.1")).expect("a page");
     assert!(page.contains(".TH ") && page.contains("\\-\\-resume"), "{page}");
     kinefront().args(["manual", argument]).assert().code(2);
+    let file = pages.join("kinefront.1");
+    let told = kinefront().arg("manual").arg(&file).assert().code(2);
+    assert!(String::from_utf8_lossy(&told.get_output().stderr).contains("is not a folder"));
 }
 
 /// Scripts for shells complete the commands; bash accepts its own.

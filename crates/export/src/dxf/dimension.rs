@@ -7,7 +7,6 @@ use ::dxf::{Block, Point};
 use glam::DVec2;
 
 use super::{MM, Prepared, Sheet, point};
-
 use kinefront_model::mechanism::{AnyLeg, Manipulator};
 
 const LAYER: &str = "DIMENSIONS";

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use super::{MergedRun, RunFolder, RunFolderError, RunWriter};
+use crate::table::archive_of;
 use crate::{FileSum, ReplayError, Row, Study, StudySearch, TableError, TableRow};
 use crate::{WriteError, write_whole};
-use kinefront_optimize::{Archive, Outcome};
 
 /// Name of the file that states from which run each design of a merged folder comes.
 pub(super) const ORIGINS: &str = "origins.csv";
@@ -239,18 +239,7 @@ fn kept(placed: &[(usize, TableRow)], every: usize) -> Vec<bool> {
     if every == 1 {
         return vec![true; placed.len()];
     }
-    let mut archive = Archive::default();
-    for (place, (_, entry)) in placed
-        .iter()
-        .enumerate()
-        .filter(|(_, (_, entry))| entry.row.is_feasible())
-    {
-        let outcome = Outcome {
-            objectives: entry.row.objectives,
-            violation: 0.0,
-        };
-        archive.insert(place, &[], &outcome);
-    }
+    let archive = archive_of(placed.iter().map(|(_, entry)| entry));
     let mut kept: Vec<bool> = (0..placed.len()).map(|place| place % every == 0).collect();
     for member in archive.iter() {
         kept[member.id] = true;

@@ -50,16 +50,22 @@ fn largest(rows: &[TableRow]) -> Option<&TableRow> {
     feasible.min_by(|a, b| b.row.workspace_radius().total_cmp(&a.row.workspace_radius()))
 }
 
-/// Returns the rows that no other dominates, in the order of the first objective, and their marks.
-fn front_of<'a>(rows: &'a [TableRow], study: &Study) -> (Vec<&'a TableRow>, Vec<String>) {
+/// Returns the archive of the feasible rows that no other dominates; its ids are the places of the rows.
+pub(crate) fn archive_of<'a>(rows: impl IntoIterator<Item = &'a TableRow>) -> Archive {
     let mut archive = Archive::default();
-    for (place, row) in rows.iter().enumerate() {
+    for (place, row) in rows.into_iter().enumerate() {
         let outcome = Outcome {
             objectives: row.row.objectives,
             violation: row.row.violation,
         };
         archive.insert(place, &[], &outcome);
     }
+    archive
+}
+
+/// Returns the rows that no other dominates, in the order of the first objective, and their marks.
+fn front_of<'a>(rows: &'a [TableRow], study: &Study) -> (Vec<&'a TableRow>, Vec<String>) {
+    let archive = archive_of(rows);
     let objectives: Vec<Objectives> = archive.iter().map(|member| member.objectives).collect();
     let front = archive.iter().map(|member| &rows[member.id]).collect();
     (front, front_marks(study, &objectives))
