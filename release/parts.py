@@ -6,6 +6,7 @@ than the server program; what they would read, `cargo metadata` prints.
 
 import argparse
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -15,9 +16,12 @@ LICENCE = re.compile(r"^(licen[cs]e|copying|unlicense|notice|copyright)", re.IGN
 
 
 def metadata(options):
-    """What cargo knows of the packages for this system."""
-    host = re.search(r"^host: (.*)$", subprocess.run(["rustc", "-vV"], capture_output=True, text=True, check=True).stdout, re.M)
-    command = ["cargo", "metadata", "--format-version", "1", "--locked", "--filter-platform", host.group(1), *options]
+    """What cargo knows of the packages for the system that is built for."""
+    target = os.environ.get("CARGO_BUILD_TARGET")
+    if not target:
+        told = subprocess.run(["rustc", "-vV"], capture_output=True, text=True, check=True).stdout
+        target = re.search(r"^host: (.*)$", told, re.M).group(1)
+    command = ["cargo", "metadata", "--format-version", "1", "--locked", "--filter-platform", target, *options]
     return json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout)
 
 

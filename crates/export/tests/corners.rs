@@ -57,3 +57,35 @@ fn no_format_has_a_number_that_is_not_finite() {
     assert!(written > 500 && refused > 20, "{written} written, {refused} refused");
     assert_eq!(DESIGN_VARIABLES.len(), SHAPES[0].len());
 }
+
+#[test]
+fn a_design_gives_the_same_file_at_any_time() {
+    let study = PreparedStudy::new(Study::default()).expect("the paper's study");
+    let design = Design::parse(
+        "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
+        WorkingMode::ALL_PLUS,
+    );
+    let evaluation = study
+        .model()
+        .evaluate(&design.expect("a design of the paper"), GridChoice::Fine);
+    let subject = ExportSubject {
+        study: &study,
+        evaluation: &evaluation,
+        pose: None,
+    };
+    let write = |&format: &Format| match export(&subject, format) {
+        Ok(bytes) => Some(bytes),
+        Err(ExportError::NoMotion(_)) => None,
+        Err(error) => panic!("{format:?}: {error}"),
+    };
+    let first: Vec<_> = Format::ALL.iter().map(write).collect();
+    assert!(first.iter().flatten().count() > 5);
+    // Longer than the resolution of the times that formats state.
+    std::thread::sleep(std::time::Duration::from_millis(50));
+    for (format, first) in Format::ALL.iter().zip(first) {
+        assert!(
+            write(format) == first,
+            "{format:?} depends on the time at which it is written"
+        );
+    }
+}

@@ -3,6 +3,7 @@
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Error of writing a run folder.
 #[derive(Debug, thiserror::Error)]
@@ -62,7 +63,7 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), WriteError> {
         let mut file = temporary(folder_of(path))?;
         file.write_all(contents)?;
         file.as_file().sync_all()?;
-        file.persist(path).map_err(|error| error.error)?;
+        persist(file, path)?;
         sync_folder(folder_of(path))
     };
     write().map_err(WriteError::at(path))
@@ -99,6 +100,25 @@ fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder)
+}
+
+/// Moves a complete temporary file to its place.
+///
+/// Windows refuses to replace a file that another program has open, if only to show it or to look for viruses; such a program is
+/// awaited for a second.
+fn persist(mut file: tempfile::NamedTempFile, path: &Path) -> io::Result<()> {
+    let mut patience = if cfg!(windows) { 50 } else { 0 };
+    loop {
+        match file.persist(path) {
+            Ok(_) => return Ok(()),
+            Err(refused) if patience > 0 && refused.error.kind() == io::ErrorKind::PermissionDenied => {
+                file = refused.file;
+                patience -= 1;
+                std::thread::sleep(Duration::from_millis(20));
+            }
+            Err(refused) => return Err(refused.error),
+        }
+    }
 }
 
 fn folder_of(path: &Path) -> &Path {

@@ -69,13 +69,20 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
 }
 
 /// Removes what release 12 does not know: the library writes subclass markers and handles in tables and entities for
-/// this release too. A file consists of pairs of lines, a group code and its value.
+/// this release too. Also removes the times of the header, so that a design gives the same file at any time. A file consists of
+/// pairs of lines, a group code and its value.
 fn release_12(text: &str) -> String {
     const SUBCLASS: &str = "100";
     const HANDLE: &str = "5";
+    const TIMES: [&str; 2] = ["$TDCREATE", "$TDUPDATE"];
     let mut lines = text.lines();
     let (mut kept, mut in_header) = (String::with_capacity(text.len()), true);
     while let (Some(code), Some(value)) = (lines.next(), lines.next()) {
+        if TIMES.contains(&value) {
+            // The pair after a name is the value of the variable.
+            lines.nth(1);
+            continue;
+        }
         in_header &= value != "TABLES";
         if in_header || !matches!(code.trim(), SUBCLASS | HANDLE) {
             kept += &format!("{code}\r\n{value}\r\n");

@@ -1,57 +1,16 @@
-//! `designs.csv` as it grows; it is also the lock of its folder.
+//! `designs.csv` as it grows.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Write};
+use std::fs::{self, File};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use super::DESIGNS;
+use super::lock::is_same_file;
 use crate::FileSum;
 use crate::sum::checksum;
 use crate::table::{Column, append_row, table_bytes};
 use crate::{Batch, Study};
 use crate::{WriteError, read_regular};
-
-/// `ENOLCK` of Linux: a network file system without a lock service.
-const NO_LOCKS: i32 = 37;
-
-/// Number of times that a lock is awaited for 10 ms.
-const LOCK_PATIENCE: u32 = 30;
-
-/// Opens and locks the table of a run folder, which is the lock of the folder.
-pub(super) fn open_locked(folder: &Path, create: bool) -> Result<File, WriteError> {
-    let path = folder.join(DESIGNS);
-    // Rows are not written to what a link leads to, nor to a pipe.
-    if fs::symlink_metadata(&path).is_ok_and(|found| !found.is_file()) {
-        return Err(WriteError::NotAFile(path));
-    }
-    // Rows are appended whatever another program does to the file; a file truncated by others has no gap then.
-    let file = OpenOptions::new()
-        .read(true)
-        .append(true)
-        .create(create)
-        .open(&path)
-        .map_err(WriteError::at(&path))?;
-    let mut lock = file.try_lock();
-    // The lock of a process that has just ended may be held for a moment by a process that it was starting.
-    let mut patience = LOCK_PATIENCE;
-    while matches!(lock, Err(TryLockError::WouldBlock)) && patience > 0 {
-        std::thread::sleep(Duration::from_millis(10));
-        patience -= 1;
-        lock = file.try_lock();
-    }
-    match lock {
-        Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => Err(WriteError::InUse(folder.to_owned())),
-        // A file system without locks cannot guard the folder; the run goes on as its user asked.
-        Err(TryLockError::Error(error))
-            if error.kind() == io::ErrorKind::Unsupported || error.raw_os_error() == Some(NO_LOCKS) =>
-        {
-            Ok(file)
-        }
-        Err(TryLockError::Error(error)) => Err(WriteError::at(&path)(error)),
-    }
-}
 
 /// `designs.csv` as it grows.
 #[derive(Debug)]
@@ -127,7 +86,9 @@ impl DesignTable {
 
     /// Appends complete rows; if that fails, removes what was written of them.
     fn append_bytes(&mut self, text: &[u8], rows: usize) -> Result<(), WriteError> {
-        if let Err(error) = self.file.write_all(text) {
+        // Where the file is not open for appending, its cursor has to follow.
+        let end = self.file.seek(SeekFrom::Start(self.sum.bytes));
+        if let Err(error) = end.and_then(|_| self.file.write_all(text)) {
             // Failing to remove the remains does not justify a second error: a reader ignores a cut last row.
             let _ = self.file.set_len(self.sum.bytes);
             return Err(WriteError::at(&self.path)(error));
@@ -169,15 +130,4 @@ impl DesignTable {
         }
         Ok(())
     }
-}
-
-#[cfg(unix)]
-fn is_same_file(a: &fs::Metadata, b: &fs::Metadata) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    (a.dev(), a.ino()) == (b.dev(), b.ino())
-}
-
-#[cfg(not(unix))]
-fn is_same_file(a: &fs::Metadata, b: &fs::Metadata) -> bool {
-    a.created().ok() == b.created().ok()
 }

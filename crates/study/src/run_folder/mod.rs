@@ -10,6 +10,7 @@
 mod check;
 mod checkpoint;
 mod design_table;
+mod lock;
 mod merge;
 mod read;
 mod report;

@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-use super::design_table::{DesignTable, open_locked};
+use super::design_table::DesignTable;
+use super::lock::open_locked;
 use super::{DESIGNS, RECORDING, RunFolder, RunFolderError, RunWriter};
 use crate::WriteError;
 use crate::durable::remove;

@@ -5,7 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use super::design_table::{DesignTable, open_locked};
+use super::design_table::DesignTable;
+use super::lock::open_locked;
 use super::{Checkpoint, DESIGNS, FRONT, FileSums, MergedRun, PROGRESS, RECORDING, REPORT, RunReport, STUDY};
 use crate::FileSum;
 use crate::durable::{remove, sweep, sync_folder};
