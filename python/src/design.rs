@@ -74,7 +74,7 @@ impl PyDesign {
     /// active requirements with their poses, and the change of the objective in per cent for 1 % of each parameter.
     ///
     /// `held` states values of other objectives by their keys, such as `{"workspace_radius_m": 1.2}`, in place of those of the design.
-    /// `bars_only` keeps the geometry; `steps` optimizes again after finite steps; `wish` asks what each requirement would have to give
+    /// `bars_only` keeps the geometry; `steps` optimizes again after finite steps; `wish` computes by how much each requirement has to be relaxed
     /// for this value of the objective.
     #[pyo3(signature = (*, held=BTreeMap::new(), bars_only=false, steps=false, wish=None))]
     fn prices<'py>(
@@ -89,9 +89,9 @@ impl PyDesign {
         local::prices(py, self.shared.study(), &self.design, &held, options)
     }
 
-    /// Returns the nearest design that has what is wished for, verified and proved, as `kinefront wish --json` does.
+    /// Returns the nearest design that meets the conditions, verified and proved, as `kinefront wish --json` does.
     ///
-    /// `conditions` are texts such as `"k_xy_n_per_m >= 1.2e6"`; the quantities of `keep` are not to become worse.
+    /// `conditions` are texts such as `"k_xy_n_per_m >= 1.2e6"`; the quantities of `keep` must not become worse.
     #[pyo3(signature = (conditions, *, keep=Vec::new()))]
     fn wish<'py>(&self, py: Python<'py>, conditions: Vec<String>, keep: Vec<String>) -> PyResult<Bound<'py, PyAny>> {
         local::wish(py, self.shared.study(), &self.design, &conditions, &keep)

@@ -99,7 +99,7 @@ impl PyStudy {
         Self::from_toml(py, &text, &self.study().name)
     }
 
-    /// Returns the searches of the sensitivity of the report, as studies by their names: for the study as given and for each
+    /// Returns the searches of the sensitivity analysis of the report, as studies by name: for the study as given and for each
     /// alternative assumption, each architecture alone, with `evaluations` evaluations.
     fn sensitivity<'py>(&self, py: Python<'py>, evaluations: usize) -> PyResult<Bound<'py, PyDict>> {
         let searches = PyDict::new(py);
@@ -254,10 +254,10 @@ impl PyStudy {
         local::prices_along(py, self.study(), &designs)
     }
 
-    /// Returns why the first objective cannot have the value `wished`, as `kinefront why --json` does: what each requirement would have to
-    /// give for it, or that it can be had.
+    /// Returns why the first objective cannot have the value `wished`, as `kinefront why --json` does: by how much each requirement would have
+    /// to be relaxed for it, or that it is achievable.
     ///
-    /// `designs` are those of a front; `held` states wished values of other objectives by their keys, such as
+    /// `designs` are those of a front; `held` states desired values of other objectives by their keys, such as
     /// `{"workspace_radius_m": 1.2}`.
     #[pyo3(signature = (designs, wished, *, held=BTreeMap::new()))]
     fn why<'py>(

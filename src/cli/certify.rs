@@ -19,9 +19,9 @@ use super::{Ending, Failure, load_study, tables, to_json};
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "\
-The lower bound is the radius of a disc in which every pose is proved feasible, at every orientation of the window; the upper
-bound is the distance of a pose that is proved infeasible. The verdict on the claimed radius is proved, refuted or open.
-If the study prescribes a region, the claim is that every pose of the region is feasible, unless --radius claims a disc.",
+The lower bound is the radius of a disc in which every pose is proved feasible over the whole rotation range; the upper
+bound is the distance from the centre to a pose that is proved infeasible. The verdict on the claimed radius is proved, refuted or open.
+If the study prescribes a region, the claim is that every pose of the region is feasible, unless --radius specifies a disc.",
     group = exactly_one_of(DESIGN_OR_STREAM)
 )]
 pub struct CertifyArguments {
@@ -43,7 +43,7 @@ pub struct CertifyArguments {
     /// Largest number of boxes.
     #[arg(long, value_name = "N", default_value_t = CertifyOptions::MAX_BOXES as u64, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     max_boxes: u64,
-    /// Bound the workspace radius over all home orientations, too.
+    /// Also bound the workspace radius over all home orientations.
     #[arg(long)]
     all_homes: bool,
     /// Print the result as one JSON object.

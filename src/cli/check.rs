@@ -14,12 +14,12 @@ use super::{Ending, Failure, say, shown};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-The exit code is 0 if the folder is sound, 2 if something is wrong, and 1 if no file states what the designs have to be. A repair removes an incomplete last row, and writes
-anew what follows from the study and the designs: the front, run.json, and the recording.")]
+The exit code is 0 if the folder is sound, 2 if something is wrong, and 1 if no file states the expected size and checksum of the designs. A repair removes an incomplete last row, and
+regenerates the files that follow from the study and the designs: the front, run.json, and the recording.")]
 pub struct CheckArguments {
     /// Run folder.
     folder: PathBuf,
-    /// Repair what is wrong where nothing has to be guessed.
+    /// Repair the errors that can be repaired without guessing.
     #[arg(long)]
     repair: bool,
     /// Print nothing but errors.
@@ -36,7 +36,7 @@ pub fn run(arguments: &CheckArguments) -> Result<Ending, Failure> {
         return Err(Failure::Runtime(miette!(
             help = "kinefront optimize --resume --accept-unverified completes the run with these designs",
             "{} cannot be verified: its {count} designs follow from the study, but no file states their number and their \
-             checksum ({}), so that lost rows would not be noticed",
+             checksum ({}), so lost rows would go unnoticed",
             path.display(),
             match inspection.folder.report() {
                 Some(_) => "run.json has no `files`",
@@ -53,7 +53,7 @@ pub fn run(arguments: &CheckArguments) -> Result<Ending, Failure> {
     for finding in &inspection.findings {
         let remedy = match finding.repair {
             Some(Repair::Cut) => " (can be repaired: the row is removed)",
-            Some(Repair::WriteAnew) => " (can be repaired: it is written anew)",
+            Some(Repair::WriteAnew) => " (can be repaired: it is regenerated)",
             None => "",
         };
         let line = format!("{}: {}{remedy}", finding.path.display(), finding.message);
@@ -94,7 +94,7 @@ fn soundness(path: &Path, inspection: &Inspection) -> String {
     let state = match (inspection.folder.report(), inspection.folder.checkpoint()) {
         (Some(_), _) => "the run has ended",
         (None, Some(_)) => "the run has not ended and can be resumed",
-        (None, None) => "nothing is known of its end",
+        (None, None) => "it is not known whether the run has ended",
     };
     format!("{} is sound: {count} designs; {state}", path.display())
 }
@@ -137,7 +137,10 @@ fn check_recording(inspection: &mut Inspection) -> Result<(), Failure> {
                 .zip(&expected)
                 .position(|(found, entry)| found.row != entry.row);
             match differing {
-                Some(place) => Some(format!("design #{} is not that of the table", expected[place].id)),
+                Some(place) => Some(format!(
+                    "design #{} differs from the one in the table",
+                    expected[place].id
+                )),
                 None if rows.len() > expected.len() || has_ended && rows.len() < expected.len() => Some(format!(
                     "it has {} designs, but the table has {}",
                     rows.len(),

@@ -14,7 +14,7 @@ use super::{Ending, Failure, exists_already, say};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Formats of a design: gltf (.glb), mjcf (.xml), sdf, urdf, dxf, json, csv-parts (.csv: what has to be ordered and cut), step (an assembly for CAD), csv-trajectory
+Formats of a design: gltf (.glb), mjcf (.xml), sdf, urdf, dxf, json, csv-parts (.csv: parts to order and cut), step (an assembly for CAD), csv-trajectory
 (.csv: the motion of the study every millisecond, for a controller).
 Formats of a front: csv, parquet; specify the run folder instead of a design.
 
@@ -100,11 +100,11 @@ impl ExportArguments {
         match target {
             ExportTarget::Design(format) if is_gltf && format.extension() == "glb" => Err(miette!(
                 help = "use the file extension .glb",
-                "{} has the extension of text glTF, but glTF is written in its binary form",
+                "{} has the extension of text-based glTF, but Kinefront writes binary glTF",
                 self.out.display()
             )),
             ExportTarget::Csv | ExportTarget::Parquet if self.pose.is_some() || self.subject.study.is_some() => Err(
-                miette!("--pose and --study have no meaning for a front: it is exported as the run wrote it"),
+                miette!("--pose and --study do not apply to a front, which is exported as the run wrote it"),
             ),
             _ => Ok(()),
         }
@@ -193,8 +193,8 @@ fn check_table(table: &Path) -> Result<()> {
     let study = match run_of(table)? {
         Some(run) if !run.is_verifiable() => {
             return Err(miette!(
-                help = "kinefront check says what is missing",
-                "{} cannot be verified: no file states what its tables have to be",
+                help = "kinefront check reports what is missing",
+                "{} cannot be verified: no file states the expected size and checksum of its tables",
                 run.path().display()
             ));
         }

@@ -29,7 +29,7 @@ pub fn run(arguments: &ManualArguments) -> Result<Ending, Failure> {
         )));
     }
     std::fs::create_dir_all(&arguments.folder)
-        .map_err(|error| Failure::Runtime(miette!("the folder {folder} cannot be made: {error}")))?;
+        .map_err(|error| Failure::Runtime(miette!("cannot create the folder {folder}: {error}")))?;
     let mut pages = Vec::new();
     collect(&program, &mut pages)?;
     for (name, _) in &pages {

@@ -11,13 +11,13 @@ use super::{Ending, Failure, say};
 
 #[derive(Debug, clap::Args)]
 pub struct MergeArguments {
-    /// Run folders of one study, which differ in seed, budget and name at most.
+    /// Run folders of one study, which may differ only in seed, budget and name.
     #[arg(required = true, num_args = 2.., value_name = "RUN")]
     runs: Vec<PathBuf>,
     /// Run folder to write; it must not already hold a run.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Keep the designs that no other dominates, and every N-th of the others.
+    /// Keep the non-dominated designs, and every N-th of the others.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     keep_every: u64,
     #[command(flatten)]

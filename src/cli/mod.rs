@@ -51,7 +51,7 @@ use miette::{IntoDiagnostic, Report, Result, miette};
     name = "kinefront",
     version = version::version(),
     arg_required_else_help = cfg!(not(feature = "explorer")),
-    after_help = "docs/tutorial.md, in the sources and in the archives of the program, leads from a question to a first machine in ten minutes."
+    after_help = "The tutorial (docs/tutorial.md, in the sources and in the program archives) takes you from a question to a first machine in ten minutes."
 )]
 struct ProgramArguments {
     /// Command; without one, the window opens and runs the paper's study.
@@ -80,13 +80,13 @@ enum Command {
     Certify(certify::CertifyArguments),
     /// Compute joint values, dexterity and stiffness of a design at one pose.
     Pose(pose::PoseArguments),
-    /// Move a design along the motion of a study: speeds, forces, power and energy of its drives over time.
+    /// Compute the speeds, forces, power and energy of the actuators of a design over the motion of a study.
     Task(task::TaskArguments),
-    /// Tell what each requirement costs at a design: prices, and what a wished mass would take.
+    /// Show what each requirement costs at a design, and the relaxation that a desired mass would require.
     Prices(prices::PricesArguments),
-    /// Find the nearest design that has what is wished, verified and proved.
+    /// Find the nearest design that meets the given conditions, verified and proved.
     Wish(wish::WishArguments),
-    /// Tell why a wished point of a front cannot be had, and which requirement would have to give how much.
+    /// Explain why a desired point beyond the front is not achievable, and by how much each requirement would have to be relaxed.
     Why(why::WhyArguments),
     /// Write a recording of one design with its overlays and a tour of its workspace.
     Show(show::ShowArguments),
@@ -94,9 +94,9 @@ enum Command {
     Export(export::ExportArguments),
     /// Search for light designs with a large regular workspace, without a window.
     Optimize(optimize::OptimizeArguments),
-    /// Join runs that differ in their seeds into one run folder, and verify their common front.
+    /// Merge runs that differ in seed into one run folder, and verify their combined front.
     Merge(merge::MergeArguments),
-    /// Check a run folder: its tables, what follows from them, and its recording.
+    /// Check a run folder: its tables, the files derived from them, and its recording.
     Check(check::CheckArguments),
     /// Write a report on one or more runs: fronts, trends, comparison, pictures, sensitivity.
     Report(report::ReportArguments),
@@ -181,7 +181,7 @@ impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Self {
         match error.kind() {
             std::io::ErrorKind::BrokenPipe => Self::BrokenPipe,
-            _ => Self::Runtime(miette!("cannot write to the standard output: {error}")),
+            _ => Self::Runtime(miette!("cannot write to standard output: {error}")),
         }
     }
 }
@@ -238,7 +238,7 @@ fn run_command(command: Option<Command>) -> Result<Ending, Failure> {
         None => Ok(Ending::Done),
         #[cfg(not(feature = "explorer"))]
         Some(Command::Explore(_)) => Err(Failure::Input(miette!(
-            help = "use the program with the window, or look at a recording with `rerun run/recording.rrd`",
+            help = "use a build with the window, or open a recording with `rerun run/recording.rrd`",
             "this build of Kinefront is for servers and has no window"
         ))),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments),
@@ -289,7 +289,7 @@ fn start_threads() -> Result<(), Failure> {
     };
     let pool = rayon::ThreadPoolBuilder::new().spawn_handler(spawn);
     pool.build_global()
-        .map_err(|error| Failure::Runtime(miette!("the threads of the program cannot be started: {error}")))
+        .map_err(|error| Failure::Runtime(miette!("cannot start the worker threads: {error}")))
 }
 
 /// Prints the help, the version, or what is wrong with the arguments.
@@ -297,7 +297,7 @@ fn print_message(message: &clap::Error) -> ExitCode {
     let printed = message.print().and_then(|()| std::io::stdout().flush());
     match printed {
         Err(error) if !message.use_stderr() && error.kind() != std::io::ErrorKind::BrokenPipe => {
-            say(format_args!("cannot write to the standard output: {error}"));
+            say(format_args!("cannot write to standard output: {error}"));
             ExitCode::from(1)
         }
         _ => ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(2)),
@@ -342,7 +342,7 @@ fn color(text: &str) -> Option<usize> {
 /// The refusal to overwrite a file.
 fn exists_already(path: &Path) -> Failure {
     Failure::Input(miette!(
-        "{} exists already; choose another file, or move that one away",
+        "{} already exists; choose another file name, or move the existing file",
         path.display()
     ))
 }

@@ -24,7 +24,7 @@ pub struct OptimizeArguments {
     /// Run folder to continue. With a larger --evaluations, a run that has ended is extended.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["study", "algorithm", "seed", "front", "architectures", "out"])]
     resume: Option<PathBuf>,
-    /// Resume a folder that does not state the size and the checksum of its designs, with the rows that are there.
+    /// Resume a folder that does not state the size and checksum of its designs, with the rows that it contains.
     #[arg(long, requires = "resume", conflicts_with_all = ["study", "algorithm", "seed", "front", "architectures", "out"])]
     accept_unverified: bool,
     /// Algorithm; overrides that of the study.
@@ -140,7 +140,7 @@ fn study(arguments: &OptimizeArguments) -> Result<Study, Failure> {
     {
         return Err(Failure::Input(miette!(
             help = format!(
-                "kinefront optimize --resume {0} continues the run; kinefront optimize {0}/study.toml starts its study again",
+                "kinefront optimize --resume {0} continues the run; kinefront optimize {0}/study.toml starts a new run of its study",
                 run.display()
             ),
             "{} is a run folder, not a study",

@@ -19,13 +19,13 @@ pub struct PoseArguments {
     /// Pose, as in "x=0.1 y=0.2 phi_deg=30" (metres and degrees).
     #[arg(long, required_unless_present = "actuators", conflicts_with = "actuators")]
     pose: Option<String>,
-    /// Values of the driven joints, as in "q1=0.9 q2=1.0 q3=1.1" (metres or radians): prints all poses that they allow.
+    /// Values of the actuated joints, as in "q1=0.9 q2=1.0 q3=1.1" (metres or radians): prints all poses that they allow.
     #[arg(long, value_name = "VALUES")]
     actuators: Option<String>,
-    /// Wrench on the platform in place of the loads of the study, as in "fx=100 fy=0 mz=-5" (N and N·m; absent parts are 0).
+    /// Wrench on the platform in place of the loads of the study, as in "fx=100 fy=0 mz=-5" (N and N·m; omitted components are 0).
     #[arg(long, conflicts_with = "actuators")]
     wrench: Option<String>,
-    /// Twist of the platform at P, as in "vx=1 vy=0 omega=0.5" (m/s and rad/s; absent parts are 0): prints the speeds of the actuators.
+    /// Twist of the platform at P, as in "vx=1 vy=0 omega=0.5" (m/s and rad/s; omitted components are 0): prints the speeds of the actuators.
     #[arg(long, conflicts_with = "actuators")]
     twist: Option<String>,
     /// Acceleration of the platform at P, as in "ax=10 ay=0 alpha=5" (m/s² and rad/s²): prints the forces of the actuators.

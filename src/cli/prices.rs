@@ -14,26 +14,26 @@ use super::{Ending, Failure, tables, to_json};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-The design is first made the best one near it, with every pose of the region as a constraint and a continuous home orientation. A price
-is the change of the first objective in per cent for 1 % of a requirement; the other objectives, as the workspace radius, keep the
-values of the design. A requirement that costs nothing there is listed with the amount by which it may rise.
+Kinefront first optimizes the design locally, with every pose of the region as a constraint and a continuous home orientation. A price
+is the change of the first objective in per cent for +1 % of a requirement; the other objectives, such as the workspace radius, keep the
+values of the design. A requirement that is not active is listed with the amount by which it can increase at no cost.
 
-Without #ID, the prices of all designs of the table are determined: what drives the first objective along the front, in sentences; with
---csv, the table of the designs with a column price_* for each parameter.")]
+Without #ID, the command computes the prices of all designs of the table and prints, in sentences, what drives the first objective along the front; with
+--csv, it prints the table of the designs with a column price_* for each parameter.")]
 #[command(group = exactly_one_of(A_DESIGN))]
 pub struct PricesArguments {
     #[command(flatten)]
     subject: SubjectArguments,
-    /// Workspace radius that is kept, in metres [default: that of the design on the fine grid].
+    /// Workspace radius to keep, in metres [default: that of the design on the fine grid].
     #[arg(long, value_name = "R")]
     radius: Option<f64>,
-    /// Keep the geometry and the home orientation, and change the bars alone.
+    /// Keep the geometry and the home orientation, and change only the bars.
     #[arg(long)]
     bars_only: bool,
-    /// Optimise the design again after steps of 3, 10 and 20 % of each parameter.
+    /// Optimize the design again after steps of 3, 10 and 20 % of each parameter.
     #[arg(long)]
     steps: bool,
-    /// Tell what each requirement would have to give for this mass in kilograms, or this value of the first objective.
+    /// Show by how much each requirement would have to be relaxed for this mass in kilograms, or this value of the first objective.
     #[arg(long, value_name = "KG")]
     wish_mass: Option<f64>,
     /// Print the designs of a front with their prices as CSV.
@@ -82,7 +82,7 @@ pub fn run(arguments: &PricesArguments) -> Result<Ending, Failure> {
 fn along_front(arguments: &PricesArguments) -> Result<Ending, Failure> {
     let is_asked = arguments.bars_only || arguments.steps;
     if is_asked || arguments.radius.is_some() || arguments.wish_mass.is_some() {
-        let words = "--radius, --bars-only, --steps and --wish-mass are for one design; name it as TABLE#ID";
+        let words = "--radius, --bars-only, --steps and --wish-mass require a single design; specify it as TABLE#ID";
         return Err(Failure::Input(miette!("{words}")));
     }
     let (study, designs) = arguments.subject.read_table().map_err(Failure::Input)?;

@@ -23,7 +23,7 @@ impl<R: BufRead, W: Write> Dialogue<'_, R, W> {
             if self.answers.read_line(&mut line)? == 0 {
                 return Err(io::Error::new(
                     io::ErrorKind::UnexpectedEof,
-                    "the answers ended before the questions",
+                    "the input ended before all questions were answered",
                 ));
             }
             let answer = line.trim();
@@ -39,7 +39,7 @@ impl<R: BufRead, W: Write> Dialogue<'_, R, W> {
         self.ask(&question, initial, |answer| {
             let found = choices.iter().find(|choice| **choice == answer);
             found.map_or_else(
-                || Err(format!("`{answer}` is none of {}", choices.join(", "))),
+                || Err(format!("`{answer}` is not one of {}", choices.join(", "))),
                 |choice| Ok((*choice).to_owned()),
             )
         })
@@ -74,7 +74,7 @@ pub fn ask(answers: &mut impl BufRead, out: &mut impl Write) -> io::Result<Strin
     let mut dialogue = Dialogue { answers, out };
     writeln!(
         dialogue.out,
-        "A few questions; an empty answer takes the value in brackets.\n"
+        "Answer a few questions; an empty answer accepts the value in brackets.\n"
     )?;
     let mut text = String::from(
         "# Written by `kinefront study new --question`. Every key that is omitted has the value of the study \"paper\".\n\n",
@@ -123,7 +123,7 @@ fn architectures(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut S
 }
 
 fn objectives(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut String, region: &str) -> io::Result<()> {
-    writeln!(dialogue.out, "Quantities that can be objectives and have limits:")?;
+    writeln!(dialogue.out, "Quantities available as objectives and for limits:")?;
     for entry in Quantity::all().map(Quantity::entry) {
         writeln!(dialogue.out, "  {:<20} {}", entry.key, entry.meaning)?;
     }
@@ -138,7 +138,7 @@ fn objectives(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut Stri
             return Err(format!("{} objectives are named; name one to three", keys.len()));
         }
         keys.into_iter()
-            .map(|key| Quantity::find(key).ok_or_else(|| format!("`{key}` is none of the quantities above")))
+            .map(|key| Quantity::find(key).ok_or_else(|| format!("`{key}` is not one of the quantities above")))
             .collect::<Result<Vec<Quantity>, String>>()
     })?;
     let objectives: Vec<String> = chosen
@@ -167,8 +167,8 @@ fn limits(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut String) 
                 .map(|(key, value)| (key, "at_most", value))
                 .or_else(|| word.split_once(">=").map(|(key, value)| (key, "at_least", value)))
                 .ok_or_else(|| format!("`{word}` has neither <= nor >="))?;
-            let quantity = Quantity::find(key).ok_or_else(|| format!("`{key}` is none of the quantities above"))?;
-            let value: f64 = value.parse().map_err(|_| format!("`{value}` is no number"))?;
+            let quantity = Quantity::find(key).ok_or_else(|| format!("`{key}` is not one of the quantities above"))?;
+            let value: f64 = value.parse().map_err(|_| format!("`{value}` is not a number"))?;
             Ok(format!("{} = {{ {sign} = {value} }}", quantity.entry().key))
         };
         answer
@@ -183,7 +183,7 @@ fn limits(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut String) 
 }
 
 fn write_region(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut String, region: &str) -> io::Result<()> {
-    let turn = dialogue.number("Range of orientations in degrees", "20")?;
+    let turn = dialogue.number("Rotation range in degrees", "20")?;
     let _ = writeln!(text, "\n[workspace]\nrotation_range_deg = {turn}");
     match region {
         "disc" => {
@@ -217,7 +217,7 @@ fn sections(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut String
                 let _ = writeln!(lines, "{bars} = {{ kind = \"tube\", catalogue = {} }}", quoted(&name));
             }
             kind => {
-                let ratio = dialogue.number("Wall as a fraction of the outer radius, in (0, 1]", "0.2")?;
+                let ratio = dialogue.number("Wall thickness as a fraction of the outer radius, in (0, 1]", "0.2")?;
                 let _ = writeln!(lines, "{bars} = {{ kind = \"{kind}\", wall_ratio = {ratio} }}");
             }
         }
@@ -230,7 +230,7 @@ fn sections(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut String
 
 /// Asks for what a machine needs besides: members that do not collide, its material, and joints with a mass.
 fn machine(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut String) -> io::Result<()> {
-    let clearance = dialogue.optional("Least clearance of members that are not joined in m", "0.005")?;
+    let clearance = dialogue.optional("Smallest clearance between members that are not joined, in m", "0.005")?;
     if let Some(clearance) = clearance {
         let _ = writeln!(text, "\n[requirements]\nclearance_min_m = {clearance}");
     }
@@ -301,7 +301,7 @@ mod tests {
         for complaint in [
             "`-1` is not a number above 0",
             "unknown architecture `3-XXX`",
-            "`weight` is none",
+            "`weight` is not one",
             "`footprint_m<1` has neither",
         ] {
             assert!(said.contains(complaint), "{complaint}: {said}");

@@ -22,11 +22,11 @@ Examples:
   kinefront report steel aluminium --out both   runs of different studies side by side
   kinefront report --paper --out paper          comparison with the 2010 paper, with new runs of its study")]
 pub struct ReportArguments {
-    /// Run folders. Runs whose studies differ in architectures and search alone are put together in one report; others are shown side by
+    /// Run folders. Runs whose studies differ only in architectures and search are combined in one report; others are shown side by
     /// side, if their objectives are the same.
     #[arg(value_name = "RUN", required_unless_present = "paper", conflicts_with = "paper")]
     runs: Vec<PathBuf>,
-    /// Run the paper's study anew, each architecture alone and all together, and report on it.
+    /// Run the paper's study again, each architecture separately and all together, and report on it.
     #[arg(long)]
     paper: bool,
     /// Folder for the report [default: RUN/report, or paper-report].

@@ -147,7 +147,7 @@ fn tell(
         if summary.outcome == EndReason::Interrupted {
             writeln!(
                 out,
-                "interrupted after {} evaluations; kinefront optimize --resume {} continues",
+                "interrupted after {} evaluations; kinefront optimize --resume {} continues the run",
                 last.map_or(0, |last| last.evaluations),
                 path.display()
             )?;
@@ -185,7 +185,7 @@ fn tell(
         } else {
             writeln!(
                 out,
-                "{} is incomplete; kinefront optimize --resume {} continues",
+                "{} is incomplete; kinefront optimize --resume {} continues the run",
                 path.display(),
                 path.display()
             )?;

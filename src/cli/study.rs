@@ -32,7 +32,7 @@ enum StudyCommand {
         /// Built-in study to copy [default: the paper's with a clearance between members].
         #[arg(long)]
         from: Option<String>,
-        /// Ask for the study on the terminal instead of copying one.
+        /// Ask questions on the terminal and write the study from the answers, instead of copying one.
         #[arg(long, conflicts_with = "from")]
         question: bool,
     },
@@ -41,7 +41,7 @@ enum StudyCommand {
         /// Part of a key or section, as in `requirements` or `clearance`.
         part: Option<String>,
     },
-    /// Check a study file, and report its errors or what it leaves open.
+    /// Check a study file, and report its errors or the requirements that it leaves open.
     Check {
         /// Study file to check.
         file: PathBuf,

@@ -11,41 +11,47 @@ use toml::{Table, Value};
 const SECTIONS: [(&str, &str); 35] = [
     (
         "",
-        "What is asked, and of which architectures. These keys stand before the first section.",
+        "Objectives, limits and architectures. These keys come before the first section.",
     ),
     (
         "material",
-        "Material of every bar. A named material supplies the values that do not stand beside its name.",
+        "Material of every bar. A named material supplies the values that the section does not state.",
     ),
     (
         "sections.legs",
-        "Cross-section of the bars of the legs: solid (`round`), or with one of `wall_ratio`, `wall_m` and `catalogue`.",
+        "Cross-section of the bars of the legs: solid (`round`), or hollow with one of `wall_ratio`, `wall_m` and `catalogue`.",
     ),
     ("sections.platform", "Cross-section of the bars of the platform."),
     (
         "sections.rails",
-        "Cross-section of the rails of the base, which counts only if they have a radius.",
+        "Cross-section of the rails of the base; it is used only if `rails.radius_m` is set.",
     ),
     (
         "rails",
         "Rails of the base, on which the sliders of PRR, PRP and PPR legs move.",
     ),
-    ("actuators", "Stiffness of the actuators with their transmission."),
-    ("joints", "Masses of joints and motors. They count where they move."),
+    ("actuators", "Stiffness of the actuators, including their transmission."),
+    (
+        "joints",
+        "Masses of joints and motors. A mass counts only where it moves.",
+    ),
     (
         "requirements",
         "Accuracy under load, dexterity, and clearance, at every pose of the workspace.",
     ),
     (
         "strength",
-        "Loads under which stress, buckling and the forces of joints and drives are computed.",
+        "Loads for which stress, buckling, and the forces of joints and actuators are computed.",
     ),
     ("payload", "Body that the platform carries during a motion."),
-    ("drives", "What the drives move, and the drives that can be bought."),
+    (
+        "drives",
+        "Masses and inertias that the drives move, and the catalogue of drives.",
+    ),
     ("loads", "Loads during a motion."),
     (
         "task",
-        "Motion that the platform repeats; there is none without `shape`.",
+        "Motion that the platform repeats; without `shape`, the study has no motion.",
     ),
     (
         "anywhere",
@@ -76,14 +82,14 @@ const SECTIONS: [(&str, &str); 35] = [
     ("bounds", "Bounds of the design variables, each as `[lower, upper]`."),
     (
         "variables",
-        "Design variables that do not range freely between their bounds.",
+        "Design variables that do not vary freely between their bounds.",
     ),
     ("grid.reference", "Grid of poses of the search."),
     ("grid.fine", "Grid of poses on which reported designs are verified."),
     ("optimizer", "The search."),
     (
         "optimizer.stagnation",
-        "Ends the search when the hypervolume hardly grows; without this section it does not.",
+        "Ends the search when the hypervolume hardly grows; without this section, stagnation does not end the search.",
     ),
     ("optimizer.front_de", "Differential evolution along the front."),
     (

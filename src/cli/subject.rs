@@ -177,7 +177,7 @@ fn find_named(table: &Path, study: &Study, name: &str) -> Result<Design> {
     let rows = read_table(table, study).into_diagnostic()?.rows;
     if !rows.iter().any(|row| row.row.is_feasible()) {
         return Err(miette!(
-            "{} has no feasible design, and so none is #{name}",
+            "{} has no feasible design, so it has no #{name}",
             table.display()
         ));
     }

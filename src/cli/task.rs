@@ -13,7 +13,7 @@ use super::{Ending, Failure, GridArgument, say, tables, to_json};
 #[derive(Debug, clap::Args)]
 #[command(
     group = exactly_one_of(A_DESIGN),
-    after_help = "The section `task` of the study states the motion."
+    after_help = "The section `[task]` of the study defines the motion."
 )]
 pub struct TaskArguments {
     #[command(flatten)]
@@ -50,7 +50,7 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
         return Err(Failure::Input(miette!(
             help = "add a section [task], for example with shape = \"pick-and-place\" and cycle_time_s = 2.0, and name the file \
                     with --study",
-            "the study `{}` states no motion",
+            "the study `{}` defines no motion",
             study.name
         )));
     };

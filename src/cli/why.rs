@@ -16,23 +16,23 @@ use super::{Ending, Failure, tables, to_json};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Of each architecture, the designs of the front whose other objectives are nearest are made the best ones for the wished values of these.
-If the lightest of them is still too heavy, each requirement is relaxed until the wished mass is reached, alone and together with the
+For each architecture, Kinefront locally optimizes the front designs whose other objectives are nearest, for the desired values of these objectives.
+If the lightest of them is still too heavy, each requirement is relaxed until the desired mass is reached, separately and together with the
 others; the factor is solved for, not extrapolated.
 
-Without --mass, the table is that of a run that found no feasible design, as run/designs.csv: each requirement is told with the nearest
-value of it that can be had while all others are kept.")]
+Without --mass, the table must be that of a run that found no feasible design, such as run/designs.csv: each requirement is listed with its nearest
+achievable value while all others are kept.")]
 pub struct WhyArguments {
-    /// Table of a front, as run/front.csv; without --mass, of any designs, as run/designs.csv.
+    /// Table of a front, such as run/front.csv; without --mass, of any designs, such as run/designs.csv.
     #[arg(value_name = "TABLE")]
     table: PathBuf,
-    /// Wished mass in kilograms, or value of the first objective.
+    /// Desired mass in kilograms, or desired value of the first objective.
     #[arg(long, value_name = "KG")]
     mass: Option<f64>,
-    /// Wished workspace radius in metres; not for a study that prescribes the region.
+    /// Desired workspace radius in metres; not allowed if the study prescribes the region.
     #[arg(long, value_name = "R")]
     radius: Option<f64>,
-    /// Wished value of another objective, as in k_xy_n_per_m=1.2e6; may be repeated [default: that of the nearest design].
+    /// Desired value of another objective, as in k_xy_n_per_m=1.2e6; may be repeated [default: that of the nearest design].
     #[arg(long, value_name = "QUANTITY=VALUE")]
     at: Vec<String>,
     /// Study file, or name of a built-in study [default: study.toml in the folder of the table, else paper].
@@ -75,7 +75,7 @@ pub fn run(arguments: &WhyArguments) -> std::result::Result<Ending, Failure> {
 /// Tells what stands in the way of a study of which no design is feasible.
 fn tell_hindrances(arguments: &WhyArguments, study: &Study) -> std::result::Result<Ending, Failure> {
     if arguments.radius.is_some() || !arguments.at.is_empty() {
-        let words = "--radius and --at are of a point beyond the front; add --mass";
+        let words = "--radius and --at specify a point beyond the front; add --mass";
         return Err(Failure::Input(miette!("{words}")));
     }
     let found = hindrances(&arguments.table, study)?;
@@ -101,7 +101,7 @@ pub fn hindrances(table: &Path, study: &Study) -> std::result::Result<Vec<Hindra
     if let Some(feasible) = rows.iter().find(|entry| entry.row.is_feasible()) {
         let (id, table) = (feasible.id, table.display());
         let words =
-            format!("design #{id} of {table} is feasible, so that nothing is in the way of all designs; add --mass");
+            format!("design #{id} of {table} is feasible, so no requirement prevents a feasible design; add --mass");
         return Err(Failure::Input(miette!("{words}")));
     }
     let problem = DesignProblem::new(study).map_err(Failure::runtime)?;
@@ -122,7 +122,7 @@ fn held(arguments: &WhyArguments, study: &Study) -> Result<Vec<(Quantity, f64)>>
         Some(radius) if has_radius => held.push((Quantity::WorkspaceRadius, radius)),
         Some(_) => {
             return Err(miette!(
-                "the workspace radius is no objective of the study; omit --radius"
+                "the workspace radius is not an objective of the study; omit --radius"
             ));
         }
         None => {}
@@ -136,7 +136,7 @@ fn held(arguments: &WhyArguments, study: &Study) -> Result<Vec<(Quantity, f64)>>
     }
     if has_radius && !held.iter().any(|(quantity, _)| *quantity == Quantity::WorkspaceRadius) {
         return Err(miette!(
-            "a point of this study has a workspace radius; add --radius, in metres"
+            "a point in the objectives of this study includes a workspace radius; add --radius, in metres"
         ));
     }
     Ok(held)
@@ -152,8 +152,8 @@ fn read_point(text: &str, others: &[Quantity]) -> Result<(Quantity, f64)> {
     stated.ok_or_else(|| {
         let keys: Vec<&str> = others.iter().map(|other| other.entry().key).collect();
         let known = match keys.as_slice() {
-            [] => "the study has one objective, so that there is nothing to state".to_owned(),
-            keys => format!("the objectives beside the first one are {}", keys.join(", ")),
+            [] => "the study has only one objective, so --at does not apply".to_owned(),
+            keys => format!("the objectives after the first one are {}", keys.join(", ")),
         };
         miette!("--at `{text}` is not QUANTITY=VALUE with an objective of the study and a number above 0; {known}")
     })

@@ -11,16 +11,16 @@ use super::{Ending, Failure, tables, to_json};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-The objectives of the study keep the values that the design has, unless the wish names them; the first objective is improved as far as
-the wish allows. The design that is found is verified on the fine grid and proved.")]
+The objectives keep the values of the given design unless a condition names them; the first objective is then improved as much as
+the conditions allow. The resulting design is verified on the fine grid and proved.")]
 #[command(group = exactly_one_of(A_DESIGN))]
 pub struct WishArguments {
     #[command(flatten)]
     subject: SubjectArguments,
-    /// A quantity that is to be at least or at most a number, as in "k_xy_n_per_m >= 1.2e6"; may be repeated.
+    /// Condition that a quantity be at least or at most a number, as in "k_xy_n_per_m >= 1.2e6"; may be repeated.
     #[arg(long, value_name = "CONDITION", required = true)]
     set: Vec<String>,
-    /// A quantity that is not to become worse, as in footprint_m; may be repeated.
+    /// Quantity that must not become worse, such as footprint_m; may be repeated.
     #[arg(long, value_name = "QUANTITY")]
     keep: Vec<String>,
     /// Print the result as one JSON object.
@@ -51,7 +51,7 @@ fn read(arguments: &WishArguments) -> Result<Wish, Failure> {
     let keep = arguments.keep.iter().map(|key| {
         Quantity::find(key).ok_or_else(|| {
             Failure::Input(miette!(
-                "`{key}` is no quantity; quantities are the keys of `objectives` and `constraints`, as footprint_m"
+                "`{key}` is not a quantity; quantities are the keys of `objectives` and `constraints`, such as footprint_m"
             ))
         })
     });

@@ -192,10 +192,13 @@ fn a_front_answers_wishes_and_reasons() {
     );
 
     for (arguments, message) in [
-        (vec!["wish", &subject, "--set", "k_xy_n_per_m > 3"], "is no condition"),
+        (
+            vec!["wish", &subject, "--set", "k_xy_n_per_m > 3"],
+            "is not a condition",
+        ),
         (
             vec!["wish", &subject, "--set", "stiffness >= 3"],
-            "`stiffness` is no quantity",
+            "`stiffness` is not a quantity",
         ),
         (
             vec!["wish", &subject, "--set", "mass_kg <= -3"],
@@ -204,7 +207,7 @@ fn a_front_answers_wishes_and_reasons() {
         (vec!["why", &table, "--mass", "10"], "add --radius"),
         (
             vec!["why", &table, "--mass", "10", "--radius", "9"],
-            "keeps every requirement",
+            "satisfies every requirement",
         ),
         (vec!["prices", &subject, "--radius", "0"], "it must be a number above 0"),
     ] {
@@ -275,7 +278,7 @@ fn prices_along_a_front_are_those_of_its_designs() {
     }
     assert_eq!(priced, rows.len());
     for (arguments, message) in [
-        (vec!["prices", &table, "--steps"], "are for one design"),
+        (vec!["prices", &table, "--steps"], "require a single design"),
         (
             vec!["prices", &format!("{table}#1"), "--csv"],
             "name the table without #ID",
@@ -371,7 +374,7 @@ fn a_study_without_designs_is_told_what_stands_in_the_way() {
         .arg(feasible.join("designs.csv"))
         .assert()
         .code(2)
-        .stderr(contains("is feasible, so that"));
+        .stderr(contains("is feasible, so no requirement"));
 }
 
 /// A point of a question without a workspace radius is stated by its own quantities.
@@ -403,14 +406,14 @@ fn why_is_asked_of_the_objectives_of_the_study() {
     for (arguments, message) in [
         (
             vec!["--at", "k_z_n_per_m=3"],
-            "the objectives beside the first one are k_xy_n_per_m",
+            "the objectives after the first one are k_xy_n_per_m",
         ),
         (vec!["--at", "k_xy_n_per_m=-3"], "a number above 0"),
         (
             vec!["--at", "k_xy_n_per_m=3", "--at", "k_xy_n_per_m=4"],
             "is stated twice",
         ),
-        (vec!["--radius", "1"], "is no objective of the study; omit --radius"),
+        (vec!["--radius", "1"], "is not an objective of the study; omit --radius"),
     ] {
         kinefront()
             .args(["why", &table, "--mass", "10"])

@@ -350,7 +350,7 @@ fn exports_say_what_is_wrong() {
     fails(&["run/front.csv#1", "--format", "csv"], "specify the run folder");
     fails(
         &["run", "--format", "csv", "--pose", "x=0 y=0 phi_deg=0"],
-        "have no meaning",
+        "do not apply",
     );
     fails(&["nowhere", "--format", "csv"], "nowhere: cannot read the table");
     kinefront()
@@ -372,7 +372,7 @@ fn exports_say_what_is_wrong() {
         .arg(&out)
         .assert()
         .code(2)
-        .stderr(contains("exists already"));
+        .stderr(contains("already exists"));
     assert_eq!(std::fs::read_to_string(&out).expect("a file"), "mine");
     // What a format cannot represent is stated in the file and on standard error.
     kinefront()

@@ -109,7 +109,7 @@ fn motions_that_are_impossible_are_told() {
     };
     let task = |keys: &str| format!("[task]\n{keys}\n");
     for (text, words) in [
-        (String::new(), "states no motion"),
+        (String::new(), "defines no motion"),
         (
             task("cycle_time_s = 1"),
             "is missing; without it, nothing else in [task] has an effect",
@@ -122,7 +122,7 @@ fn motions_that_are_impossible_are_told() {
         ),
         (
             task("shape = \"waypoints\"\ncycle_time_s = 1"),
-            "needs two different points",
+            "needs at least two different points",
         ),
         (
             task("shape = \"waypoints\"\nwaypoints = [[0, 0, 0], [0, 0, 9]]\nv_max_m_per_s = 1"),
@@ -315,7 +315,7 @@ fn mujoco_follows_the_reference_trajectory() {
     export(&study)
         .code(2)
         .stdout("")
-        .stderr(contains("the study `still` states no motion in [task]"));
+        .stderr(contains("the study `still` defines no motion in [task]"));
     fs::write(
         &study,
         "[task]\nshape = \"waypoints\"\nwaypoints = [[0, 0, 30], [9, 0, 30]]\ncycle_time_s = 2\n",
@@ -422,7 +422,7 @@ fn a_run_selects_drives_from_a_catalogue() {
         .success()
         .stdout(
             contains(&*drive)
-                .and(contains("of which the motion uses"))
+                .and(contains(", utilization "))
                 .and(contains("s, set by the limit of the utilization of the drives")),
         );
     let entry = format!("{}#{}", run.join("front.csv").display(), of(row, "id"));
@@ -472,8 +472,14 @@ fn catalogues_of_drives_are_checked() {
             format!("{slide}joint,rotary,1,2,3,0,1\n"),
             "line 4 is not an entry of a catalogue; its columns are name, kind",
         ),
-        (format!("{slide}joint,revolute,9,2,3,0,1\n"), "`joint` is no drive"),
-        (format!("{slide}joint,revolute,1,2,NaN,0,1\n"), "`joint` is no drive"),
+        (
+            format!("{slide}joint,revolute,9,2,3,0,1\n"),
+            "`joint` is not a valid drive",
+        ),
+        (
+            format!("{slide}joint,revolute,1,2,NaN,0,1\n"),
+            "`joint` is not a valid drive",
+        ),
         (
             format!("{slide}axis,revolute,1,2,3,0,1\n"),
             "`axis` is the name of two drives",
@@ -517,7 +523,7 @@ fn catalogues_of_drives_are_checked() {
         .assert()
         .success()
         .stdout(contains(
-            "none of the catalogue carries the motion; axis misses by least",
+            "no drive of the catalogue can perform the motion; axis comes closest",
         ));
     let found = json(["evaluate", "--design", design, "--study", path, "--json"]);
     assert_eq!(found["feasible"], false);

@@ -117,7 +117,7 @@ fn a_design_of_a_front_is_shown_by_its_id() {
         assert!(card.contains(&format!("R_w = {radius:.4} m")), "{card}");
     }
     // No file is overwritten, and an id that does not exist is reported with ids that do.
-    show(&row[0], &path).code(2).stderr(contains("exists already"));
+    show(&row[0], &path).code(2).stderr(contains("already exists"));
     show("999999", &folder.path().join("two.rrd"))
         .code(2)
         .stderr(contains("has no design #999999"));

@@ -202,7 +202,7 @@ fn runs_are_put_together_where_they_ask_for_the_same() {
     optimize(&other, &fourth, &["--evaluations", "60"]);
     report(&[&first, &fourth], &folder.path().join("not"), &[])
         .code(2)
-        .stderr(contains("first and fourth cannot be put in one report").and(contains("objectives")));
+        .stderr(contains("first and fourth cannot be combined in one report").and(contains("objectives")));
     assert!(!folder.path().join("not").exists());
 }
 

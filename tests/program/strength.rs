@@ -43,7 +43,7 @@ fn a_pose_is_reported_with_its_strength() {
     table.stdout(
         contains("largest stress")
             .and(contains("leg3_joint3"))
-            .and(contains("drives of legs 1, 2, 3")),
+            .and(contains("actuators of legs 1, 2, 3")),
     );
     for (wrench, words) in [
         ("fx=a", "`a` is not a number (key fx)"),

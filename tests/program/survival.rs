@@ -102,7 +102,7 @@ fn a_finished_run_can_be_extended() {
     optimize(&study, &run, &["--evaluations", "310"]);
     resume(&run, &["--evaluations", "300"])
         .code(2)
-        .stderr(contains("310 evaluations already"));
+        .stderr(contains("already holds 310 evaluations"));
     kinefront()
         .args(["optimize", "--resume"])
         .arg(&run)

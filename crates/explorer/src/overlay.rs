@@ -71,7 +71,7 @@ fn viewpoints(ui: &mut Ui, area: Rect, session: &mut Session) {
     boxed(ui, "viewpoints", Align2::LEFT_TOP, area, |ui| {
         ui.horizontal(|ui| {
             for viewpoint in Viewpoint::ALL {
-                let hint = "looks from this side, with the whole manipulator in view";
+                let hint = "views the whole manipulator from this side";
                 if ui.button(viewpoint.name()).on_hover_text(hint).clicked() {
                     session.look_from(viewpoint);
                 }
@@ -101,7 +101,7 @@ fn legend_of_field(ui: &mut Ui, area: Rect, legend: &FieldLegend, fields: &[Fiel
         ui.add_space(4.0);
         color_bar(ui, legend);
         let mut locked = layers.locked.is_some_and(|(of, _)| of == field);
-        let hint = "keeps these colours for these values, so that other designs can be compared by colour";
+        let hint = "keeps the colour scale, so that designs can be compared by colour";
         if ui.checkbox(&mut locked, "lock range").on_hover_text(hint).changed() {
             layers.locked = locked.then_some((field, legend.map.range()));
         }

@@ -55,7 +55,7 @@ pub fn describe(session: &Session, pointed: &Pointed) -> Option<Description> {
         )),
         SceneTarget::Singularity => Some(Description::new(
             "parallel singularity",
-            vec!["det A = 0: the platform gives way although all drives are locked".to_owned()],
+            vec!["det A = 0: the platform can move although all actuators are locked".to_owned()],
         )),
         SceneTarget::Edge => Some(Description::new(
             "edge of reach",
@@ -112,9 +112,9 @@ fn of_solid(session: &Session, parts: &[Part], index: usize) -> Option<Descripti
             let name = if solid.part == Part::Carriage {
                 "carriage"
             } else {
-                "driven joint"
+                "actuated joint"
             };
-            let line = format!("driven joint at {} {unit}", number(value));
+            let line = format!("actuated joint at {} {unit}", number(value));
             Some(Description::new(format!("{name}{leg}"), vec![line]))
         }
         _ => {

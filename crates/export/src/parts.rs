@@ -9,7 +9,7 @@ pub(super) const FORMAT: Format = Format {
     file: "parts.csv",
     name: "the list of parts",
     title: "CSV, parts to order and cut",
-    lost: Some("the assembly; the file lists bars, joints and motors, with the lengths of bars between the joints"),
+    lost: Some("the assembly; the file lists bars, joints and motors; lengths of bars are those between the joints"),
     is_text: true,
     needs_bars: false,
     joints_from_zero: false,

@@ -73,7 +73,7 @@ impl<'a> Prepared<'a> {
     /// Why there is none, in words.
     pub(super) fn motion(&self) -> Result<TaskMotion, String> {
         let Some(task) = &self.model.settings().task else {
-            return Err(format!("the study `{}` states no motion in [task]", self.study.name));
+            return Err(format!("the study `{}` defines no motion in [task]", self.study.name));
         };
         let frame = self.model.frame_of_task(self.evaluation);
         task.motion(&frame)

@@ -7,7 +7,7 @@
 //! between generations. All objectives are minimised; the constraints are combined into a single violation, which is 0
 //! for a feasible candidate. [`run`] drives an algorithm in the calling thread.
 //!
-//! ## A problem of one's own
+//! ## Your own problem
 //!
 //! ```
 //! use kinefront_optimize::{Nsga2, Nsga2Settings, Outcome, Problem, Variable, run};
@@ -27,7 +27,7 @@
 //! assert!(archive.iter().all(|member| (-0.1..2.1).contains(&member.x[0])));
 //! ```
 //!
-//! ## An algorithm of one's own
+//! ## Your own algorithm
 //!
 //! ```
 //! use kinefront_optimize::{Algorithm, Candidate, Evaluated, Outcome, Problem, Variable, hypervolume, run, sobol};

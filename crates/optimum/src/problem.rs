@@ -18,7 +18,7 @@ const THINNEST: f64 = 1e-9;
 pub enum LocalError {
     /// The first objective is not one that a local problem minimises.
     #[error(
-        "{} is the first objective; a local optimum is found for a mass, the height, the workspace radius, or the worst value of a scalar \
+        "{} is the first objective; a local optimum can be computed only for a mass, the height, the workspace radius, or the worst value of a scalar \
          over the poses",
         .0.entry().key
     )]

@@ -50,7 +50,7 @@ pub enum RecordedRunError {
     #[error(transparent)]
     Write(#[from] kinefront_study::WriteError),
     /// The process that reads it cannot be used.
-    #[error("cannot read {} in a process of its own: {cause}", path.display())]
+    #[error("cannot read {} in a separate process: {cause}", path.display())]
     Process {
         /// The recording.
         path: PathBuf,

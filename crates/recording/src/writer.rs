@@ -31,7 +31,7 @@ pub enum RecordingError {
     #[error(transparent)]
     Grid(#[from] GridError),
     /// The recording was given up while it was written.
-    #[error("the recording was given up")]
+    #[error("the recording was abandoned")]
     GivenUp,
     /// Data cannot be encoded in Rerun's format.
     #[error("cannot encode the recording: {0}")]

@@ -17,7 +17,7 @@ pub enum ReportError {
     #[error(transparent)]
     Table(#[from] TableError),
     /// The runs cannot be compared because their studies differ.
-    #[error("{first} and {other} cannot be put in one report: their studies differ in {key}")]
+    #[error("{first} and {other} cannot be combined in one report: their studies differ in {key}")]
     Differing {
         /// Name of the first run.
         first: String,

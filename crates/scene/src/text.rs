@@ -159,9 +159,11 @@ pub fn selected_drive(catalogue: &DriveCatalogue, outcome: &TaskOutcome) -> Opti
     let name = &catalogue.get(selected.place)?.name;
     let used = number(100.0 * selected.utilization);
     Some(if selected.carries() {
-        format!("3 × {name}, of which the motion uses {used} %")
+        format!("3 × {name}, utilization {used} %")
     } else {
-        format!("none of the catalogue carries the motion; {name} misses by least: the motion needs {used} % of it")
+        format!(
+            "no drive of the catalogue can perform the motion; {name} comes closest, with a utilization of {used} %"
+        )
     })
 }
 
@@ -178,7 +180,7 @@ pub fn motion_failure(failure: &TaskFailure) -> String {
                 _ => "reach",
             }
         ),
-        None => format!("the motion ends in {place}: it meets a parallel singularity"),
+        None => format!("the motion ends in {place}: it reaches a parallel singularity"),
     }
 }
 

@@ -10,7 +10,7 @@ use std::time::Duration;
 pub enum WriteError {
     /// The folder already holds a run.
     #[error(
-        "{} already holds a run ({found}); continue it with --resume, choose another folder, or move that one away",
+        "{} already holds a run ({found}); continue it with --resume, choose another folder, or move the existing one",
         path.display()
     )]
     Occupied {
@@ -20,10 +20,10 @@ pub enum WriteError {
         found: &'static str,
     },
     /// Another process writes the run.
-    #[error("{} is in use: another process writes its run", .0.display())]
+    #[error("{} is in use: another process is writing its run", .0.display())]
     InUse(PathBuf),
     /// Something else than a file has the name of a file of a run.
-    #[error("{} is not a regular file; a run writes nothing else, and follows no link", .0.display())]
+    #[error("{} is not a regular file; a run writes only regular files and does not follow links", .0.display())]
     NotAFile(PathBuf),
     /// The table is no longer the one that is being written.
     #[error("{} was changed by another program while the run wrote it: {message}", path.display())]

@@ -119,7 +119,7 @@ impl fmt::Display for FrontProofs {
         if self.open > 0 {
             write!(
                 f,
-                "; the proofs of the others are open, and `kinefront certify TABLE#ID` with a larger --max-boxes may close them"
+                "; the proofs of the others are open, and `kinefront certify TABLE#ID` with a larger --max-boxes may complete them"
             )?;
         }
         let thickened = self.refuted.iter().filter(|refuted| refuted.thickened.is_some());

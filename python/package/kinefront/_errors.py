@@ -1,4 +1,4 @@
-"""The exceptions of Kinefront. Their words are those of the program ``kinefront``."""
+"""The exceptions of Kinefront. Their messages are those of the program ``kinefront``."""
 
 
 class Error(Exception):
@@ -6,7 +6,7 @@ class Error(Exception):
 
 
 class InputError(Error, ValueError):
-    """What was given is wrong; the message says what, where, and what would be right."""
+    """The input is invalid; the message states the error, its place and the valid values."""
 
 
 class StudyError(InputError):
@@ -23,7 +23,7 @@ class DesignError(InputError):
 
 
 class RunError(InputError):
-    """A run folder cannot be read, or does not hold what was asked for."""
+    """A run folder cannot be read, or does not contain what was requested."""
 
 
 class FileError(Error, OSError):

@@ -1,4 +1,4 @@
-"""Tables as data frames of other libraries, which are imported when they are asked for."""
+"""Tables as data frames of other libraries, which are imported on demand."""
 
 from __future__ import annotations
 

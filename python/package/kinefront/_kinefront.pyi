@@ -48,7 +48,7 @@ class Study:
         """
 
     def sensitivity(self, evaluations: int) -> dict[str, Study]:
-        """Return the searches of the sensitivity of the report, as studies by their names.
+        """Return the searches of the sensitivity analysis of the report, as studies by name.
 
         >>> Study.paper().sensitivity(100)["seed + 1, 3-PRR"].optimizer["seed"]
         2
@@ -104,7 +104,7 @@ class Study:
         threads: int | None = None,
         out: str | os.PathLike[str] | None = None,
     ) -> Run:
-        """Search for the front of the study; ``callback`` is told the progress and ends the search by returning ``False``.
+        """Search for the front of the study; ``callback`` receives the progress and can end the search by returning ``False``.
 
         >>> run = Study.paper().optimize(seed=1, evaluations=90, architectures=["3-PRR"])
         >>> len(run.designs), run.report["outcome"]
@@ -137,7 +137,7 @@ class Design:
         """
 
     def wish(self, conditions: Sequence[str], *, keep: Sequence[str] = ()) -> dict[str, Any]:
-        """Return the nearest design that has what is wished for, verified and proved, as ``kinefront wish --json`` does.
+        """Return the nearest design that meets the conditions, verified and proved, as ``kinefront wish --json`` does.
 
         >>> design = Study.paper().design("3-PRR R=3.89 r=0.71 Lb=2.567 rj=0.0247 rp=0.0349")
         >>> found = design.wish(["k_xy_n_per_m >= 1.2e6"])

@@ -1,6 +1,6 @@
-"""Designs and sweeps on a cluster, by Dask.
+"""Designs and sweeps on a cluster, with Dask.
 
-A task that is lost with its worker is performed again by another one. The results are those of this machine to the last bit, because
+If a worker is lost, another worker repeats its task. The results are those of this machine to the last bit, because
 an evaluation depends on neither the processor nor the number of threads.
 """
 
@@ -65,7 +65,7 @@ def sweep(
     evaluations: int | None = None,
     threads: int | None = 1,
 ) -> list[sweeps.Search]:
-    """Search a study once for each reading and seed, each in a task of its own.
+    """Search a study once for each set of assumptions (reading) and seed, each in a separate task.
 
     The arguments and the result are those of ``kinefront.sweeps.sweep``.
     """

@@ -11,14 +11,14 @@ if TYPE_CHECKING:
     from ._kinefront import Study
 
 _WORST = 1e30
-"""What an objective is that a design does not have, because it is infeasible."""
+"""Value of an objective that an infeasible design does not have."""
 
 
 class StudyProblem(Problem):
     """The designs of one architecture of a study.
 
-    The variables are those of ``study.bounds``, in their order and units. Objectives are minimised, so that the values of one that
-    the study maximises are negated. The one inequality constraint is the violation of the study's constraints, which is 0 for a
+    The variables are those of ``study.bounds``, in their order and units. Objectives are minimized, so the values of an objective that
+    the study maximizes are negated. The one inequality constraint is the violation of the study's constraints, which is 0 for a
     feasible design.
     """
 

@@ -18,5 +18,5 @@ def log_design(entity: str, design: Design, *, recording: rr.RecordingStream | N
 
 
 def log_recording(path: str | os.PathLike[str], *, recording: rr.RecordingStream | None = None) -> None:
-    """Add all of a recording of Kinefront, such as ``recording.rrd`` of a run folder, to a recording."""
+    """Add a whole Kinefront recording, such as ``recording.rrd`` of a run folder, to another recording."""
     rr.log_file_from_path(path, recording=recording)

@@ -1,4 +1,4 @@
-"""Sweeps: searches of a study under several readings and seeds."""
+"""Sweeps: searches of a study under alternative assumptions (readings) and seeds."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Search:
     """One search of a sweep."""
 
     reading: str
-    """Name of the reading."""
+    """Name of the set of assumptions."""
     seed: int
     """Random seed."""
     front: Table
@@ -29,7 +29,7 @@ class Search:
 
 
 def search(study: Study, reading: str, seed: int | None, options: dict[str, Any]) -> Search:
-    """Perform one search of a sweep, of the study of the reading."""
+    """Perform one search of a sweep: ``study`` under the assumptions named ``reading``."""
     run = study.optimize(seed=seed, **options)
     assert run.report is not None
     return Search(reading, study.optimizer["seed"] if seed is None else seed, run.front, run.report)
@@ -44,7 +44,7 @@ def sweep(
     threads: int | None = None,
     callback: Callable[[Search], None] | None = None,
 ) -> list[Search]:
-    """Search a study once for each reading and seed, one search after the other.
+    """Search a study once for each set of assumptions (reading) and seed, one search after the other.
 
     ``readings`` gives, for the name of each reading, its study or the settings that it replaces, as the text of a part of a study
     file; an empty text is the study as it is. The seed ``None`` is that of the study. The result is ordered by reading and seed, and

@@ -81,12 +81,12 @@ pub fn drivers_along(along: &DriversAlong) -> String {
 /// Formats what stands in the way of a study of which no design is feasible.
 pub fn hindrances(found: &[Hindrance]) -> String {
     if found.is_empty() {
-        return "no single requirement stands in the way: no design was found with any one of them relaxed to a twentieth, or to twenty times \
-                its limit. Two or more have to give, or the bounds of the design variables."
+        return "no single requirement prevents a feasible design: none was found with any one of them relaxed to one twentieth, or to twenty times, \
+                its limit. Two or more requirements, or the bounds of the design variables, have to be relaxed."
             .to_owned();
     }
     let mut facts = table(
-        ["relaxed alone", "the study states", "can be had", "with the design"],
+        ["requirement relaxed alone", "stated", "achievable", "with the design"],
         &[1, 2],
     );
     for hindrance in found {
@@ -107,15 +107,15 @@ pub fn hindrances(found: &[Hindrance]) -> String {
 fn remark(price: &PriceJson) -> String {
     match price.bars_cannot_repair.as_slice() {
         [] => String::new(),
-        [way] => format!("{way}: bars cannot repair it"),
-        _ => "bars cannot repair it".to_owned(),
+        [way] => format!("{way}: bars cannot offset it"),
+        _ => "bars cannot offset it".to_owned(),
     }
 }
 
 fn why_not(why: &WhyNotJson, name: &str, unit: &str) -> String {
     if why.log_deficit >= 0.0 {
         return format!(
-            "{} {unit} can be had: the best design near the front has no more.",
+            "{} {unit} is achievable: the best design near the front does not exceed it.",
             number(why.wished)
         );
     }
@@ -125,7 +125,7 @@ fn why_not(why: &WhyNotJson, name: &str, unit: &str) -> String {
             &header,
             "times (by its price)",
             "times (solved)",
-            &format!("{name} then"),
+            &format!("resulting {name}"),
         ],
         &[1, 2, 3],
     );
@@ -171,14 +171,14 @@ pub fn wish(heading: &str, outcome: &WishOutcome, shown: &[Quantity]) -> String 
     for (condition, value) in &outcome.unmet {
         let entry = condition.0.quantity.entry();
         text = format!(
-            "{text}\n{condition} cannot be had: {} {} is what remains",
+            "{text}\n{condition} is not achievable: the nearest value is {} {}",
             number(*value),
             entry.unit
         );
     }
     for quantity in &outcome.left_out {
         text = format!(
-            "{text}\nnote: the limit of {} was compared at the end alone",
+            "{text}\nnote: the limit of {} was checked only at the end",
             quantity.entry().key
         );
     }

@@ -223,7 +223,7 @@ fn strength_tables(design: &Design, report: &StrengthReport) -> String {
     }
     let unit = design.architecture().actuator().effort_unit();
     let efforts = report.actuators.map(number).join(", ");
-    worst.add_row(["drives of legs 1, 2, 3".to_owned(), format!("{efforts} {unit}")]);
+    worst.add_row(["actuators of legs 1, 2, 3".to_owned(), format!("{efforts} {unit}")]);
 
     let headings = [
         "member",
@@ -269,7 +269,7 @@ fn strength_tables(design: &Design, report: &StrengthReport) -> String {
         &[2, 3, 4, 5],
     );
     for joint in &report.joints {
-        let driven = if joint.is_driven { ", driven" } else { "" };
+        let driven = if joint.is_driven { ", actuated" } else { "" };
         joints.add_row([
             joint.name(),
             format!("{}{driven}", joint.kind.letter()),
@@ -287,7 +287,7 @@ pub fn assembly_modes(design: &Design, values: [f64; 3], modes: &[AssemblyMode])
     let unit = design.architecture().actuator().unit();
     let mut facts = table(["design", &design.to_string()], &[]);
     let values: Vec<String> = values.iter().map(|value| format!("{value} {unit}")).collect();
-    facts.add_row(["driven joints".to_owned(), values.join(", ")]);
+    facts.add_row(["actuated joints".to_owned(), values.join(", ")]);
     facts.add_row(["assembly modes".to_owned(), modes.len().to_string()]);
     if modes.is_empty() {
         return facts.to_string();
@@ -364,7 +364,7 @@ pub fn certificate(found: &CertificateJson) -> String {
     let verdict = match found.found {
         Verdict::Proved => "proved",
         Verdict::Refuted => "refuted",
-        Verdict::OpenBudget => "open: the number of boxes was used up",
+        Verdict::OpenBudget => "open: the maximum number of boxes was reached",
         Verdict::OpenPrecision => "open: a constraint equals its threshold to the precision of a double",
     };
     let upper = found
@@ -373,7 +373,7 @@ pub fn certificate(found: &CertificateJson) -> String {
             format!("a pose at {upper:.6} m is proved infeasible")
         });
     let homes = match found.upper_all_homes_m {
-        Some(Some(bound)) => format!("\nat no home orientation does R_w exceed {bound:.6} m"),
+        Some(Some(bound)) => format!("\nR_w is at most {bound:.6} m at any home orientation"),
         Some(None) => "\nno bound over all home orientations was found".to_owned(),
         None => String::new(),
     };
@@ -382,7 +382,7 @@ pub fn certificate(found: &CertificateJson) -> String {
             format!("\na pose of the region at {upper:.6} m from its centre is proved infeasible")
         });
         return format!(
-            "claimed that every pose of the region is feasible: {verdict}{infeasible}\n{} boxes{homes}",
+            "claim that every pose of the region is feasible: {verdict}{infeasible}\n{} boxes{homes}",
             found.boxes
         );
     }

@@ -31,9 +31,9 @@ pub fn dynamics(design: &Design, dynamics: &PosedDynamics<'_>, motion: Option<&M
     let accuracy = &report.accuracy;
     if accuracy.worst_position > 0.0 {
         let position = format!("{} mm", number(1e3 * accuracy.worst_position));
-        facts.add_row(["largest error of the position".to_owned(), position]);
+        facts.add_row(["largest position error".to_owned(), position]);
         let orientation = format!("{}°", number(accuracy.worst_orientation.to_degrees()));
-        facts.add_row(["largest error of the orientation".to_owned(), orientation]);
+        facts.add_row(["largest orientation error".to_owned(), orientation]);
         let share = |part: f64| number(100.0 * part / accuracy.worst_position);
         let parts = accuracy
             .budget_position
@@ -41,7 +41,7 @@ pub fn dynamics(design: &Design, dynamics: &PosedDynamics<'_>, motion: Option<&M
             .into_iter()
             .filter(|(_, part)| *part > 0.0);
         let parts: Vec<String> = parts.map(|(name, part)| format!("{name} {} %", share(part))).collect();
-        facts.add_row(["sources of the error of the position".to_owned(), parts.join(", ")]);
+        facts.add_row(["sources of the position error".to_owned(), parts.join(", ")]);
     }
     let actuator = design.architecture().actuator();
     for (name, value, unit) in [
@@ -110,18 +110,22 @@ pub fn task(
     let inside = if figures.inside_workspace { "yes" } else { "no" };
     facts.add_row(["inside the workspace".to_owned(), inside.to_owned()]);
     facts.add_row([
-        "least distance to the limits".to_owned(),
+        "smallest distance to the limits".to_owned(),
         format!("{} mm", number(1e3 * figures.path_reach)),
     ]);
     // Without a tool it is 0, up to rounding.
     let is_nothing = figures.energy_net.abs() < 1e-9 * figures.energy_each;
     let net = if is_nothing { 0.0 } else { figures.energy_net };
     for (name, value, unit) in [
-        ("energy a cycle, no recuperation", figures.energy_each, "J"),
-        ("energy a cycle, drives on a common link", figures.energy_shared, "J"),
-        ("energy a cycle, all recovered", net, "J"),
-        ("largest power of all drives", figures.peak_power_total, "W"),
-        ("power of one type of motor for all", figures.corner_power, "W"),
+        ("energy per cycle, no recuperation", figures.energy_each, "J"),
+        (
+            "energy per cycle, drives on a common DC link",
+            figures.energy_shared,
+            "J",
+        ),
+        ("energy per cycle, all recovered", net, "J"),
+        ("peak power of all drives together", figures.peak_power_total, "W"),
+        ("corner power of one motor type for all legs", figures.corner_power, "W"),
     ] {
         facts.add_row([name.to_owned(), format!("{} {unit}", number(value))]);
     }

@@ -195,7 +195,7 @@ impl Explorer {
         const LINES: [(&str, &str); 6] = [
             (
                 "Run",
-                "chooses a study and starts its search; Mechanisms and Study change what is asked",
+                "selects a study and starts its search; Mechanisms and Study change the study",
             ),
             (
                 "Scatter",
@@ -203,7 +203,7 @@ impl Explorer {
             ),
             (
                 "3-D",
-                "shows the selected design; pointing tells what is there, and a click on the heatmap moves the platform",
+                "shows the selected design; hover for details, or click the heatmap to move the platform",
             ),
             (
                 "Inspector",
@@ -212,7 +212,7 @@ impl Explorer {
             ("Pose", "moves the platform; Layers chooses what is drawn"),
             (
                 "Front",
-                "lists the designs to choose from; File saves, exports and reports",
+                "lists the designs of the front; the File menu saves, exports and creates reports",
             ),
         ];
         let mut is_open = self.introduction;

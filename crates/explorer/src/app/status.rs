@@ -26,7 +26,7 @@ impl Explorer {
                     let name = match selected.origin {
                         DesignOrigin::Evaluated(id) => format!("#{id}"),
                         DesignOrigin::Kept(_) => "kept design".to_owned(),
-                        DesignOrigin::Wished(_) => "answer to a wish".to_owned(),
+                        DesignOrigin::Wished(_) => "result of a wish".to_owned(),
                         DesignOrigin::Modified { .. } => "modified design".to_owned(),
                         DesignOrigin::Reference(_) => "reference design".to_owned(),
                     };

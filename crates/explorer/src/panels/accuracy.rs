@@ -24,7 +24,7 @@ impl AccuracyPanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         if session.known().is_none() {
-            ui.weak("Click a design in the scatter: here are the errors of its pose.");
+            ui.weak("Click a design in the scatter to see its pose errors here.");
             return;
         }
         let report = session.pose_dynamics().and_then(|known| known.report);
@@ -32,7 +32,7 @@ impl AccuracyPanel {
             match report.map(|report| report.accuracy) {
                 Some(accuracy) if accuracy.worst_orientation > 0.0 => found(ui, &accuracy),
                 Some(_) => {
-                    ui.label("State tolerances, and the errors of the pose follow:");
+                    ui.label("Set tolerances to compute the pose errors:");
                 }
                 None => {
                     ui.colored_label(theme::bad(ui), "At a singular pose the errors are unlimited.");
@@ -64,7 +64,7 @@ fn found(ui: &mut Ui, accuracy: &Accuracy) {
     if accuracy.nonlinearity > 0.3 {
         ui.colored_label(
             theme::bad(ui),
-            "So near a singularity these errors are not reliable: the platform may turn over.",
+            "This close to a singularity, these errors are not reliable: the platform may flip to another assembly mode.",
         );
     } else if accuracy.nonlinearity > 0.1 {
         ui.colored_label(
@@ -119,7 +119,7 @@ fn picture(ui: &mut Ui, accuracy: &Accuracy) {
             Stroke::new(0.5, theme::ink(ui).gamma_multiply(0.4)),
         );
     }
-    response.on_hover_text("green: root mean square of the error of the position in x and y; circle: largest error");
+    response.on_hover_text("green: RMS position error in x and y; circle: largest position error");
 }
 
 /// Shows the parts of an error as bars.
@@ -130,7 +130,7 @@ fn budget(ui: &mut Ui, what: &str, budget: &ErrorBudget, words: &dyn Fn(f64) -> 
         return;
     }
     ui.add_space(4.0);
-    ui.label(format!("largest error of the {what}, by its sources"));
+    ui.label(format!("largest {what} error, by source"));
     for (name, part) in parts.into_iter().filter(|(_, part)| *part > 0.0) {
         let share = (part / all) as f32;
         let text = format!("{name}: {}, {:.0} %", words(part), 100.0 * share);

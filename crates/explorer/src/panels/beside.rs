@@ -15,7 +15,9 @@ impl BesidePanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let Some(beside) = session.beside() else {
-            ui.weak("Open another run beside this one, with the same objectives: both fronts are drawn in the scatter and compared here.");
+            ui.weak(
+                "Open another run with the same objectives to draw both fronts in the scatter and compare them here.",
+            );
             if ui.button("Open run beside…").clicked() {
                 session.request_file(Purpose::OpenBeside);
             }
@@ -52,7 +54,7 @@ fn levels(ui: &mut Ui, session: &Session, name: &str) {
         return;
     };
     if levels.is_empty() {
-        ui.weak("Fronts of more than two objectives are drawn in the scatter, and not compared.");
+        ui.weak("Fronts of more than two objectives are drawn in the scatter but are not compared here.");
         return;
     }
     Grid::new("levels").num_columns(4).striped(true).show(ui, |ui| {
@@ -80,7 +82,7 @@ fn levels(ui: &mut Ui, session: &Session, name: &str) {
 fn differences(ui: &mut Ui, session: &Session, name: &str) {
     let Some(beside) = session.beside() else { return };
     if beside.differences.is_empty() {
-        ui.colored_label(theme::good(ui), "Both studies ask the same.");
+        ui.colored_label(theme::good(ui), "Both studies have the same settings.");
         return;
     }
     Grid::new("settings").num_columns(3).striped(true).show(ui, |ui| {

@@ -34,7 +34,7 @@ impl ChoosePanel {
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             if session.front().is_empty() {
                 ui.weak(
-                    "Designs are proposed here once a run has found a front: start one in the panel Run, or open one.",
+                    "Designs are proposed here once a run has found a front: start a run in the panel Run, or open one.",
                 );
                 ui.separator();
             }

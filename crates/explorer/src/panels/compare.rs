@@ -26,7 +26,7 @@ impl ComparePanel {
         ui.horizontal_wrapped(|ui| {
             ui.checkbox(&mut comparing, "show side by side in 3-D");
             ui.weak(format!(
-                "values on the fine grid under the study {}; changes are from {}",
+                "values on the fine grid under the study {}; changes are relative to {}",
                 session.study().name,
                 pins[0].name
             ));

@@ -21,7 +21,7 @@ impl DriversPanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let Some(name) = session.selected_name() else {
-            ui.weak("Click a design in the scatter: here is what each requirement costs it.");
+            ui.weak("Click a design in the scatter to see what each requirement costs it.");
             return;
         };
         let Some(answer) = session.drivers() else {
@@ -46,16 +46,16 @@ impl DriversPanel {
 
 fn show(ui: &mut Ui, session: &mut Session, name: &str, drivers: &Drivers) {
     let (objective, unit) = drivers.objective_name();
-    ui.label(RichText::new(format!("{name}: what 1 % more of each costs in {objective}")).strong());
+    ui.label(RichText::new(format!("{name}: change of the {objective} for +1 % of each")).strong());
     let excess = 100.0 * drivers.excess;
     ui.weak(if excess.abs() < 0.005 {
         format!(
-            "It is the best design near it: {} {unit}.",
+            "This design is a local optimum: {} {unit}.",
             number(drivers.polished_value)
         )
     } else {
         format!(
-            "Prices are those of the best design near it, with {} {unit}; this one has {excess:+.2} %.",
+            "The prices are those of the best design near this one, with {} {unit}; this design is {excess:+.2} % off.",
             number(drivers.polished_value)
         )
     });
@@ -70,7 +70,7 @@ fn show(ui: &mut Ui, session: &mut Session, name: &str, drivers: &Drivers) {
         }
     }
     ui.add_space(6.0);
-    ui.weak("Outlines are the prices with the bars alone, whiskers those of steps up to 20 %. Click a bar to see the pose that pays it.");
+    ui.weak("Outlines show the prices if only the bars change, whiskers those of steps up to 20 %. Click a bar to see the pose that determines its price.");
     let free = drivers.free(FREE);
     if !free.is_empty() {
         ui.label(format!("Practically free: {}.", free.join(", ")));
@@ -155,7 +155,7 @@ fn bar(ui: &mut Ui, price: &PriceJson, largest: f64, drivers: &Drivers, (objecti
     painter.vline(middle, area.y_range(), egui::Stroke::new(1.0, ink.gamma_multiply(0.5)));
     let cannot = match price.bars_cannot_repair.as_slice() {
         [] => String::new(),
-        ways => format!("\nThicker bars cannot repair a change {}.", ways.join(" or ")),
+        ways => format!("\nThicker bars cannot offset a change {}.", ways.join(" or ")),
     };
     let value = price.value.map_or(String::new(), |value| {
         format!("\nIts value is {} {}.", number(value), price.unit)

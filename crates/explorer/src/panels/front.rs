@@ -85,7 +85,7 @@ impl FrontPanel {
         let columns = self.chosen.clone().unwrap_or_else(|| usual_columns(session.study()));
         self.search_bar(ui, session, &columns);
         if session.front().is_empty() && !self.listing.marked {
-            ui.weak("The designs of the front are listed here once a run has found some: start one in the panel Run, or open one.");
+            ui.weak("The designs of the front are listed here once a run has found them: start a run in the panel Run, or open one.");
             return;
         }
         self.order.update(session, &self.listing);

@@ -64,14 +64,14 @@ fn heading(ui: &mut Ui, session: &mut Session) {
         let pinned = session.document().pins.iter().any(|pin| pin.design == selected.design);
         if ui
             .add(theme::toggle(pinned, "📌 Pin"))
-            .on_hover_text("pin this design to compare it; up to four designs (P)")
+            .on_hover_text("pins this design for comparison, up to four designs (P)")
             .clicked()
         {
             session.toggle_pin();
         }
         if ui
             .button("Copy")
-            .on_hover_text("copy the design as text (Ctrl+C)")
+            .on_hover_text("copies the design as text (Ctrl+C)")
             .clicked()
         {
             ui.ctx().copy_text(selected.design.to_string());
@@ -261,7 +261,7 @@ fn proof(ui: &mut Ui, session: &mut Session) {
             ui.colored_label(color, RichText::new(verdict).strong());
             let upper = certificate.upper.map_or("∞".to_owned(), |upper| format!("{upper:.5}"));
             ui.label(format!("R* in [{:.5}, {upper}] m", certificate.lower))
-                .on_hover_text("every pose nearer than the first number is feasible; a pose at the second is not");
+                .on_hover_text("every pose closer to the centre than the first value is feasible; a pose at the second value is not");
         }
         if let Some(violation) = proof.certificate.violation {
             let hover = "moves the platform to the infeasible pose, and shows the boxes of the proof";

@@ -26,7 +26,7 @@ impl MechanismsPanel {
                 .filter_map(|&found| Sketch::new(found))
                 .collect();
         }
-        ui.weak("orange: the driven joints, whose letters are underlined; click to search an architecture, or to leave it out");
+        ui.weak("orange: actuated joints, whose letters are underlined; click to include an architecture in the search or to exclude it");
         let mut chosen = session.editor().study().architectures.clone();
         let before = chosen.clone();
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
@@ -89,7 +89,7 @@ fn card(ui: &mut Ui, sketch: &Sketch, is_chosen: bool) -> bool {
             let variables = sketch.architecture.further_variables();
             let variables: Vec<&str> = variables.iter().map(|variable| variable.symbol()).collect();
             ui.label(format!(
-                "chain {}, driven joint {}",
+                "chain {}, actuated joint {}",
                 chain.name,
                 sketch.architecture.driven() + 1
             ));

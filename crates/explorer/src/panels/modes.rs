@@ -34,7 +34,7 @@ impl ModesView {
         };
         ui.separator();
         ui.label("modes")
-            .on_hover_text("all poses at which the driven joints have their present values: the assembly modes");
+            .on_hover_text("all poses at which the actuated joints have their current values: the assembly modes");
         for (place, mode) in modes.modes.iter().enumerate() {
             if button(ui, place + 1, mode, pose) {
                 session.jump_to(mode);
@@ -42,7 +42,7 @@ impl ModesView {
         }
         ui.menu_button("map", |ui| self.map(ui, session, design, &modes))
             .response
-            .on_hover_text("number of assembly modes over the values of the first two driven joints");
+            .on_hover_text("number of assembly modes over the values of the first two actuated joints");
     }
 
     fn map(&mut self, ui: &mut Ui, session: &Session, design: &Design, modes: &Modes) {
@@ -186,7 +186,7 @@ fn description(mode: &AssemblyMode) -> String {
         None => "a leg would have to reach backwards".to_owned(),
         Some(_) if !mode.is_within_limits => "a joint is beyond its limits".to_owned(),
         Some(_) if mode.is_of_design => "click to move there".to_owned(),
-        Some(needed) => format!("needs the working mode {needed}; click to take it"),
+        Some(needed) => format!("needs the working mode {needed}; click to switch to it"),
     };
     format!("{at}\n{why}")
 }

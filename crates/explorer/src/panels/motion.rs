@@ -85,7 +85,7 @@ impl MotionPanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let Some(known) = session.known() else {
-            ui.weak("Click a design in the scatter: here it follows the motion of the study.");
+            ui.weak("Click a design in the scatter to see it follow the motion of the study here.");
             return;
         };
         let actuator = known.evaluation.design.architecture().actuator();
@@ -109,7 +109,7 @@ impl MotionPanel {
 
     /// Offers paths where the study asks for no motion.
     fn offer(&mut self, ui: &mut Ui, session: &mut Session) {
-        ui.label("The study asks for no motion. Choose a path for the platform:");
+        ui.label("The study has no motion. Choose a path for the platform:");
         ui.horizontal_wrapped(|ui| {
             for (name, shape) in SHAPES {
                 if ui.button(name).clicked() {
@@ -117,7 +117,7 @@ impl MotionPanel {
                 }
             }
         });
-        ui.weak("The motion becomes a part of the study that the next run uses.");
+        ui.weak("The motion becomes part of the study for the next run.");
     }
 
     /// Shows what came of the motion.
@@ -291,7 +291,7 @@ fn form(ui: &mut Ui, session: &mut Session) {
             .labelled_by(label);
         if ui
             .button("Add the pose")
-            .on_hover_text("adds the present pose of the platform to the waypoints")
+            .on_hover_text("adds the current pose of the platform to the waypoints")
             .clicked()
             && let Some(pose) = session.pose()
         {
@@ -342,7 +342,7 @@ fn summary(ui: &mut Ui, figures: &TaskFigures, cycle: f64, actuator: JointKind) 
             most(figures.peak_power),
             theme::number(figures.energy_shared),
         ))
-        .on_hover_text("largest of the three actuators; the energy of a cycle if the drives share what they recover");
+        .on_hover_text("largest value of the three actuators; energy per cycle if the drives share recovered energy");
         if !figures.inside_workspace {
             ui.colored_label(theme::active(ui), "leaves the regular workspace");
         }
@@ -369,7 +369,7 @@ fn drive_box(session: &Session, figures: &TaskFigures, actuator: JointKind) -> (
         return ([speed, force], "limits of the study");
     }
     let least = [figures.peak_speed, figures.peak_force].map(largest_of_legs);
-    (least, "the smallest drive that suffices, of one kind for all legs")
+    (least, "the smallest sufficient drive, one type for all legs")
 }
 
 fn line<'a>(leg: usize, points: &[[f64; 2]]) -> Line<'a> {

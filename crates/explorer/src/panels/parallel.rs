@@ -75,7 +75,7 @@ impl ParallelPanel {
             painter.add(Shape::Mesh(Arc::clone(mesh)));
         }
         if session.store().is_empty() {
-            let text = "The designs of a run appear here, each as a line: start one in the panel Run, or open one.";
+            let text = "The designs of a run appear here, each as a line: start a run in the panel Run, or open one.";
             let color = ui.visuals().weak_text_color();
             painter.text(
                 plot.center(),

@@ -53,7 +53,7 @@ impl PosePanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let (Some(known), Some(pose), Some(home)) = (session.known().cloned(), session.pose(), session.home()) else {
-            ui.weak("Click a design in the scatter: here its platform is moved, and the values at the pose are shown.");
+            ui.weak("Click a design in the scatter to move its platform and see the values at the pose here.");
             return;
         };
         let evaluation = &known.evaluation;

@@ -61,11 +61,11 @@ impl PricesPanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         if session.front().is_empty() || session.is_running() {
-            ui.weak("Here is what drives the mass along the front, once a run has ended or was opened.");
+            ui.weak("This panel shows what drives the mass along the front once a run has ended or has been opened.");
             return;
         }
         let Some(answer) = session.drivers_along() else {
-            ui.weak("Determining the prices of all designs of the front…");
+            ui.weak("Computing the prices of all designs of the front…");
             return;
         };
         match answer.as_ref() {

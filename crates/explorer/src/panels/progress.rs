@@ -175,9 +175,7 @@ impl ProgressPlot {
     /// Says why there is no curve.
     fn why_empty(&self, session: &Session) -> &'static str {
         match self.shown {
-            ProgressCurve::TimePerDesign if !session.generations().is_empty() => {
-                "a run that was opened states no times"
-            }
+            ProgressCurve::TimePerDesign if !session.generations().is_empty() => "an opened run has no timing data",
             _ => "the curve begins with the first generation of a run",
         }
     }

@@ -134,7 +134,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
             Phase::Paused => {
                 if ui
                     .button("▶ Resume")
-                    .on_hover_text("goes on with the search (Space)")
+                    .on_hover_text("resumes the search (Space)")
                     .clicked()
                 {
                     session.resume();
@@ -145,7 +145,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
             }
             _ => {
                 let start = theme::primary("▶ Start");
-                let why = "the study has faults, which the panel Study tells";
+                let why = "the study has errors; see the panel Study";
                 if ui.add_enabled(valid, start).on_disabled_hover_text(why).clicked() {
                     session.start();
                 }
@@ -179,7 +179,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
         if ui
             .add_enabled(valid && session.is_running(), egui::Button::new("⟲ Restart"))
             .on_hover_text("discards the current run and starts again with the study as edited here")
-            .on_disabled_hover_text("only during a run, and with a study without faults")
+            .on_disabled_hover_text("only during a run, and only if the study has no errors")
             .clicked()
         {
             session.start();

@@ -31,12 +31,12 @@ impl StudyPanel {
             let (can_undo, can_redo) = (history.can_undo(), history.can_redo());
             let hints = (
                 "undoes the last change of the study (Ctrl+Z)",
-                "makes the undone change again (Ctrl+Shift+Z)",
+                "redoes the change that was undone last (Ctrl+Shift+Z)",
             );
             let undo = ui.add_enabled(can_undo, Button::new("Undo"));
             if undo
                 .on_hover_text(hints.0)
-                .on_disabled_hover_text("the study is as it was opened")
+                .on_disabled_hover_text("nothing to undo")
                 .clicked()
             {
                 session.editor_mut().undo();
@@ -44,7 +44,7 @@ impl StudyPanel {
             let redo = ui.add_enabled(can_redo, Button::new("Redo"));
             if redo
                 .on_hover_text(hints.1)
-                .on_disabled_hover_text("no change is undone")
+                .on_disabled_hover_text("nothing to redo")
                 .clicked()
             {
                 session.editor_mut().redo();

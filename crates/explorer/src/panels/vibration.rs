@@ -33,7 +33,7 @@ impl VibrationPanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let Some(known) = session.known() else {
-            ui.weak("Click a design in the scatter: here are its natural frequencies, and how it vibrates.");
+            ui.weak("Click a design in the scatter to see its natural frequencies and mode shapes here.");
             return;
         };
         let lever = known.evaluation.design.platform_radius();
@@ -46,11 +46,11 @@ impl VibrationPanel {
                     self.modes(ui, session, &modes, lever);
                     let bars = number(report.bar_frequency);
                     ui.weak(format!(
-                        "The leg bars themselves bend at {bars} Hz or more, which is not part of these."
+                        "The bending modes of the leg bars themselves start at {bars} Hz and are not included here."
                     ));
                 }
                 (Some(_), None) => {
-                    ui.label("On rails that bend, the natural frequencies are not known.");
+                    ui.label("Natural frequencies are not available for rails that bend.");
                 }
                 (None, _) => {
                     ui.colored_label(theme::bad(ui), "At a singular pose there are no natural frequencies.");
@@ -86,9 +86,7 @@ impl VibrationPanel {
             });
         let Some(mode) = selected else {
             session.view_mut().vibration = None;
-            ui.weak(
-                "Select a frequency: the bars bend in 3-D as they do in that vibration, much enlarged and slowed down.",
-            );
+            ui.weak("Select a frequency to see its mode shape in 3-D, much enlarged and slowed down.");
             return;
         };
         ui.horizontal(|ui| {

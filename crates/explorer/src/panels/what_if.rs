@@ -74,7 +74,7 @@ pub(super) fn verdict(ui: &mut Ui, session: &Session, known: &Known) {
         }
         match evaluation.clearance() {
             Some(clearance) if clearance < 0.0 => {
-                let words = format!("members collide by {:.0} mm", -1e3 * clearance);
+                let words = format!("members overlap by {:.0} mm", -1e3 * clearance);
                 ui.colored_label(theme::bad(ui), words);
             }
             Some(clearance) => {

@@ -18,13 +18,13 @@ impl WhyNotPanel {
             return;
         }
         let Some(point) = session.why_point() else {
-            ui.weak("Click an empty place of the scatter beyond the front: here is what stands in its way.");
+            ui.weak("Click an empty place in the scatter beyond the front to see why no design is there.");
             return;
         };
         ui.horizontal(|ui| {
             ui.label(RichText::new(format!("{}?", words(session, &point))).strong());
             if ui
-                .button("Withdraw")
+                .button("Dismiss")
                 .on_hover_text("removes the question and its mark")
                 .clicked()
             {
@@ -32,7 +32,7 @@ impl WhyNotPanel {
             }
         });
         let Some(answer) = session.why() else {
-            ui.weak("Looking for the best design there, and for what each requirement would have to give…");
+            ui.weak("Searching for the best design there, and for how much each requirement would have to be relaxed…");
             return;
         };
         match answer.as_ref() {
@@ -40,7 +40,7 @@ impl WhyNotPanel {
                 ScrollArea::both().show(ui, |ui| show(ui, session, drivers));
             }
             Err(message) => {
-                ui.label("There is no answer:");
+                ui.label("No answer was found:");
                 ui.colored_label(theme::bad(ui), message);
             }
         }
@@ -51,7 +51,7 @@ impl WhyNotPanel {
 fn hindrances(ui: &mut Ui, session: &mut Session) {
     ui.label(RichText::new("No design of the run is feasible.").strong());
     let Some(answer) = session.hindrances() else {
-        ui.weak("Looking for the requirements that stand in the way…");
+        ui.weak("Searching for the requirements that prevent a feasible design…");
         return;
     };
     let found = match answer.as_ref() {
@@ -63,11 +63,11 @@ fn hindrances(ui: &mut Ui, session: &mut Session) {
     };
     if found.is_empty() {
         ui.label(
-            "No single requirement stands in the way: two or more have to give, or the bounds of the design variables.",
+            "No single requirement prevents a design: two or more, or the bounds of the design variables, have to be relaxed.",
         );
         return;
     }
-    ui.label("It would take one of these, with all the others kept:");
+    ui.label("One of these changes would suffice, with all other requirements kept:");
     let mut chosen = None;
     ScrollArea::both().show(ui, |ui| {
         Grid::new("hindrances").num_columns(2).striped(true).show(ui, |ui| {
@@ -115,7 +115,7 @@ fn show(ui: &mut Ui, session: &mut Session, drivers: &Drivers) {
     if why.log_deficit >= 0.0 {
         ui.colored_label(
             theme::good(ui),
-            format!("You can have it: the best design there has {best}."),
+            format!("This point is achievable: the best design there has {best}."),
         );
         if ui.button("Select it").clicked() {
             session.paste(&drivers.design);
@@ -123,7 +123,7 @@ fn show(ui: &mut Ui, session: &mut Session, drivers: &Drivers) {
         return;
     }
     ui.label(format!(
-        "The best design there has a {objective} of {best}: {:+.1} % from what you ask. It would take one of these:",
+        "The best design there has a {objective} of {best}: {:+.1} % from the desired value. One of these changes would suffice:",
         100.0 * (drivers.polished_value / why.wished - 1.0)
     ));
     relaxations(ui, session, drivers, why, unit);
@@ -152,7 +152,10 @@ fn relaxations(ui: &mut Ui, session: &mut Session, drivers: &Drivers, why: &WhyN
                 }
                 None => {
                     ui.label(&label);
-                    ui.weak(format!("no help: {} {unit} remain", number(relaxation.objective)));
+                    ui.weak(format!(
+                        "not sufficient: {} {unit} at best",
+                        number(relaxation.objective)
+                    ));
                 }
             }
             ui.end_row();
@@ -178,7 +181,7 @@ fn change(drivers: &Drivers, relaxation: &RelaxationJson) -> (String, String) {
     let label = match (price, relaxation.parameter.as_str()) {
         (Some(price), _) => price.label.clone(),
         (None, "all_thresholds") => "all limits by the same factor".to_owned(),
-        (None, "least_norm") => "all limits, as little as possible".to_owned(),
+        (None, "least_norm") => "all limits, with the smallest change in total".to_owned(),
         (None, other) => other.to_owned(),
     };
     let range = match (

@@ -37,7 +37,7 @@ impl WishPanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let Some(name) = session.selected_name() else {
-            ui.weak("Click a design in the scatter, and say here what it should have instead.");
+            ui.weak("Click a design in the scatter, then set here what should change.");
             return;
         };
         let Some(known) = session.known().filter(|known| known.verified).cloned() else {
@@ -50,11 +50,11 @@ impl WishPanel {
         ScrollArea::vertical().show(ui, |ui| {
             if !known.evaluation.is_feasible() {
                 ui.label(format!(
-                    "{name} is infeasible; a wish starts from a design that is feasible."
+                    "{name} is infeasible; a wish must start from a feasible design."
                 ));
                 return;
             }
-            ui.label(RichText::new(format!("What should {name} have instead?")).strong());
+            ui.label(RichText::new(format!("What should change in {name}?")).strong());
             self.quantities(ui, session, &known.evaluation);
             self.buttons(ui, session, &known.evaluation);
             ui.separator();
@@ -81,12 +81,12 @@ impl WishPanel {
                     ui.spacing_mut().slider_width = SLIDER;
                     let slider = ui.add(slider);
                     ui.ctx().accesskit_node_builder(slider.id, |node| {
-                        node.set_label(format!("Wished change of {}", entry.label))
+                        node.set_label(format!("Desired change of {}", entry.label))
                     });
                     let keep = ui.checkbox(&mut wanted.keep, "keep");
                     ui.ctx()
                         .accesskit_node_builder(keep.id, |node| node.set_label(format!("Keep {}", entry.label)));
-                    keep.on_hover_text("it is not to become worse");
+                    keep.on_hover_text("must not become worse");
                 });
                 let sought = match wanted.change == 0.0 {
                     true => format!("{} {}", number(value), entry.unit),
@@ -104,7 +104,7 @@ impl WishPanel {
         ui.horizontal(|ui| {
             let find = ui.add_enabled(is_stated && !session.is_wishing(), theme::primary("Find the design"));
             let hint =
-                "the nearest design that has this, proved where the study asks for proofs; undo takes it back (Ctrl+Z)";
+                "finds the nearest design with these values, proved if the study requires proofs; undo removes it (Ctrl+Z)";
             if find
                 .on_hover_text(hint)
                 .on_disabled_hover_text("move a slider first")
@@ -176,34 +176,37 @@ fn words(Condition(limit): Condition) -> String {
 fn answer(ui: &mut Ui, session: &mut Session) {
     let Some(answer) = session.wish_answer() else {
         if session.is_wishing() {
-            ui.weak("Looking for the nearest design that has this…");
+            ui.weak("Searching for the nearest design with these values…");
         } else {
-            ui.weak("The answer is a design of its own in the scatter; undo takes it back (Ctrl+Z).");
+            ui.weak("The result is a separate design in the scatter; undo removes it (Ctrl+Z).");
         }
         return;
     };
     match answer.as_ref() {
         Ok(outcome) => outcome_of(ui, session, outcome),
         Err(message) => {
-            ui.colored_label(theme::bad(ui), format!("No design has this: {message}"));
+            ui.colored_label(theme::bad(ui), format!("No such design was found: {message}"));
         }
     }
 }
 
 fn outcome_of(ui: &mut Ui, session: &mut Session, outcome: &WishOutcome) {
     if outcome.was_true {
-        ui.colored_label(theme::good(ui), "The design has that already.");
+        ui.colored_label(theme::good(ui), "The design already has these values.");
         return;
     }
     if outcome.unmet.is_empty() {
-        ui.colored_label(theme::good(ui), "The wish is granted.");
+        ui.colored_label(theme::good(ui), "All conditions are met.");
     } else {
-        ui.colored_label(theme::bad(ui), "The whole wish cannot be granted; this comes nearest.");
+        ui.colored_label(
+            theme::bad(ui),
+            "Not all conditions can be met; this design comes closest.",
+        );
     }
     for (condition, value) in &outcome.unmet {
         let entry = condition.0.quantity.entry();
         ui.label(format!(
-            "{}: {} {} is what can be had.",
+            "{}: {} {} is the best achievable value.",
             entry.label,
             number(*value),
             entry.unit
@@ -232,7 +235,7 @@ fn outcome_of(ui: &mut Ui, session: &mut Session, outcome: &WishOutcome) {
     });
     ui.label(match found.certified {
         Some(certified) if certified.is_proved => "Its workspace is proved.",
-        Some(_) => "Its workspace is verified on the fine grid, and not proved.",
-        None => "Its workspace is verified on the fine grid; the study asks for no proof.",
+        Some(_) => "Its workspace is verified on the fine grid, but not proved.",
+        None => "Its workspace is verified on the fine grid; the study does not require a proof.",
     });
 }

@@ -30,7 +30,7 @@ impl Session {
         };
         if study.objectives() != self.study().objectives() {
             let own = &self.study().name;
-            let words = format!("{name} has other objectives than {own}, so that their fronts cannot be compared");
+            let words = format!("{name} and {own} have different objectives, so their fronts cannot be compared");
             return self.notify_error(words);
         }
         self.beside = Some(Beside {

@@ -31,7 +31,7 @@ impl Session {
     fn edit_study(&mut self, editor: StudyEditor) {
         if self.editor.is_changed() {
             let name = &self.editor.study().name;
-            self.notify(format!("undo (Ctrl+Z) brings back your edits of the study {name}"));
+            self.notify(format!("undo (Ctrl+Z) restores your edits of the study {name}"));
             self.editor.replace(&editor);
         } else {
             self.editor = editor;

@@ -228,7 +228,7 @@ impl Session {
     pub fn undo(&mut self) {
         if self.editor.history().last_step() > self.history.last_step() {
             self.editor.undo();
-            self.notify("a change of the study is undone".to_owned());
+            self.notify("a change of the study was undone".to_owned());
         } else {
             self.history.undo();
         }
@@ -238,7 +238,7 @@ impl Session {
     pub fn redo(&mut self) {
         if self.editor.history().last_undone() > self.history.last_undone() {
             self.editor.redo();
-            self.notify("a change of the study is made again".to_owned());
+            self.notify("a change of the study was redone".to_owned());
         } else {
             self.history.redo();
         }

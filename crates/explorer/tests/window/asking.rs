@@ -45,7 +45,7 @@ fn a_wish_becomes_a_design_and_undo_takes_it_back() {
     window.run_steps(3);
     let before = window.state().session().known().expect("known").evaluation.clone();
     let selected = window.state().session().document().selected.clone();
-    set_slider(&mut window, "Wished change of k_xy", 10.0);
+    set_slider(&mut window, "Desired change of k_xy", 10.0);
     window.get_by_label("Find the design").click();
     window.run_steps(2);
     until(&mut window, "the wish is answered", |explorer| {
@@ -72,7 +72,7 @@ fn a_wish_becomes_a_design_and_undo_takes_it_back() {
     until(&mut window, "the design is shown", |explorer| {
         explorer.session().known().is_some_and(|known| known.verified)
     });
-    assert!(told(&window, "The wish is granted").is_some());
+    assert!(told(&window, "All conditions are met").is_some());
 
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     window.run_steps(3);
@@ -117,10 +117,10 @@ fn a_click_beyond_the_front_asks_why() {
     show.expect("a link").click();
     window.run_steps(3);
     assert_ne!(window.state().session().document().selected, before);
-    window.get_by_label("Withdraw").click();
+    window.get_by_label("Dismiss").click();
     window.run_steps(3);
     assert!(window.state().session().why_point().is_none());
-    assert!(told(&window, "Click an empty place of the scatter").is_some());
+    assert!(told(&window, "Click an empty place in the scatter").is_some());
 }
 
 #[test]

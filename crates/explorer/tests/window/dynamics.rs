@@ -78,7 +78,7 @@ fn errors_follow_the_tolerances() {
     let mut window = opened_window();
     window.state_mut().show(Panel::Accuracy);
     window.run_steps(3);
-    window.get_by_label("State tolerances, and the errors of the pose follow:");
+    window.get_by_label("Set tolerances to compute the pose errors:");
     window.state_mut().session_mut().editor_mut().change(|study| {
         study.tolerances.encoder_m = 1e-5;
         study.tolerances.encoder_rad = 1e-5;

@@ -224,7 +224,7 @@ fn the_design_is_exported_for_other_programs() {
         until(&mut window, "the design is exported", |explorer| !explorer.is_busy());
         if format.key() == "csv-trajectory" {
             let notices = window.state().session().notices();
-            assert!(notices.iter().any(|notice| notice.text.contains("states no motion")));
+            assert!(notices.iter().any(|notice| notice.text.contains("defines no motion")));
             assert!(!path.exists());
             continue;
         }

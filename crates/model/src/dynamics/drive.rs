@@ -57,15 +57,15 @@ impl Default for DriveCatalogue {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DriveCatalogueError {
     /// There is none.
-    #[error("has no entries; a catalogue has one drive at least")]
+    #[error("has no entries; a catalogue needs at least one drive")]
     Empty,
     /// A drive has a number that no drive has.
     #[error(
-        "`{0}` is no drive: rated, peak, speed and mass must be above 0 and at most 1e12, inertia at least 0, and peak at least rated"
+        "`{0}` is not a valid drive: rated, peak, speed and mass must be above 0 and at most 1e12, inertia at least 0, and peak at least rated"
     )]
     NoDrive(String),
     /// Two drives have one name.
-    #[error("`{0}` is the name of two drives; each has a name of its own")]
+    #[error("`{0}` is the name of two drives; names must be unique")]
     Twice(String),
 }
 

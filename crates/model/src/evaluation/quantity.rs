@@ -9,7 +9,7 @@ use crate::pose::{Better, Constraint, PoseScalar, QuantityEntry, Reference, Scop
 
 macro_rules! quantities {
     ($($(#[$doc:meta])* $quantity:ident = $entry:expr;)*) => {
-        /// A number that a design is worth.
+        /// A quantity of a design.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Quantity {
             $($(#[$doc])* $quantity,)*
@@ -41,14 +41,14 @@ macro_rules! quantities {
 quantities! {
     /// Mass in motion.
     Mass = QuantityEntry::new("mass_kg", "kg", "mass in motion", Scope::Design, Better::Lower,
-        "Mass of what moves: bars, and the joints, motors and drives to which the study gives a mass; and of rails with a cross-section.").logarithmic().reference(Reference::Mass).short("mass").superlative("lightest");
+        "Mass of the moving parts: bars, and joints, motors and drives to which the study gives a mass; plus the mass of rails with a cross-section.").logarithmic().reference(Reference::Mass).short("mass").superlative("lightest");
     /// Radius of the regular workspace.
     WorkspaceRadius = QuantityEntry::new("workspace_radius_m", "m", "R_w", Scope::Region, Better::Higher,
         "Radius of the regular workspace; for a prescribed region, of the largest disc about the centre within it.")
         .reference(Reference::LinkLength(1.0)).superlative("largest");
     /// Mass of the bars and rails of all legs.
     LegsMass = QuantityEntry::new("legs_mass_kg", "kg", "mass of the legs", Scope::Design, Better::Lower,
-        "Mass of the bars and rails of all legs, and of what moves of their joints and motors.").logarithmic().reference(Reference::Mass);
+        "Mass of the bars and rails of all legs, and of those of their joints and motors that move.").logarithmic().reference(Reference::Mass);
     /// Mass of the platform bars.
     PlatformMass = QuantityEntry::new("platform_mass_kg", "kg", "mass of the platform", Scope::Design, Better::Lower,
         "Mass of the platform bars.").logarithmic().reference(Reference::Mass);
@@ -62,17 +62,17 @@ quantities! {
         .below(1.0);
     /// Time of a cycle of the motion.
     CycleTime = QuantityEntry::new("cycle_time_s", "s", "cycle time", Scope::Region, Better::Lower,
-        "Time of a cycle of the motion that [task] states, with its rests.").above_zero().logarithmic().reference(Reference::Number(1e4));
+        "Duration of one cycle of the motion that [task] defines, including rests.").above_zero().logarithmic().reference(Reference::Number(1e4));
     /// Least distance to a joint limit or to the end of reach over the motion.
     PathReach = QuantityEntry::new("path_reach_m", "m", "reach of the path", Scope::Region, Better::Higher,
-        "Least distance to a joint limit or to the end of reach over the motion; negative where the motion ends early.");
+        "Smallest distance to a joint limit or to the end of reach over the motion; negative if the motion ends early.");
     /// Energy of a cycle, with the drives on a common link.
-    CycleEnergy = QuantityEntry::new("energy_j", "J", "energy of a cycle", Scope::Region, Better::Lower,
-        "Mechanical energy of a cycle of the motion, of drives that share what they recover.")
+    CycleEnergy = QuantityEntry::new("energy_j", "J", "energy per cycle", Scope::Region, Better::Lower,
+        "Mechanical energy per cycle of the motion, with drives that share the energy they recover.")
         .above_zero().logarithmic().reference(Reference::Number(1e6));
     /// Power of one type of motor for all drives.
     CornerPower = QuantityEntry::new("power_w", "W", "power of a drive", Scope::Region, Better::Lower,
-        "Largest force times largest speed of any actuator over the motion: the power of one type of motor for all.")
+        "Largest force times largest speed of any actuator over the motion: the corner power of one motor type for all legs.")
         .above_zero().logarithmic().reference(Reference::Number(1e6));
     /// Largest speed of a prismatic actuator over the motion.
     PathSpeed = QuantityEntry::new("path_speed_max_m_per_s", "m/s", "speed on the path", Scope::Region, Better::Lower,
@@ -96,15 +96,15 @@ quantities! {
         .above_zero().logarithmic().reference(Reference::Number(1e6));
     /// Mass of the selected drive.
     DriveMass = QuantityEntry::new("drive_mass_kg", "kg", "mass of a drive", Scope::Region, Better::Lower,
-        "Mass of the selected drive, one of three equal ones: the lightest of the catalogue of which the motion uses no more than is allowed.")
+        "Mass of one of the three equal drives selected: the lightest of the catalogue whose utilization by the motion is within the limit.")
         .above_zero().logarithmic().reference(Reference::Number(1e4));
     /// Largest share of the limits of the selected drive that the motion uses.
     DriveUtilization = QuantityEntry::new("drive_utilization", "", "utilization of the drives", Scope::Region, Better::Lower,
-        "Largest share of the peak, rated force and speed of the selected drive that the motion uses; above 1, no drive of the catalogue \
-         carries it.").above_zero();
+        "Largest fraction of the peak force, rated force and speed of the selected drive that the motion uses; above 1, no drive of the catalogue \
+         can perform the motion.").above_zero();
     /// Length that a leg and the platform bridge, the value of g1.
     Assembly = QuantityEntry::new("assembly_m", "m", "assembly", Scope::Design, Better::Higher,
-        "Length that a leg and the platform bridge together, of which g1 requires the distance from the base to O.");
+        "Distance that a leg and the platform can span together; g1 requires it to reach from the base to O.");
 }
 
 /// The quantities of the first version, in the order of their columns, which is a contract; later ones follow in the order of the

@@ -9,7 +9,7 @@ use crate::enclosure::{MembersEnclosure, PlanarModel};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{Pose, Rotation};
 
-/// What is known of a chain without any lengths.
+/// Static description of a chain, independent of its lengths.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChainDescription {
     /// Letters of the joints from base to platform, for example `PRR`.

@@ -42,12 +42,12 @@ pub enum CatalogueError {
     Empty,
     /// A number is not positive, or the wall is thicker than the outer radius.
     #[error(
-        "`{0}` has an outer radius, a wall or a mass that is no bar: all must be above 0, and the wall at most the outer radius"
+        "`{0}` has an invalid outer radius, wall or mass: all must be above 0, and the wall at most the outer radius"
     )]
     NoBar(String),
     /// Two entries have one outer radius, which is all that a design states.
     #[error(
-        "`{0}` and `{1}` have the same outer size; a design states only the outer radius, so that one of them must be left out"
+        "`{0}` and `{1}` have the same outer size; a design states only the outer radius, so one of them must be removed"
     )]
     Twice(String, String),
 }

@@ -12,11 +12,11 @@ pub enum TextError {
     #[error("the design is empty; expected one like `3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056`")]
     Empty,
     /// The first word is not the name of an architecture.
-    #[error("unknown architecture `{0}`; expected one of {names}, where `_` precedes the driven joint", names = architecture_names())]
+    #[error("unknown architecture `{0}`; expected one of {names}, where `_` precedes the actuated joint", names = architecture_names())]
     UnknownArchitecture(String),
     /// The name is that of a chain without its driven joint.
     #[error(
-        "`{name}` does not tell which joint is driven; expected one of {of_chain}, where `_` precedes the driven joint"
+        "`{name}` does not state which joint is actuated; expected one of {of_chain}, where `_` precedes the actuated joint"
     )]
     NoDrivenJoint {
         /// The name.
@@ -26,7 +26,7 @@ pub enum TextError {
     },
     /// With the driven joint locked, such a leg could transmit no force.
     #[error(
-        "`{name}` cannot be driven there: with this joint locked, two prismatic joints are left, so that the leg transmits no force \
+        "`{name}` cannot be actuated at this joint: with it locked, two prismatic joints remain, so the leg transmits no force \
          and every pose is singular; expected one of {names}",
         names = architecture_names()
     )]
@@ -297,6 +297,6 @@ mod tests {
         assert!(error("3-_PPR R=1 r=1 Lb=1 rj=1 rp=1 beta_deg=180").contains("below 180°"));
         assert!(error("3-_PRP R=1 r=1 Lb=1 rj=1 rp=1 gamma_deg=NaN").contains("within ±360°"));
         assert!(error("3-RRR R=1 r=1 Lb=1 rj=1 rp=1 La=0").contains("above 0 m"));
-        assert!(further("3-PPR").contains("which joint is driven"));
+        assert!(further("3-PPR").contains("which joint is actuated"));
     }
 }

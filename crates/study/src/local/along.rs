@@ -183,14 +183,14 @@ impl DriversAlong {
         let limits = self.leading().into_iter().map(|part| {
             let (place, price) = (self.place(&part), part.median());
             format!(
-                "Of the limits, {} drives the {objective} {place}: 1 % more of it costs {price:+.2} % there.",
+                "Among the limits, {} drives the {objective} {place}: an increase of 1 % costs {price:+.2} %.",
                 part.label
             )
         });
         let bounds = self.in_the_way().into_iter().map(|part| {
             let (place, price) = (self.place(&part), part.median());
             format!(
-                "The {} is in the way {place}: 1 % more of it changes the {objective} by {price:+.2} %.",
+                "The {} restricts the {objective} {place}: an increase of 1 % changes it by {price:+.2} %.",
                 part.label
             )
         });

@@ -174,7 +174,7 @@ impl LocalDesign {
         let mut warnings: Vec<String> = problem
             .left_out()
             .iter()
-            .map(|quantity| format!("the limit of {} is not part of the prices", quantity.entry().key))
+            .map(|quantity| format!("the prices do not include the limit of {}", quantity.entry().key))
             .collect();
         let is_explained = polished.multipliers.explain();
         if !is_explained {

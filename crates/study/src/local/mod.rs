@@ -28,10 +28,10 @@ pub enum LocalFault {
     #[error(transparent)]
     Question(#[from] LocalError),
     /// An objective that is to keep its value has none, because the design is infeasible.
-    #[error("the design is infeasible, so that its {0} is not known; state it, or name a design of a front")]
+    #[error("the design is infeasible, so its {0} is not known; state it, or use a design of a front")]
     Unknown(&'static str),
     /// No design near the given one keeps every requirement.
-    #[error("no design near {0} keeps every requirement at every pose of the region")]
+    #[error("no design near {0} satisfies every requirement at every pose of the region")]
     Infeasible(Box<Design>),
 }
 

@@ -27,11 +27,11 @@ pub struct Condition(pub QuantityLimit);
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ConditionError {
     /// There is no comparison.
-    #[error("`{0}` is no condition; write a quantity, >= or <=, and a number, as in \"k_xy_n_per_m >= 1.2e6\"")]
+    #[error("`{0}` is not a condition; write a quantity, >= or <=, and a number, as in \"k_xy_n_per_m >= 1.2e6\"")]
     Form(String),
     /// The quantity is unknown.
     #[error(
-        "`{0}` is no quantity; quantities are the keys of `objectives` and `constraints`, as mass_kg, workspace_radius_m, k_xy_n_per_m"
+        "`{0}` is not a quantity; quantities are the keys of `objectives` and `constraints`, such as mass_kg, workspace_radius_m, k_xy_n_per_m"
     )]
     Quantity(String),
     /// The number is none.
@@ -112,10 +112,10 @@ pub enum WishFault {
     #[error(transparent)]
     Local(#[from] LocalFault),
     /// The design is infeasible.
-    #[error("the design is infeasible; a wish starts from a design that is feasible on the fine grid")]
+    #[error("the design is infeasible; a wish must start from a design that is feasible on the fine grid")]
     Infeasible,
     /// The design that was found does not hold on the fine grid.
-    #[error("the nearest design, {0}, does not hold on the fine grid")]
+    #[error("the nearest design, {0}, is infeasible on the fine grid")]
     NotVerified(Box<Design>),
 }
 

@@ -77,7 +77,7 @@ impl WishOutcome {
         let left_out = self
             .left_out
             .iter()
-            .map(|quantity| format!("the limit of {} was compared at the end alone", quantity.entry().key));
+            .map(|quantity| format!("the limit of {} was checked only at the end", quantity.entry().key));
         WishJson {
             design: found.design.to_string(),
             home_phi_deg: found.home_phi_deg,

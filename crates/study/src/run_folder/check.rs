@@ -114,10 +114,10 @@ impl Inspection {
                 optimizer.evaluations
             ),
             EndReason::TimeUp if optimizer.time_limit_s.is_none() => {
-                "the time of the run was up, but the study has no time limit".to_owned()
+                "the run reached a time limit, but the study has none".to_owned()
             }
             EndReason::Stagnated if optimizer.stagnation.is_none() => {
-                "the run stagnated, but the study does not ask for an end then".to_owned()
+                "the run ended by stagnation, but the study has no section [optimizer.stagnation]".to_owned()
             }
             _ => return,
         };

@@ -24,14 +24,14 @@ pub enum MergeError {
     Table(#[from] TableError),
     /// A folder does not state what its table has to be.
     #[error(
-        "{} does not state the size and the checksum of its designs, so that lost rows would not be noticed; kinefront optimize \
+        "{} does not state the size and the checksum of its designs, so lost rows would go unnoticed; kinefront optimize \
          --resume --accept-unverified completes it",
         .0.display()
     )]
     Unverified(PathBuf),
     /// Two runs ask different questions.
     #[error(
-        "{} and {} are runs of different studies: `{key}` differs; only the seed, the budget and the name of the study may",
+        "{} and {} are runs of different studies: `{key}` differs; only the seed, the budget and the name of the study may differ",
         first.display(),
         path.display()
     )]
@@ -44,7 +44,7 @@ pub enum MergeError {
         key: String,
     },
     /// A run is given twice.
-    #[error("{} and {} hold the same designs; a run counts once", first.display(), path.display())]
+    #[error("{} and {} hold the same designs; list each run once", first.display(), path.display())]
     Twice {
         /// Path of the first run.
         first: PathBuf,
@@ -220,7 +220,7 @@ fn read(path: &Path, notes: &mut Vec<String>) -> Result<(RunFolder, Vec<TableRow
             .is_none_or(|report| report.outcome == crate::EndReason::Interrupted)
     {
         notes.push(format!(
-            "{} has not ended; its {} designs are taken",
+            "{} has not ended; its {} designs so far are used",
             path.display(),
             contents.rows.len()
         ));

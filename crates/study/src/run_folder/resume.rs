@@ -55,13 +55,13 @@ pub enum ResumeError {
     Table(#[from] TableError),
     /// The folder does not state what its table has to be.
     #[error(
-        "{} does not state the size and the checksum of its designs, so that lost rows would not be noticed; --accept-unverified \
-         resumes it with the rows that are there",
+        "{} does not state the size and the checksum of its designs, so lost rows would go unnoticed; --accept-unverified \
+         resumes it with the rows that it contains",
         .0.display()
     )]
     Unverified(PathBuf),
     /// The budget is smaller than what was evaluated.
-    #[error("{} holds {evaluated} evaluations already; --evaluations must be at least that, not {asked}", path.display())]
+    #[error("{} already holds {evaluated} evaluations; --evaluations must be at least that many, not {asked}", path.display())]
     Budget {
         /// Path of the folder.
         path: PathBuf,
@@ -72,7 +72,7 @@ pub enum ResumeError {
     },
     /// The folder holds the designs of several runs.
     #[error(
-        "{} holds the designs of several runs, to which no search leads; continue one of them and merge again",
+        "{} holds the designs of several runs, which no single search can continue; resume one of the runs and merge again",
         .0.display()
     )]
     Merged(PathBuf),
@@ -122,7 +122,7 @@ impl Resumption {
             study.optimizer.evaluations = asked;
         }
         if let Some(line) = contents.cut_line {
-            notes.push(format!("line {line} of {DESIGNS} was incomplete; it was cut off"));
+            notes.push(format!("line {line} of {DESIGNS} was incomplete and was removed"));
         }
         let is_merged = !folder.merged().is_empty();
         // A merged folder is complete, or its merge was killed; nothing can be searched in it.

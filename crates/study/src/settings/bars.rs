@@ -111,7 +111,7 @@ impl SectionChoice {
         let wall = match (stated.as_slice(), self.kind) {
             ([], SectionKind::Round) => return Ok(CrossSection::Round),
             ([], _) => {
-                let message = "needs the wall of the tube: one of wall_ratio, wall_m and catalogue".to_owned();
+                let message = "requires the wall of the tube: state wall_ratio, wall_m or catalogue".to_owned();
                 return Err(("kind", message));
             }
             ([key, ..], SectionKind::Round) => {
@@ -119,7 +119,7 @@ impl SectionChoice {
                 return Err((key, message.to_owned()));
             }
             ([_, second, ..], _) => {
-                let message = format!("is stated beside {}; a tube has one of them", stated[0]);
+                let message = format!("is stated together with {}; state only one of them", stated[0]);
                 return Err((second, message));
             }
             _ => match (self.wall_ratio, self.wall_m, &self.catalogue) {

@@ -55,7 +55,7 @@ pub enum CatalogueFault {
     },
     /// The file is neither in the folder of the study nor below it.
     #[error(
-        "is a file outside the folder of the study, which is not read unless you say so: move it there, or pass --outside-files"
+        "is a file outside the folder of the study, which is not read by default: move it into that folder, or pass --outside-files"
     )]
     Outside,
     /// A line is not an entry of a catalogue.

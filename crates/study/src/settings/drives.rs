@@ -10,14 +10,14 @@ use kinefront_model::mechanism::JointKind;
 section! {
     /// What the drives move besides the members, and the drives that can be bought.
     pub struct DriveSection in "drives" {
-        /// Mass of a slider on a rail of the base, besides that of its carriage in `joints`.
+        /// Mass of a slider on a rail of the base, in addition to that of its carriage in `joints`.
         slider_mass_kg: f64 = 0.0, Check::Within(0.0, 1e12, " kg");
-        /// Inertia of the rotor, as a mass that moves with a prismatic actuator.
+        /// Rotor inertia, reflected to a prismatic actuator as a mass.
         prismatic_inertia_kg: f64 = 0.0, Check::Within(0.0, 1e12, " kg");
-        /// Inertia of the rotor, as one that turns with a revolute actuator.
+        /// Rotor inertia, reflected to a revolute actuator.
         revolute_inertia_kg_m2: f64 = 0.0, Check::Within(0.0, 1e12, " kg·m²");
         optional {
-            /// Catalogue of which each design selects the lightest drive that carries the motion, within a limit of `drive_utilization`
+            /// Catalogue from which each design selects the lightest drive that can perform the motion, within a limit of `drive_utilization`
             /// if there is one: a built-in name, the path of a CSV file, or its rows.
             catalogue: CatalogueChoice<DriveRow>, Check::Any, Initial::Name(DRIVE_CATALOGUES[0].name);
         }
@@ -57,7 +57,7 @@ pub struct DriveRow {
 /// All catalogues of drives that come with the program.
 pub const DRIVE_CATALOGUES: [BuiltinCatalogue; 1] = [BuiltinCatalogue {
     name: "generic-drives",
-    source: "rounded figures of the common classes of linear motors, ball screws and geared servo motors, of no particular maker",
+    source: "rounded values for common classes of linear motors, ball screws and geared servo motors, not from a particular manufacturer",
     text: include_str!("../../assets/catalogues/generic-drives.csv"),
 }];
 

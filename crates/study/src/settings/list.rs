@@ -21,9 +21,9 @@ const SECTIONS: [&[Setting]; 33] = [
         architectures: Check::Selection(architectures),
             "Architectures to search; with more than one, the architecture is a variable.";
         working_mode: Check::Any, "Working mode of every design: the sign of the inverse kinematics solution of each leg.";
-        objectives: Check::Any, "Objectives, one to three: the quantities that are minimised or maximised.";
-        quantities: Check::Any, "Quantities that are reported besides those that the study names otherwise.";
-        constraints: Check::Any, "Limits of quantities: the least or the largest value allowed.";
+        objectives: Check::Any, "Objectives, one to three: the quantities that are minimized or maximized.";
+        quantities: Check::Any, "Quantities that are reported in addition to the objectives and the limited ones.";
+        constraints: Check::Any, "Limits of quantities: the smallest or largest value allowed.";
     }),
     MaterialSection::SETTINGS,
     settings!("sections.legs" {

@@ -90,9 +90,9 @@ section! {
         /// Density `ν`.
         density_kg_per_m3: f64 = Material::STEEL.density, Check::Positive;
         optional {
-            /// Material that comes with the program, from which the values follow that the section does not state.
+            /// Built-in material, which supplies the values that the section does not state.
             name: String, Check::Choice(&NAMES), Initial::AsText;
-            /// Yield strength `f_y`, by which the safety factor is computed.
+            /// Yield strength `f_y`, from which the safety factor is computed.
             yield_strength_pa: f64, Check::Positive, Initial::Number(235e6);
         }
     }

@@ -67,7 +67,7 @@ impl RegionSection {
             let name = RegionKind::NAMES[kind as usize];
             match (is_stated, kind == self.kind) {
                 (true, false) => return Err((key, format!("has no effect unless kind = \"{name}\""))),
-                (false, true) => return Err(("kind", format!("is \"{name}\", which requires `{key}` beside it"))),
+                (false, true) => return Err(("kind", format!("is \"{name}\", which also requires `{key}`"))),
                 _ => {}
             }
         }

@@ -72,7 +72,7 @@ section! {
             k_z_min_n_per_m: f64, Check::NonNegative, Initial::Number(1e5);
             /// Threshold of g6, if it is set directly.
             k_phi_z_min_nm_per_rad: f64, Check::NonNegative, Initial::Number(573.0);
-            /// Threshold of g7: smallest permitted clearance of members that are not joined; if omitted, they may collide.
+            /// Threshold of g7: smallest permitted clearance between members that are not joined; if omitted, they may collide.
             clearance_min_m: f64, Check::Within(0.0, 1e3, ", or be omitted if members may collide"), Initial::Number(0.005);
         }
     }
@@ -189,11 +189,11 @@ section! {
         platform_angles_deg: [f64; LEGS] = Arrangement::PAPER.platform_angles_deg, Check::Within(-360.0, 360.0, "");
         /// Distances of the platform joints from `P`, as multiples of `r`.
         platform_radii: [f64; LEGS] = Arrangement::PAPER.platform_radii, Check::Within(0.01, 100.0, "");
-        /// Turn of each rail in addition to `α`.
+        /// Rotation of each rail, in addition to `α`.
         rail_turn_deg: [f64; LEGS] = Arrangement::PAPER.rail_turn_deg, Check::Within(-360.0, 360.0, "");
-        /// Travel of a slider, as shares of the distance between neighbouring base joints.
+        /// Travel of a slider, as fractions of the distance between neighbouring base joints.
         rail: [f64; 2] = Arrangement::PAPER.rail, Check::Within(-100.0, 100.0, "");
-        /// Travel on every other guide, as shares of `L_b`, or of `L_a` on the guide at the base of an RPP leg.
+        /// Travel on every other guide, as fractions of `L_b`, or of `L_a` on the guide at the base of an RPP leg.
         guide: [f64; 2] = Arrangement::PAPER.guide, Check::Within(-100.0, 100.0, "");
     }
 }

@@ -25,14 +25,14 @@ section! {
         force_n: [f64; 3] = [0.0; 3], Check::Within(-1e12, 1e12, "");
         /// Moment on the platform, about the axes of the base.
         moment_nm: [f64; 3] = [0.0; 3], Check::Within(-1e12, 1e12, "");
-        /// What the wrenches form about the given one: a box, a cylinder (any direction in the plane) or an ellipsoid.
+        /// Shape of the set of wrenches around the given one: a box, a cylinder (any direction in the plane) or an ellipsoid.
         shape: LoadShapeChoice = LoadShapeChoice::Cylinder, Check::Choice(&["box", "cylinder", "ellipsoid"]);
         /// Acceleration of gravity, along the axes of the base; [0, -9.81, 0] for a manipulator whose plane is vertical.
         gravity_m_per_s2: [f64; 3] = [0.0, 0.0, -9.81], Check::Within(-1e6, 1e6, "");
         optional {
-            /// By how much the force differs from the given one at most; if omitted, the forces of the requirements.
+            /// Largest deviation of the force from the given one; if omitted, the forces of the requirements.
             force_range_n: [f64; 3], Check::NonNegative, Initial::AsText;
-            /// By how much the moment differs from the given one at most; if omitted, the torque of the requirements.
+            /// Largest deviation of the moment from the given one; if omitted, the torque of the requirements.
             moment_range_nm: [f64; 3], Check::NonNegative, Initial::AsText;
         }
     }

@@ -26,7 +26,7 @@ section! {
             height_m: f64, Check::Positive, Initial::AsText;
             /// Corners of a polygon.
             corners_m: Vec<[f64; 2]>, Check::Finite, Initial::AsText;
-            /// Lowest and highest point above the layer of the platform bars; if omitted, the body has no end.
+            /// Lowest and highest point above the layer of the platform bars; if omitted, its height is unlimited.
             heights_m: [f64; 2], Check::Finite, Initial::AsText;
         }
     }

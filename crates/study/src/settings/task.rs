@@ -57,7 +57,7 @@ section! {
         encoder_m: f64 = 0.0, Check::Within(0.0, 1e3, " m");
         /// Error of a revolute actuator.
         encoder_rad: f64 = 0.0, Check::Within(0.0, 1.0, " rad");
-        /// Error of the length of each link; of a telescopic leg, of the zero of its length.
+        /// Length error of each link; for a telescopic leg, the error of its zero position.
         link_m: f64 = 0.0, Check::Within(0.0, 1e3, " m");
         /// Radius of the disc in which each base joint, or each end of a rail, lies.
         base_m: f64 = 0.0, Check::Within(0.0, 1e3, " m");
@@ -100,7 +100,7 @@ const FIRST_ACCELERATION: f64 = 10.0;
 section! {
     /// A motion that the platform makes again and again.
     pub struct TaskSection in "task" {
-        /// Size of a path that is scaled to the workspace, as a share of its radius.
+        /// Size of a path that is scaled to the workspace, as a fraction of the workspace radius.
         share: f64 = 0.8, Check::Within(1e-6, 1e3, "");
         /// Direction in which such a path begins.
         angle_deg: f64 = 0.0, Check::Within(-1e6, 1e6, "°");
@@ -110,9 +110,9 @@ section! {
         closed: bool = true, Check::Any;
         /// How each piece of the path is covered from rest to rest.
         law: MotionLawChoice = MotionLawChoice::Quintic, Check::Choice(&["quintic", "trapezoid"]);
-        /// Share of the time in which a `trapezoid` motion accelerates.
+        /// Fraction of the time during which a `trapezoid` motion accelerates.
         blend: f64 = 1.0 / 3.0, Check::Within(1e-3, 0.5, "");
-        /// Share of that in which its acceleration rises, and in which it falls.
+        /// Fraction of that time during which the acceleration rises, and during which it falls.
         ramp: f64 = 0.25, Check::Within(1e-3, 0.5, "");
         /// Rest after each piece.
         dwell_s: f64 = 0.0, Check::Within(0.0, 1e6, " s");
@@ -120,11 +120,11 @@ section! {
         samples: i64 = 200, Check::Count(2, 100_000);
         optional {
             /// Path: straight between `waypoints`, or a `circle`, a `star` or a `pick-and-place` stroke that is scaled to the workspace; if
-            /// omitted, no motion is asked for.
+            /// omitted, the study has no motion.
             shape: TaskShapeChoice, Check::Choice(&["pick-and-place", "circle", "star", "waypoints"]), Initial::AsText;
             /// Points of the path, as [x in metres, y in metres, φ in degrees]; angles are not wrapped.
             waypoints: Vec<[f64; 3]>, Check::Within(-1e6, 1e6, ""), Initial::AsText;
-            /// Time of the whole cycle with its rests; if omitted, the motion is as fast as its limits allow.
+            /// Duration of the whole cycle, including rests; if omitted, the motion is as fast as its limits allow.
             cycle_time_s: f64, Check::Positive, Initial::Number(FIRST_CYCLE);
             /// Largest speed of `P`.
             v_max_m_per_s: f64, Check::Positive, Initial::Number(FIRST_SPEED);
@@ -258,7 +258,7 @@ impl TaskSection {
                 let count = self.points().len();
                 fault(
                     "waypoints",
-                    format!("has {count} entries; a path needs two different points at least"),
+                    format!("has {count} entries; a path needs at least two different points"),
                 );
             }
         } else if self.waypoints.is_some() {
@@ -284,7 +284,10 @@ impl TaskSection {
             Some(time) => {
                 for (key, limit) in limits {
                     if limit.is_some() {
-                        fault(key, "has no effect beside cycle_time_s; omit one of both".to_owned());
+                        fault(
+                            key,
+                            "has no effect together with cycle_time_s; omit one of the two".to_owned(),
+                        );
                     }
                 }
                 let resting = self.dwell_s * pieces as f64;

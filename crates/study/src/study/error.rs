@@ -40,7 +40,7 @@ pub enum StudyError {
         length: usize,
     },
     /// A line has a character that a terminal does not show.
-    #[error("line {line} of the study {name} has the character {found}, which a terminal does not show; omit it")]
+    #[error("line {line} of the study {name} has the character {found}, which a terminal does not show; remove it")]
     Hidden {
         /// Name of the study's file.
         name: String,

@@ -74,7 +74,7 @@ fn check_characteristic_length(study: &Study, faults: &mut Vec<Fault>) {
     match (model.characteristic_length, model.characteristic_length_m) {
         (LengthChoice::Fixed, None) => faults.push(Fault::new(
             "model.characteristic_length",
-            "is \"fixed\", which requires `characteristic_length_m` beside it",
+            "is \"fixed\", which also requires `characteristic_length_m`",
         )),
         (LengthChoice::PlatformRadius | LengthChoice::Isotropic, Some(_)) => faults.push(Fault::new(
             "model.characteristic_length_m",
@@ -167,7 +167,7 @@ fn check_geometry(study: &Study, faults: &mut Vec<Fault>) {
         let next = (leg + 1) % LEGS;
         if geometry.base_joint(leg, 1.0).distance(geometry.base_joint(next, 1.0)) < 1e-9 {
             let message = format!(
-                "puts A{} and A{} at one point, but the rail of a {architecture} leads from one to the other",
+                "puts A{} and A{} at the same point, but the rail of a {architecture} runs from one to the other",
                 leg + 1,
                 next + 1
             );
@@ -215,7 +215,7 @@ fn check_grids(study: &Study, faults: &mut Vec<Fault>) {
             }
             Err(error @ GridError::TooFine { .. }) => Fault::new(
                 format!("grid.{name}"),
-                format!("has too many poses: {error}; enlarge phi_step_deg, or take fewer directions or ray_steps"),
+                format!("has too many poses: {error}; increase phi_step_deg, or use fewer directions or ray_steps"),
             ),
             Err(error @ GridError::TurnNotWhole(_)) => Fault::new(key, format!("is invalid: {error}")),
         };
@@ -437,7 +437,9 @@ fn check_objectives(study: &Study, faults: &mut Vec<Fault>) {
             continue;
         };
         if choices[..place].iter().any(|other| other.key() == key) {
-            fault(format!("`{key}` is named twice; each objective is another quantity"));
+            fault(format!(
+                "`{key}` is named twice; each objective must be a different quantity"
+            ));
         }
         if quantity == Quantity::WorkspaceRadius && study.workspace.region.is_prescribed() {
             fault(format!(
@@ -505,7 +507,7 @@ fn limit_fault(study: &Study, key: &str, limits: &LimitChoice) -> Option<String>
         && least >= most
     {
         return Some(format!(
-            "asks for at least {least}, but this quantity is at most {most}"
+            "requires at least {least}, but this quantity is at most {most}"
         ));
     }
     if quantity == Quantity::WorkspaceRadius && study.workspace.region.is_prescribed() {
@@ -523,6 +525,6 @@ fn limit_fault(study: &Study, key: &str, limits: &LimitChoice) -> Option<String>
         _ => None,
     };
     requirement.filter(|_| limits.at_least.is_some()).map(|requirement| {
-        format!("is stated beside requirements.{requirement}, which says the same; omit one of both")
+        format!("is stated together with requirements.{requirement}, which sets the same limit; omit one of the two")
     })
 }

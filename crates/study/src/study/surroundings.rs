@@ -32,7 +32,7 @@ pub(super) fn faults(study: &Study) -> Vec<(String, String)> {
             Ok(_) if is_repeated => faults.push((
                 format!("{}.name", place(index)),
                 format!(
-                    "is `{}`, which another obstacle has; each has its own name",
+                    "is `{}`, the name of another obstacle; names must be unique",
                     section.name
                 ),
             )),

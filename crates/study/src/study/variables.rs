@@ -97,7 +97,7 @@ pub(super) fn faults(study: &Study) -> Vec<(String, String)> {
                 Some(_) if has_catalogue(study, variable) => {
                     faults.push((
                         key,
-                        "is tied, but its bars are selected from a catalogue; omit one of both".to_owned(),
+                        "is tied, but its bars are selected from a catalogue; omit one of the two".to_owned(),
                     ));
                 }
                 Some(_) => {}

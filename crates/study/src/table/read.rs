@@ -38,9 +38,7 @@ pub enum TableFault {
     #[error("line 1: the columns {} are missing; is this a table of designs?", .0.join(", "))]
     Columns(Vec<String>),
     /// The columns are not those of this version, in their order.
-    #[error(
-        "line 1: the columns are not those of designs.csv of this version, in their order; no rows can be appended"
-    )]
+    #[error("line 1: the columns or their order differ from designs.csv of this version; no rows can be appended")]
     Header,
     /// A row is invalid.
     #[error("line {line}: {error}")]
@@ -51,7 +49,9 @@ pub enum TableFault {
         error: RowError,
     },
     /// Rows of a run are missing, duplicated or out of order.
-    #[error("line {line}: the id is {found}, but {expected} follows; rows are missing, duplicated or out of order")]
+    #[error(
+        "line {line}: the id is {found}, but {expected} was expected; rows are missing, duplicated or out of order"
+    )]
     Order {
         /// Line in the file, from 1.
         line: u64,

@@ -749,7 +749,7 @@ fn obstacles_and_a_room_are_checked() {
         (
             format!("{clearance}{post}centre_m = [1.0, 1.0]\n{post}centre_m = [-1.0, 1.0]"),
             "obstacles[2].name",
-            "another obstacle has",
+            "the name of another obstacle",
         ),
         (
             format!("{clearance}{post}centre_m = [1.0, 1.0]\nheights_m = [0.2, 0.1]"),

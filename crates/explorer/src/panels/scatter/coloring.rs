@@ -162,7 +162,7 @@ impl ColorLegend {
         // The middle of the bar is the geometric mean, as in the picture.
         let count = move |fraction: f64| libm::expm1(fraction * libm::log1p(f64::from(most))) as u32;
         Self {
-            title: "designs in a place".to_owned(),
+            title: "overlapping designs".to_owned(),
             ends: ["1".to_owned(), most.to_string()],
             color: Box::new(move |fraction| density(count(fraction), most, dark)),
         }

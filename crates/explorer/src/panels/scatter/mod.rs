@@ -184,11 +184,11 @@ impl Scatter {
                 counts.on_front,
                 of.join(", ")
             ));
-            let hint = "lets only designs pass that lie in the ranges of the marked ones on both axes";
+            let hint = "filters to the ranges of the marked designs on both axes";
             if ui.button("Filter").on_hover_text(hint).clicked() {
                 self.filter_to_marked(session);
             }
-            if ui.button("Unmark").on_hover_text("marks no design").clicked() {
+            if ui.button("Unmark").on_hover_text("clears all marks").clicked() {
                 session.mark(Arc::default());
             }
         });
@@ -291,7 +291,7 @@ impl Scatter {
             }
             if ui
                 .button("Fit")
-                .on_hover_text("fit the view to the feasible designs (or double-click)")
+                .on_hover_text("fits the view to the feasible designs (or double-click)")
                 .clicked()
             {
                 self.fitted = true;

@@ -21,7 +21,7 @@ use crate::mechanism::Design;
 use crate::pose::PoseScalar;
 use sizer::Sizer;
 
-/// What sizing may change.
+/// Ranges that sizing may vary.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SizingRanges {
     /// Range of `r_j` \[m\].

@@ -239,33 +239,33 @@ pose_scalars! {
         /// g3: inverse condition number `κ_F⁻¹`.
         Dexterity [Dexterity "g3" "dexterity"] = PoseScalarEntry::new(
             QuantityEntry::new("dexterity", "", "dexterity", Scope::Poses, Better::Higher,
-                "Least inverse condition number of the normalised Jacobian (g3).").below(1.0),
+                "Smallest inverse condition number of the normalized Jacobian (g3).").below(1.0),
             "inverse_condition").labelled("inverse condition number");
         /// g4: translational stiffness in the plane, `k_xy` \[N/m\].
         StiffnessXy [StiffnessXy "g4" "stiffness_xy"] = PoseScalarEntry::new(
             QuantityEntry::new("k_xy_n_per_m", "N/m", "k_xy", Scope::Poses, Better::Higher,
-                "Least translational stiffness in the plane (g4).").logarithmic().reference(Reference::Limit(100.0)),
+                "Smallest translational stiffness in the plane (g4).").logarithmic().reference(Reference::Limit(100.0)),
             "k_xy").labelled("stiffness k_xy").of_bars();
         /// g5: translational stiffness out of the plane, `k_z` \[N/m\].
         StiffnessZ [StiffnessZ "g5" "stiffness_z"] = PoseScalarEntry::new(
             QuantityEntry::new("k_z_n_per_m", "N/m", "k_z", Scope::Poses, Better::Higher,
-                "Least translational stiffness out of the plane (g5).").logarithmic().reference(Reference::Limit(100.0)),
+                "Smallest translational stiffness out of the plane (g5).").logarithmic().reference(Reference::Limit(100.0)),
             "k_z").labelled("stiffness k_z").of_bars();
         /// g6: rotational stiffness about z, `k_φz` \[N·m/rad\].
         StiffnessPhiZ [StiffnessPhiZ "g6" "stiffness_phi_z"] = PoseScalarEntry::new(
             QuantityEntry::new("k_phi_z_nm_per_rad", "N·m/rad", "k_φz", Scope::Poses, Better::Higher,
-                "Least rotational stiffness about z (g6).").logarithmic().reference(Reference::Limit(100.0)),
+                "Smallest rotational stiffness about z (g6).").logarithmic().reference(Reference::Limit(100.0)),
             "k_phi_z").labelled("stiffness k_φz").of_bars();
         /// Sign rule: `det A / ℓ`, which keeps one sign over the workspace.
         Determinant [DeterminantSign "det_sign" "determinant_sign"] = PoseScalarEntry::new(
             // No study bounds the determinant at each pose: the sign rule does.
             QuantityEntry::new("determinant", "", "det A", Scope::Region, Better::Higher,
-                "Least determinant of the direct Jacobian, divided by the characteristic length."),
+                "Smallest determinant of the direct Jacobian, divided by the characteristic length."),
             "determinant").labelled("det A / ℓ");
         /// g7: smallest clearance between members that are not joined \[m\]; negative where they overlap.
         Clearance [Clearance "g7" "clearance"] = PoseScalarEntry::new(
             QuantityEntry::new("clearance_m", "m", "clearance", Scope::Poses, Better::Higher,
-                "Smallest clearance of members that are not joined (g7)."),
+                "Smallest clearance between members that are not joined (g7)."),
             "clearance").labelled("clearance between members").in_millimetres().per_base_radius();
     }
     on_demand {
@@ -277,8 +277,8 @@ pose_scalars! {
             "displacement").labelled("displacement under the in-plane force").in_millimetres().of_bars();
         /// Transmission: `|B_ii|` of the leg that has the least, divided by the lever of a revolute actuator; in \[0, 1\].
         Transmission by transmission::lanes = PoseScalarEntry::new(
-            QuantityEntry::new("transmission_min", "", "least transmission", Scope::Poses, Better::Higher,
-                "Least transmission of a leg: the speed along its last link for a unit speed of the joint that the actuator moves.")
+            QuantityEntry::new("transmission_min", "", "smallest transmission", Scope::Poses, Better::Higher,
+                "Smallest transmission of a leg: the speed along its last link per unit speed of its actuated joint.")
                 .above_zero().below(1.0),
             "transmission").labelled("transmission");
         /// Radius of the smallest circle about `O` that holds the base and all members \[m\].
@@ -310,24 +310,24 @@ pose_scalars! {
         /// Largest force of any joint \[N\].
         JointForce = PoseScalarEntry::new(
             QuantityEntry::new("joint_force_max_n", "N", "largest joint force", Scope::Poses, Better::Lower,
-                "Largest force of any joint, without the one along its drive.")
+                "Largest force of any joint, without the component along its actuator.")
                 .above_zero().logarithmic().reference(Reference::Number(1e5)),
             "joint_force").labelled("largest force of a joint");
         /// Largest moment of any joint \[N·m\].
         JointMoment = PoseScalarEntry::new(
             QuantityEntry::new("joint_moment_max_nm", "N·m", "largest joint moment", Scope::Poses, Better::Lower,
-                "Largest moment of any joint: the tilting moment of a revolute one, all of the moment of a prismatic one.")
+                "Largest moment of any joint: the tilting moment of a revolute joint, the whole moment of a prismatic joint.")
                 .above_zero().logarithmic().reference(Reference::Number(1e5)),
             "joint_moment").labelled("largest moment of a joint");
         /// Largest force of a prismatic drive \[N\].
         ActuatorForce = PoseScalarEntry::new(
-            QuantityEntry::new("actuator_force_max_n", "N", "largest drive force", Scope::Poses, Better::Lower,
+            QuantityEntry::new("actuator_force_max_n", "N", "largest actuator force", Scope::Poses, Better::Lower,
                 "Largest force of a prismatic actuator; revolute ones have none.")
                 .above_zero().logarithmic().reference(Reference::Number(1e5)),
             "actuator_force").labelled("largest force of an actuator");
         /// Largest torque of a revolute drive \[N·m\].
         ActuatorTorque = PoseScalarEntry::new(
-            QuantityEntry::new("actuator_torque_max_nm", "N·m", "largest drive torque", Scope::Poses, Better::Lower,
+            QuantityEntry::new("actuator_torque_max_nm", "N·m", "largest actuator torque", Scope::Poses, Better::Lower,
                 "Largest torque of a revolute actuator; prismatic ones have none.")
                 .above_zero().logarithmic().reference(Reference::Number(1e5)),
             "actuator_torque").labelled("largest torque of an actuator");
@@ -336,19 +336,19 @@ pose_scalars! {
         /// Lowest natural frequency \[Hz\].
         NaturalFrequency = PoseScalarEntry::new(
             QuantityEntry::new("natural_frequency_hz", "Hz", "natural frequency", Scope::Poses, Better::Higher,
-                "Lowest natural frequency with the payload, the actuators being held.")
+                "Lowest natural frequency with the payload and with locked actuators.")
                 .above_zero().logarithmic().reference(Reference::Number(1e3)),
             "natural_frequency").labelled("lowest natural frequency").of_bars().as_frequency();
         /// Largest error of the position \[m\].
         PositionError = PoseScalarEntry::new(
             QuantityEntry::new("position_error_m", "m", "position error", Scope::Poses, Better::Lower,
-                "Largest error of the position that the tolerances cause.")
+                "Largest position error that the tolerances cause.")
                 .above_zero().logarithmic().reference(Reference::Number(1.0)),
             "position_error").labelled("largest error of the position").in_millimetres();
         /// Largest error of the orientation \[deg\].
         OrientationError = PoseScalarEntry::new(
             QuantityEntry::new("orientation_error_deg", "°", "orientation error", Scope::Poses, Better::Lower,
-                "Largest error of the orientation that the tolerances cause.")
+                "Largest orientation error that the tolerances cause.")
                 .above_zero().logarithmic().reference(Reference::Number(90.0)),
             "orientation_error").labelled("largest error of the orientation");
         /// Largest speed of a prismatic actuator for the motion in any direction \[m/s\].
