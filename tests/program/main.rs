@@ -1,5 +1,8 @@
 //! Tests of the program from outside: commands, files and recordings as other programs use them.
 
+// Tests that need signals, links or faults of the kernel are compiled where these exist.
+#![cfg_attr(not(target_os = "linux"), allow(unused_imports, dead_code))]
+
 mod commands;
 mod damage;
 mod documents;

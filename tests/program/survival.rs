@@ -11,9 +11,10 @@ use predicates::str::contains;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
+#[cfg(unix)]
+use super::support::signal;
 use super::support::{
-    DESIGN, check, folder, kinefront, optimize, program, report, resume, sample, signal, small_study, start, tables,
-    wait_for,
+    DESIGN, check, folder, kinefront, optimize, program, report, resume, sample, small_study, start, tables, wait_for,
 };
 
 /// Killed at any moment of its start, search, verification or end, and resumed on any number of threads, a run leaves the
