@@ -62,7 +62,7 @@ impl PyDesign {
     fn evaluate<'py>(&self, py: Python<'py>, grid: &str) -> PyResult<Bound<'py, PyAny>> {
         let grid = grid_choice(grid)?;
         let evaluation = py.detach(|| self.shared.model().evaluate(&self.design, grid));
-        from_serializable(py, &EvaluationJson::new(&evaluation))
+        from_serializable(py, &EvaluationJson::new(&evaluation, self.shared.model()))
     }
 
     /// Evaluates the design at poses, an array of shape (n, 3) with x and y in metres and phi in radians.

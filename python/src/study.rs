@@ -164,6 +164,30 @@ impl PyStudy {
         Ok(bounds)
     }
 
+    /// Values in metres of the variables that the study lists or takes from a catalogue of bars, by their keys.
+    #[getter]
+    fn choices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let choices = PyDict::new(py);
+        for variable in kinefront_model::mechanism::DESIGN_VARIABLES {
+            if let Some(values) = self.study().listed(variable) {
+                choices.set_item(variable.key(), values)?;
+            }
+        }
+        Ok(choices)
+    }
+
+    /// Variables that are a factor times another one, by their keys: the other variable and the factor.
+    #[getter]
+    fn ties<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let ties = PyDict::new(py);
+        for variable in kinefront_model::mechanism::DESIGN_VARIABLES {
+            if let Some(tie) = self.study().tie(variable) {
+                ties.set_item(variable.key(), (tie.source.key(), tie.factor))?;
+            }
+        }
+        Ok(ties)
+    }
+
     /// Settings of the optimizer.
     #[getter]
     fn optimizer<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -189,7 +213,8 @@ impl PyStudy {
     ///
     /// `designs` is a `Design` or its text, a sequence of n of them, or columns of length n: a dictionary, a `Table`, a data frame
     /// or a structured array with `architecture`, `R`, `r`, `Lb`, `rj`, `rp` \[m\], and, for some chains, `La`, `alpha_deg`,
-    /// `beta_deg` and `gamma_deg`; a single value stands for all designs. `grid` is `reference` or `fine`.
+    /// `beta_deg` and `gamma_deg`; a single value stands for all designs. `grid` is `reference` or `fine`. Designs are evaluated as they are
+    /// given, also beyond `bounds` and with values that `choices` does not have.
     ///
     /// Returns a `Table` of n rows with the columns of `designs.csv` and every quantity. A missing number is NaN. The result
     /// depends on neither the number of threads nor the processor, to the last bit.

@@ -44,7 +44,7 @@ pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
     let evaluation = model.evaluate(&design, grid);
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        let json = EvaluationJson::new(&evaluation).with_dynamics(model, &evaluation);
+        let json = EvaluationJson::new(&evaluation, model).with_dynamics(model, &evaluation);
         writeln!(out, "{}", to_json(&json).map_err(Failure::Runtime)?)?;
     } else {
         writeln!(out, "{}", tables::evaluation(&evaluation, model))?;
@@ -69,7 +69,8 @@ impl Server {
         let mut out = std::io::stdout().lock();
         while let Some(line) = next_line(&mut input)? {
             let answer = answer(line, |text| {
-                self.evaluate(text).map(|evaluation| EvaluationJson::new(&evaluation))
+                let found = self.evaluate(text);
+                found.map(|evaluation| EvaluationJson::new(&evaluation, self.study.model()))
             });
             writeln!(out, "{answer}")?;
             out.flush()?;

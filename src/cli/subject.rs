@@ -6,10 +6,10 @@ use std::path::Path;
 use clap::ArgGroup;
 use kinefront_model::evaluation::GridChoice;
 use kinefront_model::mechanism::Design;
-use kinefront_study::{RunFolder, Study, is_row_name, named_row, read_designs, read_table, row_names};
+use kinefront_study::{RunFolder, Study, UnlistedValue, is_row_name, named_row, read_designs, read_table, row_names};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
-use super::{GridArgument, load_study};
+use super::{GridArgument, load_study, say};
 
 /// The ways to specify a design, of which a command requires one; with the arguments of the command that take its place.
 pub fn exactly_one_of(arguments: &'static [&'static str]) -> ArgGroup {
@@ -54,8 +54,24 @@ impl SubjectArguments {
         }
     }
 
-    /// Reads the study, the design and a heading for the design.
+    /// Reads the study, the design and a heading for the design; a note tells which of its values the study does not list.
     pub fn read(&self) -> Result<(Study, Design, String)> {
+        let found = self.find()?;
+        for UnlistedValue {
+            variable,
+            value,
+            nearest,
+        } in found.0.unlisted(&found.1)
+        {
+            let key = variable.key();
+            say(format_args!(
+                "note: {key} = {value} m is not one of the values that the study or its catalogue has; the nearest is {nearest} m"
+            ));
+        }
+        Ok(found)
+    }
+
+    fn find(&self) -> Result<(Study, Design, String)> {
         if let Some(text) = &self.design {
             let study = load_study(self.study.as_deref())?;
             let design = Design::parse(text, study.working_mode).into_diagnostic()?;

@@ -5,7 +5,7 @@ use std::fs;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 
-use super::support::{design_of, folder, json, kinefront};
+use super::support::{design_of, folder, json, kinefront, says};
 
 /// The lightest 3-PRR for a disc of 1.2 m, and its home orientation, as an independent solver found them.
 const OPTIMUM: &str = "3-PRR R=3.8908964188791515 r=0.7103100290509872 Lb=2.5672756542491637 rj=0.024643653700447767 rp=0.03482665497108131";
@@ -211,7 +211,7 @@ fn a_front_answers_wishes_and_reasons() {
         ),
         (vec!["prices", &subject, "--radius", "0"], "it must be a number above 0"),
     ] {
-        kinefront().args(&arguments).assert().code(2).stderr(contains(message));
+        kinefront().args(&arguments).assert().code(2).stderr(says(message));
     }
 }
 
@@ -374,7 +374,7 @@ fn a_study_without_designs_is_told_what_stands_in_the_way() {
         .arg(feasible.join("designs.csv"))
         .assert()
         .code(2)
-        .stderr(contains("is feasible, so no requirement"));
+        .stderr(says("is feasible, so no requirement"));
 }
 
 /// A point of a question without a workspace radius is stated by its own quantities.

@@ -7,7 +7,7 @@ use predicates::str::contains;
 use serde_json::Value;
 
 use super::exports::{DESIGNS, OTHERS};
-use super::support::{DESIGN, design_of, folder, json, kinefront, optimize, python, sample, script};
+use super::support::{DESIGN, design_of, folder, json, kinefront, optimize, python, sample, says, script};
 
 /// The settings of the first independent case of the model's fixture `task_cases.json`.
 const STUDY: &str = r#"
@@ -156,7 +156,7 @@ fn motions_that_are_impossible_are_told() {
         ),
         ("[payload]\nmass_kg = -1".to_owned(), "mass_kg"),
     ] {
-        run(&text, &[]).code(2).stderr(contains(words));
+        run(&text, &[]).code(2).stderr(says(words));
     }
     // A motion that leaves the reach is a result: where, when and why, and no other figure.
     let far = task("shape = \"waypoints\"\nwaypoints = [[0, 0, 30], [9, 0, 30]]\ncycle_time_s = 2");

@@ -308,7 +308,9 @@ fn a_report_answers_the_question_of_its_study() {
     );
     assert!(out.join("figures/front-progress.svg").exists());
     assert!(
-        page.contains("as small as possible") && page.contains("(-0.3, -0.2)") && page.contains("least transmission")
+        page.contains("as small as possible")
+            && page.contains("(-0.3, -0.2)")
+            && page.contains("smallest transmission")
     );
     assert!(
         !page.contains("largest workspace"),

@@ -8,6 +8,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::cargo_bin_cmd;
+use predicates::Predicate;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -22,6 +23,17 @@ pub fn kinefront() -> assert_cmd::Command {
 
 pub fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder")
+}
+
+/// Holds for a message that contains `words`, wherever its lines are broken to fit a terminal.
+pub fn says(words: &str) -> impl Predicate<str> + use<> {
+    let words = words.to_owned();
+    predicates::function::function(move |message: &str| {
+        // A word that has a hyphen is broken behind it.
+        let told = message.replace("-\n", "-").replace('│', " ");
+        let told = told.split_whitespace().collect::<Vec<_>>().join(" ");
+        told.replace("- ", "-").contains(&words.replace("- ", "-"))
+    })
 }
 
 /// Writes a small study, which runs quickly and has all three architectures, and returns its path.

@@ -210,7 +210,7 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         kinefront_version: env!("CARGO_PKG_VERSION"),
         study: &study.name,
         design: subject.title(),
-        evaluation: EvaluationJson::new(evaluation).with_dynamics(model, evaluation),
+        evaluation: EvaluationJson::new(evaluation, model).with_dynamics(model, evaluation),
         pose: PoseJson::new(pose, pose.phi.to_degrees()),
         at_pose: PoseReportJson::new(&at(pose), strength.as_ref(), dynamics),
         material: (&model.settings().material).into(),

@@ -16,7 +16,7 @@ pub(super) const FORMAT: Format = Format {
     file: "design.xml",
     name: "MJCF",
     title: "MJCF, for MuJoCo",
-    lost: None,
+    lost: Some("compliance of the bars, friction of the joints, and limits of the drives"),
     is_text: true,
     needs_bars: true,
     joints_from_zero: false,

@@ -11,7 +11,7 @@ use kinefront_model::clearance::Clearance;
 use kinefront_model::evaluation::{
     Bound, Evaluation, LimitResult, Model, PoseEvaluation, PoseScalar, Quantity, Unreachable,
 };
-use kinefront_model::mechanism::{Design, DesignVariable};
+use kinefront_model::mechanism::{CrossSection, Design, DesignVariable};
 use kinefront_model::strength::StrengthReport;
 
 /// The variables of a design \[m, and deg where the key says so\].
@@ -96,6 +96,12 @@ pub struct EvaluationJson {
     /// The largest rates, forces and errors over the workspace, and the lowest frequencies, if they were determined.
     #[serde(skip_serializing_if = "Option::is_none")]
     over_workspace: Option<OverWorkspaceJson>,
+    /// Name of the bars of the legs, where the study has a catalogue of them; null if the catalogue does not have such a bar.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    leg_section: Option<Option<String>>,
+    /// Name of the bars of the platform, where the study has a catalogue of them; null if the catalogue does not have such a bar.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    platform_section: Option<Option<String>>,
 }
 
 /// A limit of a quantity.
@@ -125,9 +131,14 @@ impl From<&LimitResult> for LimitJson {
 }
 
 impl EvaluationJson {
-    /// Creates the output for an evaluation.
-    pub fn new(evaluation: &Evaluation) -> Self {
+    /// Creates the output for an evaluation by `model`.
+    pub fn new(evaluation: &Evaluation, model: &Model) -> Self {
         let design = &evaluation.design;
+        let sections = &model.settings().sections;
+        let name_of = |section: &CrossSection, radius: f64| {
+            let name = section.catalogue_name(radius).map(str::to_owned);
+            section.catalogue().map(|_| name)
+        };
         Self {
             architecture: design.architecture().name(),
             design: design.into(),
@@ -162,6 +173,8 @@ impl EvaluationJson {
             limits: evaluation.limits.iter().map(LimitJson::from).collect(),
             task: None,
             over_workspace: None,
+            leg_section: name_of(&sections.legs, design.leg_bar_radius()),
+            platform_section: name_of(&sections.platform, design.platform_bar_radius()),
         }
     }
 

@@ -16,6 +16,9 @@ const FROM: f64 = 0.05;
 /// Accuracy of the logarithm of a factor that is found by bisection.
 const RESOLUTION: f64 = 2e-3;
 
+/// Logarithm of the factor by which a requirement is relaxed beyond a value that a design has, so that another one keeps it with ease.
+const ROOM: f64 = 1e-3;
+
 /// A requirement that a design keeps after it was relaxed.
 #[derive(Debug, Clone)]
 pub struct Relaxed {
@@ -53,6 +56,15 @@ impl LocalProblem {
             }
             None => self.least_factor(parameter, start),
         }
+    }
+
+    /// Returns the problem with a requirement relaxed as far as a design was found for it, and a little further.
+    pub fn with_relaxed(&self, parameter: Parameter, found: &Relaxed) -> Option<LocalProblem> {
+        let actuator = found.design.architecture().actuator();
+        let stated = parameter.value(self.question(), actuator)?;
+        let step = libm::log(found.value / stated) + ROOM * way_of(self.question(), parameter);
+        let question = parameter.changed(self.question(), step, found.design.base_radius(), actuator)?;
+        self.with_question(question).ok()
     }
 
     /// Returns the question with a requirement as the objective, if it can be one.

@@ -2,7 +2,7 @@
 
 use super::Source;
 use super::fronts::Front;
-use kinefront_model::evaluation::{Better, Evaluation, Objective};
+use kinefront_model::evaluation::{Better, Bound, Evaluation, ModelSettings, Objective, Quantity};
 use kinefront_optimize::{Objectives, hypervolume};
 use kinefront_study::{Column, DesignProblem, Study, levels_between};
 
@@ -10,6 +10,8 @@ use kinefront_study::{Column, DesignProblem, Study, levels_between};
 #[derive(Debug, Clone)]
 pub(super) struct Question {
     pub objectives: Vec<Objective>,
+    /// Value that the study requires of the second objective at least, if it does.
+    least: Option<f64>,
     /// Reference point of the hypervolume.
     pub reference: Objectives,
     /// With one objective, its best value after so many evaluations, for each search; otherwise empty.
@@ -28,6 +30,9 @@ impl Question {
             _ => Vec::new(),
         };
         Self {
+            least: objectives
+                .get(1)
+                .and_then(|second| least(problem.model().settings(), second.quantity)),
             objectives,
             reference: study.hypervolume_reference(),
             progress,
@@ -84,8 +89,8 @@ impl Question {
         hypervolume(points, self.reference)
     }
 
-    /// Returns the values of the second objective at which fronts are compared, rounded to two digits: from 0 to the best value of a
-    /// front if that is above 0 and to be large, otherwise from its worst value to its best one.
+    /// Returns the values of the second objective at which fronts are compared, rounded to two digits: from the start of its
+    /// [`span`](Self::span) to its end.
     pub fn levels(&self, front: &Front) -> Vec<f64> {
         let Some([worst, best]) = self.span(front) else {
             return Vec::new();
@@ -94,8 +99,9 @@ impl Question {
         levels.filter(|&level| level != worst).collect()
     }
 
-    /// Returns the worst and the best value of the second objective over a front, where a range that begins at 0 counts from there;
-    /// `None` for other questions than those of two objectives, and for an empty front.
+    /// Returns the worst and the best value of the second objective over a front. A range of values that are to be large, and none of
+    /// which is negative, begins at what the study requires, or else at 0. `None` for other questions than those of two objectives, and for
+    /// an empty front.
     pub fn span(&self, front: &Front) -> Option<[f64; 2]> {
         if !self.is_of_two() {
             return None;
@@ -103,7 +109,7 @@ impl Question {
         let values = || front.members.iter().map(|member| self.value(1, member));
         let (low, high) = (values().reduce(f64::min)?, values().reduce(f64::max)?);
         Some(match self.objectives[1].goal {
-            Better::Higher if low >= 0.0 => [0.0, high],
+            Better::Higher if low >= 0.0 => [self.least.unwrap_or(0.0).min(low), high],
             Better::Higher => [low, high],
             Better::Lower => [high, low],
         })
@@ -118,6 +124,19 @@ impl Question {
     pub fn cost_at(&self, front: &Front, level: f64) -> Option<f64> {
         self.best_at(front, level).map(|found| self.value(0, found))
     }
+}
+
+/// Returns the value that a study requires of a quantity at every pose at least, or as a limit.
+fn least(settings: &ModelSettings, quantity: Quantity) -> Option<f64> {
+    let threshold = match quantity {
+        Quantity::Worst(scalar) if scalar.entry().quantity.better == Better::Higher => settings.thresholds.get(scalar),
+        _ => None,
+    };
+    let limit = settings.limits.iter().find_map(|limit| match limit.bound {
+        Bound::AtLeast(least) if limit.quantity == quantity => Some(least),
+        _ => None,
+    });
+    threshold.or(limit)
 }
 
 /// States an objective: what is sought of it.

@@ -79,7 +79,7 @@ pub use settings::{
     StiffnessChoice, StrengthSection, TaskSection, TaskShapeChoice, TelescopicBar, Tie, ToleranceSection,
     VariableChoice, Variables, WHOLE_FRONT, WorkspaceSection, is_shown, settings, settings_of_surroundings,
 };
-pub use study::{Catalogues, Fault, SettingDifference, Study, StudyError};
+pub use study::{Catalogues, Fault, SettingDifference, Study, StudyError, UnlistedValue};
 pub use sum::{Difference, FileSum};
 pub use table::{
     Cell, Column, ColumnType, Row, RowError, TableContents, TableError, TableFault, TableRow, front_marks, is_row_name,

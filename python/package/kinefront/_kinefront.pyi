@@ -29,6 +29,10 @@ class Study:
     objectives: list[tuple[str, str]]
     objective_columns: list[str]
     bounds: dict[str, tuple[float, float]]
+    choices: dict[str, list[float]]
+    """The values of the variables that the study lists or takes from a catalogue of bars, in metres."""
+    ties: dict[str, tuple[str, float]]
+    """For each variable that is a factor times another one: that variable and the factor."""
     optimizer: dict[str, Any]
 
     @staticmethod

@@ -17,7 +17,8 @@ _WORST = 1e30
 class StudyProblem(Problem):
     """The designs of one architecture of a study.
 
-    The variables are those of ``study.bounds``, in their order and units. Objectives are minimized, so the values of an objective that
+    The variables are those of ``study.bounds``, in their order and units. One that the study lists or takes from a catalogue of bars has
+    the nearest of its values, and one that is tied follows the other. Objectives are minimized, so the values of an objective that
     the study maximizes are negated. The one inequality constraint is the violation of the study's constraints, which is 0 for a
     feasible design.
     """
@@ -34,6 +35,11 @@ class StudyProblem(Problem):
     def designs(self, x: np.ndarray) -> dict[str, Any]:
         """Return the columns of the designs whose variables are the rows of ``x``, of shape (n, n_var)."""
         columns: dict[str, Any] = {name: x[:, k] for k, name in enumerate(self.names)}
+        for name, listed in self.study.choices.items():
+            values = np.array(listed)
+            columns[name] = values[np.abs(values[:, None] - columns[name]).argmin(axis=0)]
+        for name, (source, factor) in self.study.ties.items():
+            columns[name] = factor * columns[source]
         columns["architecture"] = self.architecture
         return columns
 

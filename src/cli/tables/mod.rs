@@ -102,15 +102,16 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             Bound::AtLeast(_) => "≥",
             Bound::AtMost(_) => "≤",
         };
-        let value = result.value.map_or_else(|| "none".to_owned(), text::number);
-        let limit = text::number(result.limit.threshold());
-        let kept = if result.margin >= 0.0 { "kept" } else { "missed" };
+        let limit = format!("{sign} {} {}", text::number(result.limit.threshold()), entry.unit);
+        let limit = limit.trim_end();
         facts.add_row([
             format!("limit of {}", entry.label),
-            format!(
-                "{}: {kept}",
-                format!("{value} {sign} {limit} {}", entry.unit).trim_end()
-            ),
+            match result.value {
+                Some(value) if result.margin >= 0.0 => format!("{} {limit}: kept", text::number(value)),
+                Some(value) => format!("{} {limit}: missed", text::number(value)),
+                // It is a value over the workspace, which an infeasible design does not have.
+                None => format!("{limit}: not evaluated"),
+            },
         ]);
     }
     if let Some(nearest) = &evaluation.nearest {
@@ -144,12 +145,20 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             report.value.map(number).unwrap_or_else(|| "–".to_owned()),
             number(report.threshold),
             report.constraint.unit().to_owned(),
-            format!("{:+.1} %", 100.0 * report.margin),
+            percent(report.margin),
             if report.active { "yes" } else { "" }.to_owned(),
             report.pose.as_ref().map(pose_text).unwrap_or_default(),
         ]);
     }
     format!("{facts}\n{constraints}")
+}
+
+/// Formats a margin in per cent, with as many digits as it takes to tell a violation from 0.
+fn percent(margin: f64) -> String {
+    let percent = 100.0 * margin;
+    let least = [0.05, 0.005, 5e-4, 5e-5, 5e-6];
+    let digits = least.iter().position(|least| percent >= 0.0 || -percent >= *least);
+    format!("{percent:+.*} %", digits.map_or(1, |place| place + 1))
 }
 
 /// Formats the report on a design at one pose, with its strength there.

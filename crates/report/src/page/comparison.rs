@@ -46,6 +46,7 @@ pub(super) fn comparison(report: &Report) -> Markup {
             p { "The other " (fractions.len() - shown.len()) " architectures are nowhere the best." }
         }
         (rails(report, &fractions))
+        (motors(report, &fractions))
         @if intervals.len() <= 12 {
             p {
                 "The best architecture, from the worst " (name) " to the best: "
@@ -105,6 +106,29 @@ fn rails(report: &Report, fractions: &[(Architecture, f64)]) -> Markup {
                 @for (index, architecture) in on_rails.iter().enumerate() { @if index > 0 { ", " } (text::architecture(*architecture)) }
                 @if rails_are_rigid { ") in a comparison with the others." } @else { ")." }
             }
+        }
+    }
+}
+
+/// States which motors move, where those of only some of the architectures do, and how the actuated joint is marked.
+fn motors(report: &Report, fractions: &[(Architecture, f64)]) -> Markup {
+    let joints = report.model.settings().joints;
+    let moves = |architecture: &Architecture| joints.of_leg(*architecture).any(|part| part.is_motor && part.moves);
+    let architectures = fractions.iter().map(|(architecture, _)| *architecture);
+    let (moving, others): (Vec<Architecture>, Vec<Architecture>) = architectures.clone().partition(moves);
+    let underlined = architectures
+        .into_iter()
+        .find(|architecture| !Architecture::PAPER.contains(architecture));
+    html! {
+        @if joints.motor <= 0.0 && !moving.is_empty() && !others.is_empty() {
+            p {
+                "Motors weigh nothing in this study. This flatters the architectures whose motors move with the legs ("
+                @for (index, architecture) in moving.iter().enumerate() { @if index > 0 { ", " } (text::architecture(*architecture)) }
+                ") in a comparison with the others."
+            }
+        }
+        @if let Some(underlined) = underlined {
+            p { "The underlined joint is actuated; studies and tables write " (text::architecture(underlined)) " as " (underlined.name()) "." }
         }
     }
 }

@@ -1,9 +1,11 @@
 //! What stands in the way of a study of which no design is feasible: each requirement with the nearest value of it that can be had.
 
-use kinefront_model::evaluation::{Better, Objective, Quantity};
+use kinefront_model::evaluation::{
+    Better, Evaluation, GridChoice, Model, ModelSettings, Objective, Quantity, QuantityLimit,
+};
 use kinefront_model::mechanism::Design;
 use kinefront_model::workspace::Region;
-use kinefront_optimum::{LocalProblem, Parameter};
+use kinefront_optimum::{LocalProblem, Parameter, Polished};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -42,12 +44,13 @@ pub struct Hindrance {
 impl DesignProblem {
     /// Returns the requirements that stand in the way of every design, the one nearest to what the study states first. `designs` are
     /// infeasible ones, each with its violation. A requirement of which no relaxation suffices is left out: it is not the only one in the
-    /// way.
+    /// way. A limit that is not part of a local problem, such as one over a motion, has the value of the lightest design that keeps
+    /// everything else.
     pub fn hindrances(&self, designs: &[(f64, Design)]) -> Vec<Hindrance> {
-        let asked: Vec<(LocalProblem, Parameter)> = self
-            .starts(designs)
+        let starts = self.starts(designs).into_iter();
+        let problems: Vec<LocalProblem> = starts.filter_map(|start| self.any_design(&start)).collect();
+        let asked: Vec<(LocalProblem, Parameter)> = problems
             .iter()
-            .filter_map(|start| self.any_design(start))
             .flat_map(|problem| {
                 let parameters = problem.may_be_relaxed().into_iter();
                 let of_size = |parameter: &Parameter| self.has_size() || *parameter != Parameter::WorkspaceRadius;
@@ -55,10 +58,11 @@ impl DesignProblem {
                 asked.collect::<Vec<_>>()
             })
             .collect();
-        let found: Vec<Hindrance> = asked
+        let relaxed = asked
             .par_iter()
-            .filter_map(|(problem, parameter)| hindrance(problem, *parameter))
-            .collect();
+            .filter_map(|(problem, parameter)| self.hindrance(problem, *parameter));
+        let mut found: Vec<Hindrance> = relaxed.collect();
+        found.par_extend(problems.par_iter().filter_map(|problem| self.missed_limit(problem)));
         let mut nearest: Vec<Hindrance> = Vec::new();
         for next in found {
             match nearest.iter_mut().find(|other| other.parameter == next.parameter) {
@@ -104,23 +108,81 @@ impl DesignProblem {
         let question = self.question_for(region, objective, start.architecture());
         LocalProblem::new(question, start).ok()
     }
+
+    /// Returns a requirement that suffices when it is relaxed alone.
+    fn hindrance(&self, problem: &LocalProblem, parameter: Parameter) -> Option<Hindrance> {
+        let question = problem.question();
+        let start = problem.start();
+        let actuator = start.architecture().actuator();
+        let stated = parameter.value(question, actuator)?;
+        let mut found = problem.relaxed_alone(parameter, start)?;
+        if !problem.left_out().is_empty() {
+            // What has no value at a pose, such as a limit over a motion, is not part of the local problem.
+            let relaxed = problem.with_relaxed(parameter, &found)?;
+            let polished = relaxed.polish(&found.design, found.home)?;
+            let evaluation = self.evaluation_for(&relaxed, &polished)?;
+            if missed(&relaxed, &evaluation).next().is_some() {
+                return None;
+            }
+            found.design = evaluation.design;
+            found.home = evaluation.home_phi_deg?.to_radians();
+        }
+        Some(Hindrance {
+            parameter: parameter.name(question),
+            label: parameter.label(question),
+            stated,
+            possible: found.value,
+            unit: parameter.unit(question, actuator),
+            is_enough: parameter.asks_no_less(question, found.value, stated),
+            design: found.design.to_string(),
+            home_phi_deg: found.home.to_degrees().rem_euclid(360.0),
+        })
+    }
+
+    /// Returns the limit that the lightest design near the start misses, if it is the only one, and not part of the local problem.
+    fn missed_limit(&self, problem: &LocalProblem) -> Option<Hindrance> {
+        if problem.left_out().is_empty() {
+            return None;
+        }
+        let polished = problem.best(problem.start(), None).filter(Polished::is_feasible)?;
+        let evaluation = self.evaluation_for(problem, &polished)?;
+        let mut missed = missed(problem, &evaluation);
+        let (limit, None) = (missed.next()?, missed.next()) else {
+            return None;
+        };
+        let entry = limit.quantity.entry();
+        Some(Hindrance {
+            parameter: entry.key.to_owned(),
+            label: entry.label.to_owned(),
+            stated: limit.threshold(),
+            possible: evaluation.quantities.get(limit.quantity)?,
+            unit: entry.unit,
+            is_enough: false,
+            design: evaluation.design.to_string(),
+            home_phi_deg: evaluation.home_phi_deg?,
+        })
+    }
+
+    /// Evaluates an optimum on the fine grid, with every quantity, under the requirements of its problem.
+    fn evaluation_for(&self, problem: &LocalProblem, polished: &Polished) -> Option<Evaluation> {
+        let design = self.for_fine_grid(problem, polished, 0.0)?;
+        let question = problem.question();
+        let settings = ModelSettings {
+            workspace: question.workspace.clone(),
+            ..question.settings.clone()
+        };
+        let model = Model::new(settings).ok()?.with_all_quantities();
+        Some(model.evaluate(&design, GridChoice::Fine))
+    }
 }
 
-fn hindrance(problem: &LocalProblem, parameter: Parameter) -> Option<Hindrance> {
-    let question = problem.question();
-    let start = problem.start();
-    let actuator = start.architecture().actuator();
-    let stated = parameter.value(question, actuator)?;
-    let found = problem.relaxed_alone(parameter, start)?;
-    Some(Hindrance {
-        parameter: parameter.name(question),
-        label: parameter.label(question),
-        stated,
-        possible: found.value,
-        unit: parameter.unit(question, actuator),
-        is_enough: parameter.asks_no_less(question, found.value, stated),
-        design: found.design.to_string(),
-        home_phi_deg: found.home.to_degrees().rem_euclid(360.0),
+/// Limits that are not part of a local problem, and that a design misses or has no value for.
+fn missed<'a>(problem: &'a LocalProblem, evaluation: &'a Evaluation) -> impl Iterator<Item = &'a QuantityLimit> {
+    let left_out = problem.left_out();
+    let limits = problem.question().settings.limits.iter();
+    limits.filter(move |limit| {
+        let value = evaluation.quantities.get(limit.quantity);
+        left_out.contains(&limit.quantity) && value.is_none_or(|value| limit.margin(value) < -1e-6)
     })
 }
 
@@ -129,7 +191,11 @@ impl Hindrance {
     fn distance(&self) -> f64 {
         match self.is_enough {
             true => 0.0,
-            false => libm::log(self.possible / self.stated).abs(),
+            // A value of another sign is no factor away.
+            false => match libm::log(self.possible / self.stated).abs() {
+                distance if distance.is_nan() => f64::INFINITY,
+                distance => distance,
+            },
         }
     }
 }

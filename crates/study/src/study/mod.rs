@@ -17,6 +17,7 @@ mod variables;
 pub use compare::SettingDifference;
 pub use error::StudyError;
 pub use faults::Fault;
+pub use variables::UnlistedValue;
 
 use serde::{Deserialize, Serialize};
 

@@ -2,7 +2,21 @@
 
 use super::Study;
 use crate::settings::{Bounds, Tie, VariableChoice};
-use kinefront_model::mechanism::DesignVariable;
+use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignVariable};
+
+/// Relative difference up to which a value counts as one of a list, as for the bars of a catalogue.
+const SAME_VALUE: f64 = 1e-6;
+
+/// A variable of a design whose value is not one of those that the study lists.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UnlistedValue {
+    /// The variable.
+    pub variable: DesignVariable,
+    /// Its value \[m\].
+    pub value: f64,
+    /// The nearest of the listed values \[m\].
+    pub nearest: f64,
+}
 
 impl Study {
     /// Returns the tie of a variable.
@@ -39,6 +53,22 @@ impl Study {
             }
             (_, of_catalogue) => of_catalogue,
         }
+    }
+
+    /// Returns the variables of a design whose values are not among those that the study lists, or that its catalogues have. A search
+    /// proposes no such design.
+    pub fn unlisted(&self, design: &Design) -> Vec<UnlistedValue> {
+        let unlisted = |variable: DesignVariable| {
+            let (listed, value) = (self.listed(variable)?, design.value(variable));
+            let away = |other: &f64| (other - value).abs();
+            let nearest = listed.into_iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
+            (away(&nearest) > SAME_VALUE * value.abs()).then_some(UnlistedValue {
+                variable,
+                value,
+                nearest,
+            })
+        };
+        DESIGN_VARIABLES.into_iter().filter_map(unlisted).collect()
     }
 
     /// Returns the range of a variable in the search: its bounds, or the ends of its list.
