@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString};
 
-use kinefront_export::{EvaluationJson, ExportSubject, Format, export};
+use kinefront_export::{CertificateJson, Claim, EvaluationJson, ExportSubject, Format, export};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design};
 use kinefront_model::spatial::Pose;
 use kinefront_study::{DriversOptions, PreparedStudy};
@@ -63,6 +63,31 @@ impl PyDesign {
         let grid = grid_choice(grid)?;
         let evaluation = py.detach(|| self.shared.model().evaluate(&self.design, grid));
         from_serializable(py, &EvaluationJson::new(&evaluation, self.shared.model()))
+    }
+
+    /// Proves the region of the study for the design, or a workspace radius \[m\], as `kinefront certify --json` does: `verdict` is `proved`,
+    /// `refuted` or `open`.
+    ///
+    /// `radius` is by default that of the fine grid where the study prescribes no region, and `phi_deg` its home orientation there.
+    #[pyo3(signature = (*, radius=None, phi_deg=None, tolerance=Claim::default().tolerance, max_boxes=Claim::default().max_boxes, all_homes=false))]
+    fn certify<'py>(
+        &self,
+        py: Python<'py>,
+        radius: Option<f64>,
+        phi_deg: Option<f64>,
+        tolerance: f64,
+        max_boxes: usize,
+        all_homes: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let claim = Claim {
+            phi_deg,
+            radius,
+            tolerance,
+            max_boxes,
+            all_homes,
+        };
+        let found = py.detach(|| CertificateJson::prove(&self.shared, &self.design, &claim));
+        from_serializable(py, &found.map_err(|error| InputError::new_err(error.to_string()))?)
     }
 
     /// Evaluates the design at poses, an array of shape (n, 3) with x and y in metres and phi in radians.

@@ -44,6 +44,43 @@ def test_optuna_suggests_designs(study):
     assert objective.constraints(trial) == [table["violation"][0]]
 
 
+LISTED = """
+architectures = ["3-PRR"]
+[sections]
+legs = { kind = "tube", catalogue = "en-10255-medium" }
+[variables]
+R_m = [2.0, 2.5, 3.0]
+rp_m = "2 * rj_m"
+[workspace]
+certify = false
+"""
+
+
+def test_optuna_and_pymoo_keep_to_lists_catalogues_and_ties(study):
+    optuna, _ = pytest.importorskip("optuna"), pytest.importorskip("pymoo")
+    from kinefront.optuna import Objective
+    from kinefront.pymoo import StudyProblem
+
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    listed = Study.paper().replace(LISTED)
+    assert listed.choices["R"] == [2.0, 2.5, 3.0] and listed.ties == {"rp": ("rj", 2.0)}
+    objective = Objective(listed)
+    search = optuna.create_study(directions=objective.directions, sampler=optuna.samplers.RandomSampler(seed=1))
+    search.optimize(objective, n_trials=20)
+    columns = [objective.design(trial) for trial in search.trials]
+    problem = StudyProblem(listed)
+    x = np.random.default_rng(0).uniform(problem.xl, problem.xu, (20, problem.n_var))
+    together = problem.designs(x)
+    columns += [{name: together[name][row] for name in ("R", "rj", "rp")} for row in range(20)]
+    for design in columns:
+        assert design["R"] in listed.choices["R"] and design["rj"] in listed.choices["rj"]
+        assert design["rp"] == 2.0 * design["rj"]
+    assert len({design["R"] for design in columns}) == 3
+    # What a search of the program proposes obeys the same lists.
+    found = listed.optimize(seed=1, evaluations=60).designs
+    assert set(found["R"]) <= set(listed.choices["R"]) and np.allclose(found["rp"], 2.0 * found["rj"])
+
+
 READINGS = {"as it is": "", "aluminium": "[material]\nyoungs_modulus_pa = 7e10\nshear_modulus_pa = 2.6e10\ndensity_kg_per_m3 = 2700\n"}
 
 

@@ -4,11 +4,9 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
 
-use super::wire::CertificateJson;
+use kinefront_export::{CertificateJson, Claim};
 use kinefront_model::certify::{CertifyError, CertifyOptions};
-use kinefront_model::evaluation::GridChoice;
 use kinefront_model::mechanism::{Design, TextError};
 use kinefront_study::{PreparedStudy, Study};
 
@@ -94,34 +92,14 @@ impl Prover<'_> {
     }
 
     fn certify(&self, design: &Design) -> Result<CertificateJson, CertifyError> {
-        let model = self.study.model();
-        let since = Instant::now();
-        let evaluation = model.evaluate(design, GridChoice::Fine);
-        let home = model.home(&evaluation);
-        let phi_deg = self.arguments.phi_deg.or(evaluation.home_phi_deg);
-        let options = CertifyOptions {
-            // The constraints of an infeasible design are reported at an orientation of the grid.
-            phi_deg: phi_deg.unwrap_or_else(|| (1e9 * home.phi.to_degrees()).round() / 1e9),
-            claimed_radius: self.arguments.radius.unwrap_or(evaluation.workspace_radius()),
+        let claim = Claim {
+            phi_deg: self.arguments.phi_deg,
+            radius: self.arguments.radius,
             tolerance: self.arguments.tolerance,
             max_boxes: self.arguments.max_boxes as usize,
-            is_of_region: self.study.study().workspace.region.is_prescribed() && self.arguments.radius.is_none(),
-            ..CertifyOptions::default()
+            all_homes: self.arguments.all_homes,
         };
-        let certificate = model.certify(design, &options)?;
-        let homes = match self.arguments.all_homes {
-            true => Some(model.bound_of_homes(design, certificate.lower)?),
-            false => None,
-        };
-        let seconds = since.elapsed().as_secs_f64();
-        Ok(CertificateJson::new(
-            model,
-            design,
-            &options,
-            &certificate,
-            homes,
-            seconds,
-        ))
+        CertificateJson::prove(&self.study, design, &claim)
     }
 
     /// Answers each line with one line, in order, on all cores.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use kinefront_recording::{RecordedRunError, is_recorded, read_apart};
-use kinefront_study::{Inspection, Repair, ResumeOptions, Resumption, RunControl, RunFolderError, TableRow};
+use kinefront_study::{EndReason, Inspection, Repair, ResumeOptions, Resumption, RunControl, RunFolderError, TableRow};
 use miette::miette;
 
 use super::progress::Progress;
@@ -92,6 +92,7 @@ pub fn run(arguments: &CheckArguments) -> Result<Ending, Failure> {
 fn soundness(path: &Path, inspection: &Inspection) -> String {
     let count = inspection.designs.as_ref().map_or(0, Vec::len);
     let state = match (inspection.folder.report(), inspection.folder.checkpoint()) {
+        (Some(report), _) if report.outcome == EndReason::Interrupted => "the run was interrupted and can be resumed",
         (Some(_), _) => "the run has ended",
         (None, Some(_)) => "the run has not ended and can be resumed",
         (None, None) => "it is not known whether the run has ended",

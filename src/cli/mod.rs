@@ -26,7 +26,6 @@ mod tables;
 mod task;
 mod version;
 mod why;
-mod wire;
 mod wish;
 
 pub use signals::keep_going_at_limits;

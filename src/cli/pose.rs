@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::wire::AssemblyModesJson;
+use kinefront_export::AssemblyModesJson;
 use kinefront_export::{DynamicsJson, PoseReportJson};
 use kinefront_model::dynamics::Motion;
 use kinefront_model::kinematics::assembly_modes;

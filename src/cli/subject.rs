@@ -129,6 +129,13 @@ pub fn run_of(table: &Path) -> Result<Option<RunFolder>> {
         return Ok(None);
     };
     let run = RunFolder::open(folder).into_diagnostic()?;
+    if !table.exists() {
+        return Err(miette!(
+            help = "a run writes its front at its end; kinefront optimize --resume completes one that was interrupted",
+            "{} does not exist",
+            table.display()
+        ));
+    }
     run.check_file(table).into_diagnostic()?;
     Ok(Some(run))
 }

@@ -423,3 +423,47 @@ fn why_is_asked_of_the_objectives_of_the_study() {
             .stderr(contains(message));
     }
 }
+
+/// A limit over a motion that no design keeps stands in the way alone: no relaxation of another requirement helps.
+#[test]
+fn a_limit_over_a_motion_stands_in_the_way() {
+    let folder = folder();
+    let study = folder.path().join("slow.toml");
+    let text = |limit: f64| {
+        format!(
+            "architectures = [\"3-PRR\"]\nobjectives = [{{ minimize = \"mass_kg\" }}]\n\
+             constraints = {{ path_speed_max_m_per_s = {{ at_most = {limit} }} }}\n\
+             [task]\nshape = \"waypoints\"\nwaypoints = [[-0.15, 0.0, 0.0], [0.15, 0.0, 0.0]]\ncycle_time_s = 1.0\n\
+             [workspace]\ncertify = false\nhome_phi_deg = 0.0\n[workspace.region]\nkind = \"disc\"\nradius_m = 0.2\n\
+             [bounds]\nR_m = [0.3, 1.0]\nr_m = [0.1, 0.5]\nLb_m = [0.3, 1.0]\n[optimizer]\nevaluations = 60\n"
+        )
+    };
+    fs::write(&study, text(0.01)).expect("a study");
+    let run = folder.path().join("run");
+    kinefront()
+        .args(["optimize", "--no-recording", "--quiet", "--out"])
+        .arg(&run)
+        .arg(&study)
+        .assert()
+        .success();
+    let found = json(["why", run.join("designs.csv").to_str().expect("a path"), "--json"]);
+    let found = found.as_array().expect("hindrances");
+    let [hindrance] = &found[..] else {
+        panic!("one requirement is in the way: {found:?}");
+    };
+    assert_eq!(
+        (&hindrance["parameter"], &hindrance["is_enough"]),
+        (&"path_speed_max_m_per_s".into(), &false.into())
+    );
+    // Its design keeps everything else, and the limit where it is as large as the value that is told.
+    let possible = hindrance["possible"].as_f64().expect("a value");
+    let design = hindrance["design"].as_str().expect("a design");
+    for (limit, is_feasible) in [(1.001 * possible, true), (0.999 * possible, false)] {
+        fs::write(&study, text(limit)).expect("a study");
+        let study = study.to_str().expect("a path");
+        let evaluated = json([
+            "evaluate", "--design", design, "--study", study, "--grid", "fine", "--json",
+        ]);
+        assert_eq!(evaluated["feasible"], is_feasible, "{limit}: {evaluated}");
+    }
+}

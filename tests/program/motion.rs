@@ -470,7 +470,7 @@ fn catalogues_of_drives_are_checked() {
         ),
         (
             format!("{slide}joint,rotary,1,2,3,0,1\n"),
-            "line 4 is not an entry of a catalogue; its columns are name, kind",
+            "line 4 is not an entry of a catalogue; its columns, separated by commas, are name, kind",
         ),
         (
             format!("{slide}joint,revolute,9,2,3,0,1\n"),

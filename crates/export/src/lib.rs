@@ -14,6 +14,8 @@
 //!
 //! Every format except the plan view takes its bodies from [`kinefront_scene::linkage()`], so the formats agree.
 
+mod assembly_modes;
+mod certificate;
 mod dxf;
 mod dynamics;
 mod format;
@@ -37,6 +39,8 @@ use kinefront_model::evaluation::{Evaluation, Unreachable};
 use kinefront_model::spatial::Pose;
 use kinefront_study::PreparedStudy;
 
+pub use assembly_modes::AssemblyModesJson;
+pub use certificate::{CertificateJson, Claim};
 pub use dynamics::{DynamicsJson, TaskJson, TaskRow};
 pub use format::Format;
 pub use pose::PoseJson;

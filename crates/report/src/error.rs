@@ -40,7 +40,9 @@ pub enum ReportError {
     #[error("{0} has no front.csv with designs; finish the run first: kinefront optimize --resume")]
     NoFront(String),
     /// The runs have no feasible design.
-    #[error("no design of the run is feasible: there is no front to report")]
+    #[error(
+        "no design of the run is feasible, so there is no front to report; `kinefront why RUN/designs.csv` lists the requirements that prevent one"
+    )]
     NothingFeasible,
     /// A search that the report ran itself failed.
     #[error("the search \"{name}\" failed: {message}")]

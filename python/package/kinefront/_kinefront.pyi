@@ -123,6 +123,22 @@ class Design:
     values: dict[str, float]
 
     def evaluate(self, grid: str = "reference") -> dict[str, Any]: ...
+    def certify(
+        self,
+        *,
+        radius: float | None = None,
+        phi_deg: float | None = None,
+        tolerance: float = 1e-4,
+        max_boxes: int = 200_000,
+        all_homes: bool = False,
+    ) -> dict[str, Any]:
+        """Prove the region of the study for the design, or a workspace radius in metres, as ``kinefront certify --json`` does.
+
+        >>> design = Study.paper().design("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056")
+        >>> design.certify(radius=1.0)["verdict"]
+        'proved'
+        """
+
     def poses(self, poses: NDArray[np.float64]) -> dict[str, Any]: ...
     def prices(
         self,

@@ -6,9 +6,9 @@ mod motion;
 pub use drivers::{drivers, drivers_along, hindrances, wish};
 pub use motion::{dynamics, task};
 
-use super::wire::CertificateJson;
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{CellAlignment, Table};
+use kinefront_export::CertificateJson;
 use kinefront_model::certify::Verdict;
 use kinefront_model::evaluation::{Bound, Evaluation, Model, PoseEvaluation, PoseScalar, Quantity, Unreachable};
 use kinefront_model::kinematics::AssemblyMode;

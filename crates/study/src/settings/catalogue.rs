@@ -59,7 +59,7 @@ pub enum CatalogueFault {
     )]
     Outside,
     /// A line is not an entry of a catalogue.
-    #[error("line {line} is not an entry of a catalogue; its columns are {columns}")]
+    #[error("line {line} is not an entry of a catalogue; its columns, separated by commas, are {columns}")]
     Row {
         /// The line.
         line: u64,

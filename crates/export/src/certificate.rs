@@ -1,11 +1,42 @@
-//! A certificate of a workspace radius.
+//! A certificate of a workspace radius, or of the region of a study.
+
+use std::time::Instant;
 
 use serde::Serialize;
 
-use kinefront_export::{DesignJson, PoseJson};
-use kinefront_model::certify::{Certificate, CertifyOptions, Verdict};
-use kinefront_model::evaluation::Model;
+use super::pose::PoseJson;
+use super::wire::DesignJson;
+use kinefront_model::certify::{Certificate, CertifyError, CertifyOptions, Verdict};
+use kinefront_model::evaluation::{GridChoice, Model};
 use kinefront_model::mechanism::Design;
+use kinefront_study::PreparedStudy;
+
+/// What is to be proved of a design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Claim {
+    /// Home orientation \[deg\]; by default that of the evaluation on the fine grid.
+    pub phi_deg: Option<f64>,
+    /// Radius that is claimed \[m\]; by default the region that the study prescribes, or else the radius of the fine grid.
+    pub radius: Option<f64>,
+    /// Relative tolerance of the claim, and gap between the bounds at which the proof ends.
+    pub tolerance: f64,
+    /// Largest number of boxes.
+    pub max_boxes: usize,
+    /// Whether the workspace radius is also bounded over all home orientations.
+    pub all_homes: bool,
+}
+
+impl Default for Claim {
+    fn default() -> Self {
+        Self {
+            phi_deg: None,
+            radius: None,
+            tolerance: CertifyOptions::TOLERANCE,
+            max_boxes: CertifyOptions::MAX_BOXES,
+            all_homes: false,
+        }
+    }
+}
 
 /// The output of `kinefront certify --json`.
 #[derive(Debug, Serialize)]
@@ -52,8 +83,36 @@ struct ViolationJson {
 }
 
 impl CertificateJson {
+    /// Proves a claim about a design under the requirements of a study.
+    ///
+    /// # Errors
+    /// [`CertifyError`] if the claim is not one that can be proved.
+    pub fn prove(study: &PreparedStudy, design: &Design, claim: &Claim) -> Result<Self, CertifyError> {
+        let model = study.model();
+        let since = Instant::now();
+        let evaluation = model.evaluate(design, GridChoice::Fine);
+        let home = model.home(&evaluation);
+        let phi_deg = claim.phi_deg.or(evaluation.home_phi_deg);
+        let options = CertifyOptions {
+            // The constraints of an infeasible design are reported at an orientation of the grid.
+            phi_deg: phi_deg.unwrap_or_else(|| (1e9 * home.phi.to_degrees()).round() / 1e9),
+            claimed_radius: claim.radius.unwrap_or(evaluation.workspace_radius()),
+            tolerance: claim.tolerance,
+            max_boxes: claim.max_boxes,
+            is_of_region: study.study().workspace.region.is_prescribed() && claim.radius.is_none(),
+            ..CertifyOptions::default()
+        };
+        let certificate = model.certify(design, &options)?;
+        let homes = match claim.all_homes {
+            true => Some(model.bound_of_homes(design, certificate.lower)?),
+            false => None,
+        };
+        let seconds = since.elapsed().as_secs_f64();
+        Ok(Self::new(model, design, &options, &certificate, homes, seconds))
+    }
+
     /// Creates the output for a certificate that took `seconds`.
-    pub fn new(
+    fn new(
         model: &Model,
         design: &Design,
         options: &CertifyOptions,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use kinefront_export::PoseJson;
+use super::pose::PoseJson;
 use kinefront_model::kinematics::AssemblyMode;
 use kinefront_model::mechanism::WorkingMode;
 
