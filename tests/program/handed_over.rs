@@ -226,7 +226,7 @@ fn a_run_counts_once_also_within_a_merged_one() {
             let out = folder.path().join("again");
             merge(&both.map(PathBuf::as_path), &out)
                 .code(2)
-                .stderr(contains("list each run once"));
+                .stderr(says("list each run once"));
             assert!(!out.exists());
         }
     }

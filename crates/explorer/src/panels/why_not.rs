@@ -153,7 +153,7 @@ fn relaxations(ui: &mut Ui, session: &mut Session, drivers: &Drivers, why: &WhyN
                 None => {
                     ui.label(&label);
                     ui.weak(format!(
-                        "not sufficient: {} {unit} at best",
+                        "at best {} {unit}",
                         number(relaxation.objective)
                     ));
                 }
