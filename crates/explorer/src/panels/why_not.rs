@@ -152,10 +152,7 @@ fn relaxations(ui: &mut Ui, session: &mut Session, drivers: &Drivers, why: &WhyN
                 }
                 None => {
                     ui.label(&label);
-                    ui.weak(format!(
-                        "at best {} {unit}",
-                        number(relaxation.objective)
-                    ));
+                    ui.weak(format!("at best {} {unit}", number(relaxation.objective)));
                 }
             }
             ui.end_row();
