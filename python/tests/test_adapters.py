@@ -50,7 +50,7 @@ architectures = ["3-PRR"]
 legs = { kind = "tube", catalogue = "en-10255-medium" }
 [variables]
 R_m = [2.0, 2.5, 3.0]
-rp_m = "2 * rj_m"
+rp_m = "2 rj"
 [workspace]
 certify = false
 """
