@@ -1,11 +1,13 @@
 //! Prices, wishes and reasons, as a user of the program meets them.
 
 use std::fs;
+use std::path::Path;
 
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
+use serde_json::Value;
 
-use super::support::{design_of, folder, json, kinefront, says};
+use super::support::{design_of, folder, json, kinefront, optimize, says};
 
 /// The lightest 3-PRR for a disc of 1.2 m, and its home orientation, as an independent solver found them.
 const OPTIMUM: &str = "3-PRR R=3.8908964188791515 r=0.7103100290509872 Lb=2.5672756542491637 rj=0.024643653700447767 rp=0.03482665497108131";
@@ -312,6 +314,14 @@ fn keeps_its_identities(design: &serde_json::Value, architecture: &str) {
     assert!((price("density") - 1.0).abs() < 1e-9);
 }
 
+/// Returns the evaluation of a design on the fine grid.
+fn evaluated(design: &str, study: &Path) -> Value {
+    let study = study.to_str().expect("a path");
+    json([
+        "evaluate", "--design", design, "--study", study, "--grid", "fine", "--json",
+    ])
+}
+
 /// A run that finds nothing tells what stands in the way, and the value that it tells can be had.
 #[test]
 fn a_study_without_designs_is_told_what_stands_in_the_way() {
@@ -346,16 +356,7 @@ fn a_study_without_designs_is_told_what_stands_in_the_way() {
     for (share, is_feasible) in [(0.98, true), (1.02, false)] {
         fs::write(&study, text(share * possible)).expect("a study");
         let design = hindrance["design"].as_str().expect("a design");
-        let evaluated = json([
-            "evaluate",
-            "--design",
-            design,
-            "--study",
-            study.to_str().expect("a path"),
-            "--grid",
-            "fine",
-            "--json",
-        ]);
+        let evaluated = evaluated(design, &study);
         assert_eq!(evaluated["feasible"], is_feasible, "{share}: {evaluated}");
     }
     kinefront()
@@ -387,12 +388,7 @@ fn why_is_asked_of_the_objectives_of_the_study() {
                 [optimizer]\nevaluations = 200\nfront_designs = 8\n";
     fs::write(&study, text).expect("a study");
     let run = folder.path().join("run");
-    kinefront()
-        .args(["optimize", "--no-recording", "--quiet", "--out"])
-        .arg(&run)
-        .arg(&study)
-        .assert()
-        .success();
+    optimize(&study, &run, &["--no-recording"]);
     let table = run.join("front.csv").to_str().expect("a path").to_owned();
     let why = |mass: &str, stiffness: &str| {
         let at = format!("k_xy_n_per_m={stiffness}");
@@ -440,12 +436,7 @@ fn a_limit_over_a_motion_stands_in_the_way() {
     };
     fs::write(&study, text(0.01)).expect("a study");
     let run = folder.path().join("run");
-    kinefront()
-        .args(["optimize", "--no-recording", "--quiet", "--out"])
-        .arg(&run)
-        .arg(&study)
-        .assert()
-        .success();
+    optimize(&study, &run, &["--no-recording"]);
     let found = json(["why", run.join("designs.csv").to_str().expect("a path"), "--json"]);
     let found = found.as_array().expect("hindrances");
     let [hindrance] = &found[..] else {
@@ -460,10 +451,7 @@ fn a_limit_over_a_motion_stands_in_the_way() {
     let design = hindrance["design"].as_str().expect("a design");
     for (limit, is_feasible) in [(1.001 * possible, true), (0.999 * possible, false)] {
         fs::write(&study, text(limit)).expect("a study");
-        let study = study.to_str().expect("a path");
-        let evaluated = json([
-            "evaluate", "--design", design, "--study", study, "--grid", "fine", "--json",
-        ]);
+        let evaluated = evaluated(design, &study);
         assert_eq!(evaluated["feasible"], is_feasible, "{limit}: {evaluated}");
     }
 }

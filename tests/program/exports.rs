@@ -86,7 +86,7 @@ fn mujoco_follows_the_tour_with_the_loops_closed() {
     });
 }
 
-/// Every architecture is a mechanism that MuJoCo moves along the tour: passive and driven joints, guides and motors at the platform
+/// Every architecture is a mechanism that MuJoCo moves along the tour: passive and actuated joints, guides and motors at the platform
 /// are where the design has them.
 #[test]
 fn mujoco_moves_every_other_architecture() {

@@ -240,7 +240,7 @@ impl std::str::FromStr for Pose {
     }
 }
 
-/// Values of the driven joints of legs 1, 2, 3 \[m or rad\].
+/// Values of the actuated joints of legs 1, 2, 3 \[m or rad\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointValues(pub [f64; LEGS]);
 

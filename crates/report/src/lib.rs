@@ -340,7 +340,7 @@ fn common_study(sources: &[Source]) -> Result<Study, ReportError> {
     Ok(study)
 }
 
-/// Converts a name to a file name: its alphanumeric parts in lower case, joined by hyphens; the mark of a driven joint stays.
+/// Converts a name to a file name: its alphanumeric parts in lower case, joined by hyphens; the mark of an actuated joint stays.
 fn slug(name: &str) -> String {
     let parts = name
         .split(|c: char| !c.is_alphanumeric() && c != '_')

@@ -317,7 +317,7 @@ fn add_joints(model: &Model, design: &Design, bodies: &mut [Body], chain: &Chain
     }
 }
 
-/// What the driven joint at the end of leg `index` turns; it is fixed on the platform and has no size of its own.
+/// What the actuated joint at the end of leg `index` turns; it is fixed on the platform and has no size of its own.
 fn mount(sizes: &Sizes, index: usize, at: DVec2, phi: f64, value: f64, parent: usize) -> Body {
     Body {
         name: format!("leg{}_mount", index + 1),

@@ -8,7 +8,7 @@ use kinefront_model::spatial::{LEGS, Pose};
 /// The assembly modes at the joint values of a pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Modes {
-    /// Values of the driven joints \[m or rad\].
+    /// Values of the actuated joints \[m or rad\].
     pub values: [f64; LEGS],
     /// The modes, in the order of their orientations.
     pub modes: Vec<AssemblyMode>,
@@ -23,7 +23,7 @@ pub fn modes_at(model: &Model, design: &Design, pose: &Pose) -> Option<Modes> {
     })
 }
 
-/// Number of assembly modes over the values of the first two driven joints, with the third one kept.
+/// Number of assembly modes over the values of the first two actuated joints, with the third one kept.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModeMap {
     /// Ranges of the first and second joint value \[m or rad\].

@@ -26,7 +26,7 @@ pub const SERIES: [[u8; 3]; 10] = [
     [70, 90, 110],
 ];
 
-/// Returns the colour of an architecture: a hue for each chain, and a shade for each driven joint. The hues can be distinguished with
+/// Returns the colour of an architecture: a hue for each chain, and a shade for each actuated joint. The hues can be distinguished with
 /// any type of colour vision (Okabe and Ito).
 pub fn architecture(architecture: Architecture) -> [u8; 3] {
     const HUES: [[u8; 3]; 7] = [

@@ -131,7 +131,7 @@ pub fn variable_value(variable: DesignVariable, value: f64) -> String {
     }
 }
 
-/// Returns the name of an architecture for people: as in the paper, or with the driven joint underlined.
+/// Returns the name of an architecture for people: as in the paper, or with the actuated joint underlined.
 pub fn architecture(architecture: Architecture) -> String {
     if Architecture::PAPER.contains(&architecture) {
         architecture.name().to_owned()

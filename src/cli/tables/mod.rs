@@ -291,7 +291,7 @@ fn strength_tables(design: &Design, report: &StrengthReport) -> String {
     format!("\n{worst}\n{members}\n{joints}")
 }
 
-/// Formats all poses at which the driven joints of a design have the given values.
+/// Formats all poses at which the actuated joints of a design have the given values.
 pub fn assembly_modes(design: &Design, values: [f64; 3], modes: &[AssemblyMode]) -> String {
     let unit = design.architecture().actuator().unit();
     let mut facts = table(["design", &design.to_string()], &[]);

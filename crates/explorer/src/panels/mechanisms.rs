@@ -1,4 +1,4 @@
-//! The mechanisms panel: a sketch of each architecture with its driven joints marked, and which of them the study searches.
+//! The mechanisms panel: a sketch of each architecture with its actuated joints marked, and which of them the study searches.
 
 use egui::{
     Align2, Color32, FontId, Rect, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, WidgetType,

@@ -15,7 +15,7 @@ struct BodyMotion<V> {
     acceleration: [V; 3],
 }
 
-/// Values of the driven joint of a leg during a motion, at several poses at once.
+/// Values of the actuated joint of a leg during a motion, at several poses at once.
 #[derive(Clone, Copy)]
 pub(super) struct DriveMotion<V> {
     /// Rate of the joint \[m/s or rad/s\].
@@ -56,7 +56,7 @@ impl<V: Real> BodyMotion<V> {
     }
 }
 
-/// The motion of the driven joints with the forces of the actuators, as a function of its own.
+/// The motion of the actuated joints with the forces of the actuators, as a function of its own.
 struct Drives<'a, V: Real> {
     model: &'a DynamicsModel,
     inputs: &'a DynamicsInputs<V>,
@@ -76,7 +76,7 @@ impl<V: Real> LaneJob for Drives<'_, V> {
 }
 
 impl DynamicsModel {
-    /// Returns the motion of the driven joints, and the forces of the actuators, for a twist and an acceleration of the platform at `P`.
+    /// Returns the motion of the actuated joints, and the forces of the actuators, for a twist and an acceleration of the platform at `P`.
     #[inline(always)]
     pub(super) fn drives<V: Real>(
         &self,

@@ -332,7 +332,7 @@ impl DynamicsModel {
     }
 
     /// Returns the largest relative change of `det A` where the error that attains the worst case moves the platform either way, while
-    /// the driven joints stay where they are.
+    /// the actuated joints stay where they are.
     fn nonlinearity(
         &self,
         errors: &[LegErrors<f64>; LEGS],

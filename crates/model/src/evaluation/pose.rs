@@ -167,7 +167,7 @@ impl PosedDesign {
         self.design.architecture().actuator()
     }
 
-    /// Returns the values of the driven joints at a posture.
+    /// Returns the values of the actuated joints at a posture.
     fn actuators(&self, posture: &Posture) -> [f64; LEGS] {
         let driven = self.design.architecture().driven();
         let legs = &self.checker.manipulator.legs;

@@ -1,6 +1,6 @@
-//! Forward kinematics: all assembly modes, the poses that belong to given values of the driven joints (docs/model.md, section 2.9).
+//! Forward kinematics: all assembly modes, the poses that belong to given values of the actuated joints (docs/model.md, section 2.9).
 //!
-//! With its driven joint locked, a leg is one constraint on the platform ([`LockedLeg`]). Three lines have at most two solutions, in
+//! With its actuated joint locked, a leg is one constraint on the platform ([`LockedLeg`]). Three lines have at most two solutions, in
 //! closed form; three circles have at most six, the real roots of a polynomial of degree six.
 
 use glam::DVec2;
@@ -13,7 +13,7 @@ use crate::spatial::{LEGS, Pose, Rotation, cross};
 /// Two poses are one mode if they differ by less than this, in the scale of the lengths and in radians.
 const SAME: f64 = 1e-6;
 
-/// A pose at which the driven joints have given values.
+/// A pose at which the actuated joints have given values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AssemblyMode {
     /// The pose.
@@ -26,7 +26,7 @@ pub struct AssemblyMode {
     pub is_of_design: bool,
 }
 
-/// Returns all poses at which the driven joints of `design` have the given values \[m or rad\], in the order of their orientations
+/// Returns all poses at which the actuated joints of `design` have the given values \[m or rad\], in the order of their orientations
 /// in (−π, π]. There is none if the values fit no pose, and none is returned where a continuum of poses fits.
 ///
 /// ```

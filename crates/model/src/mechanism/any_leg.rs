@@ -82,7 +82,7 @@ impl AnyLeg {
         visit!(self, leg => leg.solve(c, arm))
     }
 
-    /// Returns what the leg requires of the platform while its driven joint is locked at a value \[m or rad\].
+    /// Returns what the leg requires of the platform while its actuated joint is locked at a value \[m or rad\].
     pub fn locked(&self, value: f64) -> LockedLeg {
         visit!(self, leg => leg.chain.locked(leg.driven(), value))
     }

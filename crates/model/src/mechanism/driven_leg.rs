@@ -1,7 +1,7 @@
-//! A leg: a chain with one driven joint. The force that it transmits follows from the two passive joints by one rule, for every
+//! A leg: a chain with one actuated joint. The force that it transmits follows from the two passive joints by one rule, for every
 //! chain (docs/model.md, section 2.8).
 //!
-//! With its driven joint locked, a leg transmits a force along one line. Two passive revolute joints leave the line through both;
+//! With its actuated joint locked, a leg transmits a force along one line. Two passive revolute joints leave the line through both;
 //! a passive prismatic joint leaves the line normal to its direction, through the passive revolute joint.
 
 use std::ops::{Add, Mul, Neg, Sub};
@@ -178,7 +178,7 @@ impl<C: Chain, const DRIVEN: usize> DrivenLeg<C, DRIVEN> {
 }
 
 impl<C: Chain, const DRIVEN: usize> DrivenLeg<C, DRIVEN> {
-    /// Returns the place of the driven joint: 0, 1 or 2 from the base.
+    /// Returns the place of the actuated joint: 0, 1 or 2 from the base.
     pub(super) fn driven(&self) -> usize {
         DRIVEN
     }

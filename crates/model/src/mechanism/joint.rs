@@ -44,11 +44,11 @@ pub struct JointMasses {
     pub revolute: f64,
     /// The carriage of a prismatic joint.
     pub carriage: f64,
-    /// The motor of a driven joint.
+    /// The motor of an actuated joint.
     pub motor: f64,
 }
 
-/// A joint of a leg without its motor, or the motor of the driven joint.
+/// A joint of a leg without its motor, or the motor of the actuated joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointPart {
     /// Place of the joint in its leg, from 0 at the base.

@@ -20,7 +20,7 @@ pub struct LegPosture {
     pub moment: f64,
     /// Moments of `u_i` on that line about `A_i`, `B_i` and `C_i` \[m\].
     pub about: [f64; 3],
-    /// Transmission `B_ii`: speed along the line per unit of speed of the driven joint; 0 at a serial singularity.
+    /// Transmission `B_ii`: speed along the line per unit of speed of the actuated joint; 0 at a serial singularity.
     pub transmission: f64,
 }
 

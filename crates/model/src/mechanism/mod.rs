@@ -1,4 +1,4 @@
-//! Architectures and designs: chains, driven joints, joint limits and inverse kinematics, one file per chain.
+//! Architectures and designs: chains, actuated joints, joint limits and inverse kinematics, one file per chain.
 //!
 //! A leg is a chain of three joints of which one is driven ([`DrivenLeg`]). To add an architecture of a known chain, add a line to the
 //! list `architectures!` below; for a new chain, also add a file to `chains` with a type that implements [`Chain`]. No other module
@@ -49,7 +49,7 @@ macro_rules! architectures {
         fast { $($(#[$fast_doc:meta])* $fast:ident $fast_name:literal $fast_chain:ident $fast_driven:literal,)+ }
         others { $($(#[$doc:meta])* $variant:ident $name:literal $chain:ident $driven:literal,)+ }
     ) => {
-        /// Planar parallel architecture with three legs of one type; the paper underlines the driven joint.
+        /// Planar parallel architecture with three legs of one type; the paper underlines the actuated joint.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
         #[serde(try_from = "String", into = "String")]
         pub enum Architecture {
@@ -64,7 +64,7 @@ macro_rules! architectures {
             /// The architectures of the paper.
             pub const PAPER: &[Architecture] = &[$(Architecture::$fast),+];
 
-            /// Returns the name, for example `3-PRR` or `3-P_RR`: `_` precedes the driven joint, except in the names of the paper.
+            /// Returns the name, for example `3-PRR` or `3-P_RR`: `_` precedes the actuated joint, except in the names of the paper.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Architecture::$fast => $fast_name,)+
@@ -80,7 +80,7 @@ macro_rules! architectures {
                 }
             }
 
-            /// Returns the place of the driven joint: 0, 1 or 2 from the base.
+            /// Returns the place of the actuated joint: 0, 1 or 2 from the base.
             pub fn driven(self) -> usize {
                 match self {
                     $(Architecture::$fast => $fast_driven,)+
@@ -229,13 +229,13 @@ impl Architecture {
         self.chain().name
     }
 
-    /// Returns the name with `_` before the driven joint, for example `3-_PRR`.
+    /// Returns the name with `_` before the actuated joint, for example `3-_PRR`.
     pub fn marked_name(self) -> String {
         let (before, after) = self.chain_name().split_at(self.driven());
         format!("3-{before}_{after}")
     }
 
-    /// Returns the name with the driven joint underlined by U+0332.
+    /// Returns the name with the actuated joint underlined by U+0332.
     pub fn underlined_name(self) -> String {
         let (before, after) = self.chain_name().split_at(self.driven() + 1);
         format!("3-{before}\u{332}{after}")
@@ -261,7 +261,7 @@ impl Architecture {
         !FURTHER_VARIABLES.contains(&variable) || self.further_variables().contains(&variable)
     }
 
-    /// Returns the kind of the driven joint.
+    /// Returns the kind of the actuated joint.
     pub fn actuator(self) -> JointKind {
         self.chain().joints[self.driven()]
     }

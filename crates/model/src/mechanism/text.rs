@@ -14,7 +14,7 @@ pub enum TextError {
     /// The first word is not the name of an architecture.
     #[error("unknown architecture `{0}`; expected one of {names}, where `_` precedes the actuated joint", names = architecture_names())]
     UnknownArchitecture(String),
-    /// The name is that of a chain without its driven joint.
+    /// The name is that of a chain without its actuated joint.
     #[error(
         "`{name}` does not state which joint is actuated; expected one of {of_chain}, where `_` precedes the actuated joint"
     )]
@@ -24,7 +24,7 @@ pub enum TextError {
         /// The legitimate names of the chain.
         of_chain: String,
     },
-    /// With the driven joint locked, such a leg could transmit no force.
+    /// With the actuated joint locked, such a leg could transmit no force.
     #[error(
         "`{name}` cannot be actuated at this joint: with it locked, two prismatic joints remain, so the leg transmits no force \
          and every pose is singular; expected one of {names}",
@@ -76,8 +76,8 @@ fn names(architectures: impl Iterator<Item = Architecture>) -> String {
 impl FromStr for Architecture {
     type Err = TextError;
 
-    /// Parses a name such as `3-PRR` or `3-P_RR`, where `_` precedes the driven joint. The names of the paper may be written
-    /// either way, and a driven joint may also be underlined by U+0332.
+    /// Parses a name such as `3-PRR` or `3-P_RR`, where `_` precedes the actuated joint. The names of the paper may be written
+    /// either way, and an actuated joint may also be underlined by U+0332.
     fn from_str(text: &str) -> Result<Self, TextError> {
         let name = with_leading_marks(text);
         let mut all = Architecture::ALL.iter().copied();

@@ -32,9 +32,9 @@ pub(crate) struct PoseChecker<L> {
     pub bodies: Bodies,
     /// `R` \[m\].
     pub base_radius: f64,
-    /// Longest lever that the driven joints may have if they are revolute \[m\].
+    /// Longest lever that the actuated joints may have if they are revolute \[m\].
     pub longest_lever: f64,
-    /// Kind of the driven joints.
+    /// Kind of the actuated joints.
     pub actuator: JointKind,
     /// What g1 compares.
     pub assembly: Assembly,

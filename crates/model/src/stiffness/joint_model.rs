@@ -22,7 +22,7 @@ pub fn stiffness(model: &StiffnessModel, architecture: Architecture, posture: &P
     Some(total)
 }
 
-/// Computes `K_i` of a leg from its chain alone: the springs of its bars, the driven joint as a spring, and the passive joints as
+/// Computes `K_i` of a leg from its chain alone: the springs of its bars, the actuated joint as a spring, and the passive joints as
 /// free motions. Returns `None` if its system is singular.
 pub fn leg_stiffness(model: &StiffnessModel, architecture: Architecture, posture: &LegPosture) -> Option<Matrix6<f64>> {
     let chain = &posture.chain;

@@ -35,7 +35,7 @@ pub(crate) struct StrengthModel {
     yield_strength: Option<f64>,
     sections: [BarSection; 2],
     paths: [LegPath; LEGS],
-    /// Kind of the driven joints.
+    /// Kind of the actuated joints.
     actuator: JointKind,
     /// Whether the rails bend, whose share in buckling is unknown.
     is_on_bending_rails: bool,

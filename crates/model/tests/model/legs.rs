@@ -1,4 +1,4 @@
-//! Every chain and driven joint, compared with values from an independent program (tests/fixtures/README.md).
+//! Every chain and actuated joint, compared with values from an independent program (tests/fixtures/README.md).
 
 use kinefront_model::evaluation::{GridChoice, Model, ModelSettings, PoseScalar};
 use kinefront_model::kinematics::Jacobian;

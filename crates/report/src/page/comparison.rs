@@ -47,6 +47,7 @@ pub(super) fn comparison(report: &Report) -> Markup {
         }
         (rails(report, &fractions))
         (motors(report, &fractions))
+        (notation(&fractions))
         @if intervals.len() <= 12 {
             p {
                 "The best architecture, from the worst " (name) " to the best: "
@@ -87,46 +88,58 @@ pub(super) fn comparison(report: &Report) -> Markup {
     }
 }
 
+/// Names the architectures that have a property, if only some of those that are compared have it.
+fn names_of_some(fractions: &[(Architecture, f64)], has: impl Fn(Architecture) -> bool) -> Option<String> {
+    let architectures = fractions.iter().map(|(architecture, _)| *architecture);
+    let having = architectures.filter(|architecture| has(*architecture));
+    let names: Vec<String> = having.map(text::architecture).collect();
+    (!names.is_empty() && names.len() < fractions.len()).then(|| names.join(", "))
+}
+
 /// States what rails weigh and how they bend, where only some of the architectures have them.
 fn rails(report: &Report, fractions: &[(Architecture, f64)]) -> Markup {
-    let rails_are_rigid = report.model.settings().rails.is_none();
-    let is_on_rails = |architecture: &Architecture| architecture.chain().is_on_rails();
-    let architectures = fractions.iter().map(|(architecture, _)| *architecture);
-    let (on_rails, others): (Vec<Architecture>, Vec<Architecture>) = architectures.partition(is_on_rails);
+    let on_rails = names_of_some(fractions, |architecture| architecture.chain().is_on_rails());
     html! {
-        @if !on_rails.is_empty() && !others.is_empty() {
+        @if let Some(on_rails) = on_rails {
             p {
-                @if rails_are_rigid {
+                @if report.model.settings().rails.is_none() {
                     "Rails weigh nothing and do not yield in this study. This flatters the architectures whose "
-                    "first joint is prismatic ("
+                    "first joint is prismatic (" (on_rails) ") in a comparison with the others."
                 } @else {
                     "The mass contains the rails, which do not move, and the stiffness their bending (the architectures whose first "
-                    "joint is prismatic: "
+                    "joint is prismatic: " (on_rails) ")."
                 }
-                @for (index, architecture) in on_rails.iter().enumerate() { @if index > 0 { ", " } (text::architecture(*architecture)) }
-                @if rails_are_rigid { ") in a comparison with the others." } @else { ")." }
             }
         }
     }
 }
 
-/// States which motors move, where those of only some of the architectures do, and how the actuated joint is marked.
+/// States which motors move, where those of only some of the architectures do, and motors weigh nothing.
 fn motors(report: &Report, fractions: &[(Architecture, f64)]) -> Markup {
-    let joints = report.model.settings().joints;
-    let moves = |architecture: &Architecture| joints.of_leg(*architecture).any(|part| part.is_motor && part.moves);
-    let architectures = fractions.iter().map(|(architecture, _)| *architecture);
-    let (moving, others): (Vec<Architecture>, Vec<Architecture>) = architectures.clone().partition(moves);
-    let underlined = architectures
-        .into_iter()
-        .find(|architecture| !Architecture::PAPER.contains(architecture));
+    let settings = report.model.settings();
+    let moves = |architecture: Architecture| {
+        settings
+            .joints
+            .of_leg(architecture)
+            .any(|part| part.is_motor && part.moves)
+    };
+    let weigh_nothing = settings.joints.motor <= 0.0 && settings.drive_catalogue.is_empty();
+    let moving = names_of_some(fractions, moves).filter(|_| weigh_nothing);
     html! {
-        @if joints.motor <= 0.0 && !moving.is_empty() && !others.is_empty() {
+        @if let Some(moving) = moving {
             p {
-                "Motors weigh nothing in this study. This flatters the architectures whose motors move with the legs ("
-                @for (index, architecture) in moving.iter().enumerate() { @if index > 0 { ", " } (text::architecture(*architecture)) }
+                "Motors weigh nothing in this study. This flatters the architectures whose motors move with the legs (" (moving)
                 ") in a comparison with the others."
             }
         }
+    }
+}
+
+/// States how the actuated joint is marked, where the name of an architecture on the page has such a mark.
+fn notation(fractions: &[(Architecture, f64)]) -> Markup {
+    let mut architectures = fractions.iter().map(|(architecture, _)| *architecture);
+    let underlined = architectures.find(|architecture| !Architecture::PAPER.contains(architecture));
+    html! {
         @if let Some(underlined) = underlined {
             p { "The underlined joint is actuated; studies and tables write " (text::architecture(underlined)) " as " (underlined.name()) "." }
         }

@@ -10,7 +10,7 @@ section! {
         revolute_kg: f64 = 0.0, Check::Within(0.0, 1e6, " kg");
         /// Mass of the carriage of a prismatic joint.
         carriage_kg: f64 = 0.0, Check::Within(0.0, 1e6, " kg");
-        /// Mass of the motor of a driven joint; one on the base does not move.
+        /// Mass of the motor of an actuated joint; one on the base does not move.
         motor_kg: f64 = 0.0, Check::Within(0.0, 1e6, " kg");
     }
 }
