@@ -2,7 +2,8 @@
 
 use std::io::Write;
 
-use kinefront_export::{TaskJson, TaskRow};
+use kinefront_export::{MotionProofJson, TaskJson, TaskRow};
+use kinefront_model::certify::MotionCertificate;
 use kinefront_scene::text;
 use miette::miette;
 use serde::Serialize;
@@ -40,6 +41,8 @@ struct TaskReportJson {
     shortest_cycle_s: Option<f64>,
     shortest_cycle_set_by: Option<&'static str>,
     samples: Vec<TaskRow>,
+    /// What is proved about the motion at every moment; nothing if the design does not follow it.
+    proof: Option<MotionProofJson>,
 }
 
 pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
@@ -55,6 +58,10 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
         )));
     };
     let shortest = || model.shortest_cycle(&evaluation);
+    let proof = || -> Option<MotionCertificate> {
+        // A bar without a usable stiffness leaves the motion without a proof, as it leaves the design without a workspace.
+        model.certify_motion(&design, &outcome).ok().flatten()
+    };
     let catalogue = &model.settings().drive_catalogue;
     let mut out = std::io::stdout().lock();
     // A motion that ends early has no curves that stop in the middle.
@@ -69,6 +76,7 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
             shortest_cycle_s: shortest.map(|shortest| shortest.time),
             shortest_cycle_set_by: shortest.map(|shortest| shortest.limit.quantity.entry().key),
             samples: rows.collect(),
+            proof: proof().as_ref().map(MotionProofJson::from),
         };
         writeln!(out, "{}", to_json(&json).map_err(Failure::Runtime)?)?;
     } else if arguments.csv {
@@ -78,7 +86,11 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
         }
     } else {
         let fault = text::motion_fault(&outcome);
-        writeln!(out, "{}", tables::task(&design, &outcome, catalogue, fault, shortest()))?;
+        writeln!(
+            out,
+            "{}",
+            tables::task(&design, &outcome, catalogue, fault, (shortest(), proof()))
+        )?;
     }
     Ok(Ending::Done)
 }

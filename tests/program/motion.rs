@@ -96,6 +96,44 @@ fn commands_give_independent_values() {
     assert_eq!(rows[70][20].parse::<f64>().ok(), samples[70]["tau1"].as_f64());
 }
 
+/// A motion is proved with bounds near its samples, and what the samples miss refutes it.
+#[test]
+fn a_motion_is_proved_between_its_samples() {
+    let folder = folder();
+    let study = folder.path().join("moving.toml");
+    let of = |more: &str| {
+        fs::write(&study, format!("{STUDY}{more}")).expect("a study");
+        let path = study.to_str().expect("a path");
+        let found = json(["task", "--design", DESIGN, "--study", path, "--json"]);
+        let figure = |key: &str| {
+            let values = found[key].as_array().expect("three numbers").iter();
+            values
+                .map(|value| value.as_f64().expect("a number"))
+                .fold(0.0, f64::max)
+        };
+        (found["proof"].clone(), figure("peak_speed"), figure("peak_force"))
+    };
+    let (proof, speed, force) = of("");
+    assert_eq!(proof["verdict"], "proved");
+    for (key, peak) in [("speed_at_most", speed), ("force_at_most", force)] {
+        let bound = proof[key].as_f64().expect("a bound");
+        assert!((peak..1.002 * peak).contains(&bound), "{key}: {bound} for {peak}");
+    }
+    // Six samples of a piece miss its largest speed by more than a hundredth.
+    let limited = |samples: &str| {
+        of(&format!(
+            "{samples}\n[constraints.path_speed_max_m_per_s]\nat_most = {}\n",
+            0.995 * speed
+        ))
+    };
+    let (proof, rough, _) = limited("samples = 5");
+    assert!(rough < 0.99 * speed, "{rough} of {speed}");
+    assert_eq!(proof["verdict"], "refuted", "{proof}");
+    assert_eq!(proof["claim"], "path_speed_max_m_per_s");
+    assert!(proof["speed_at_most"].is_null());
+    assert!(proof["time_s"].as_f64().is_some_and(|time| (0.0..5.0).contains(&time)));
+}
+
 /// What cannot be moved, or makes no sense, is said with its place and its remedy.
 #[test]
 fn motions_that_are_impossible_are_told() {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::pose::PoseJson;
+use kinefront_model::certify::{MotionCertificate, MotionClaim, MotionVerdict};
 use kinefront_model::dynamics::{DriveCatalogue, DynamicsReport, Motion};
 use kinefront_model::evaluation::{OverWorkspace, PosedDynamics, SelectedDrive, TaskOutcome, TaskSample};
 
@@ -208,6 +209,53 @@ impl TaskJson {
                 .filter(SelectedDrive::carries)
                 .and_then(|drive| Some(catalogue.get(drive.place)?.name.clone())),
             drive_utilization: outcome.drive.map(|drive| drive.utilization),
+        }
+    }
+}
+
+/// What is proved about a motion at every moment.
+#[derive(Debug, Serialize)]
+pub struct MotionProofJson {
+    /// `proved`, `refuted` or `open`.
+    verdict: &'static str,
+    /// The distance to the joint limits and the ends of reach is nowhere smaller; nothing unless the motion is proved.
+    reach_at_least_m: Option<f64>,
+    /// No actuator is ever faster, in m/s or rad/s.
+    speed_at_most: Option<f64>,
+    /// No actuator ever gives more, in N or N·m.
+    force_at_most: Option<f64>,
+    /// Where a claim is wrong or open: the piece, from 1, and the time from the beginning of the cycle.
+    piece: Option<usize>,
+    time_s: Option<f64>,
+    /// The claim: `reach`, `singularity`, `speed`, `force`, or the quantity whose limit is missed.
+    claim: Option<&'static str>,
+    /// Number of intervals of time that were examined.
+    intervals: usize,
+}
+
+impl From<&MotionCertificate> for MotionProofJson {
+    fn from(certificate: &MotionCertificate) -> Self {
+        let (verdict, moment) = match certificate.verdict {
+            MotionVerdict::Proved => ("proved", None),
+            MotionVerdict::Refuted(moment) => ("refuted", Some(moment)),
+            MotionVerdict::Open(moment) => ("open", Some(moment)),
+        };
+        let bounds = certificate.bounds;
+        Self {
+            verdict,
+            reach_at_least_m: bounds.map(|bounds| bounds.reach),
+            speed_at_most: bounds.map(|bounds| bounds.speed),
+            force_at_most: bounds.map(|bounds| bounds.force),
+            piece: moment.map(|moment| moment.piece + 1),
+            time_s: moment.map(|moment| moment.time),
+            claim: moment.map(|moment| match moment.claim {
+                MotionClaim::Reach => "reach",
+                MotionClaim::Singularity => "singularity",
+                MotionClaim::Speed => "speed",
+                MotionClaim::Force => "force",
+                MotionClaim::Limit(quantity) => quantity.entry().key,
+            }),
+            intervals: certificate.intervals,
         }
     }
 }

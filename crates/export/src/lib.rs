@@ -41,7 +41,7 @@ use kinefront_study::PreparedStudy;
 
 pub use assembly_modes::AssemblyModesJson;
 pub use certificate::{CertificateJson, Claim};
-pub use dynamics::{DynamicsJson, TaskJson, TaskRow};
+pub use dynamics::{DynamicsJson, MotionProofJson, TaskJson, TaskRow};
 pub use format::Format;
 pub use pose::PoseJson;
 #[cfg(feature = "parquet")]

@@ -1,5 +1,6 @@
 //! What the motion of the study asks of designs of the fronts, and how short its cycle may be.
 
+use kinefront_model::certify::MotionVerdict;
 use kinefront_model::evaluation::{Evaluation, Model, ShortestCycle, largest_of_legs};
 use kinefront_model::mechanism::{Architecture, Design, JointKind};
 use rayon::prelude::*;
@@ -22,6 +23,8 @@ pub(super) struct DesignMotion {
     pub drive: Option<String>,
     /// The shortest cycle that the limits of the study allow, if there are any.
     pub shortest: Option<ShortestCycle>,
+    /// What is proved about the motion at every moment, if the design follows it.
+    pub proof: Option<MotionVerdict>,
 }
 
 /// What a motion asks of the actuator that has to give most.
@@ -44,6 +47,7 @@ pub(super) struct MotionFigures {
 impl DesignMotion {
     fn new(model: &Model, question: &Question, evaluation: &Evaluation) -> Option<Self> {
         let (outcome, _) = model.follow_task(evaluation)?;
+        let proof = model.certify_motion(&evaluation.design, &outcome).ok().flatten();
         let drive = evaluation
             .drive
             .and_then(|place| model.settings().drive_catalogue.get(place));
@@ -64,6 +68,7 @@ impl DesignMotion {
             figures,
             drive: drive.map(|drive| drive.name.clone()),
             shortest: model.shortest_cycle(evaluation),
+            proof: proof.map(|proof| proof.verdict),
         })
     }
 

@@ -1,9 +1,10 @@
 //! Formatting of numbers and names for display.
 
+use kinefront_model::certify::{MotionCertificate, MotionClaim, MotionMoment, MotionVerdict};
 use kinefront_model::clearance::Clearance;
 use kinefront_model::dynamics::DriveCatalogue;
 use kinefront_model::evaluation::{Evaluation, Model, Quantity, QuantityValues, TaskFailure, TaskFault, TaskOutcome};
-use kinefront_model::mechanism::{Architecture, CrossSections, Design, DesignVariable};
+use kinefront_model::mechanism::{Architecture, CrossSections, Design, DesignVariable, JointKind};
 use kinefront_model::workspace::Region;
 
 /// Formats a number with four significant digits: in decimal notation from 0.001 up to 100 000, otherwise in scientific
@@ -165,6 +166,35 @@ pub fn selected_drive(catalogue: &DriveCatalogue, outcome: &TaskOutcome) -> Opti
             "no drive of the catalogue can perform the motion; {name} comes closest, with a utilization of {used} %"
         )
     })
+}
+
+/// Writes what is proved about a motion at every moment, for actuators of a kind.
+pub fn motion_proof(certificate: &MotionCertificate, actuator: JointKind) -> String {
+    let at = |moment: &MotionMoment| format!("in piece {} at {:.4} s", moment.piece + 1, moment.time);
+    let claim = |moment: &MotionMoment| match moment.claim {
+        MotionClaim::Reach => "a leg does not reach, or a joint passes its limit".to_owned(),
+        MotionClaim::Singularity => "a parallel singularity is met".to_owned(),
+        MotionClaim::Speed => "the speeds of the actuators have no bound".to_owned(),
+        MotionClaim::Force => "the forces of the actuators have no bound".to_owned(),
+        MotionClaim::Limit(quantity) => format!("the limit of the {} is missed", quantity.entry().label),
+    };
+    match (&certificate.verdict, certificate.bounds) {
+        (MotionVerdict::Refuted(moment), _) => {
+            format!("refuted between the samples: {}, {}", claim(moment), at(moment))
+        }
+        (MotionVerdict::Open(moment), _) => {
+            format!("open: it is not decided whether {}, {}", claim(moment), at(moment))
+        }
+        (MotionVerdict::Proved, None) => "proved at every moment".to_owned(),
+        (MotionVerdict::Proved, Some(bounds)) => format!(
+            "proved at every moment: actuators at most {} {}/s and {} {}, at least {} mm from their limits",
+            number(bounds.speed),
+            actuator.unit(),
+            number(bounds.force),
+            actuator.effort_unit(),
+            number(1e3 * bounds.reach),
+        ),
+    }
 }
 
 /// Returns where a motion ends early, and why.

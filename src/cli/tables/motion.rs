@@ -1,5 +1,6 @@
 //! Tables of the motion of a design.
 
+use kinefront_model::certify::MotionCertificate;
 use kinefront_model::dynamics::{DriveCatalogue, Motion};
 use kinefront_model::evaluation::{PosedDynamics, ShortestCycle, TaskOutcome};
 use kinefront_model::mechanism::Design;
@@ -84,7 +85,7 @@ pub fn task(
     outcome: &TaskOutcome,
     catalogue: &DriveCatalogue,
     why_not: Option<String>,
-    shortest: Option<ShortestCycle>,
+    (shortest, proof): (Option<ShortestCycle>, Option<MotionCertificate>),
 ) -> String {
     let mut facts = table(["design", &design.to_string()], &[]);
     if let Some(motion) = &outcome.motion {
@@ -106,6 +107,10 @@ pub fn task(
     }
     if let Some(drive) = text::selected_drive(catalogue, outcome) {
         facts.add_row(["drives".to_owned(), drive]);
+    }
+    if let Some(proof) = proof {
+        let words = text::motion_proof(&proof, design.architecture().actuator());
+        facts.add_row(["proof".to_owned(), words]);
     }
     let inside = if figures.inside_workspace { "yes" } else { "no" };
     facts.add_row(["inside the workspace".to_owned(), inside.to_owned()]);

@@ -7,11 +7,13 @@
 
 mod forms;
 mod homes;
+mod motion;
 mod patch;
 mod pose_box;
 mod search;
 
 use forms::ProvedForms;
+pub use motion::{MotionBounds, MotionCertificate, MotionClaim, MotionMoment, MotionVerdict};
 pub use patch::Patch;
 
 use crate::enclosure::{PoseEnclosure, TaylorModel, VARIABLES};

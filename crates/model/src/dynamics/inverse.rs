@@ -4,6 +4,7 @@
 
 use super::DynamicsModel;
 use super::legs::{DynamicsInputs, MovingLeg};
+use crate::enclosure::{EnclosedNumber, TaylorModel};
 use crate::lanes::{LaneJob, Planar, Real, dot, less, scaled, sum};
 use crate::spatial::LEGS;
 use crate::strength::path::{BARS, PLATFORM};
@@ -94,6 +95,21 @@ impl DynamicsModel {
             acceleration,
             loads,
         })
+    }
+
+    /// Encloses the rate of each actuated joint, and the force of its actuator, over an interval of a motion under the loads of the
+    /// settings.
+    pub fn enclose_drives(
+        &self,
+        inputs: &DynamicsInputs<EnclosedNumber>,
+        twist: [EnclosedNumber; 3],
+        acceleration: [EnclosedNumber; 3],
+    ) -> [[TaylorModel; 2]; LEGS] {
+        let legs = self.legs(inputs);
+        let zero = twist[0].splat(0.0);
+        let loads = (self.gravity(zero), self.settings.tool.map(|part| zero.splat(part)));
+        let drives = self.drives(inputs, &legs, twist, acceleration, loads);
+        drives.map(|drive| [drive.speed.0, drive.force.0])
     }
 
     #[inline(always)]

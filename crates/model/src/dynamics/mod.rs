@@ -7,6 +7,7 @@
 
 mod drive;
 mod effort;
+mod enclosed_task;
 mod error;
 mod inverse;
 mod legs;
@@ -17,6 +18,7 @@ mod task;
 
 pub use drive::{Drive, DriveCatalogue, DriveCatalogueError};
 pub(crate) use effort::{MotionJob, MotionValue};
+pub(crate) use enclosed_task::EnclosedMotion;
 pub(crate) use legs::DynamicsInputs;
 pub use report::{Accuracy, DynamicsReport, ErrorBudget, Gains, Motion, Response, VibratingBar, VibratingPoint};
 pub use settings::{Anywhere, DriveInertia, DynamicsSettings, Payload, Tolerances};

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Motion;
+use crate::lanes::Real;
 use crate::polygon::Polygon;
 use crate::spatial::Pose;
 
@@ -94,7 +95,7 @@ pub struct TaskFrame {
 
 /// A piece of a path, from rest to rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Piece {
+pub(super) enum Piece {
     /// Straight in all coordinates.
     Straight { from: [f64; 3], by: [f64; 3] },
     /// A full turn about a point.
@@ -117,10 +118,10 @@ pub struct TaskInstant {
 /// A motion in time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TaskMotion {
-    pieces: Vec<Piece>,
+    pub(super) pieces: Vec<Piece>,
     /// Durations of the pieces, without the dwells \[s\].
     durations: Vec<f64>,
-    law: MotionLaw,
+    pub(super) law: MotionLaw,
     dwell: f64,
     samples: usize,
 }
@@ -128,57 +129,100 @@ pub struct TaskMotion {
 impl MotionLaw {
     /// Returns the share of the path that is covered at a share of the time, and its first and second derivative.
     pub fn at(self, share: f64) -> [f64; 3] {
+        self.on_stretch(share, share)
+    }
+
+    /// Returns the shares of the time between which the law is one polynomial, the ends 0 and 1 included.
+    pub(super) fn breaks(self) -> Vec<f64> {
         match self {
-            MotionLaw::Quintic => {
-                let x = share;
-                [
-                    x * x * x * (10.0 + x * (-15.0 + 6.0 * x)),
-                    30.0 * x * x * (1.0 + x * (x - 2.0)),
-                    60.0 * x * (1.0 + x * (2.0 * x - 3.0)),
-                ]
-            }
+            MotionLaw::Quintic => vec![0.0, 1.0],
             MotionLaw::Trapezoid { blend, ramp } => {
-                if share > 0.5 {
-                    let [way, speed, acceleration] = accelerating(1.0 - share, blend, ramp);
-                    [1.0 - way, speed, -acceleration]
+                let flank = ramp * blend;
+                let half = [0.0, flank, blend - flank, blend, 0.5];
+                let mirrored = half.iter().rev().skip(1).map(|share| 1.0 - share);
+                let mut breaks: Vec<f64> = half.into_iter().chain(mirrored).collect();
+                breaks.dedup();
+                breaks
+            }
+        }
+    }
+
+    /// Returns what [`MotionLaw::at`] does, by the polynomial that holds at the share `stretch`.
+    pub(super) fn on_stretch<V: Real>(self, share: V, stretch: f64) -> [V; 3] {
+        let x = share;
+        let number = |value: f64| x.splat(value);
+        match self {
+            MotionLaw::Quintic => [
+                x * x * x * (number(10.0) + x * (number(-15.0) + number(6.0) * x)),
+                number(30.0) * x * x * (number(1.0) + x * (x - number(2.0))),
+                number(60.0) * x * (number(1.0) + x * (number(2.0) * x - number(3.0))),
+            ],
+            MotionLaw::Trapezoid { blend, ramp } => {
+                if stretch > 0.5 {
+                    let [way, speed, acceleration] = accelerating(number(1.0) - x, 1.0 - stretch, blend, ramp);
+                    [number(1.0) - way, speed, -acceleration]
                 } else {
-                    accelerating(share, blend, ramp)
+                    accelerating(x, stretch, blend, ramp)
                 }
             }
         }
     }
 }
 
-/// Returns the first half of a motion whose acceleration is a trapezoid.
-fn accelerating(share: f64, blend: f64, ramp: f64) -> [f64; 3] {
+/// Returns the way, speed and acceleration of a rising acceleration, from rest.
+fn rising<V: Real>(x: V, jerk: f64) -> [V; 3] {
+    let number = |value: f64| x.splat(value);
+    [
+        number(jerk) * x * x * x / number(6.0),
+        number(0.5 * jerk) * x * x,
+        number(jerk) * x,
+    ]
+}
+
+/// Returns the way, speed and acceleration of the acceleration `most`, from a way and speed.
+fn plateau<V: Real>(x: V, [way, speed]: [f64; 2], most: f64) -> [V; 3] {
+    let number = |value: f64| x.splat(value);
+    [
+        number(way) + x * (number(speed) + number(0.5 * most) * x),
+        number(speed) + number(most) * x,
+        number(most),
+    ]
+}
+
+/// Returns the way, speed and acceleration of an acceleration that falls from `most`, from a way and speed.
+fn falling<V: Real>(x: V, [way, speed]: [f64; 2], most: f64, jerk: f64) -> [V; 3] {
+    let number = |value: f64| x.splat(value);
+    [
+        number(way) + x * (number(speed) + x * (number(0.5 * most) - number(jerk) * x / number(6.0))),
+        number(speed) + x * (number(most) - number(0.5 * jerk) * x),
+        number(most) - number(jerk) * x,
+    ]
+}
+
+/// Returns the first half of a motion whose acceleration is a trapezoid, by the polynomial that holds at the share `stretch`.
+fn accelerating<V: Real>(share: V, stretch: f64, blend: f64, ramp: f64) -> [V; 3] {
     let most = 1.0 / (blend * (1.0 - blend) * (1.0 - ramp));
     let flank = ramp * blend;
-    let rising = |x: f64| {
-        let jerk = most / flank;
-        [jerk * x * x * x / 6.0, 0.5 * jerk * x * x, jerk * x]
-    };
-    if share <= flank {
-        return rising(share);
+    let jerk = most / flank;
+    let after = |begin: f64| share - share.splat(begin);
+    if stretch <= flank {
+        return rising(share, jerk);
     }
-    let [way, speed, _] = rising(flank);
-    let plateau = |x: f64| [way + x * (speed + 0.5 * most * x), speed + most * x, most];
-    if share <= blend - flank {
-        return plateau(share - flank);
+    let [way, speed, _] = rising(flank, jerk);
+    if stretch <= blend - flank {
+        return plateau(after(flank), [way, speed], most);
     }
-    let [way, speed, _] = plateau(blend - 2.0 * flank);
-    let falling = |x: f64| {
-        let jerk = most / flank;
-        [
-            way + x * (speed + x * (0.5 * most - jerk * x / 6.0)),
-            speed + x * (most - 0.5 * jerk * x),
-            most - jerk * x,
-        ]
-    };
-    if share <= blend {
-        return falling(share - (blend - flank));
+    let [way, speed, _] = plateau(blend - 2.0 * flank, [way, speed], most);
+    if stretch <= blend {
+        return falling(after(blend - flank), [way, speed], most, jerk);
     }
-    let [way, speed, _] = falling(flank);
-    [way + speed * (share - blend), speed, 0.0]
+    let [way, speed, _] = falling(flank, [way, speed], most, jerk);
+    let zero = share.splat(0.0);
+    [
+        share.splat(way) + share.splat(speed) * after(blend),
+        share.splat(speed),
+        zero,
+    ]
 }
 
 impl Piece {

@@ -99,6 +99,23 @@ impl TaylorModel {
         )
     }
 
+    /// Sine and cosine of an angle that is enclosed itself.
+    ///
+    /// With `x = c + d`, Taylor's theorem gives `sin x = sin c + d cos c − ½d² sin c ± |d|³/6`, and likewise for the cosine.
+    pub fn sine_and_cosine_of(&self) -> (Self, Self) {
+        let (sine, cosine) = Interval::exactly(self.constant).sine_and_cosine();
+        let rest = Self { constant: 0.0, ..*self };
+        let half_square = rest.squared().times(0.5);
+        let [lower, upper] = rest.range();
+        let far = Interval::exactly(upper.max(-lower));
+        let most = (far * far * far / Interval::exactly(6.0)).upper();
+        let off = Interval::new(-most, most);
+        (
+            (rest.scaled(cosine) - half_square.scaled(sine)).plus(sine + off),
+            (-rest.scaled(sine) - half_square.scaled(cosine)).plus(cosine + off),
+        )
+    }
+
     /// `A = Σ|a|`.
     #[inline(always)]
     fn linear_size(&self) -> f64 {

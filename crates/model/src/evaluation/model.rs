@@ -368,6 +368,12 @@ impl Model {
         self.dynamics_if_asked(design, self.stiffness(design).as_ref())
     }
 
+    /// Returns the motion of a design; `None` if a bar is infinitely compliant.
+    pub(crate) fn dynamics_in_motion(&self, design: &Design) -> Option<DynamicsModel> {
+        let stiffness = self.stiffness(design)?;
+        Some(self.dynamics(design, &stiffness))
+    }
+
     fn dynamics(&self, design: &Design, stiffness: &StiffnessModel) -> DynamicsModel {
         self.dynamics_with(design, stiffness, &self.settings.dynamics, self.settings.joints)
     }

@@ -12,6 +12,7 @@ mod joints;
 mod lanes;
 mod legs;
 mod motion;
+mod motion_proofs;
 mod quantities;
 mod reference;
 mod region_proofs;

@@ -5,6 +5,7 @@ use maud::{Markup, html};
 use super::{cell, optional};
 use crate::Report;
 use crate::motions::{DesignMotion, MotionFigures};
+use kinefront_model::certify::MotionVerdict;
 use kinefront_scene::text::{self, number};
 
 pub(super) fn motion(report: &Report) -> Markup {
@@ -13,7 +14,8 @@ pub(super) fn motion(report: &Report) -> Markup {
     html! {
         p {
             "Designs of the fronts follow the motion of the study. The shortest cycle is the one in which a design just keeps all limits of the motion, with the same path and the same rests; a \
-             shorter one would miss the limit that is named."
+             shorter one would miss the limit that is named. A motion is proved if it is followed, with all its limits of speed, force and distance, at \
+             every moment and not only at its samples."
         }
         @if let Some(sentence) = fastest(report) { p { (sentence) } }
         div.scroll { table {
@@ -24,7 +26,7 @@ pub(super) fn motion(report: &Report) -> Markup {
                 th.number { "cycle [s]" } th.number { "speed" } th.number { "force" } th.number { "RMS force" }
                 th.number { "power [W]" } th.number { "energy [J]" }
                 @if has_drives { th { "drive" } }
-                th.number { "shortest cycle [s]" } th { "set by" }
+                th.number { "shortest cycle [s]" } th { "set by" } th { "at every moment" }
             } }
             tbody { @for motion in &report.motions { tr {
                 td { (text::architecture(motion.architecture())) }
@@ -36,8 +38,17 @@ pub(super) fn motion(report: &Report) -> Markup {
                 @if has_drives { td { (motion.drive.as_deref().unwrap_or("none")) } }
                 (optional(motion.shortest.map(|shortest| shortest.time)))
                 td { (motion.shortest.map_or("–", |shortest| shortest.limit.quantity.entry().label)) }
+                td { (motion.proof.as_ref().map_or("–", verdict)) }
             } } }
         } }
+    }
+}
+
+fn verdict(verdict: &MotionVerdict) -> &'static str {
+    match verdict {
+        MotionVerdict::Proved => "proved",
+        MotionVerdict::Refuted(_) => "refuted",
+        MotionVerdict::Open(_) => "open",
     }
 }
 

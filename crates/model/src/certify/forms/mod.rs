@@ -12,12 +12,14 @@ mod rails;
 mod reach;
 mod stiffness;
 mod strength;
+mod travel;
 
 use clearance::{MemberBoxes, Separations};
 use compliances::Compliances;
 use motion::MotionForms;
 use reach::ReachForms;
 use strength::{LoadForms, StrengthForms};
+pub(super) use travel::{Travel, TravelForms};
 
 use super::CertifyError;
 use crate::enclosure::{Interval, PoseEnclosure, TaylorModel, VARIABLES, cross, dot};

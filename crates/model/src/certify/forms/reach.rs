@@ -26,10 +26,18 @@ impl ReachForms {
     pub fn new(model: &Model, design: &Design) -> Option<Self> {
         let limit = model.settings().thresholds.get(PoseScalar::Reach)?;
         Some(Self {
-            legs: Manipulator::new(design, &model.settings().legs).legs,
             limit,
-            slack: OF_FRAMES * model.extent(design),
+            ..Self::without_limit(model, design)
         })
+    }
+
+    /// Returns what the distance itself needs.
+    pub fn without_limit(model: &Model, design: &Design) -> Self {
+        Self {
+            legs: Manipulator::new(design, &model.settings().legs).legs,
+            limit: 0.0,
+            slack: OF_FRAMES * model.extent(design),
+        }
     }
 }
 

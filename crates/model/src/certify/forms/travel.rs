@@ -1,0 +1,64 @@
+//! What a design does along a motion, over an interval of time (docs/model.md, section 15.11).
+
+use super::strength::planar;
+use super::{CertifyError, Enclosures, Forms, ProvedForms, ReachForms, enclose_legs, turn};
+use crate::dynamics::{DynamicsInputs, DynamicsModel, EnclosedMotion};
+use crate::enclosure::TaylorModel;
+use crate::evaluation::Model;
+use crate::mechanism::{Design, LegEnclosure};
+use crate::spatial::LEGS;
+
+/// What a design does over an interval of time.
+pub(in super::super) struct Travel {
+    /// Distances from the joint limits and the ends of reach \[m\].
+    pub reach: Vec<TaylorModel>,
+    /// `det A`, up to a positive factor, with the sign that it has where the motion begins.
+    pub determinant: TaylorModel,
+    /// Rate of each actuated joint, and force of its actuator.
+    pub drives: [[TaylorModel; 2]; LEGS],
+}
+
+/// The forms of a motion.
+pub(in super::super) struct TravelForms<'a> {
+    forms: Forms<'a>,
+    dynamics: DynamicsModel,
+}
+
+impl<'a> TravelForms<'a> {
+    /// Prepares the forms of a design with the dynamics of the drives that it has.
+    pub fn new(model: &'a Model, design: &'a Design, dynamics: DynamicsModel) -> Result<Self, CertifyError> {
+        let mut forms = Forms::new(model, design)?;
+        forms.reach = Some(ReachForms::without_limit(model, design));
+        Ok(Self { forms, dynamics })
+    }
+
+    /// Encloses what the design does over an interval of a motion; where a leg may not reach, nothing but that is known.
+    pub fn enclose(&self, motion: &EnclosedMotion) -> Option<Travel> {
+        let forms = &self.forms;
+        let legs = enclose_legs(forms.model, forms.design, &forms.frames, &motion.pose);
+        let is_reached = legs
+            .iter()
+            .flat_map(|leg| leg.chain.reach)
+            .all(|reach| reach.is_positive());
+        if !is_reached {
+            return None;
+        }
+        let mut distances = Enclosures::new(ProvedForms::default());
+        forms.enclose_reach(&motion.pose, &legs, &mut distances);
+        let inputs = DynamicsInputs {
+            position: planar(motion.pose.position),
+            legs: forms.load_inputs(&legs),
+        };
+        Some(Travel {
+            reach: distances.iter().map(|(_, value)| *value).collect(),
+            determinant: determinant(&legs),
+            drives: self.dynamics.enclose_drives(&inputs, motion.twist, motion.acceleration),
+        })
+    }
+}
+
+/// Encloses `det A`, up to a positive factor.
+fn determinant(legs: &[LegEnclosure; LEGS]) -> TaylorModel {
+    let parts = [0, 1, 2].map(|i: usize| legs[i].moment * turn(legs, i));
+    parts[0] + parts[1] + parts[2]
+}

@@ -1,0 +1,242 @@
+//! Proofs of motions, compared with motions that are sampled densely.
+
+use glam::DVec2;
+use kinefront_model::certify::{MotionClaim, MotionVerdict};
+use kinefront_model::dynamics::{
+    DriveInertia, DynamicsSettings, MotionLaw, Payload, Task, TaskFrame, TaskShape, TaskTiming,
+};
+use kinefront_model::evaluation::{
+    Bound, Model, PoseScalar, Quantity, QuantityLimit, TaskFigures, TaskOutcome, largest_of_legs,
+};
+use kinefront_model::mechanism::{Architecture, Design, JointKind};
+use kinefront_model::spatial::Pose;
+use kinefront_testkit::numbers as random_numbers;
+
+use super::legs::{cases, design, model as model_of};
+use super::reference::pose as pose_of;
+
+const TRAPEZOID: MotionLaw = MotionLaw::Trapezoid { blend: 0.3, ramp: 0.2 };
+
+/// A motion to one side of a pose and back, that turns the platform on the way.
+fn sideways(pose: &Pose, reach: f64, law: MotionLaw, samples: usize) -> Task {
+    let at = |x: f64, y: f64, turn: f64| {
+        let position = pose.position + reach * DVec2::new(x, y);
+        [position.x, position.y, pose.phi + reach * turn]
+    };
+    Task {
+        shape: TaskShape::Waypoints(vec![at(-1.0, 0.2, -0.4), at(0.9, 0.5, 0.5), at(0.1, -1.0, 0.0)]),
+        share: 0.5,
+        angle: 0.4,
+        closed: true,
+        law,
+        dwell: 0.05,
+        samples,
+        timing: TaskTiming::Cycle(2.0),
+    }
+}
+
+/// The frame of a circle about a pose.
+fn about(pose: &Pose, reach: f64, design: &Design) -> TaskFrame {
+    TaskFrame {
+        centre: pose.position,
+        radius: 2.0 * reach,
+        polygon: None,
+        home_phi: pose.phi,
+        half_range: 0.1,
+        lever: design.platform_radius(),
+    }
+}
+
+fn follow(model: &Model, design: &Design, task: &Task, frame: &TaskFrame) -> TaskOutcome {
+    model.posed(design).follow(task, frame).0
+}
+
+fn moving(model: &mut kinefront_model::evaluation::ModelSettings) {
+    model.dynamics = DynamicsSettings {
+        payload: Payload {
+            mass: 4.0,
+            inertia: 0.2,
+            centre: [0.11, -0.07],
+        },
+        drives: DriveInertia {
+            slider_mass: 1.5,
+            prismatic: 0.7,
+            revolute: 0.3,
+        },
+        gravity: [0.0, -9.81, 0.0],
+        tool: [20.0, -10.0, 3.0],
+        ..DynamicsSettings::default()
+    };
+}
+
+/// Calls a function for one design of each architecture, with a pose of the fixture that is far from singularities and joint limits, and
+/// the reach of a motion about it \[m\].
+fn for_all(mut check: impl FnMut(&Model, &Design, &Pose, f64)) {
+    let cases = cases("poses");
+    for &architecture in Architecture::ALL {
+        let poses = cases.iter().filter_map(|case| {
+            let (design, pose) = (design(case), pose_of(case));
+            let model = model_of(case, moving);
+            let found = model.pose(&design, &pose).ok()?;
+            let clear = (found.values[PoseScalar::Reach] / design.base_radius()).min(0.05);
+            let is_other = design.architecture() != architecture;
+            (!is_other).then(|| (clear.min(found.values[PoseScalar::Dexterity]), model, design, pose))
+        });
+        let best = poses.max_by(|a, b| a.0.total_cmp(&b.0));
+        let (_, model, design, pose) = best.unwrap_or_else(|| panic!("no pose of {}", architecture.name()));
+        let room = model
+            .pose(&design, &pose)
+            .map_or(0.0, |found| found.values[PoseScalar::Reach]);
+        check(&model, &design, &pose, (0.1 * room).min(0.02 * design.base_radius()));
+    }
+}
+
+#[test]
+fn a_proved_motion_keeps_its_bounds_at_every_moment() {
+    let mut proved = 0;
+    for_all(|model, design, pose, reach| {
+        let frame = about(pose, reach, design);
+        for law in [MotionLaw::Quintic, TRAPEZOID] {
+            let sideways = sideways(pose, reach, law, 50);
+            let circle = Task {
+                shape: TaskShape::Circle,
+                ..sideways.clone()
+            };
+            for task in [sideways, circle] {
+                let outcome = follow(model, design, &task, &frame);
+                let name = format!("{design} along {:?} by {law:?}", task.shape);
+                assert!(outcome.figures().is_some(), "{name}: {outcome:?}");
+                let found = model
+                    .certify_motion(design, &outcome)
+                    .expect("a proof")
+                    .expect("a motion");
+                let dense = Task {
+                    samples: 3000,
+                    ..task.clone()
+                };
+                let TaskFigures {
+                    path_reach,
+                    peak_speed,
+                    peak_force,
+                    ..
+                } = follow(model, design, &dense, &frame)
+                    .figures()
+                    .expect("figures")
+                    .clone();
+                let bounds = found.bounds.unwrap_or_else(|| panic!("{name}: {found:?}"));
+                proved += 1;
+                for (bound, peak) in [
+                    (bounds.speed, largest_of_legs(peak_speed)),
+                    (bounds.force, largest_of_legs(peak_force)),
+                ] {
+                    assert!(bound >= peak * (1.0 - 1e-12), "{name}: {bound} is passed by {peak}");
+                    assert!(bound <= peak * 1.004, "{name}: {bound} is far above {peak}");
+                }
+                assert!(bounds.reach <= path_reach + 1e-12, "{name}: {bounds:?} {path_reach}");
+                assert!(bounds.reach >= path_reach * 0.998, "{name}: {bounds:?} {path_reach}");
+            }
+        }
+    });
+    assert_eq!(proved, 4 * Architecture::ALL.len());
+}
+
+#[test]
+fn what_happens_between_the_samples_is_found() {
+    for_all(|model, design, pose, reach| {
+        let frame = about(pose, reach, design);
+        // So few samples miss the middle of each piece, where the motion is fastest.
+        let points = match sideways(pose, reach, MotionLaw::Quintic, 3).shape {
+            TaskShape::Waypoints(points) => points[..2].to_vec(),
+            other => panic!("{other:?}"),
+        };
+        let rough = Task {
+            shape: TaskShape::Waypoints(points),
+            closed: false,
+            ..sideways(pose, reach, MotionLaw::Quintic, 3)
+        };
+        let dense = Task {
+            samples: 3000,
+            ..rough.clone()
+        };
+        let quantity = match design.architecture().actuator() {
+            JointKind::Prismatic => Quantity::PathSpeed,
+            JointKind::Revolute => Quantity::PathRate,
+        };
+        let fine = follow(model, design, &dense, &frame);
+        let peak = largest_of_legs(fine.figures().expect("figures").peak_speed);
+        for (limit, is_kept) in [(0.999 * peak, false), (1.001 * peak, true)] {
+            let mut settings = model.settings().clone();
+            settings.limits = vec![QuantityLimit {
+                quantity,
+                bound: Bound::AtMost(limit),
+            }];
+            let limited = Model::new(settings).expect("a model");
+            let outcome = follow(&limited, design, &rough, &frame);
+            let found = limited
+                .certify_motion(design, &outcome)
+                .expect("a proof")
+                .expect("a motion");
+            match found.verdict {
+                MotionVerdict::Proved => assert!(is_kept, "{design}: {limit} of {peak}"),
+                MotionVerdict::Refuted(moment) => {
+                    assert!(!is_kept, "{design}: {limit} of {peak}");
+                    assert_eq!(moment.claim, MotionClaim::Limit(quantity));
+                }
+                MotionVerdict::Open(moment) => panic!("{design}: {moment:?}"),
+            }
+        }
+    });
+}
+
+#[test]
+fn no_motion_is_proved_that_a_dense_sampling_refutes() {
+    let mut random = random_numbers(3);
+    let [mut refuted, mut proved, mut open] = [0; 3];
+    for_all(|model, design, pose, _| {
+        let frame = about(pose, 0.1 * design.base_radius(), design);
+        for _ in 0..150 {
+            let mut somewhere = || {
+                let mut spread = |by: f64| by * (2.0 * random() - 1.0);
+                let by = 0.9 * design.base_radius();
+                [
+                    pose.position.x + spread(by),
+                    pose.position.y + spread(by),
+                    pose.phi + spread(0.8),
+                ]
+            };
+            let straight = Task {
+                shape: TaskShape::Waypoints(vec![somewhere(), somewhere()]),
+                closed: false,
+                ..sideways(pose, 0.0, MotionLaw::Quintic, 3)
+            };
+            let outcome = follow(model, design, &straight, &frame);
+            if outcome.figures().is_none() {
+                continue;
+            }
+            let dense = Task {
+                samples: 1000,
+                ..straight
+            };
+            let is_followed = follow(model, design, &dense, &frame).figures().is_some();
+            let found = model
+                .certify_motion(design, &outcome)
+                .expect("a proof")
+                .expect("a motion");
+            match found.verdict {
+                MotionVerdict::Proved => {
+                    assert!(is_followed, "{design} does not follow {dense:?}");
+                    proved += 1;
+                }
+                MotionVerdict::Refuted(moment) | MotionVerdict::Open(moment) if !is_followed => {
+                    assert!(!matches!(moment.claim, MotionClaim::Limit(_)), "{design}: {moment:?}");
+                    refuted += 1;
+                }
+                _ => open += 1,
+            }
+        }
+    });
+    assert!(
+        refuted >= 10 && proved >= 100 && open <= proved / 20,
+        "{refuted} {proved} {open}"
+    );
+}
