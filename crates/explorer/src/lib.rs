@@ -18,9 +18,12 @@ type AnyError = Box<dyn std::error::Error + Send + Sync>;
 
 mod app;
 mod data;
+mod eye;
 mod files;
+mod grip;
 mod overlay;
 mod panels;
+mod platform_drag;
 mod pointing;
 mod session;
 mod study_editor;
@@ -30,10 +33,12 @@ mod viewer;
 
 pub use app::{AtEndSignals, Explorer, InitialContent, Script, ScriptError, run};
 pub use data::{DesignOrigin, Document, Filter, FilterError, FrontEntry, History, Named, Selected, Store, Wished};
+pub use eye::{Eye, SceneView};
 pub use files::{OpenError, Opened, Purpose, open};
 pub use kinefront_study::Row;
 pub use panels::scatter::{ScatterAxis, axes};
 pub use panels::{Panel, Panels};
+pub use platform_drag::PlatformDrag;
 pub use pointing::{Description, Pointed, describe};
 pub use session::{
     Beside, MOST_PINS, MarkedCounts, Notice, Phase, PoseDynamics, ReferenceMark, Session, ShownVibration, ViewState,

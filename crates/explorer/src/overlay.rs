@@ -42,6 +42,11 @@ pub fn ui(ui: &mut Ui, pane: Rect, session: &mut Session, pointed: Option<&Descr
             );
         });
     }
+    if let Some(reason) = session.stopped() {
+        boxed(ui, "stopped", Align2::CENTER_BOTTOM, below_tabs, |ui| {
+            ui.colored_label(theme::bad(ui), format!("stopped: {reason}"));
+        });
+    }
     if let Some(description) = pointed {
         describe(ui, below_tabs, description);
     }
@@ -49,7 +54,7 @@ pub fn ui(ui: &mut Ui, pane: Rect, session: &mut Session, pointed: Option<&Descr
 
 /// Draws a box in a corner of the view.
 fn boxed<R>(ui: &mut Ui, id: &str, corner: Align2, area: Rect, content: impl FnOnce(&mut Ui) -> R) -> R {
-    egui::Area::new(Id::new(("scene overlay", id)))
+    let shown = egui::Area::new(Id::new(("scene overlay", id)))
         .order(egui::Order::Middle)
         .pivot(corner)
         .fixed_pos(corner.pos_in_rect(&area))
@@ -62,8 +67,16 @@ fn boxed<R>(ui: &mut Ui, id: &str, corner: Align2, area: Rect, content: impl FnO
                 .shadow(egui::Shadow::NONE)
                 .show(ui, content)
                 .inner
-        })
-        .inner
+        });
+    // The place follows from the size in the frame before.
+    let is_in_place = corner
+        .pos_in_rect(&shown.response.rect)
+        .distance(corner.pos_in_rect(&area))
+        < 0.5;
+    if !is_in_place {
+        ui.ctx().request_repaint();
+    }
+    shown.inner
 }
 
 /// Draws a button for each direction from which the manipulator can be seen.

@@ -120,7 +120,12 @@ fn of_solid(session: &Session, parts: &[Part], index: usize) -> Option<Descripti
         _ => {
             let members = model.members(&design, &pose).ok()?;
             let member = members.iter().find(|member| is_of(member, solid))?;
-            Some(describe_member(member))
+            let mut description = describe_member(member);
+            if solid.part == Part::PlatformBar {
+                let hint = "drag it to move the platform, its end to turn it; Shift keeps the angle";
+                description.lines.push(hint.to_owned());
+            }
+            Some(description)
         }
     }
 }

@@ -7,11 +7,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::App as _;
-use egui::{Context, Event, Ui};
-use glam::DVec2;
+use egui::{Context, Event, Rect, Ui};
+use glam::{DQuat, DVec2, DVec3};
 use re_viewer::external::re_chunk_store::MissingChunkReporter;
 use re_viewer::external::re_log_types::Instance;
 use re_viewer::external::re_sdk_types::blueprint::components::PanelState;
+use re_viewer::external::re_view_spatial::SpatialViewState;
 use re_viewer::external::re_viewer_context::{
     IdentifiedViewSystem, Item, ItemContext, ViewContext, ViewContextSystem, ViewContextSystemOncePerFrameResult,
     ViewQuery, ViewSystemIdentifier, ViewerContext,
@@ -22,6 +23,7 @@ use re_viewer::{
     ViewerEventKind,
 };
 
+use super::eye::{Eye, SceneView};
 use super::pointing::Pointed;
 use kinefront_recording::{APPLICATION_ID, LiveScene, Picked};
 use kinefront_study::Study;
@@ -35,6 +37,8 @@ pub struct Viewer {
     events: Rc<RefCell<Vec<ViewerEvent>>>,
     /// Whether key presses go to the viewer, that is, whether the last click was inside it.
     owns_keys: Arc<AtomicBool>,
+    /// Rectangle that the viewer filled in the last frame.
+    pane: Rect,
     _runtime: tokio::runtime::Runtime,
 }
 
@@ -149,6 +153,7 @@ impl Viewer {
             app,
             events,
             owns_keys,
+            pane: Rect::NOTHING,
             _runtime: runtime,
         };
         Ok((viewer, scene))
@@ -164,9 +169,19 @@ impl Viewer {
         POINTED.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
+    /// Returns the view of the selected design if the pointer was over it in the last frame.
+    pub fn view_of_design(&self, ctx: &Context) -> Option<SceneView> {
+        let eye = (*EYE.lock().unwrap_or_else(PoisonError::into_inner))?;
+        let rect = ctx.viewport(|viewport| viewport.hits.drag.map(|widget| widget.rect))?;
+        // The tabs of the viewer can be dragged as well.
+        let is_view = self.pane.contains_rect(rect) && rect.height() > 0.5 * self.pane.height();
+        is_view.then_some(SceneView { eye, rect })
+    }
+
     /// Draws the viewer into a pane.
     pub fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let pane = ui.max_rect();
+        self.pane = pane;
         // The viewer's tooltips show the components of an entity, which mean nothing to a designer.
         let delay = ui.ctx().global_style().interaction.tooltip_delay;
         ui.ctx()
@@ -209,7 +224,10 @@ impl Viewer {
 /// What the pointer is over. The viewer makes the systems of its views itself, so that they can be given nothing; there is one window.
 static POINTED: Mutex<Option<Pointed>> = Mutex::new(None);
 
-/// System of the 3-D views that draws nothing: once per frame it notes what the pointer is over.
+/// The eye of the view of the selected design in the last frame, if it was shown.
+static EYE: Mutex<Option<Eye>> = Mutex::new(None);
+
+/// System of the 3-D views that draws nothing: once per frame it notes what the pointer is over, and where the eye is.
 #[derive(Default)]
 struct PointerProbe;
 
@@ -240,16 +258,34 @@ impl ViewContextSystem for PointerProbe {
             })
         });
         *POINTED.lock().unwrap_or_else(PoisonError::into_inner) = pointed;
+        *EYE.lock().unwrap_or_else(PoisonError::into_inner) = None;
         Box::new(())
     }
 
     fn execute(
         &mut self,
-        _: &ViewContext<'_>,
+        ctx: &ViewContext<'_>,
         _: &MissingChunkReporter,
-        _: &ViewQuery<'_>,
+        query: &ViewQuery<'_>,
         _: &ViewContextSystemOncePerFrameResult,
     ) {
+        if !LiveScene::shows_design(&query.space_origin.to_string()) {
+            return;
+        }
+        let state = ctx.view_state.as_any().downcast_ref::<SpatialViewState>();
+        let eye = state
+            .and_then(|state| state.state_3d.eye_state.last_eye)
+            .and_then(|eye| {
+                let at = eye.world_from_rub_view;
+                let [x, y, z] = at.translation().to_array().map(f64::from);
+                let rotation = at.rotation().to_array().map(f64::from);
+                Some(Eye {
+                    position: DVec3::new(x, y, z),
+                    rotation: DQuat::from_array(rotation).normalize(),
+                    fov_y: f64::from(eye.fov_y?),
+                })
+            });
+        *EYE.lock().unwrap_or_else(PoisonError::into_inner) = eye;
     }
 }
 

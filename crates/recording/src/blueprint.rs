@@ -167,7 +167,8 @@ pub(super) fn send_live_layout(
     let mut layout = ViewLayout::new();
     layout.light = light;
     let manipulator = layout.view("3D", "Manipulator", paths::DESIGN, &["+ $origin/**"])?;
-    layout.eye(&manipulator, viewpoint.eye(), [0.0, 0.0, 0.0], extent)?;
+    let [eye, target] = viewpoint.eye_and_target();
+    layout.eye(&manipulator, eye, target, extent)?;
     let gray: [u8; 4] = if light { [90, 96, 108, 70] } else { [150, 156, 168, 45] };
     let grid = parts::LineGrid3D::new()
         .with_visible(true)

@@ -347,6 +347,11 @@ impl LiveScene {
         self.front.show(&self.writer, rows)
     }
 
+    /// Returns whether a view with this origin shows the selected design.
+    pub fn shows_design(origin: &str) -> bool {
+        origin == paths::DESIGN
+    }
+
     /// Returns what a click at `at` on an entity of the scene selects, if it selects anything.
     pub fn picked(entity: &str, instance: Option<u64>, at: DVec2) -> Option<Picked> {
         if let Some(SceneTarget::Field(_)) = SceneTarget::of_entity(entity, instance) {

@@ -1,5 +1,8 @@
 //! Directions from which the manipulator is seen.
 
+/// Distance of the scene to the left of the middle of the view, as a multiple of its size: the legend covers what is far to the right.
+const ASIDE: f64 = 0.2;
+
 /// Direction from which the manipulator is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Viewpoint {
@@ -28,8 +31,16 @@ impl Viewpoint {
         }
     }
 
-    /// Returns the place of the eye, as a multiple of the size of the scene.
-    pub(super) fn eye(self) -> [f64; 3] {
+    /// Returns the place of the eye and the point that it looks at, as multiples of the size of the scene.
+    pub(super) fn eye_and_target(self) -> [[f64; 3]; 2] {
+        let [x, y, z] = self.eye();
+        let aside = ASIDE / f64::hypot(x, y);
+        let [by_x, by_y] = [-y * aside, x * aside];
+        [[x + by_x, y + by_y, z], [by_x, by_y, 0.0]]
+    }
+
+    /// Returns the place of an eye that looks at the centre of the scene.
+    fn eye(self) -> [f64; 3] {
         match self {
             Viewpoint::Oblique => [0.35, -1.75, 1.55],
             // From exactly above, the viewer would turn the picture upside down.

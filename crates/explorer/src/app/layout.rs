@@ -6,6 +6,7 @@ use egui_tiles::{Linear, LinearDir, SimplificationOptions, TileId, Tiles, Tree, 
 use super::super::Session;
 use super::super::overlay;
 use super::super::panels::{Panel, Panels, Place};
+use super::super::platform_drag::PlatformDrag;
 use super::super::pointing::describe;
 use super::super::viewer::Viewer;
 
@@ -58,6 +59,7 @@ pub(super) struct Drawing<'a> {
     pub(super) session: &'a mut Session,
     pub(super) panels: &'a mut Panels,
     pub(super) viewer: Option<&'a mut Viewer>,
+    pub(super) platform_drag: &'a PlatformDrag,
     pub(super) frame: &'a mut eframe::Frame,
 }
 
@@ -68,7 +70,9 @@ impl egui_tiles::Behavior<Panel> for Drawing<'_> {
                 Some(viewer) => {
                     let pane = ui.max_rect();
                     viewer.ui(ui, self.frame);
-                    let pointed = viewer.pointed();
+                    self.platform_drag.ui(ui, self.session, viewer.view_of_design(ui.ctx()));
+                    // What passes under a dragged platform is of no interest.
+                    let pointed = viewer.pointed().filter(|_| !self.platform_drag.is_dragging());
                     let pointed = pointed.and_then(|pointed| describe(self.session, &pointed));
                     overlay::ui(ui, pane, self.session, pointed.as_ref());
                 }

@@ -203,7 +203,7 @@ impl Explorer {
             ),
             (
                 "3-D",
-                "shows the selected design; hover for details, or click the heatmap to move the platform",
+                "shows the selected design; hover for details, drag the platform to move it, or click the heatmap",
             ),
             (
                 "Inspector",
@@ -221,7 +221,8 @@ impl Explorer {
             .open(&mut is_open)
             .resizable(false)
             .collapsible(false)
-            .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO)
+            // Below the 3-D view, which it explains.
+            .anchor(egui::Align2::CENTER_BOTTOM, egui::vec2(0.0, -40.0))
             .show(ui.ctx(), |ui| {
                 egui::Grid::new("introduction")
                     .num_columns(2)

@@ -26,6 +26,7 @@ use self::layout::{Drawing, layout};
 use super::files::{self, Dialog, Job, Purpose};
 use super::panels::scatter::{Scatter, ScatterAxis, objective_columns};
 use super::panels::{Panel, Panels};
+use super::platform_drag::PlatformDrag;
 use super::viewer::Viewer;
 use super::{Phase, Session, StudyEditor, theme};
 use kinefront_study::{Column, Study};
@@ -77,6 +78,7 @@ pub struct Explorer {
     panels: Panels,
     tree: Tree<Panel>,
     viewer: Option<Viewer>,
+    platform_drag: PlatformDrag,
     script: Option<Script>,
     recent: Vec<PathBuf>,
     dark: bool,
@@ -159,6 +161,7 @@ impl Explorer {
             panels,
             tree,
             viewer,
+            platform_drag: PlatformDrag::default(),
             script,
             recent,
             dark,
@@ -287,6 +290,7 @@ impl eframe::App for Explorer {
                 session: &mut self.session,
                 panels: &mut self.panels,
                 viewer: self.viewer.as_mut(),
+                platform_drag: &self.platform_drag,
                 frame,
             };
             self.tree.ui(&mut drawing, ui);
@@ -330,7 +334,7 @@ impl eframe::App for Explorer {
         eframe::set_value(storage, eframe::APP_KEY, &remembered);
     }
 
-    fn raw_input_hook(&mut self, _: &Context, input: &mut egui::RawInput) {
+    fn raw_input_hook(&mut self, ctx: &Context, input: &mut egui::RawInput) {
         // The pictures of a script must not show the hover effects of a mouse that happens to be over the window.
         if self.script.is_some() {
             input
@@ -338,6 +342,8 @@ impl eframe::App for Explorer {
                 .retain(|event| !matches!(event, egui::Event::PointerMoved(_)));
             input.events.extend(self.pointer.pop_front());
         }
+        let view = self.viewer.as_ref().and_then(|viewer| viewer.view_of_design(ctx));
+        self.platform_drag.take_events(input, &mut self.session, view);
     }
 
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Slider, Stroke, Ui, WidgetInfo, WidgetType};
 use egui_plot::{Line, Plot, PlotPoints, VLine};
+use kinefront_model::certify::MotionVerdict;
 use kinefront_model::evaluation::{Bound, Quantity, TaskFigures, TaskSample, largest_of_legs};
 use kinefront_model::mechanism::JointKind;
 use kinefront_scene::{MotionCurve, PathColor, drawn_samples, text};
@@ -145,6 +146,13 @@ impl MotionPanel {
         self.play(ui, session, &answer, cycle);
         self.choose(ui, session, actuator, followed);
         summary(ui, figures, cycle, actuator);
+        if let Some(proof) = &followed.proof {
+            let color = match proof.verdict {
+                MotionVerdict::Proved => theme::good(ui),
+                _ => theme::bad(ui),
+            };
+            ui.colored_label(color, text::motion_proof(proof, actuator));
+        }
         if let Some(words) = text::selected_drive(&followed.catalogue, &followed.outcome) {
             let carries = followed.outcome.drive.is_some_and(|drive| drive.carries());
             let color = if carries { theme::good(ui) } else { theme::bad(ui) };

@@ -6,6 +6,7 @@ use kinefront_scene::text;
 
 use super::modes::ModesView;
 use super::plan::{Plan, card, paint};
+use crate::grip::Grip;
 use crate::{Session, theme};
 use kinefront_model::evaluation::PoseScalar;
 use kinefront_model::mechanism::Design;
@@ -17,34 +18,19 @@ const TOUR_STEPS: usize = 90;
 /// Number of poses of the tour shown per second.
 const TOUR_RATE: f64 = 30.0;
 
-/// Part of the platform that the mouse drags.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Grip {
-    /// The platform; offset of the grabbed point from `P` \[m\].
-    Move(DVec2),
-    /// The rim; angle from the platform's orientation to the grabbed point \[rad\].
-    Turn(f64),
-}
-
 /// A tour of the regular workspace that is being played.
 struct Playing {
     design: Design,
     tour: Tour,
     at: f64,
-}
-
-/// What stopped the platform, as long as it stays there.
-struct Stopped {
-    design: Design,
-    at: Pose,
-    reason: String,
+    /// The pose that was shown last. Whoever moves the platform elsewhere ends the tour.
+    shown: Option<Pose>,
 }
 
 /// The pose panel.
 #[derive(Default)]
 pub struct PosePanel {
     grip: Option<Grip>,
-    stopped: Option<Stopped>,
     playing: Option<Playing>,
     modes: ModesView,
 }
@@ -63,14 +49,11 @@ impl PosePanel {
         });
         self.sliders(ui, session, pose, home, evaluation.design.base_radius());
         let pose = session.pose().unwrap_or(pose);
-        // The message ends with what it speaks of.
-        let is_there = |stopped: &Stopped| stopped.design == evaluation.design && stopped.at == pose;
-        if !self.stopped.as_ref().is_some_and(is_there) {
-            self.stopped = None;
-        }
-        match &self.stopped {
-            Some(stopped) => ui.colored_label(theme::bad(ui), format!("stopped: {}", stopped.reason)),
-            None => ui.weak("drag the platform to move it, its rim to turn it; point at a member to see its data"),
+        match session.stopped() {
+            Some(reason) => ui.colored_label(theme::bad(ui), format!("stopped: {reason}")),
+            None => ui.weak(
+                "drag the platform to move it, its rim to turn it (Shift keeps the angle); point at a member to see its data",
+            ),
         };
         numbers(ui, session, &evaluation.design, &pose);
         self.top_view(ui, session, &evaluation.design, pose);
@@ -78,13 +61,14 @@ impl PosePanel {
 
     fn tour(&mut self, ui: &mut Ui, session: &mut Session, known: &crate::Known) {
         let design = known.evaluation.design;
-        if self.playing.as_ref().is_some_and(|playing| playing.design != design) {
+        let shown = session.view().pose;
+        let is_left = |playing: &Playing| playing.design != design || playing.shown != shown;
+        if self.playing.as_ref().is_some_and(is_left) {
             self.playing = None;
         }
         ui.horizontal(|ui| {
             if ui.button("Home").clicked() {
                 session.view_mut().pose = None;
-                self.stopped = None;
                 self.playing = None;
             }
             let cylinder = regular_workspace(
@@ -99,8 +83,14 @@ impl PosePanel {
                 .clicked()
             {
                 self.playing = match (playing, cylinder) {
-                    (false, Some(cylinder)) => tour(session.model(), &design, &cylinder, TOUR_STEPS)
-                        .map(|tour| Playing { design, tour, at: 0.0 }),
+                    (false, Some(cylinder)) => {
+                        tour(session.model(), &design, &cylinder, TOUR_STEPS).map(|tour| Playing {
+                            design,
+                            tour,
+                            at: 0.0,
+                            shown,
+                        })
+                    }
                     _ => None,
                 };
             }
@@ -108,8 +98,8 @@ impl PosePanel {
                 let poses = &playing.tour.poses;
                 playing.at =
                     (playing.at + f64::from(ui.input(|input| input.stable_dt)) * TOUR_RATE) % poses.len() as f64;
-                session.view_mut().pose = poses.get(playing.at as usize).copied();
-                self.stopped = None;
+                playing.shown = poses.get(playing.at as usize).copied();
+                session.view_mut().pose = playing.shown;
                 ui.weak(format!("pose {} of {}", playing.at as usize + 1, poses.len()));
                 ui.ctx().request_repaint();
             }
@@ -151,19 +141,9 @@ impl PosePanel {
             });
         }
         if changed {
-            self.playing = None;
             target.phi += whole_turns;
-            self.move_platform(session, target);
+            session.drag_platform(target);
         }
-    }
-
-    fn move_platform(&mut self, session: &mut Session, target: Pose) {
-        let reason = session.move_platform(target);
-        let design = session.document().selected.as_ref().map(|selected| selected.design);
-        self.stopped = match (reason, design, session.pose()) {
-            (Some(reason), Some(design), Some(at)) => Some(Stopped { design, at, reason }),
-            _ => None,
-        };
     }
 
     fn top_view(&mut self, ui: &mut Ui, session: &mut Session, design: &Design, pose: Pose) {
@@ -240,38 +220,18 @@ impl PosePanel {
             return;
         };
         let at = plan.world(pointer);
-        let arm = at - pose.position;
         if response.drag_started() {
-            let near_rim = arm.length() > 0.7 * design.platform_radius();
-            self.grip = Some(if near_rim {
-                Grip::Turn(arm.to_angle() - pose.phi)
-            } else {
-                Grip::Move(arm)
-            });
-            self.playing = None;
+            let keeps_angle = response.ctx.input(|input| input.modifiers.shift);
+            self.grip = Some(Grip::new(at, &pose, design.platform_radius(), keeps_angle));
         }
         if response.drag_stopped() {
-            self.stopped = None;
+            session.end_drag();
         }
-        if !response.dragged() {
-            return;
+        if response.dragged()
+            && let Some(grip) = self.grip
+        {
+            session.drag_platform(grip.target(at, &pose));
         }
-        let target = match self.grip {
-            Some(Grip::Move(offset)) => Pose {
-                position: at - offset,
-                ..pose
-            },
-            Some(Grip::Turn(offset)) => {
-                let turn = std::f64::consts::TAU;
-                let by = (arm.to_angle() - offset - pose.phi).rem_euclid(turn);
-                Pose {
-                    phi: pose.phi + if by > 0.5 * turn { by - turn } else { by },
-                    ..pose
-                }
-            }
-            None => return,
-        };
-        self.move_platform(session, target);
     }
 }
 

@@ -143,6 +143,7 @@ pub struct Session {
     /// Whether the selection follows the knee of the front during the run; it does until the user selects a design.
     following: bool,
     followed: Option<Instant>,
+    stopped: Option<pose::Stopped>,
 }
 
 impl Session {
@@ -183,6 +184,7 @@ impl Session {
             era: 0,
             following: true,
             followed: None,
+            stopped: None,
         })
     }
 

@@ -4,8 +4,17 @@ use glam::DVec2;
 
 use super::Session;
 use kinefront_model::evaluation::Constraint;
+use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 use kinefront_scene::AssemblyMode;
+
+/// What stopped a dragged platform.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Stopped {
+    design: Design,
+    at: Pose,
+    reason: String,
+}
 
 impl Session {
     /// Returns the pose of the manipulator.
@@ -60,6 +69,28 @@ impl Session {
             self.view.pose = Some(between(low));
         }
         Some(stopped.to_string())
+    }
+
+    /// Moves the platform towards `pose` as [`Session::move_platform`] does, and notes what stopped it.
+    pub fn drag_platform(&mut self, pose: Pose) {
+        let reason = self.move_platform(pose);
+        let design = self.document().selected.as_ref().map(|selected| selected.design);
+        self.stopped = match (reason, design, self.pose()) {
+            (Some(reason), Some(design), Some(at)) => Some(Stopped { design, at, reason }),
+            _ => None,
+        };
+    }
+
+    /// Ends a drag: what stopped it matters no longer.
+    pub fn end_drag(&mut self) {
+        self.stopped = None;
+    }
+
+    /// Returns what stopped the dragged platform, as long as it stays there.
+    pub fn stopped(&self) -> Option<&str> {
+        let stopped = self.stopped.as_ref()?;
+        let design = self.document().selected.as_ref()?.design;
+        (stopped.design == design && Some(stopped.at) == self.pose()).then_some(&*stopped.reason)
     }
 
     /// Moves the platform to an assembly mode, in the working mode that it needs.

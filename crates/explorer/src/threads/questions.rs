@@ -4,6 +4,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use kinefront_model::certify::MotionCertificate;
 use kinefront_model::dynamics::DriveCatalogue;
 use kinefront_model::evaluation::{Evaluation, Quantity, TaskOutcome, TaskSample};
 use kinefront_model::mechanism::Design;
@@ -211,6 +212,8 @@ pub struct FollowedMotion {
     pub path: Option<MotionPath>,
     /// The catalogue that the drive of the outcome is one of.
     pub catalogue: DriveCatalogue,
+    /// What is proved about the motion at every moment, if the design follows it.
+    pub proof: Option<MotionCertificate>,
 }
 
 /// The answer: no motion if the study states none.
@@ -235,11 +238,14 @@ impl Question for MotionQuestion {
         let color = self.color;
         let path = color.and_then(|color| MotionPath::new(&model, &self.evaluation.design, &samples, color));
         let catalogue = model.settings().drive_catalogue.clone();
+        // A design whose bars have no usable stiffness has no workspace either, and a message of its own.
+        let proof = model.certify_motion(&self.evaluation.design, &outcome).ok().flatten();
         Ok(Some(FollowedMotion {
             outcome,
             samples,
             path,
             catalogue,
+            proof,
         }))
     }
 }

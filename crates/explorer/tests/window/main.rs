@@ -2,6 +2,7 @@
 
 mod asking;
 mod controls;
+mod dragging;
 mod dynamics;
 mod exploring;
 mod files;
