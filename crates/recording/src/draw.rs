@@ -248,7 +248,8 @@ impl<'a> Canvas<'a> {
             let offset = (unit(f64::from(k) * std::f64::consts::FRAC_PI_6) * cylinder.radius).extend(0.0);
             strips.push(vec![point(low + offset), point(high + offset)]);
         }
-        let at = high + DVec3::new(-cylinder.radius, cylinder.radius, 0.0) * 0.84;
+        // In front of the machine, where the fewest other labels are.
+        let at = high - DVec3::new(cylinder.radius, cylinder.radius, 0.0) * 0.84;
         self.outlined(root, strips, at, label)
     }
 

@@ -1,7 +1,7 @@
 //! Directions from which the manipulator is seen.
 
 /// Distance of the scene to the left of the middle of the view, as a multiple of its size: the legend covers what is far to the right.
-const ASIDE: f64 = 0.2;
+const ASIDE: f64 = 0.25;
 
 /// Direction from which the manipulator is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

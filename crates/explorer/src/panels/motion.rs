@@ -15,8 +15,11 @@ use super::{fields, play_button};
 use crate::threads::{FollowedMotion, MotionAnswer};
 use crate::{Session, theme};
 
-/// Width of the fields.
+/// Width of the fields \[points\].
 const FORM: f32 = 330.0;
+
+/// Least height of the curves \[points\].
+const LEAST_PLOT: f32 = 110.0;
 
 /// Rates of playback.
 const RATES: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
@@ -95,16 +98,24 @@ impl MotionPanel {
             self.offer(ui, session);
             return;
         }
-        let width = FORM.min(0.45 * ui.available_width());
+        let (width, height) = (FORM.min(0.45 * ui.available_width()), ui.available_height());
+        if ui.available_width() < 2.0 * FORM {
+            // There is no room side by side.
+            ScrollArea::vertical().show(ui, |ui| {
+                self.followed(ui, session, actuator, height);
+                ui.separator();
+                form(ui, session);
+            });
+            return;
+        }
         ui.horizontal_top(|ui| {
-            let height = ui.available_height();
             ui.allocate_ui_with_layout(egui::vec2(width, height), Layout::top_down(Align::Min), |ui| {
                 ScrollArea::vertical()
                     .id_salt("motion fields")
                     .show(ui, |ui| form(ui, session));
             });
             ui.separator();
-            ui.vertical(|ui| self.followed(ui, session, actuator));
+            ui.vertical(|ui| self.followed(ui, session, actuator, height));
         });
     }
 
@@ -121,8 +132,9 @@ impl MotionPanel {
         ui.weak("The motion becomes part of the study for the next run.");
     }
 
-    /// Shows what came of the motion.
-    fn followed(&mut self, ui: &mut Ui, session: &mut Session, actuator: JointKind) {
+    /// Shows what came of the motion, in a panel of a height.
+    fn followed(&mut self, ui: &mut Ui, session: &mut Session, actuator: JointKind, height: f32) {
+        let top = ui.cursor().top();
         let Some(answer) = session.motion() else {
             ui.weak("Following the motion…");
             return;
@@ -158,7 +170,8 @@ impl MotionPanel {
             let color = if carries { theme::good(ui) } else { theme::bad(ui) };
             ui.colored_label(color, format!("drives: {words}"));
         }
-        self.plots(ui, session, &answer, (&drawn, followed, figures, actuator));
+        let height = (height - (ui.cursor().top() - top) - 4.0).max(LEAST_PLOT);
+        self.plots(ui, session, &answer, (&drawn, followed, figures, actuator), height);
         self.drawn = Some(drawn);
     }
 
@@ -203,9 +216,10 @@ impl MotionPanel {
             }
             for leg in 0..3 {
                 let color = theme::legible(theme::series(leg), ui);
-                ui.label(RichText::new(format!("■ leg {}", leg + 1)).color(color));
+                ui.label(RichText::new(format!("■\u{a0}leg\u{a0}{}", leg + 1)).color(color));
             }
-            ui.separator();
+        });
+        ui.horizontal(|ui| {
             let label = ui.label("path in 3-D").id;
             let fields = session.fields();
             let path = &mut session.view_mut().layers.path;
@@ -234,8 +248,8 @@ impl MotionPanel {
         session: &mut Session,
         answer: &MotionAnswer,
         (drawn, followed, figures, actuator): (&Drawn, &FollowedMotion, &TaskFigures, JointKind),
+        height: f32,
     ) {
-        let height = (ui.available_height() - 4.0).max(110.0);
         ui.columns(2, |columns| {
             let [time, speed] = columns else { return };
             let title = self.curve.title(actuator);

@@ -1,6 +1,6 @@
 //! The pose panel: the manipulator from above, its platform moved and turned by the mouse, and the values at the pose.
 
-use egui::{Align2, Color32, FontId, Grid, Sense, Slider, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
+use egui::{Align2, Color32, FontId, Grid, ScrollArea, Sense, Slider, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 use glam::DVec2;
 use kinefront_scene::text;
 
@@ -17,6 +17,10 @@ use kinefront_scene::{Tour, drawn_samples, manipulator, region_corners, regular_
 const TOUR_STEPS: usize = 90;
 /// Number of poses of the tour shown per second.
 const TOUR_RATE: f64 = 30.0;
+
+/// Share of the panel that the plan view has, and its least height \[points\].
+const VIEW_SHARE: f32 = 0.55;
+const LEAST_VIEW: f32 = 170.0;
 
 /// A tour of the regular workspace that is being played.
 struct Playing {
@@ -47,16 +51,18 @@ impl PosePanel {
             self.tour(ui, session, &known);
             self.modes.ui(ui, session, &evaluation.design, pose);
         });
-        self.sliders(ui, session, pose, home, evaluation.design.base_radius());
-        let pose = session.pose().unwrap_or(pose);
+        self.top_view(ui, session, &evaluation.design, pose);
         match session.stopped() {
             Some(reason) => ui.colored_label(theme::bad(ui), format!("stopped: {reason}")),
             None => ui.weak(
                 "drag the platform to move it, its rim to turn it (Shift keeps the angle); point at a member to see its data",
             ),
         };
-        numbers(ui, session, &evaluation.design, &pose);
-        self.top_view(ui, session, &evaluation.design, pose);
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            self.sliders(ui, session, pose, home, evaluation.design.base_radius());
+            let pose = session.pose().unwrap_or(pose);
+            numbers(ui, session, &evaluation.design, &pose);
+        });
     }
 
     fn tour(&mut self, ui: &mut Ui, session: &mut Session, known: &crate::Known) {
@@ -147,8 +153,11 @@ impl PosePanel {
     }
 
     fn top_view(&mut self, ui: &mut Ui, session: &mut Session, design: &Design, pose: Pose) {
-        let side = ui.available_width().min(ui.available_height().max(220.0));
-        let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), side), Sense::click_and_drag());
+        // The sliders and numbers below can be scrolled; the view is what the panel is for.
+        let height = (VIEW_SHARE * ui.available_height())
+            .max(LEAST_VIEW)
+            .min(ui.available_width());
+        let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), height), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "Top view"));
         let plan = Plan::new(rect, design);
         let Ok(scene) = manipulator(session.model(), design, &pose) else {

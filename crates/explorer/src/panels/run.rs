@@ -53,6 +53,8 @@ fn study(ui: &mut Ui, session: &mut Session) {
 
 fn settings(ui: &mut Ui, session: &mut Session) {
     let mut study = session.editor().study().clone();
+    // All four settings in two rows need this width [points].
+    let is_narrow = ui.available_width() < 400.0;
     Grid::new("run settings").num_columns(4).show(ui, |ui| {
         let label = ui.label("algorithm");
         ComboBox::from_id_salt("algorithm")
@@ -65,6 +67,9 @@ fn settings(ui: &mut Ui, session: &mut Session) {
             })
             .response
             .labelled_by(label.id);
+        if is_narrow {
+            ui.end_row();
+        }
         let label = ui.label("evaluations");
         ui.add(
             typed(ui, DragValue::new(&mut study.optimizer.evaluations))
@@ -85,6 +90,9 @@ fn settings(ui: &mut Ui, session: &mut Session) {
                 study.optimizer.seed = random_seed();
             }
         });
+        if is_narrow {
+            ui.end_row();
+        }
         let label = ui.label("threads");
         ui.horizontal(|ui| {
             let cores = std::thread::available_parallelism().map_or(1, usize::from);

@@ -65,6 +65,7 @@ impl VibrationPanel {
     /// Shows the frequencies, and the one that is selected as a motion.
     fn modes(&mut self, ui: &mut Ui, session: &mut Session, modes: &[VibrationMode], lever: f64) {
         let mut selected = session.view().vibration.map(|shown| shown.mode);
+        let is_wide = ui.available_width() > 310.0;
         Grid::new("natural frequencies")
             .num_columns(3)
             .spacing([14.0, 3.0])
@@ -75,12 +76,17 @@ impl VibrationPanel {
                     if ui.selectable_label(is_selected, name).clicked() {
                         selected = (!is_selected).then_some(place);
                     }
-                    ui.label(mode.words(lever));
-                    ui.weak(if mode.is_in_plane {
+                    let plane = if mode.is_in_plane {
                         "in the plane"
                     } else {
                         "out of the plane"
-                    });
+                    };
+                    let words = ui.label(mode.words(lever));
+                    if is_wide {
+                        ui.weak(plane);
+                    } else {
+                        words.on_hover_text(plane);
+                    }
                     ui.end_row();
                 }
             });

@@ -1,10 +1,13 @@
 //! The panel that tells why a point beyond the front cannot be had, and what each requirement would have to give for it.
 
-use egui::{Grid, RichText, ScrollArea, Ui};
+use egui::{RichText, ScrollArea, Ui};
 use kinefront_scene::text::{number, quantity};
 use kinefront_study::{Drivers, RelaxationJson, WhyNotJson};
 
 use crate::{Session, WhyPoint, theme};
+
+/// Distance of what a relaxation comes to from the side \[points\].
+const INDENT: f32 = 12.0;
 
 /// The panel.
 #[derive(Default)]
@@ -21,7 +24,7 @@ impl WhyNotPanel {
             ui.weak("Click an empty place in the scatter beyond the front to see why no design is there.");
             return;
         };
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             ui.label(RichText::new(format!("{}?", words(session, &point))).strong());
             if ui
                 .button("Dismiss")
@@ -37,7 +40,7 @@ impl WhyNotPanel {
         };
         match answer.as_ref() {
             Ok(drivers) => {
-                ScrollArea::both().show(ui, |ui| show(ui, session, drivers));
+                ScrollArea::vertical().show(ui, |ui| show(ui, session, drivers));
             }
             Err(message) => {
                 ui.label("No answer was found:");
@@ -69,28 +72,18 @@ fn hindrances(ui: &mut Ui, session: &mut Session) {
     }
     ui.label("One of these changes would suffice, with all other requirements kept:");
     let mut chosen = None;
-    ScrollArea::both().show(ui, |ui| {
-        Grid::new("hindrances").num_columns(2).striped(true).show(ui, |ui| {
-            for heading in ["relaxed alone", "from … to"] {
-                ui.label(RichText::new(heading).strong());
+    ScrollArea::vertical().show(ui, |ui| {
+        for hindrance in found {
+            if show_design(ui, &hindrance.label) {
+                chosen = Some(hindrance.design.clone());
             }
-            ui.end_row();
-            for hindrance in found {
-                if show_design(ui, &hindrance.label) {
-                    chosen = Some(hindrance.design.clone());
-                }
-                ui.label(match hindrance.is_enough {
-                    true => "as stated: search longer".to_owned(),
-                    false => format!(
-                        "{} … {} {}",
-                        number(hindrance.stated),
-                        number(hindrance.possible),
-                        hindrance.unit
-                    ),
-                });
-                ui.end_row();
-            }
-        });
+            let [stated, possible] = [hindrance.stated, hindrance.possible].map(number);
+            let words = match hindrance.is_enough {
+                true => "as stated: search longer".to_owned(),
+                false => format!("from {stated} to {possible} {}", hindrance.unit),
+            };
+            entry(ui, &words);
+        }
     });
     if let Some(design) = chosen {
         session.paste(&design);
@@ -135,32 +128,40 @@ fn show(ui: &mut Ui, session: &mut Session, drivers: &Drivers) {
 /// Tabulates what each requirement would have to give.
 fn relaxations(ui: &mut Ui, session: &mut Session, drivers: &Drivers, why: &WhyNotJson, unit: &str) {
     let mut chosen = None;
-    Grid::new("relaxations").num_columns(3).striped(true).show(ui, |ui| {
-        for heading in ["relaxed alone", "from … to", "times"] {
-            ui.label(RichText::new(heading).strong());
-        }
-        ui.end_row();
-        for relaxation in &why.relaxations {
-            let (label, range) = change(drivers, relaxation);
-            match relaxation.needed {
-                Some(factor) => {
-                    if show_design(ui, &label) {
-                        chosen = Some(relaxation.design.clone());
-                    }
-                    ui.label(range);
-                    ui.label(format!("{factor:.3}"));
+    for relaxation in &why.relaxations {
+        let (label, range) = change(drivers, relaxation);
+        match relaxation.needed {
+            Some(factor) => {
+                if show_design(ui, &label) {
+                    chosen = Some(relaxation.design.clone());
                 }
-                None => {
-                    ui.label(&label);
-                    ui.weak(format!("at best {} {unit}", number(relaxation.objective)));
-                }
+                let times = format!("times {factor:.3}");
+                entry(
+                    ui,
+                    &[range, Some(times)]
+                        .into_iter()
+                        .flatten()
+                        .collect::<Vec<_>>()
+                        .join(", "),
+                );
             }
-            ui.end_row();
+            None => {
+                ui.label(&label);
+                entry(ui, &format!("at best {} {unit}", number(relaxation.objective)));
+            }
         }
-    });
+    }
     if let Some(design) = chosen {
         session.paste(&design);
     }
+}
+
+/// Shows what a relaxation comes to, below its name.
+fn entry(ui: &mut Ui, words: &str) {
+    ui.horizontal(|ui| {
+        ui.add_space(INDENT);
+        ui.weak(words);
+    });
 }
 
 /// Shows what is relaxed as a link to the design that results; returns whether it was clicked.
@@ -170,7 +171,7 @@ fn show_design(ui: &mut Ui, label: &str) -> bool {
 }
 
 /// Returns the name of what is relaxed, and its value before and after.
-fn change(drivers: &Drivers, relaxation: &RelaxationJson) -> (String, String) {
+fn change(drivers: &Drivers, relaxation: &RelaxationJson) -> (String, Option<String>) {
     let price = drivers
         .prices
         .iter()
@@ -181,12 +182,9 @@ fn change(drivers: &Drivers, relaxation: &RelaxationJson) -> (String, String) {
         (None, "least_norm") => "all limits, with the smallest change in total".to_owned(),
         (None, other) => other.to_owned(),
     };
-    let range = match (
-        price.and_then(|price| Some((price.value?, price.unit))),
-        relaxation.needed,
-    ) {
-        (Some((value, unit)), Some(factor)) => format!("{} … {} {unit}", number(value), number(factor * value)),
-        _ => String::new(),
-    };
+    let stated = price.and_then(|price| Some((price.value?, price.unit)));
+    let range = stated
+        .zip(relaxation.needed)
+        .map(|((value, unit), factor)| format!("from {} to {} {unit}", number(value), number(factor * value)));
     (label, range)
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use egui::{Grid, RichText, ScrollArea, Slider, Ui};
+use egui::{Align, Grid, Layout, RichText, ScrollArea, Slider, Ui};
 use kinefront_model::evaluation::{Bound, Evaluation, PoseScalar, Quantity};
 use kinefront_model::mechanism::Design;
 use kinefront_scene::text::number;
@@ -13,8 +13,8 @@ use crate::{Session, theme};
 /// Range of the sliders \[%\].
 const RANGE: [f64; 2] = [-50.0, 100.0];
 
-/// Width of a slider \[points\].
-const SLIDER: f32 = 64.0;
+/// Width \[points\] of the value of a slider and the box beside it.
+const BESIDE_SLIDER: f32 = 130.0;
 
 /// What is wished of a quantity.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -64,38 +64,37 @@ impl WishPanel {
 
     /// Shows a slider for each quantity.
     fn quantities(&mut self, ui: &mut Ui, session: &Session, evaluation: &Evaluation) {
-        Grid::new("wish").num_columns(3).spacing([10.0, 4.0]).show(ui, |ui| {
-            for quantity in wishable(session) {
-                let Some(value) = evaluation.quantities.get(quantity).filter(|value| *value > 0.0) else {
-                    continue;
-                };
-                let entry = quantity.entry();
-                let wanted = self.wanted.entry(quantity).or_default();
+        for quantity in wishable(session) {
+            let Some(value) = evaluation.quantities.get(quantity).filter(|value| *value > 0.0) else {
+                continue;
+            };
+            let entry = quantity.entry();
+            let wanted = self.wanted.entry(quantity).or_default();
+            ui.horizontal(|ui| {
                 ui.label(entry.label).on_hover_text(entry.meaning);
-                let range = RANGE[0]..=RANGE[1];
-                let slider = Slider::new(&mut wanted.change, range)
-                    .step_by(1.0)
-                    .custom_formatter(|change, _| format!("{change:+.0} %"))
-                    .custom_parser(|text| text.replace(['%', ' '], "").replace('−', "-").parse().ok());
-                ui.horizontal(|ui| {
-                    ui.spacing_mut().slider_width = SLIDER;
-                    let slider = ui.add(slider);
-                    ui.ctx().accesskit_node_builder(slider.id, |node| {
-                        node.set_label(format!("Desired change of {}", entry.label))
-                    });
-                    let keep = ui.checkbox(&mut wanted.keep, "keep");
-                    ui.ctx()
-                        .accesskit_node_builder(keep.id, |node| node.set_label(format!("Keep {}", entry.label)));
-                    keep.on_hover_text("must not become worse");
-                });
                 let sought = match wanted.change == 0.0 {
                     true => format!("{} {}", number(value), entry.unit),
                     false => words(wished(quantity, value, wanted.change)),
                 };
-                ui.label(sought);
-                ui.end_row();
-            }
-        });
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(sought));
+            });
+            let range = RANGE[0]..=RANGE[1];
+            let slider = Slider::new(&mut wanted.change, range)
+                .step_by(1.0)
+                .custom_formatter(|change, _| format!("{change:+.0} %"))
+                .custom_parser(|text| text.replace(['%', ' '], "").replace('−', "-").parse().ok());
+            ui.horizontal(|ui| {
+                ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDER).max(60.0);
+                let slider = ui.add(slider);
+                ui.ctx().accesskit_node_builder(slider.id, |node| {
+                    node.set_label(format!("Desired change of {}", entry.label))
+                });
+                let keep = ui.checkbox(&mut wanted.keep, "keep");
+                ui.ctx()
+                    .accesskit_node_builder(keep.id, |node| node.set_label(format!("Keep {}", entry.label)));
+                keep.on_hover_text("must not become worse");
+            });
+        }
     }
 
     fn buttons(&mut self, ui: &mut Ui, session: &mut Session, evaluation: &Evaluation) {

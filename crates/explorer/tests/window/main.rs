@@ -1,6 +1,7 @@
 //! Tests that operate the window as a user would: by the text it shows, with the mouse and with keys.
 
 mod asking;
+mod clipping;
 mod controls;
 mod dragging;
 mod dynamics;

@@ -13,7 +13,7 @@ use kinefront_testkit::run_folder;
 use super::support::small_study;
 
 /// Returns a session that contains everything that a panel can show.
-fn session(panel: Panel) -> Session {
+pub(super) fn session(panel: Panel) -> Session {
     let mut session =
         Session::new(StudyEditor::new(small_study(), None), None, std::sync::Arc::new(|| {})).expect("a session");
     session.open(&run_folder());

@@ -28,6 +28,9 @@ use crate::{MarkedCounts, Row, Session, theme};
 /// Time that a frame may spend on drawing the cloud.
 const BUDGET: Duration = Duration::from_millis(4);
 
+/// Half the width of the label of a tick \[points\]: so far it reaches over the right end of the axis.
+const HALF_A_TICK: f32 = 14.0;
+
 /// The scatter with its axes and view.
 pub struct Scatter {
     axes: [ScatterAxis; 2],
@@ -118,7 +121,7 @@ impl Scatter {
         let dark = ui.visuals().dark_mode;
         let (lines, marks) = self.front(session, dark);
         let (fitted, cloud) = (self.fitted, &self.cloud);
-        let shown = self.plot().show(ui, |plot| {
+        let shown = self.plot().width(ui.available_width() - HALF_A_TICK).show(ui, |plot| {
             if fitted {
                 plot.set_plot_bounds(bounds);
             }
@@ -285,28 +288,46 @@ impl Scatter {
     }
 
     fn controls(&mut self, ui: &mut Ui, session: &mut Session) {
-        ui.horizontal_wrapped(|ui| {
-            for (k, name) in ["x", "y"].into_iter().enumerate() {
-                self.axis_field(ui, session, k, name);
-            }
-            if ui
-                .button("Fit")
-                .on_hover_text("fits the view to the feasible designs (or double-click)")
-                .clicked()
-            {
-                self.fitted = true;
-            }
-        });
-        ui.horizontal_wrapped(|ui| {
-            self.coloring.ui(ui, session.study().named_quantities());
-            ui.separator();
-            self.tool.ui(ui);
-        });
+        // A row that is wider than the panel would widen the plot as well.
+        let is_narrow = ui.available_width() < 480.0;
+        if is_narrow {
+            ui.horizontal(|ui| self.axis_field(ui, session, 0, "x"));
+            ui.horizontal(|ui| {
+                self.axis_field(ui, session, 1, "y");
+                self.fit(ui);
+            });
+        } else {
+            ui.horizontal(|ui| {
+                self.axis_field(ui, session, 0, "x");
+                self.axis_field(ui, session, 1, "y");
+                self.fit(ui);
+            });
+        }
+        let coloring = |scatter: &mut Self, ui: &mut Ui| scatter.coloring.ui(ui, session.study().named_quantities());
+        if ui.available_width() < 350.0 {
+            ui.horizontal(|ui| coloring(self, ui));
+            ui.horizontal(|ui| self.tool.ui(ui));
+        } else {
+            ui.horizontal(|ui| {
+                coloring(self, ui);
+                ui.separator();
+                self.tool.ui(ui);
+            });
+        }
         ui.horizontal_wrapped(|ui| {
             for architecture in session.study().architectures.clone() {
                 include(ui, session, architecture);
             }
         });
+    }
+
+    /// Shows the button that fits the view.
+    fn fit(&mut self, ui: &mut Ui) {
+        let button = ui.button("Fit");
+        let hint = "fits the view to the feasible designs (or double-click)";
+        if button.on_hover_text(hint).clicked() {
+            self.fitted = true;
+        }
     }
 
     /// Shows the fields of an axis.
