@@ -1,6 +1,7 @@
 //! The window: menu, panels, shortcuts, notices, and the state that is saved between two sessions.
 
 mod deliveries;
+mod focus;
 mod layout;
 mod menu;
 mod script;
@@ -22,6 +23,7 @@ use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
 use self::deliveries::PendingScreenshot;
+use self::focus::FocusRing;
 use self::layout::{Drawing, layout};
 use super::files::{self, Dialog, Job, Purpose};
 use super::panels::scatter::{Scatter, ScatterAxis, objective_columns};
@@ -79,6 +81,7 @@ pub struct Explorer {
     tree: Tree<Panel>,
     viewer: Option<Viewer>,
     platform_drag: PlatformDrag,
+    focus_ring: FocusRing,
     script: Option<Script>,
     recent: Vec<PathBuf>,
     dark: bool,
@@ -162,6 +165,7 @@ impl Explorer {
             tree,
             viewer,
             platform_drag: PlatformDrag::default(),
+            focus_ring: FocusRing::default(),
             script,
             recent,
             dark,
@@ -191,6 +195,11 @@ impl Explorer {
     /// Returns the position on screen at which the last frame drew a design of the run in the scatter.
     pub fn scatter_position(&self, id: usize) -> Option<egui::Pos2> {
         self.panels.scatter().screen_position(&self.session.row(id)?)
+    }
+
+    /// Returns the rectangle of the widget that has the keyboard, if the last frame marked it.
+    pub fn focus_ring(&self) -> Option<egui::Rect> {
+        self.focus_ring.drawn()
     }
 
     /// Returns the axes of the scatter.
@@ -304,6 +313,7 @@ impl eframe::App for Explorer {
         self.path_field(ui);
         self.help(ui);
         self.introduction(ui);
+        self.focus_ring.ui(&ctx);
         if self.session.is_running() && *self.session.phase() != Phase::Paused {
             // The rate and the remaining time change even while no message arrives.
             ctx.request_repaint_after(Duration::from_millis(250));

@@ -48,6 +48,48 @@ fn every_control_has_a_name() {
     assert!(window.query_all_by_role(Role::Button).count() > 20);
 }
 
+/// The Tab key reaches the controls of every area, and a ring shows where it is until the mouse is used.
+#[test]
+fn the_tab_key_reaches_every_area_and_a_ring_shows_where() {
+    let mut window = opened_window();
+    assert_eq!(window.state().focus_ring(), None);
+    let mut reached = std::collections::BTreeSet::new();
+    for _ in 0..800 {
+        window.key_press(Key::Tab);
+        window.run_steps(2);
+        let focused = window
+            .root()
+            .children_recursive()
+            .find(|node| node.accesskit_node().is_focused());
+        let Some(focused) = focused else { continue };
+        let ring = window.state().focus_ring();
+        // What is scrolled out of view has no ring, and the cells of a table report no rectangle.
+        let is_cell = focused.accesskit_node().role() == Role::GenericContainer;
+        let is_around = |ring: egui::Rect| focused.rect().expand(1.0).contains_rect(ring);
+        assert!(is_cell || ring.is_none_or(is_around), "{focused:?}: {ring:?}");
+        if ring.is_some() {
+            reached.extend(focused.accesskit_node().label());
+        }
+    }
+    for name in [
+        "File",
+        "Fit",
+        "▶ Start",
+        "Copy",
+        "Home",
+        "Copy table",
+        "starred only",
+        "pose x",
+    ] {
+        assert!(reached.contains(name), "{name} is not among {reached:?}");
+    }
+    let start = window.get_by_label_contains("Home").rect().center();
+    window.hover_at(start);
+    window.drag_at(start);
+    window.run_steps(2);
+    assert_eq!(window.state().focus_ring(), None);
+}
+
 /// Drags the mouse along a path.
 fn drag(window: &mut Window, path: &[Pos2]) {
     window.hover_at(path[0]);
