@@ -6,8 +6,8 @@ use super::pointing::Description;
 use super::{Session, theme};
 use kinefront_recording::{Viewpoint, VisibleLayers};
 use kinefront_scene::palette;
-use kinefront_scene::text::short;
-use kinefront_scene::{ColorMap, Field, FieldLegend};
+use kinefront_scene::text::{number, short};
+use kinefront_scene::{ColorMap, Field, FieldLegend, StressLegend};
 
 /// Width and height of the colour bar \[points\].
 const BAR: egui::Vec2 = vec2(14.0, 150.0);
@@ -20,6 +20,9 @@ const MARGIN: f32 = 10.0;
 
 /// Height of the viewer's own row of tabs, below which the overlays begin \[points\].
 const TABS: f32 = 26.0;
+
+/// Height of the row of viewpoints with the gap below it \[points\].
+const VIEWPOINTS: f32 = 40.0;
 
 /// Draws the overlays over the view in `pane`.
 pub fn ui(ui: &mut Ui, pane: Rect, session: &mut Session, pointed: Option<&Description>) {
@@ -34,6 +37,12 @@ pub fn ui(ui: &mut Ui, pane: Rect, session: &mut Session, pointed: Option<&Descr
             let fields = session.fields();
             legend_of_field(ui, below_tabs, &legend, &fields, &mut session.view_mut().layers);
         }
+    }
+    if let Some(legend) = session.stress_legend().filter(|_| !session.view().comparing) {
+        let below_viewpoints = below_tabs.with_min_y(below_tabs.top() + VIEWPOINTS);
+        boxed(ui, "stress", Align2::LEFT_TOP, below_viewpoints, |ui| {
+            ui.label(stress_words(&legend));
+        });
     }
     if session.document().selected.is_none() {
         boxed(ui, "empty", Align2::CENTER_TOP, below_tabs, |ui| {
@@ -50,6 +59,18 @@ pub fn ui(ui: &mut Ui, pane: Rect, session: &mut Session, pointed: Option<&Descr
     if let Some(description) = pointed {
         describe(ui, below_tabs, description);
     }
+}
+
+/// Says what the colours of the bars stand for.
+fn stress_words(legend: &StressLegend) -> String {
+    let of_yield = legend.of_yield.map_or_else(String::new, |share| {
+        format!(", {} % of the yield strength", number(100.0 * share))
+    });
+    format!(
+        "stress: dark 0 to bright {} MPa in {}{of_yield}",
+        number(1e-6 * legend.largest),
+        legend.member
+    )
 }
 
 /// Draws a box in a corner of the view.

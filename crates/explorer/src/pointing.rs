@@ -8,7 +8,7 @@ use kinefront_model::mechanism::MemberKind;
 use kinefront_model::spatial::Pose;
 use kinefront_recording::SceneTarget;
 use kinefront_scene::text::number;
-use kinefront_scene::{EllipsoidKind, Field, Heatmap, Part, Solid, ellipsoids, manipulator};
+use kinefront_scene::{BarStresses, EllipsoidKind, Field, Heatmap, Part, Solid, ellipsoids, manipulator};
 
 /// Entity under the pointer.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,6 +121,13 @@ fn of_solid(session: &Session, parts: &[Part], index: usize) -> Option<Descripti
             let members = model.members(&design, &pose).ok()?;
             let member = members.iter().find(|member| is_of(member, solid))?;
             let mut description = describe_member(member);
+            if session.view().layers.stresses
+                && let Some(stress) = BarStresses::new(model, &design, &pose).and_then(|stresses| stresses.of(solid))
+            {
+                description
+                    .lines
+                    .push(format!("stress {} MPa at this pose", number(1e-6 * stress)));
+            }
             if solid.part == Part::PlatformBar {
                 let hint = "drag it to move the platform, its end to turn it; Shift keeps the angle";
                 description.lines.push(hint.to_owned());
@@ -132,16 +139,7 @@ fn of_solid(session: &Session, parts: &[Part], index: usize) -> Option<Descripti
 
 /// Whether a member is drawn as a solid.
 fn is_of(member: &MemberReport, solid: &Solid) -> bool {
-    let kinds: &[MemberKind] = match solid.part {
-        Part::Tube | Part::Rod => &[MemberKind::TelescopicLeg],
-        Part::Crank => &[MemberKind::Crank],
-        Part::Link => &[MemberKind::Link],
-        Part::Guide => &[MemberKind::Guide, MemberKind::TurningGuide],
-        Part::PlatformBar => &[MemberKind::PlatformBar],
-        Part::Slider => &[MemberKind::Slider],
-        _ => &[],
-    };
-    Some(member.member.leg) == solid.leg && kinds.contains(&member.member.kind)
+    Some(member.member.leg) == solid.leg && solid.part.members().contains(&member.member.kind)
 }
 
 /// Describes a member at the pose of its report.

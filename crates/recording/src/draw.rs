@@ -112,6 +112,12 @@ impl<'a> Canvas<'a> {
         }
     }
 
+    /// Returns the colour of a solid.
+    fn solid(&self, solid: &Solid) -> Color {
+        let of_value = |value: f64| rgb(ColorMap::at(value));
+        solid.value.map_or_else(|| self.part(solid.part), of_value)
+    }
+
     /// Returns the colour of the regular workspace.
     fn workspace(&self) -> [u8; 3] {
         if self.is_light() {
@@ -171,10 +177,10 @@ impl<'a> Canvas<'a> {
     }
 
     fn bars(&self, entity: &str, solids: &[&Solid]) -> DrawResult {
-        let bars: Vec<(DVec3, DVec3, f64, Part)> = solids
+        let bars: Vec<(DVec3, DVec3, f64, Color)> = solids
             .iter()
             .filter_map(|solid| match solid.shape {
-                SolidShape::Bar { from, to, radius, .. } => Some((from, to, radius, solid.part)),
+                SolidShape::Bar { from, to, radius, .. } => Some((from, to, radius, self.solid(solid))),
                 SolidShape::Block { .. } => None,
             })
             .collect();
@@ -183,19 +189,19 @@ impl<'a> Canvas<'a> {
         let cylinders = Cylinders3D::from_lengths_and_radii(lengths, radii)
             .with_centers(bars.iter().map(|(from, to, ..)| point(0.5 * (*from + *to))))
             .with_quaternions(bars.iter().map(|(from, to, ..)| along_z(*to - *from)))
-            .with_colors(bars.iter().map(|(.., part)| self.part(*part)))
+            .with_colors(bars.iter().map(|(.., color)| *color))
             .with_fill_mode(FillMode::Solid);
         self.row(entity, &cylinders)?;
         // A bar that is thinner than a line on the screen is seen by its axis, which a thicker one hides.
         let axes = bars.iter().map(|(from, to, ..)| [point(*from), point(*to)]);
         let axes = LineStrips3D::new(axes)
-            .with_colors(bars.iter().map(|(.., part)| self.part(*part)))
+            .with_colors(bars.iter().map(|(.., color)| *color))
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(AXIS_WIDTH), bars.len()));
         self.row(&format!("{entity}/{BAR_AXES}"), &axes)
     }
 
     fn blocks(&self, entity: &str, solids: &[&Solid]) -> DrawResult {
-        let blocks: Vec<(DVec3, DVec3, f64, Part)> = solids
+        let blocks: Vec<(DVec3, DVec3, f64, Color)> = solids
             .iter()
             .filter_map(|solid| match solid.shape {
                 SolidShape::Block {
@@ -203,7 +209,7 @@ impl<'a> Canvas<'a> {
                     half_size,
                     angle,
                     ..
-                } => Some((centre, half_size, angle, solid.part)),
+                } => Some((centre, half_size, angle, self.solid(solid))),
                 SolidShape::Bar { .. } => None,
             })
             .collect();
@@ -212,7 +218,7 @@ impl<'a> Canvas<'a> {
             blocks.iter().map(|(_, half, ..)| point(*half)),
         )
         .with_rotation_axis_angles(blocks.iter().map(|(_, _, angle, _)| about_z(*angle)))
-        .with_colors(blocks.iter().map(|(.., part)| self.part(*part)))
+        .with_colors(blocks.iter().map(|(.., color)| *color))
         .with_fill_mode(FillMode::Solid);
         self.row(entity, &boxes)
     }

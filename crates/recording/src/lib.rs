@@ -51,7 +51,7 @@ mod writer;
 
 pub use apart::{RecordedRunError, UNPACK_COMMAND, read_apart, unpack, unpack_with};
 pub use design::record_design;
-pub use live::{LiveScene, Picked, Pinned, Shown, VisibleLayers};
+pub use live::{LiveScene, Picked, Pinned, SceneLegends, Shown, VisibleLayers};
 pub use point::FrontPoint;
 pub use pointed::SceneTarget;
 pub use read::{CopyError, ReadError, RecordedDesign, RecordedRun, read_run, save_copy};

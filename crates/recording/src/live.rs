@@ -17,8 +17,8 @@ use super::{SceneTarget, blueprint, colors, paths};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::spatial::Pose;
 use kinefront_scene::{
-    BentBar, EllipsoidKind, Field, FieldLegend, Heatmap, HeatmapSettings, MotionPath, Part, PathColor, Scene,
-    WorkspaceProof, ellipsoids, manipulator,
+    BarStresses, BentBar, EllipsoidKind, Field, FieldLegend, Heatmap, HeatmapSettings, MotionPath, Part, PathColor,
+    Scene, StressLegend, WorkspaceProof, ellipsoids, manipulator,
 };
 use kinefront_study::Study;
 
@@ -42,6 +42,8 @@ pub struct VisibleLayers {
     pub legs: bool,
     /// Bars of the platform.
     pub platform: bool,
+    /// Bars coloured by their stresses at the pose instead of by their parts.
+    pub stresses: bool,
     /// Names of joints and frames.
     pub labels: bool,
     /// The pair of members with the smallest clearance, with its distance.
@@ -69,6 +71,7 @@ impl Default for VisibleLayers {
         Self {
             legs: true,
             platform: true,
+            stresses: false,
             labels: true,
             clearance: true,
             workspace: true,
@@ -227,23 +230,23 @@ impl LiveScene {
         self.layout()
     }
 
-    /// Shows a design, or none, and returns the legend of its heatmap, if it has one. The window draws the legend beside the scene.
+    /// Shows a design, or none, and returns the legends.
     ///
     /// # Errors
     /// [`RecordingError::Encode`] when the scene cannot be encoded.
-    pub fn design(&mut self, shown: Option<&Shown<'_>>) -> Result<Option<FieldLegend>, RecordingError> {
+    pub fn design(&mut self, shown: Option<&Shown<'_>>) -> Result<SceneLegends, RecordingError> {
         let rows = RefCell::new(Rows::default());
-        let mut legend = None;
+        let mut legends = SceneLegends::default();
         if let Some(shown) = shown {
             self.fit(shown.evaluation)?;
             if self.light != shown.light {
                 self.light = shown.light;
                 self.layout()?;
             }
-            legend = draw(&Canvas::collecting(&rows, shown.light), shown)?;
+            legends = draw(&Canvas::collecting(&rows, shown.light), shown)?;
         }
         self.design.show(&self.writer, rows.into_inner())?;
-        Ok(legend)
+        Ok(legends)
     }
 
     /// Shows the bars of the design as they bend in a vibration, or none. It is drawn apart from the design, because it changes with every
@@ -367,9 +370,18 @@ impl LiveScene {
     }
 }
 
-/// Draws a design, and returns the legend of its heatmap.
-fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<Option<FieldLegend>, RecordingError> {
-    let mut legend = None;
+/// Legends of what is drawn of a design; the window draws them beside the scene.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SceneLegends {
+    /// That of the heatmap, if there is one.
+    pub field: Option<FieldLegend>,
+    /// That of the colours of the bars, if they tell stresses.
+    pub stress: Option<StressLegend>,
+}
+
+/// Draws a design, and returns the legends.
+fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<SceneLegends, RecordingError> {
+    let mut legends = SceneLegends::default();
     let Shown {
         model,
         evaluation,
@@ -381,6 +393,14 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<Option<FieldLegend>, R
     let pose = shown.pose.unwrap_or(home);
     if let Ok(mut scene) = manipulator(model, &evaluation.design, &pose) {
         keep(&mut scene, layers);
+        let stresses = layers
+            .stresses
+            .then(|| BarStresses::new(model, &evaluation.design, &pose))
+            .flatten();
+        if let Some(stresses) = &stresses {
+            scene.set_values(stresses);
+        }
+        legends.stress = stresses.map(|stresses| stresses.legend);
         canvas.manipulator(paths::MANIPULATOR, &scene)?;
     }
     if layers.heatmap.is_some() || layers.singularities {
@@ -394,7 +414,7 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<Option<FieldLegend>, R
         if layers.heatmap.is_some() {
             let locked = layers.locked.filter(|(locked, _)| *locked == field);
             let range = locked.map(|(_, range)| range);
-            legend = subject.field(canvas, &heatmap, range, subject.floor())?;
+            legends.field = subject.field(canvas, &heatmap, range, subject.floor())?;
         } else {
             heatmap.threshold.clear();
             let floor = subject.floor();
@@ -436,7 +456,7 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<Option<FieldLegend>, R
         let at = subject.space().place(pose.position, pose.phi);
         canvas.mark(&format!("{}/pose", paths::CONFIGURATION), at, "P", colors::ELLIPSOID)?;
     }
-    Ok(legend)
+    Ok(legends)
 }
 
 /// Removes the parts that `layers` excludes.

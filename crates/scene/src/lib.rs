@@ -13,6 +13,7 @@
 //! | [`Mesh`] | a solid as triangles |
 //! | [`MotionPath`], [`MotionCurve`] | the path of a motion with colours, and what the actuators do during it |
 //! | [`Vibrations`] | natural frequencies, and the bars as they bend |
+//! | [`BarStresses`] | the stresses of the bars at a pose |
 //! | [`tour`] | poses along the regular workspace, checked by forward kinematics |
 //!
 //! Lengths are in metres in the base frame; z points out of the plane. A shape states which part of the manipulator it
@@ -31,6 +32,7 @@ mod motion;
 pub mod palette;
 mod proof;
 mod shape;
+mod stress;
 mod surroundings;
 pub mod text;
 mod tour;
@@ -50,6 +52,7 @@ pub use modes::{ModeMap, Modes, example, modes_at};
 pub use motion::{MotionCurve, MotionPath, PathColor, drawn_samples, pose_at};
 pub use proof::{ProofCell, WorkspaceProof, workspace_proof};
 pub use shape::{Label, Line, Nearest, Part, Scene, Solid, SolidShape};
+pub use stress::{BarStresses, StressLegend};
 pub use tour::{Tour, tour};
 pub use vibration::{BentBar, VibrationMode, Vibrations};
 pub use workspace::{ConfigurationSpace, RegularCylinder, region_corners, regular_workspace};

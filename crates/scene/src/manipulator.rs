@@ -236,6 +236,7 @@ impl<'a> Sizes<'a> {
             part,
             leg: Some(leg),
             shape,
+            value: None,
         }
     }
 
@@ -245,6 +246,7 @@ impl<'a> Sizes<'a> {
             part: Part::PlatformBar,
             leg: Some(leg),
             shape: self.bar(MemberKind::PlatformBar, c, p, 1.0),
+            value: None,
         }
     }
 }

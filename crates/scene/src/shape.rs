@@ -1,6 +1,7 @@
 //! Named shapes.
 
 use glam::DVec3;
+use kinefront_model::mechanism::MemberKind;
 use kinefront_model::stiffness::RailSettings;
 
 /// The part of the manipulator or drawing that a shape represents.
@@ -44,6 +45,21 @@ pub enum Part {
     Room,
 }
 
+impl Part {
+    /// Returns the kinds of members that a solid of the part represents.
+    pub fn members(self) -> &'static [MemberKind] {
+        match self {
+            Part::Tube | Part::Rod => &[MemberKind::TelescopicLeg],
+            Part::Crank => &[MemberKind::Crank],
+            Part::Link => &[MemberKind::Link],
+            Part::Guide => &[MemberKind::Guide, MemberKind::TurningGuide],
+            Part::PlatformBar => &[MemberKind::PlatformBar],
+            Part::Slider => &[MemberKind::Slider],
+            _ => &[],
+        }
+    }
+}
+
 /// Shape of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SolidShape {
@@ -80,6 +96,8 @@ pub struct Solid {
     pub leg: Option<usize>,
     /// Shape.
     pub shape: SolidShape,
+    /// Value that its colour tells in place of the part, as a place on the scale from 0 to 1.
+    pub value: Option<f64>,
 }
 
 /// A polyline of the scene.
@@ -149,6 +167,7 @@ impl Scene {
                     radius,
                     inner,
                 },
+                value: None,
             })
         });
         bars.filter(|bar| bar.shape.has_volume()).collect()

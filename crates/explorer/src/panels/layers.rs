@@ -17,6 +17,7 @@ impl LayersPanel {
         for (flag, name) in [
             (&mut layers.legs, "Legs"),
             (&mut layers.platform, "Platform"),
+            (&mut layers.stresses, "Bars coloured by stress"),
             (&mut layers.labels, "Labels"),
             (&mut layers.clearance, "Nearest pair of members"),
             (&mut layers.workspace, "Regular workspace"),

@@ -26,7 +26,7 @@ use super::{Filter, FrontEntry, Row, Store, StudyEditor};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model, Quantity};
 use kinefront_model::spatial::Pose;
 use kinefront_recording::{FrontPoint, LiveScene, Viewpoint, VisibleLayers};
-use kinefront_scene::{Field, FieldLegend, WorkspaceProof};
+use kinefront_scene::{Field, FieldLegend, StressLegend, WorkspaceProof};
 use kinefront_study::{CertifiedWorkspace, Column, EndReason, GenerationSummary, PreparedStudy, Study};
 
 /// Largest number of designs that can be pinned for comparison.
@@ -387,7 +387,12 @@ impl Session {
 
     /// Returns the legend of the heatmap that was drawn last, if there is one.
     pub fn legend(&self) -> Option<&FieldLegend> {
-        self.answer.legend.as_ref()
+        self.answer.legends.field.as_ref()
+    }
+
+    /// Returns the legend of the stresses of the bars, if their colours tell them.
+    pub fn stress_legend(&self) -> Option<StressLegend> {
+        self.answer.legends.stress
     }
 
     /// Returns the distance between the lines of the ground grid in 3-D \[m\], if there is a viewer.

@@ -20,8 +20,10 @@ use super::questions::MotionAnswer;
 use kinefront_model::evaluation::{Evaluation, GridChoice};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
-use kinefront_recording::{FrontPoint, LiveScene, Pinned, RecordingError, Shown, Viewpoint, VisibleLayers};
-use kinefront_scene::{BentBar, FieldLegend, MotionPath, WorkspaceProof, workspace_proof};
+use kinefront_recording::{
+    FrontPoint, LiveScene, Pinned, RecordingError, SceneLegends, Shown, Viewpoint, VisibleLayers,
+};
+use kinefront_scene::{BentBar, MotionPath, WorkspaceProof, workspace_proof};
 use kinefront_study::PreparedStudy;
 
 /// Time without a newer design after which a design is verified.
@@ -112,8 +114,8 @@ pub struct Answer {
     pub known: Option<Known>,
     /// Proof of the workspace of the design that was proved last.
     pub proof: Option<Arc<WorkspaceProof>>,
-    /// Legend of the heatmap, if one is drawn.
-    pub legend: Option<FieldLegend>,
+    /// Legends of what is drawn.
+    pub legends: SceneLegends,
     /// Distance between the lines of the ground grid \[m\], if there is a viewer.
     pub grid_spacing: Option<f64>,
     /// Evaluations of the pinned designs.
@@ -255,7 +257,7 @@ struct SceneState {
     known: Option<Known>,
     /// The evaluation whose values the scene shows.
     drawn: Option<Arc<Evaluation>>,
-    legend: Option<FieldLegend>,
+    legends: SceneLegends,
     pins: Vec<Evaluation>,
     /// The design sent last to the verify thread.
     verifying: Option<Design>,
@@ -276,7 +278,7 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
                 shared.to_verify.put((Arc::clone(&request.study), known.clone()));
             }
         }
-        let (known, pins, legend) = (state.known.clone(), state.pins.clone(), state.legend);
+        let (known, pins, legends) = (state.known.clone(), state.pins.clone(), state.legends);
         shared.answer(|answer| {
             // The verify thread may have finished earlier, while the answer still held another design.
             let finer = known
@@ -284,7 +286,7 @@ fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
                 .and_then(|known| shared.verified(&request.study, &known.evaluation.design));
             answer.known = finer.or(known);
             answer.pins = pins;
-            answer.legend = legend;
+            answer.legends = legends;
             answer.grid_spacing = state.scene.as_ref().map(LiveScene::grid_spacing);
             answer.study = Some(Arc::clone(&request.study));
             answer.drawn = number;
@@ -355,18 +357,18 @@ fn step(state: &mut SceneState, shared: &Shared, request: &Request) -> Result<()
     let drawn = draw(&mut scene, state, before.as_ref(), request, new_pins);
     state.scene = Some(scene);
     state.drawn = state.known.as_ref().map(|known| Arc::clone(&known.evaluation));
-    let drawn = drawn.map(|legend| state.legend = legend);
+    let drawn = drawn.map(|legends| state.legends = legends);
     drawn.map_err(|error| format!("the scene cannot be drawn: {error}").into())
 }
 
-/// Draws what differs from the request before, and returns the legend of the heatmap.
+/// Draws what differs from the request before, and returns the legends.
 fn draw(
     scene: &mut LiveScene,
     state: &SceneState,
     before: Option<&Request>,
     request: &Request,
     new_pins: bool,
-) -> Result<Option<FieldLegend>, RecordingError> {
+) -> Result<SceneLegends, RecordingError> {
     if before.is_some_and(|before| before.comparing != request.comparing) {
         scene.compare(request.comparing)?;
     }
@@ -381,7 +383,7 @@ fn draw(
         _ => false,
     };
     if as_drawn && before.is_some_and(|before| before.differs_by_its_vibration(request)) {
-        return Ok(state.legend);
+        return Ok(state.legends);
     }
     let model = request.study.model();
     let shown = state.known.as_ref().map(|known| Shown {
@@ -397,7 +399,7 @@ fn draw(
         layers: &request.layers,
         light: request.light,
     });
-    let legend = scene.design(shown.as_ref())?;
+    let legends = scene.design(shown.as_ref())?;
     if new_pins {
         let named = request.pins.iter().zip(&state.pins);
         let pins: Vec<Pinned<'_>> = named
@@ -411,5 +413,5 @@ fn draw(
         let marked = state.known.as_ref().map(|known| &*known.evaluation);
         scene.front(request.study.study(), &request.front, marked)?;
     }
-    Ok(legend)
+    Ok(legends)
 }

@@ -98,15 +98,22 @@ fn what_is_no_longer_drawn_disappears() {
         scene.design(Some(&shown)).expect("drawn")
     };
     // The window draws the legend; a locked range holds for its own field alone.
-    let legend = show(&mut scene, &layers).expect("a legend");
+    let legend = show(&mut scene, &layers).field.expect("a legend");
     assert_eq!((legend.field, legend.threshold), (Field::DEXTERITY, 0.1));
     assert!(shown(&standing, "/design/legend").is_empty());
     layers.locked = Some((Field::Scalar(PoseScalar::StiffnessXy), [1e5, 1e7]));
-    assert_eq!(show(&mut scene, &layers), Some(legend));
+    assert_eq!(show(&mut scene, &layers).field, Some(legend));
     layers.locked = Some((Field::DEXTERITY, [0.0, 0.5]));
-    let locked = show(&mut scene, &layers).expect("a legend");
+    let locked = show(&mut scene, &layers).field.expect("a legend");
     assert_eq!(locked.map.range(), [0.0, 0.5]);
     assert_eq!(locked.map.color(0.5), locked.map.color(0.9));
+    layers.stresses = true;
+    let stress = show(&mut scene, &layers).stress.expect("a legend of the stresses");
+    let report = model.posed(&evaluation.design).strength_at(&model.home(&evaluation), None);
+    let report = report.expect("a pose").expect("a report");
+    assert_eq!(stress.largest, report.stress);
+    layers.stresses = false;
+    assert_eq!(show(&mut scene, &layers).stress, None);
     for below in [
         "/design/heatmap/inverse_condition/field",
         "/design/ellipsoids/stiffness",

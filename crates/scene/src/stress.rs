@@ -1,0 +1,108 @@
+//! The stresses of the bars at a pose, as values of their solids.
+
+use kinefront_model::clearance::MemberId;
+use kinefront_model::evaluation::Model;
+use kinefront_model::mechanism::Design;
+use kinefront_model::spatial::Pose;
+
+use crate::{Scene, Solid};
+
+/// Stresses of the bars of a design at a pose under the loads of the study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BarStresses {
+    stresses: Vec<(MemberId, f64)>,
+    /// The largest of them.
+    pub legend: StressLegend,
+}
+
+/// What the colours of the bars stand for: the darkest is no stress, the brightest the largest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StressLegend {
+    /// Largest equivalent stress \[Pa\].
+    pub largest: f64,
+    /// The bar that has it.
+    pub member: MemberId,
+    /// Part of the yield strength that it is, if the material has one.
+    pub of_yield: Option<f64>,
+}
+
+impl BarStresses {
+    /// Returns the stresses; `None` where the design does not reach the pose, at a singularity, and where nothing is loaded.
+    pub fn new(model: &Model, design: &Design, pose: &Pose) -> Option<Self> {
+        let report = model.posed(design).strength_at(pose, None).ok()??;
+        let stresses: Vec<(MemberId, f64)> = report
+            .members
+            .iter()
+            .map(|member| (member.member, member.stress))
+            .collect();
+        let &(member, largest) = stresses.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let is_loaded = largest > 0.0 && largest.is_finite();
+        is_loaded.then(|| Self {
+            stresses,
+            legend: StressLegend {
+                largest,
+                member,
+                of_yield: model.settings().material.yield_strength.map(|limit| largest / limit),
+            },
+        })
+    }
+
+    /// Returns the stress of a bar \[Pa\]; `None` for what is no bar.
+    pub fn of(&self, solid: &Solid) -> Option<f64> {
+        let kinds = solid.part.members();
+        let is_of = |member: &MemberId| Some(member.leg) == solid.leg && kinds.contains(&member.kind);
+        self.stresses
+            .iter()
+            .find(|(member, _)| is_of(member))
+            .map(|(_, stress)| *stress)
+    }
+}
+
+impl Scene {
+    /// Gives the bars their stresses as values.
+    pub fn set_values(&mut self, stresses: &BarStresses) {
+        for solid in &mut self.solids {
+            solid.value = stresses.of(solid).map(|stress| stress / stresses.legend.largest);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Part, manipulator};
+
+    #[test]
+    fn each_bar_has_the_value_of_its_stress_and_nothing_else_has_one() {
+        let model = Model::default();
+        for text in [
+            "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
+            "3-RRR R=2.0 r=0.6 Lb=1.6 rj=0.05 rp=0.04",
+            "3-RPR R=2.0 r=0.5 Lb=3.0 rj=0.03 rp=0.03",
+        ] {
+            let design: Design = text.parse().expect("a design");
+            let pose = Pose::new(0.05, -0.1, 0.1);
+            let mut scene = manipulator(&model, &design, &pose).expect("the pose is reached");
+            let stresses = BarStresses::new(&model, &design, &pose).expect("the study has a load");
+            scene.set_values(&stresses);
+            let report = model
+                .posed(&design)
+                .strength_at(&pose, None)
+                .expect("a pose")
+                .expect("a report");
+            let mut bars = 0;
+            for solid in &scene.solids {
+                let is_bar = matches!(
+                    solid.part,
+                    Part::Crank | Part::Link | Part::Tube | Part::Rod | Part::PlatformBar
+                );
+                assert_eq!(solid.value.is_some(), is_bar, "{design}: {solid:?}");
+                bars += usize::from(is_bar);
+            }
+            assert!(bars >= 6, "{design}: {bars}");
+            assert_eq!(stresses.legend.largest, report.stress);
+            let largest = scene.solids.iter().filter(|solid| solid.value == Some(1.0));
+            assert!(largest.count() >= 1, "{design}");
+        }
+    }
+}
