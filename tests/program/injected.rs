@@ -158,12 +158,13 @@ fn every_call_fails_once() {
         .collect();
     let (mut injected, mut table) = (0, BTreeMap::new());
     for (place, (scenario, calls, errors)) in cases.into_iter().enumerate() {
-        // All calls until there are no more, or a few of them, others for each kind of call.
+        // All calls until there are no more, or a few of them, others for each kind of call. A report takes seconds.
         let few = [1 + place % 3, 4 + place % 17];
+        let count = if scenario.name == "report" { 1 } else { few.len() };
         let times: Vec<usize> = if is_thorough() {
             (1..10_000).collect()
         } else {
-            few.to_vec()
+            few[..count].to_vec()
         };
         for when in times {
             let error = errors[when % errors.len()];

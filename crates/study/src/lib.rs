@@ -74,10 +74,11 @@ pub use settings::{
     ActuatorSection, AlgorithmName, Bounds, BuiltinCatalogue, BuiltinMaterial, CATALOGUES, CatalogueChoice,
     CatalogueFault, CatalogueRow, Check, DRIVE_CATALOGUES, DriveKind, DriveRow, DriveSection, FileScope, GridSection,
     Grids, HypervolumeSection, Initial, JointSection, LengthChoice, LimitChoice, Limits, LoadSection, LoadShapeChoice,
-    MATERIALS, MaterialSection, ModelSection, ObjectiveChoice, OptimizerSection, PayloadSection, ReferenceDesign,
-    RegionKind, RegionSection, RequirementSection, SectionChoice, SectionKind, SectionsSection, Setting, Stagnation,
-    StiffnessChoice, StrengthSection, TaskSection, TaskShapeChoice, TelescopicBar, Tie, ToleranceSection,
-    VariableChoice, Variables, WHOLE_FRONT, WorkspaceSection, is_shown, settings, settings_of_surroundings,
+    MATERIALS, MaterialSection, ModelSection, ObjectiveChoice, ObstacleSection, OptimizerSection, PayloadSection,
+    ReferenceDesign, RegionKind, RegionSection, RequirementSection, SectionChoice, SectionKind, SectionsSection,
+    Setting, Stagnation, StiffnessChoice, StrengthSection, TaskSection, TaskShapeChoice, TelescopicBar, Tie,
+    ToleranceSection, VariableChoice, Variables, WHOLE_FRONT, WorkspaceSection, is_shown, settings,
+    settings_of_surroundings,
 };
 pub use study::{Catalogues, Fault, SettingDifference, Study, StudyError, UnlistedValue};
 pub use sum::{Difference, FileSum};

@@ -12,6 +12,7 @@ mod layers;
 mod mechanisms;
 mod modes;
 mod motion;
+mod obstacles;
 mod parallel;
 mod plan;
 mod pose;

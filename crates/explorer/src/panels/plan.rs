@@ -1,6 +1,6 @@
 //! The manipulator seen from above: conversion to screen coordinates, drawing, and the member under the pointer.
 
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Response, Shape, Stroke, Ui, Vec2};
 use glam::{DVec2, DVec3};
 
 use crate::pointing::describe_member;
@@ -39,6 +39,12 @@ impl Plan {
     pub fn world(&self, at: Pos2) -> DVec2 {
         let offset = at - self.centre;
         DVec2::new(f64::from(offset.x), -f64::from(offset.y)) / self.scale
+    }
+
+    /// Returns where the mouse was pressed for the drag that a response is of: a drag starts only some points away from there.
+    pub fn pressed(&self, response: &Response) -> DVec2 {
+        let pressed = response.ctx.input(|input| input.pointer.press_origin());
+        self.world(pressed.or(response.interact_pointer_pos()).unwrap_or(self.centre))
     }
 
     /// Returns the member under the pointer, the topmost if there are several. The pointer may be slightly beside a

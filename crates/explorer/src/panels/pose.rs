@@ -5,6 +5,7 @@ use glam::DVec2;
 use kinefront_scene::text;
 
 use super::modes::ModesView;
+use super::obstacles::ObstacleDrag;
 use super::plan::{Plan, card, paint};
 use crate::grip::Grip;
 use crate::{Session, theme};
@@ -36,6 +37,7 @@ struct Playing {
 pub struct PosePanel {
     grip: Option<Grip>,
     playing: Option<Playing>,
+    obstacles: ObstacleDrag,
     modes: ModesView,
 }
 
@@ -170,7 +172,9 @@ impl PosePanel {
             );
             return;
         };
-        self.drag(&response, session, &plan, design, pose);
+        if !self.obstacles.follow(&response, session, &plan) {
+            self.drag(&response, session, &plan, design, pose);
+        }
         if response.clicked()
             && let Some(pointer) = response.interact_pointer_pos()
         {
@@ -213,6 +217,7 @@ impl PosePanel {
             rim,
             Stroke::new(1.0, Color32::from_rgb(90, 150, 235).gamma_multiply(0.6)),
         );
+        self.obstacles.paint(ui, &response, &painter, &plan, session);
         let Some(pointer) = response.hover_pos().filter(|_| self.grip.is_none()) else {
             return;
         };
@@ -231,7 +236,8 @@ impl PosePanel {
         let at = plan.world(pointer);
         if response.drag_started() {
             let keeps_angle = response.ctx.input(|input| input.modifiers.shift);
-            self.grip = Some(Grip::new(at, &pose, design.platform_radius(), keeps_angle));
+            let pressed = plan.pressed(response);
+            self.grip = Some(Grip::new(pressed, &pose, design.platform_radius(), keeps_angle));
         }
         if response.drag_stopped() {
             session.end_drag();

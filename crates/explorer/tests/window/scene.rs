@@ -109,7 +109,9 @@ fn what_is_no_longer_drawn_disappears() {
     assert_eq!(locked.map.color(0.5), locked.map.color(0.9));
     layers.stresses = true;
     let stress = show(&mut scene, &layers).stress.expect("a legend of the stresses");
-    let report = model.posed(&evaluation.design).strength_at(&model.home(&evaluation), None);
+    let report = model
+        .posed(&evaluation.design)
+        .strength_at(&model.home(&evaluation), None);
     let report = report.expect("a pose").expect("a report");
     assert_eq!(stress.largest, report.stress);
     layers.stresses = false;

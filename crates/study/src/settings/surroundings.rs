@@ -60,7 +60,7 @@ pub fn settings_of_surroundings() -> impl Iterator<Item = &'static Setting> {
 }
 
 /// A key that is at fault, and what is wrong.
-type KeyFault = (&'static str, String);
+pub type KeyFault = (&'static str, String);
 
 fn centre(centre: [f64; 2]) -> Result<DVec2, KeyFault> {
     let is_usable = centre.iter().all(|part| part.abs() <= 1e6);
@@ -75,7 +75,7 @@ impl ObstacleSection {
     ///
     /// # Errors
     /// The key within the section, and a message.
-    pub(crate) fn obstacle(&self) -> Result<Obstacle, KeyFault> {
+    pub fn obstacle(&self) -> Result<Obstacle, KeyFault> {
         if self.name.is_empty() {
             return Err(("name", "is missing; messages and drawings show it".to_owned()));
         }
