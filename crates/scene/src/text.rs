@@ -187,7 +187,7 @@ pub fn motion_proof(certificate: &MotionCertificate, actuator: JointKind) -> Str
         }
         (MotionVerdict::Proved, None) => "proved at every moment".to_owned(),
         (MotionVerdict::Proved, Some(bounds)) => format!(
-            "proved at every moment: actuators at most {} {}/s and {} {}, at least {} mm from their limits",
+            "proved at every moment: at most {} {}/s and {} {}, at least {} mm to the limits",
             number(bounds.speed),
             actuator.unit(),
             number(bounds.force),

@@ -214,17 +214,18 @@ impl MotionPanel {
             for curve in MotionCurve::ALL {
                 theme::choice(ui, &mut self.curve, curve, curve.name(actuator));
             }
+        });
+        ui.horizontal(|ui| {
             for leg in 0..3 {
                 let color = theme::legible(theme::series(leg), ui);
                 ui.label(RichText::new(format!("■\u{a0}leg\u{a0}{}", leg + 1)).color(color));
             }
-        });
-        ui.horizontal(|ui| {
+            ui.separator();
             let label = ui.label("path in 3-D").id;
             let fields = session.fields();
             let path = &mut session.view_mut().layers.path;
             let shown = path.map_or("hidden".into(), |path| path.title(actuator));
-            ComboBox::from_id_salt("colours of the path")
+            let choice = ComboBox::from_id_salt("colours of the path")
                 .selected_text(shown)
                 .show_ui(ui, |ui| {
                     ui.selectable_value(path, None, "hidden");
@@ -236,7 +237,8 @@ impl MotionPanel {
                 .response
                 .labelled_by(label);
             if let Some([low, high]) = followed.path.as_ref().map(|path| path.range) {
-                ui.weak(format!("dark {} to bright {}", theme::number(low), theme::number(high)));
+                let words = format!("dark {} to bright {}", theme::number(low), theme::number(high));
+                choice.on_hover_text(words);
             }
         });
     }

@@ -289,7 +289,7 @@ impl Scatter {
 
     fn controls(&mut self, ui: &mut Ui, session: &mut Session) {
         // A row that is wider than the panel would widen the plot as well.
-        let is_narrow = ui.available_width() < 480.0;
+        let is_narrow = ui.available_width() < 465.0;
         if is_narrow {
             ui.horizontal(|ui| self.axis_field(ui, session, 0, "x"));
             ui.horizontal(|ui| {
