@@ -37,7 +37,7 @@ pub struct Viewer {
     events: Rc<RefCell<Vec<ViewerEvent>>>,
     /// Whether key presses go to the viewer, that is, whether the last click was inside it.
     owns_keys: Arc<AtomicBool>,
-    /// Rectangle that the viewer filled in the last frame.
+    /// Rectangle that the viewer filled in the last frame; none if it was not drawn.
     pane: Rect,
     _runtime: tokio::runtime::Runtime,
 }
@@ -161,6 +161,8 @@ impl Viewer {
 
     /// Processes the received data; must be called before each frame.
     pub fn logic(&mut self, ctx: &Context, frame: &mut eframe::Frame) {
+        // Its tab may be behind another one in this frame.
+        self.pane = Rect::NOTHING;
         self.app.logic(ctx, frame);
     }
 

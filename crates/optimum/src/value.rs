@@ -30,20 +30,40 @@ impl Requirement {
         }
     }
 
+    /// Returns the name of an end of the travel of a joint, and that for a person.
+    fn end_of_travel(problem: &LocalProblem, joint: usize, end: End) -> [&'static str; 2] {
+        let is_telescopic = problem.architecture().chain().distal == MemberKind::TelescopicLeg;
+        match (joint, is_telescopic, end) {
+            (0, _, End::Lower) => ["rail_start", "start of a rail"],
+            (0, _, End::Upper) => ["rail_end", "end of a rail"],
+            (1, true, End::Lower) => ["shortest", "shortest length of a leg"],
+            (1, true, End::Upper) => ["longest", "longest length of a leg"],
+            (_, _, End::Lower) => ["guide_start", "start of a guide"],
+            (_, _, End::Upper) => ["guide_end", "end of a guide"],
+        }
+    }
+
+    /// Returns the name for a person, the same for all legs.
+    pub fn label(self, problem: &LocalProblem) -> String {
+        match self {
+            Requirement::Limit { joint, end, .. } => Self::end_of_travel(problem, joint, end)[1].to_owned(),
+            Requirement::EndOfReach { .. } => "end of the reach of a leg".to_owned(),
+            Requirement::Scalar(scalar) => scalar.entry().quantity.label.to_owned(),
+            Requirement::Determinant => "distance to singularities".to_owned(),
+            Requirement::Quantity(place) => problem.question().settings.limits[place]
+                .quantity
+                .entry()
+                .label
+                .to_owned(),
+            Requirement::Assembly => "assembly".to_owned(),
+        }
+    }
+
     /// Returns the name in results, for example `k_z_min` or `reach_and_limits:rail_end:leg1`.
     pub fn name(self, problem: &LocalProblem) -> String {
         match self {
             Requirement::Limit { leg, joint, end } => {
-                let chain = problem.architecture().chain();
-                let is_telescopic = chain.distal == MemberKind::TelescopicLeg;
-                let word = match (joint, is_telescopic, end) {
-                    (0, _, End::Lower) => "rail_start",
-                    (0, _, End::Upper) => "rail_end",
-                    (1, true, End::Lower) => "shortest",
-                    (1, true, End::Upper) => "longest",
-                    (_, _, End::Lower) => "guide_start",
-                    (_, _, End::Upper) => "guide_end",
-                };
+                let [word, _] = Self::end_of_travel(problem, joint, end);
                 format!("reach_and_limits:{word}:leg{}", leg + 1)
             }
             Requirement::EndOfReach { leg } => format!("reach_and_limits:end_of_reach:leg{}", leg + 1),

@@ -78,7 +78,7 @@ mod tests {
         for text in [
             "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
             "3-RRR R=2.0 r=0.6 Lb=1.6 rj=0.05 rp=0.04",
-            "3-RPR R=2.0 r=0.5 Lb=3.0 rj=0.03 rp=0.03",
+            "3-RPR R=2.0 r=0.5 Lb=2.4 rj=0.03 rp=0.03",
         ] {
             let design: Design = text.parse().expect("a design");
             let pose = Pose::new(0.05, -0.1, 0.1);

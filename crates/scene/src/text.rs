@@ -168,6 +168,15 @@ pub fn selected_drive(catalogue: &DriveCatalogue, outcome: &TaskOutcome) -> Opti
     })
 }
 
+/// Writes by how much a threshold may be tightened at no cost, given as a share of itself.
+pub fn slack(share: f64) -> String {
+    if share > 10.0 {
+        "more than 1000 %".to_owned()
+    } else {
+        format!("{} %", number(100.0 * share))
+    }
+}
+
 /// Writes what is proved about a motion at every moment, for actuators of a kind.
 pub fn motion_proof(certificate: &MotionCertificate, actuator: JointKind) -> String {
     let at = |moment: &MotionMoment| format!("in piece {} at {:.4} s", moment.piece + 1, moment.time);

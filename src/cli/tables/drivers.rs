@@ -1,7 +1,7 @@
 //! Tables of what drives the mass of a design, and of wishes.
 
 use kinefront_model::evaluation::Quantity;
-use kinefront_scene::text::number;
+use kinefront_scene::text::{self, number};
 use kinefront_study::{Drivers, DriversAlong, Hindrance, PriceJson, WhyNotJson, WishOutcome};
 
 use super::table;
@@ -56,7 +56,7 @@ pub fn drivers(heading: &str, drivers: &Drivers) -> String {
     if !drivers.inactive.is_empty() {
         let mut slack = table(["not active", "may rise by"], &[1]);
         for inactive in &drivers.inactive {
-            slack.add_row([inactive.constraint.clone(), format!("{:.2} %", 100.0 * inactive.slack)]);
+            slack.add_row([inactive.label.clone(), text::slack(inactive.slack)]);
         }
         text = format!("{text}\n{slack}");
     }

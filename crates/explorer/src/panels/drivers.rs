@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, FontId, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, WidgetType, vec2};
 use kinefront_model::spatial::Pose;
-use kinefront_scene::text::number;
+use kinefront_scene::text::{self, number};
 use kinefront_study::{Drivers, PriceJson};
 
 use crate::{Session, theme};
@@ -75,15 +75,11 @@ fn show(ui: &mut Ui, session: &mut Session, name: &str, drivers: &Drivers) {
     if !free.is_empty() {
         ui.label(format!("Practically free: {}.", free.join(", ")));
     }
-    for inactive in drivers
-        .inactive
-        .iter()
-        .filter(|inactive| inactive.slack < 10.0 && !inactive.constraint.contains(':'))
-    {
+    for inactive in &drivers.inactive {
         ui.weak(format!(
-            "{}: slack of {:.1} %",
-            inactive.constraint,
-            100.0 * inactive.slack
+            "{}: may rise by {}",
+            inactive.label,
+            text::slack(inactive.slack)
         ));
     }
     for warning in &drivers.warnings {

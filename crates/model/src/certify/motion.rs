@@ -155,14 +155,11 @@ impl Proof<'_> {
     fn examine(&mut self, piece: usize, interval: [f64; 2]) -> Result<(), (MotionClaim, bool)> {
         self.intervals += 1;
         let travel = self.forms.enclose(&self.motion.enclose(piece, interval));
-        let Some(Travel {
+        let Travel {
             reach,
             determinant,
             drives,
-        }) = travel
-        else {
-            return Err((MotionClaim::Reach, false));
-        };
+        } = travel.map_err(|is_beyond| (MotionClaim::Reach, is_beyond))?;
         let determinant = determinant.times(self.sign);
         if !determinant.is_positive() {
             return Err((MotionClaim::Singularity, determinant.is_negative()));
@@ -186,9 +183,11 @@ impl Proof<'_> {
     /// moment itself is open, and only what follows is refuted.
     fn run(&mut self) -> MotionVerdict {
         let mut open = Vec::new();
-        for piece in 0..self.motion.durations().len() {
-            let mut waiting = self.motion.stretches();
-            waiting.reverse();
+        let motion = self.motion;
+        let (mut stretches, mut begin) = (motion.stretches(), 0.0);
+        stretches.reverse();
+        for (piece, duration) in motion.durations().iter().enumerate() {
+            let mut waiting = stretches.clone();
             while let Some([from, to]) = waiting.pop() {
                 let Err((claim, is_wrong)) = self.examine(piece, [from, to]) else {
                     continue;
@@ -196,7 +195,7 @@ impl Proof<'_> {
                 let middle = 0.5 * (from + to);
                 let moment = MotionMoment {
                     piece,
-                    time: self.motion.begin(piece) + middle * self.motion.durations()[piece],
+                    time: begin + middle * duration,
                     claim,
                 };
                 if is_wrong {
@@ -212,6 +211,7 @@ impl Proof<'_> {
                     return MotionVerdict::Open(open[0]);
                 }
             }
+            begin += duration + motion.dwell();
         }
         open.first()
             .map_or(MotionVerdict::Proved, |moment| MotionVerdict::Open(*moment))

@@ -25,12 +25,6 @@ impl TaskMotion {
         breaks.windows(2).map(|pair| [pair[0], pair[1]]).collect()
     }
 
-    /// Returns the time at which a piece begins \[s\].
-    pub(crate) fn begin(&self, piece: usize) -> f64 {
-        let before = &self.durations()[..piece];
-        before.iter().map(|duration| duration + self.dwell()).sum()
-    }
-
     /// Encloses the motion over an interval of the time of a piece that lies in one stretch.
     pub(crate) fn enclose(&self, piece: usize, [from, to]: [f64; 2]) -> EnclosedMotion {
         let middle = 0.5 * (from + to);

@@ -115,6 +115,8 @@ pub struct PriceJson {
 pub struct InactiveJson {
     /// Name of the requirement.
     pub constraint: String,
+    /// Its name for a person.
+    pub label: String,
     /// How far the threshold may rise without cost, relative to itself; for a distance, as a share of `R`.
     pub slack: f64,
 }
@@ -303,7 +305,11 @@ fn inactive(problem: &LocalProblem, critical: &[Critical]) -> Vec<InactiveJson> 
         match found.iter_mut().find(|other| other.constraint == constraint) {
             Some(other) => other.slack = other.slack.min(slack),
             None if active.contains(&constraint) => {}
-            None => found.push(InactiveJson { constraint, slack }),
+            None => found.push(InactiveJson {
+                constraint,
+                label: critical.requirement.label(problem),
+                slack,
+            }),
         }
     }
     found

@@ -32,16 +32,16 @@ impl<'a> TravelForms<'a> {
         Ok(Self { forms, dynamics })
     }
 
-    /// Encloses what the design does over an interval of a motion; where a leg may not reach, nothing but that is known.
-    pub fn enclose(&self, motion: &EnclosedMotion) -> Option<Travel> {
+    /// Encloses what the design does over an interval of a motion.
+    ///
+    /// # Errors
+    /// Where a leg may not reach, nothing else is known: whether it reaches nowhere on the interval.
+    pub fn enclose(&self, motion: &EnclosedMotion) -> Result<Travel, bool> {
         let forms = &self.forms;
         let legs = enclose_legs(forms.model, forms.design, &forms.frames, &motion.pose);
-        let is_reached = legs
-            .iter()
-            .flat_map(|leg| leg.chain.reach)
-            .all(|reach| reach.is_positive());
-        if !is_reached {
-            return None;
+        let reaches = || legs.iter().flat_map(|leg| leg.chain.reach);
+        if !reaches().all(|reach| reach.is_positive()) {
+            return Err(reaches().any(|reach| reach.is_negative()));
         }
         let mut distances = Enclosures::new(ProvedForms::default());
         forms.enclose_reach(&motion.pose, &legs, &mut distances);
@@ -49,7 +49,7 @@ impl<'a> TravelForms<'a> {
             position: planar(motion.pose.position),
             legs: forms.load_inputs(&legs),
         };
-        Some(Travel {
+        Ok(Travel {
             reach: distances.iter().map(|(_, value)| *value).collect(),
             determinant: determinant(&legs),
             drives: self.dynamics.enclose_drives(&inputs, motion.twist, motion.acceleration),
