@@ -3,7 +3,6 @@
 use std::io::Write;
 
 use kinefront_export::{MotionProofJson, TaskJson, TaskRow};
-use kinefront_model::certify::MotionCertificate;
 use kinefront_scene::text;
 use miette::miette;
 use serde::Serialize;
@@ -58,10 +57,7 @@ pub fn run(arguments: &TaskArguments) -> Result<Ending, Failure> {
         )));
     };
     let shortest = || model.shortest_cycle(&evaluation);
-    let proof = || -> Option<MotionCertificate> {
-        // A bar without a usable stiffness leaves the motion without a proof, as it leaves the design without a workspace.
-        model.certify_motion(&design, &outcome).ok().flatten()
-    };
+    let proof = || model.certify_motion(&design, &outcome);
     let catalogue = &model.settings().drive_catalogue;
     let mut out = std::io::stdout().lock();
     // A motion that ends early has no curves that stop in the middle.

@@ -35,10 +35,10 @@ impl Grip {
                 ..*pose
             },
             Self::Turn(offset) => {
-                let turn = std::f64::consts::TAU;
-                let by = ((point - pose.position).to_angle() - offset - pose.phi).rem_euclid(turn);
+                let held = pose.phi + offset;
+                let by = libm::remainder((point - pose.position).to_angle() - held, std::f64::consts::TAU);
                 Pose {
-                    phi: pose.phi + if by > 0.5 * turn { by - turn } else { by },
+                    phi: pose.phi + by,
                     ..*pose
                 }
             }

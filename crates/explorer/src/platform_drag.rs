@@ -4,15 +4,17 @@
 //! input before the viewer sees it; it is given back as a click if the pointer is released where it was pressed.
 
 use egui::{CursorIcon, Event, Painter, PointerButton, Pos2, RawInput, Stroke, Ui};
+use glam::DVec2;
 
 use crate::eye::SceneView;
 use crate::grip::Grip;
 use crate::{Session, theme};
 use kinefront_model::evaluation::MemberReport;
 use kinefront_model::mechanism::MemberKind;
+use kinefront_model::spatial::nearest_on_segment;
 
 /// Largest distance of the pointer from the axis of a thin bar at which the bar is still under the pointer \[points\].
-const CATCH: f32 = 6.0;
+const CATCH: f64 = 6.0;
 
 /// Distance \[points\] that the pointer moves before a press becomes a drag.
 const SLACK: f32 = 4.0;
@@ -159,10 +161,8 @@ fn touched(bars: &[MemberReport], view: SceneView, pointer: Pos2) -> Option<&Mem
         let Some(((from, _), (to, scale))) = view.screen(bar.from).zip(view.screen(bar.to)) else {
             return false;
         };
-        let axis = to - from;
-        let along = (pointer - from).dot(axis) / axis.length_sq().max(f32::MIN_POSITIVE);
-        let beside = pointer.distance(from + axis * along.clamp(0.0, 1.0));
-        beside <= ((bar.radius * scale) as f32).max(CATCH)
+        let [at, from, to] = [pointer, from, to].map(|place| DVec2::new(f64::from(place.x), f64::from(place.y)));
+        at.distance(from.lerp(to, nearest_on_segment(at, from, to))) <= (bar.radius * scale).max(CATCH)
     })
 }
 

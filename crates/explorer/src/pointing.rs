@@ -8,7 +8,7 @@ use kinefront_model::mechanism::MemberKind;
 use kinefront_model::spatial::Pose;
 use kinefront_recording::SceneTarget;
 use kinefront_scene::text::number;
-use kinefront_scene::{BarStresses, EllipsoidKind, Field, Heatmap, Part, Solid, ellipsoids, manipulator};
+use kinefront_scene::{BarStresses, EllipsoidKind, Field, Heatmap, Part, ellipsoids, manipulator};
 
 /// Entity under the pointer.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,7 +119,7 @@ fn of_solid(session: &Session, parts: &[Part], index: usize) -> Option<Descripti
         }
         _ => {
             let members = model.members(&design, &pose).ok()?;
-            let member = members.iter().find(|member| is_of(member, solid))?;
+            let member = members.iter().find(|member| solid.shows(&member.member))?;
             let mut description = describe_member(member);
             if session.view().layers.stresses
                 && let Some(stress) = BarStresses::new(model, &design, &pose).and_then(|stresses| stresses.of(solid))
@@ -135,11 +135,6 @@ fn of_solid(session: &Session, parts: &[Part], index: usize) -> Option<Descripti
             Some(description)
         }
     }
-}
-
-/// Whether a member is drawn as a solid.
-fn is_of(member: &MemberReport, solid: &Solid) -> bool {
-    Some(member.member.leg) == solid.leg && solid.part.members().contains(&member.member.kind)
 }
 
 /// Describes a member at the pose of its report.

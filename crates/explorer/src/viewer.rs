@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use eframe::App as _;
 use egui::{Context, Event, Rect, Ui};
@@ -168,12 +168,12 @@ impl Viewer {
 
     /// Returns what the pointer is over in a 3-D view.
     pub fn pointed(&self) -> Option<Pointed> {
-        POINTED.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        seen().pointed.clone()
     }
 
     /// Returns the view of the selected design if the pointer was over it in the last frame.
     pub fn view_of_design(&self, ctx: &Context) -> Option<SceneView> {
-        let eye = (*EYE.lock().unwrap_or_else(PoisonError::into_inner))?;
+        let eye = seen().eye?;
         let rect = ctx.viewport(|viewport| viewport.hits.drag.map(|widget| widget.rect))?;
         // The tabs of the viewer can be dragged as well.
         let is_view = self.pane.contains_rect(rect) && rect.height() > 0.5 * self.pane.height();
@@ -223,11 +223,22 @@ impl Viewer {
     }
 }
 
-/// What the pointer is over. The viewer makes the systems of its views itself, so that they can be given nothing; there is one window.
-static POINTED: Mutex<Option<Pointed>> = Mutex::new(None);
+/// What the system of the 3-D views notes in a frame.
+struct Seen {
+    /// What the pointer is over.
+    pointed: Option<Pointed>,
+    /// The eye of the view of the selected design, if it is shown.
+    eye: Option<Eye>,
+}
 
-/// The eye of the view of the selected design in the last frame, if it was shown.
-static EYE: Mutex<Option<Eye>> = Mutex::new(None);
+/// What was noted in the last frame. The viewer makes the systems of its views itself, so that they can be given nothing; there is one window.
+fn seen() -> MutexGuard<'static, Seen> {
+    static SEEN: Mutex<Seen> = Mutex::new(Seen {
+        pointed: None,
+        eye: None,
+    });
+    SEEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// System of the 3-D views that draws nothing: once per frame it notes what the pointer is over, and where the eye is.
 #[derive(Default)]
@@ -259,8 +270,7 @@ impl ViewContextSystem for PointerProbe {
                 at: DVec2::new(f64::from(at.x), f64::from(at.y)),
             })
         });
-        *POINTED.lock().unwrap_or_else(PoisonError::into_inner) = pointed;
-        *EYE.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        *seen() = Seen { pointed, eye: None };
         Box::new(())
     }
 
@@ -287,7 +297,7 @@ impl ViewContextSystem for PointerProbe {
                     fov_y: f64::from(eye.fov_y?),
                 })
             });
-        *EYE.lock().unwrap_or_else(PoisonError::into_inner) = eye;
+        seen().eye = eye;
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::pose::PoseJson;
-use kinefront_model::certify::{MotionCertificate, MotionClaim, MotionVerdict};
+use kinefront_model::certify::MotionCertificate;
 use kinefront_model::dynamics::{DriveCatalogue, DynamicsReport, Motion};
 use kinefront_model::evaluation::{OverWorkspace, PosedDynamics, SelectedDrive, TaskOutcome, TaskSample};
 
@@ -235,26 +235,16 @@ pub struct MotionProofJson {
 
 impl From<&MotionCertificate> for MotionProofJson {
     fn from(certificate: &MotionCertificate) -> Self {
-        let (verdict, moment) = match certificate.verdict {
-            MotionVerdict::Proved => ("proved", None),
-            MotionVerdict::Refuted(moment) => ("refuted", Some(moment)),
-            MotionVerdict::Open(moment) => ("open", Some(moment)),
-        };
-        let bounds = certificate.bounds;
+        let verdict = &certificate.verdict;
+        let (bounds, moment) = (verdict.bounds(), verdict.moment());
         Self {
-            verdict,
+            verdict: verdict.name(),
             reach_at_least_m: bounds.map(|bounds| bounds.reach),
             speed_at_most: bounds.map(|bounds| bounds.speed),
             force_at_most: bounds.map(|bounds| bounds.force),
             piece: moment.map(|moment| moment.piece + 1),
             time_s: moment.map(|moment| moment.time),
-            claim: moment.map(|moment| match moment.claim {
-                MotionClaim::Reach => "reach",
-                MotionClaim::Singularity => "singularity",
-                MotionClaim::Speed => "speed",
-                MotionClaim::Force => "force",
-                MotionClaim::Limit(quantity) => quantity.entry().key,
-            }),
+            claim: moment.map(|moment| moment.claim.name()),
             intervals: certificate.intervals,
         }
     }

@@ -393,14 +393,12 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<SceneLegends, Recordin
     let pose = shown.pose.unwrap_or(home);
     if let Ok(mut scene) = manipulator(model, &evaluation.design, &pose) {
         keep(&mut scene, layers);
-        let stresses = layers
-            .stresses
-            .then(|| BarStresses::new(model, &evaluation.design, &pose))
-            .flatten();
-        if let Some(stresses) = &stresses {
-            scene.set_values(stresses);
+        if layers.stresses
+            && let Some(stresses) = BarStresses::new(model, &evaluation.design, &pose)
+        {
+            scene.set_values(&stresses);
+            legends.stress = Some(stresses.legend);
         }
-        legends.stress = stresses.map(|stresses| stresses.legend);
         canvas.manipulator(paths::MANIPULATOR, &scene)?;
     }
     if layers.heatmap.is_some() || layers.singularities {

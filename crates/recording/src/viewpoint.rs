@@ -1,5 +1,7 @@
 //! Directions from which the manipulator is seen.
 
+use glam::DVec3;
+
 /// Distance of the scene to the left of the middle of the view, as a multiple of its size: the legend covers what is far to the right.
 const ASIDE: f64 = 0.25;
 
@@ -33,10 +35,10 @@ impl Viewpoint {
 
     /// Returns the place of the eye and the point that it looks at, as multiples of the size of the scene.
     pub(super) fn eye_and_target(self) -> [[f64; 3]; 2] {
-        let [x, y, z] = self.eye();
-        let aside = ASIDE / f64::hypot(x, y);
-        let [by_x, by_y] = [-y * aside, x * aside];
-        [[x + by_x, y + by_y, z], [by_x, by_y, 0.0]]
+        let eye = DVec3::from_array(self.eye());
+        let right = eye.truncate().normalize().perp();
+        let target = (ASIDE * right).extend(0.0);
+        [(eye + target).to_array(), target.to_array()]
     }
 
     /// Returns the place of an eye that looks at the centre of the scene.

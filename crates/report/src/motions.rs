@@ -47,7 +47,7 @@ pub(super) struct MotionFigures {
 impl DesignMotion {
     fn new(model: &Model, question: &Question, evaluation: &Evaluation) -> Option<Self> {
         let (outcome, _) = model.follow_task(evaluation)?;
-        let proof = model.certify_motion(&evaluation.design, &outcome).ok().flatten();
+        let proof = model.certify_motion(&evaluation.design, &outcome);
         let drive = evaluation
             .drive
             .and_then(|place| model.settings().drive_catalogue.get(place));

@@ -1,6 +1,7 @@
 //! Named shapes.
 
 use glam::DVec3;
+use kinefront_model::clearance::MemberId;
 use kinefront_model::mechanism::MemberKind;
 use kinefront_model::stiffness::RailSettings;
 
@@ -45,21 +46,6 @@ pub enum Part {
     Room,
 }
 
-impl Part {
-    /// Returns the kinds of members that a solid of the part represents.
-    pub fn members(self) -> &'static [MemberKind] {
-        match self {
-            Part::Tube | Part::Rod => &[MemberKind::TelescopicLeg],
-            Part::Crank => &[MemberKind::Crank],
-            Part::Link => &[MemberKind::Link],
-            Part::Guide => &[MemberKind::Guide, MemberKind::TurningGuide],
-            Part::PlatformBar => &[MemberKind::PlatformBar],
-            Part::Slider => &[MemberKind::Slider],
-            _ => &[],
-        }
-    }
-}
-
 /// Shape of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SolidShape {
@@ -98,6 +84,22 @@ pub struct Solid {
     pub shape: SolidShape,
     /// Value that its colour tells in place of the part, as a place on the scale from 0 to 1.
     pub value: Option<f64>,
+}
+
+impl Solid {
+    /// Returns whether the solid shows a member, or a part of it.
+    pub fn shows(&self, member: &MemberId) -> bool {
+        let kinds: &[MemberKind] = match self.part {
+            Part::Tube | Part::Rod => &[MemberKind::TelescopicLeg],
+            Part::Crank => &[MemberKind::Crank],
+            Part::Link => &[MemberKind::Link],
+            Part::Guide => &[MemberKind::Guide, MemberKind::TurningGuide],
+            Part::PlatformBar => &[MemberKind::PlatformBar],
+            Part::Slider => &[MemberKind::Slider],
+            _ => &[],
+        };
+        self.leg == Some(member.leg) && kinds.contains(&member.kind)
+    }
 }
 
 /// A polyline of the scene.

@@ -49,12 +49,8 @@ impl BarStresses {
 
     /// Returns the stress of a bar \[Pa\]; `None` for what is no bar.
     pub fn of(&self, solid: &Solid) -> Option<f64> {
-        let kinds = solid.part.members();
-        let is_of = |member: &MemberId| Some(member.leg) == solid.leg && kinds.contains(&member.kind);
-        self.stresses
-            .iter()
-            .find(|(member, _)| is_of(member))
-            .map(|(_, stress)| *stress)
+        let found = self.stresses.iter().find(|(member, _)| solid.shows(member));
+        found.map(|(_, stress)| *stress)
     }
 }
 

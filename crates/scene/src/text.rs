@@ -183,19 +183,14 @@ pub fn motion_proof(certificate: &MotionCertificate, actuator: JointKind) -> Str
     let claim = |moment: &MotionMoment| match moment.claim {
         MotionClaim::Reach => "a leg does not reach, or a joint passes its limit".to_owned(),
         MotionClaim::Singularity => "a parallel singularity is met".to_owned(),
-        MotionClaim::Speed => "the speeds of the actuators have no bound".to_owned(),
-        MotionClaim::Force => "the forces of the actuators have no bound".to_owned(),
+        MotionClaim::Speed => "the speed of an actuator grows without bound".to_owned(),
+        MotionClaim::Force => "the force of an actuator grows without bound".to_owned(),
         MotionClaim::Limit(quantity) => format!("the limit of the {} is missed", quantity.entry().label),
     };
-    match (&certificate.verdict, certificate.bounds) {
-        (MotionVerdict::Refuted(moment), _) => {
-            format!("refuted between the samples: {}, {}", claim(moment), at(moment))
-        }
-        (MotionVerdict::Open(moment), _) => {
-            format!("open: it is not decided whether {}, {}", claim(moment), at(moment))
-        }
-        (MotionVerdict::Proved, None) => "proved at every moment".to_owned(),
-        (MotionVerdict::Proved, Some(bounds)) => format!(
+    match &certificate.verdict {
+        MotionVerdict::Refuted(moment) => format!("refuted between the samples: {}, {}", claim(moment), at(moment)),
+        MotionVerdict::Open(moment) => format!("open: it is not decided whether {}, {}", claim(moment), at(moment)),
+        MotionVerdict::Proved(bounds) => format!(
             "proved at every moment: at most {} {}/s and {} {}, at least {} mm to the limits",
             number(bounds.speed),
             actuator.unit(),

@@ -160,8 +160,8 @@ impl MotionPanel {
         summary(ui, figures, cycle, actuator);
         if let Some(proof) = &followed.proof {
             let color = match proof.verdict {
-                MotionVerdict::Proved => theme::good(ui),
-                _ => theme::bad(ui),
+                MotionVerdict::Proved(_) => theme::good(ui),
+                MotionVerdict::Refuted(_) | MotionVerdict::Open(_) => theme::bad(ui),
             };
             ui.colored_label(color, text::motion_proof(proof, actuator));
         }

@@ -20,7 +20,7 @@ pub struct StudyPanel {
 impl StudyPanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             theme::choice(ui, &mut self.as_text, false, "Fields");
             theme::choice(ui, &mut self.as_text, true, "Text");
             ui.separator();

@@ -138,11 +138,7 @@ fn relaxations(ui: &mut Ui, session: &mut Session, drivers: &Drivers, why: &WhyN
                 let times = format!("times {factor:.3}");
                 entry(
                     ui,
-                    &[range, Some(times)]
-                        .into_iter()
-                        .flatten()
-                        .collect::<Vec<_>>()
-                        .join(", "),
+                    &range.map_or_else(|| times.clone(), |range| format!("{range}, {times}")),
                 );
             }
             None => {

@@ -238,8 +238,7 @@ impl Question for MotionQuestion {
         let color = self.color;
         let path = color.and_then(|color| MotionPath::new(&model, &self.evaluation.design, &samples, color));
         let catalogue = model.settings().drive_catalogue.clone();
-        // A design whose bars have no usable stiffness has no workspace either, and a message of its own.
-        let proof = model.certify_motion(&self.evaluation.design, &outcome).ok().flatten();
+        let proof = model.certify_motion(&self.evaluation.design, &outcome);
         Ok(Some(FollowedMotion {
             outcome,
             samples,

@@ -5,10 +5,9 @@ use egui::Rect;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::NodeT as _;
-use kinefront_explorer::{Panel, Panels, dress};
-use kinefront_testkit::run_folder;
+use kinefront_explorer::Panel;
 
-use super::panels::session;
+use super::panels::drawing;
 
 /// Sizes of a panel in the three windows, without the frame.
 fn sizes(panel: Panel) -> [[f32; 2]; 3] {
@@ -22,8 +21,8 @@ fn sizes(panel: Panel) -> [[f32; 2]; 3] {
     }
 }
 
-/// Margin of a panel \[points\].
-const MARGIN: f32 = 6.0;
+/// Margin of the frame around a panel \[points\].
+const MARGIN: f32 = 8.0;
 
 /// A text that is drawn.
 struct Text {
@@ -32,10 +31,8 @@ struct Text {
 }
 
 fn texts(harness: &Harness<'_>) -> Vec<Text> {
-    let mut found = Vec::new();
-    let mut open = vec![harness.root()];
-    while let Some(node) = open.pop() {
-        let children: Vec<_> = node.children().collect();
+    let nodes = harness.root().children_recursive();
+    let texts = nodes.filter_map(|node| {
         let shown = node.accesskit_node();
         let is_text = matches!(
             shown.role(),
@@ -47,17 +44,13 @@ fn texts(harness: &Harness<'_>) -> Vec<Text> {
                 | Role::SpinButton
                 | Role::TextInput
         );
-        let words = shown.label().or_else(|| shown.value()).unwrap_or_default();
+        let words = shown.label().or_else(|| shown.value()).filter(|_| is_text)?;
         // A table places the cells that are out of view as well.
-        if is_text && !words.trim().is_empty() && node.rect().is_positive() {
-            found.push(Text {
-                words,
-                rect: node.rect(),
-            });
-        }
-        open.extend(children);
-    }
-    found
+        let rect = node.rect();
+        let is_drawn = !words.trim().is_empty() && rect.is_positive();
+        is_drawn.then_some(Text { words, rect })
+    });
+    texts.collect()
 }
 
 /// Returns what is wrong with the texts of a panel of a size.
@@ -69,7 +62,7 @@ fn faults(panel: Panel, texts: &[Text], [width, height]: [f32; 2]) -> Vec<String
     let mut faults = Vec::new();
     for text in seen.iter().filter(|_| !scrolls) {
         let right = text.rect.right();
-        if right > width + 2.0 * MARGIN {
+        if right > MARGIN + width + 1.0 {
             faults.push(format!("{} ends at {right:.0}", name(&text.words)));
         }
     }
@@ -91,22 +84,9 @@ fn faults(panel: Panel, texts: &[Text], [width, height]: [f32; 2]) -> Vec<String
 fn no_text_is_cut_off_and_none_overlaps() {
     let (mut found, mut count) = (Vec::new(), 0);
     for &panel in Panel::ALL.iter().filter(|panel| **panel != Panel::Scene) {
-        let (mut session, mut panels, mut dressed) = (session(panel), Panels::default(), false);
-        if panel == Panel::Beside {
-            session.open_beside(&run_folder());
-        }
-        let mut harness = Harness::builder().with_step_dt(1.0 / 60.0).build_ui(move |ui| {
-            if !dressed {
-                dress(ui.ctx());
-                dressed = true;
-                return;
-            }
-            let frame = egui::Frame::central_panel(ui.style()).inner_margin(MARGIN);
-            frame.show(ui, |ui| {
-                session.update();
-                panels.ui(panel, ui, &mut session);
-            });
-        });
+        let mut harness = Harness::builder()
+            .with_step_dt(1.0 / 60.0)
+            .build_ui(drawing(panel, egui::Theme::Dark));
         for size in sizes(panel) {
             harness.set_size(egui::Vec2::from(size) + egui::Vec2::splat(2.0 * MARGIN));
             harness.run_steps(12);

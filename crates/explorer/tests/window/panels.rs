@@ -13,7 +13,7 @@ use kinefront_testkit::run_folder;
 use super::support::small_study;
 
 /// Returns a session that contains everything that a panel can show.
-pub(super) fn session(panel: Panel) -> Session {
+fn session(panel: Panel) -> Session {
     let mut session =
         Session::new(StudyEditor::new(small_study(), None), None, std::sync::Arc::new(|| {})).expect("a session");
     session.open(&run_folder());
@@ -63,15 +63,31 @@ fn size(panel: Panel) -> egui::Vec2 {
     }
 }
 
+/// Returns what draws a panel of a session that contains everything, in a frame of the window's style.
+pub(super) fn drawing(panel: Panel, theme: egui::Theme) -> impl FnMut(&mut egui::Ui) {
+    let (mut session, mut panels, mut dressed) = (session(panel), Panels::default(), false);
+    if panel == Panel::Beside {
+        session.open_beside(&run_folder());
+    }
+    move |ui| {
+        if !dressed {
+            dress(ui.ctx());
+            ui.ctx().set_theme(theme);
+            dressed = true;
+            return;
+        }
+        egui::Frame::central_panel(ui.style()).show(ui, |ui| {
+            session.update();
+            panels.ui(panel, ui, &mut session);
+        });
+    }
+}
+
 #[test]
 fn every_panel_looks_as_it_did() {
     let mut results = SnapshotResults::new();
     for theme in [egui::Theme::Dark, egui::Theme::Light] {
         for &panel in Panel::ALL.iter().filter(|panel| **panel != Panel::Scene) {
-            let (mut session, mut panels, mut dressed) = (session(panel), Panels::default(), false);
-            if panel == Panel::Beside {
-                session.open_beside(&run_folder());
-            }
             let mut harness = Harness::builder()
                 .with_size(size(panel))
                 .with_theme(theme)
@@ -79,18 +95,7 @@ fn every_panel_looks_as_it_did() {
                 // The edges of letters and lines differ slightly between graphics drivers.
                 .with_options(SnapshotOptions::new().threshold(2.0).max_failed_pixels(300))
                 .wgpu()
-                .build_ui(move |ui| {
-                    if !dressed {
-                        dress(ui.ctx());
-                        ui.ctx().set_theme(theme);
-                        dressed = true;
-                        return;
-                    }
-                    egui::Frame::central_panel(ui.style()).show(ui, |ui| {
-                        session.update();
-                        panels.ui(panel, ui, &mut session);
-                    });
-                });
+                .build_ui(drawing(panel, theme));
             // Drawing the cloud of designs takes several frames, and so does a layout that measures itself.
             harness.run_steps(12);
             harness.snapshot(format!(

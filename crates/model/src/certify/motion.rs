@@ -3,11 +3,10 @@
 //! Time is divided into intervals. Over each, the poses, velocities and accelerations are polynomials with a remainder, on which
 //! the formulas of the evaluation run. An interval is halved until everything is decided on it.
 
-use super::CertifyError;
 use super::forms::{Travel, TravelForms};
 use crate::dynamics::TaskMotion;
 use crate::enclosure::TaylorModel;
-use crate::evaluation::{Bound, Model, PoseScalar, Quantity, TaskFigures, TaskOutcome, largest_of_legs};
+use crate::evaluation::{Bound, Model, Quantity, TaskFigures, TaskOutcome, largest_of_legs};
 use crate::mechanism::{Design, JointKind};
 
 /// Share by which a bound may exceed the figure that it encloses.
@@ -27,8 +26,6 @@ const MOST_OPEN: usize = 8;
 pub struct MotionCertificate {
     /// Verdict.
     pub verdict: MotionVerdict,
-    /// Bounds of the figures at every moment, if the motion is proved.
-    pub bounds: Option<MotionBounds>,
     /// Number of intervals that were examined.
     pub intervals: usize,
 }
@@ -48,12 +45,39 @@ pub struct MotionBounds {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MotionVerdict {
     /// The design follows the motion at every moment: all legs reach, no joint passes its limits, no parallel singularity is met, and the
-    /// limits of distance, speed and force are kept, those of the selected drive included.
-    Proved,
+    /// limits of distance, speed and force are kept, those of the selected drive included. The figures have these bounds.
+    Proved(MotionBounds),
     /// A claim is proved to be wrong at a moment.
     Refuted(MotionMoment),
     /// A claim could not be decided at a moment.
     Open(MotionMoment),
+}
+
+impl MotionVerdict {
+    /// Returns the name that JSON uses.
+    pub fn name(&self) -> &'static str {
+        match self {
+            MotionVerdict::Proved(_) => "proved",
+            MotionVerdict::Refuted(_) => "refuted",
+            MotionVerdict::Open(_) => "open",
+        }
+    }
+
+    /// Returns the bounds of the figures, if the motion is proved.
+    pub fn bounds(&self) -> Option<&MotionBounds> {
+        match self {
+            MotionVerdict::Proved(bounds) => Some(bounds),
+            MotionVerdict::Refuted(_) | MotionVerdict::Open(_) => None,
+        }
+    }
+
+    /// Returns where a claim is wrong or open, unless the motion is proved.
+    pub fn moment(&self) -> Option<&MotionMoment> {
+        match self {
+            MotionVerdict::Proved(_) => None,
+            MotionVerdict::Refuted(moment) | MotionVerdict::Open(moment) => Some(moment),
+        }
+    }
 }
 
 /// A moment of a motion at which a claim about it does not hold, or may not hold.
@@ -80,6 +104,19 @@ pub enum MotionClaim {
     Force,
     /// The limit of a quantity is kept.
     Limit(Quantity),
+}
+
+impl MotionClaim {
+    /// Returns the name that JSON uses.
+    pub fn name(self) -> &'static str {
+        match self {
+            MotionClaim::Reach => "reach",
+            MotionClaim::Singularity => "singularity",
+            MotionClaim::Speed => "speed",
+            MotionClaim::Force => "force",
+            MotionClaim::Limit(quantity) => quantity.entry().key,
+        }
+    }
 }
 
 /// A figure of a motion that a bound encloses.
@@ -126,7 +163,6 @@ impl Figure {
 struct Proof<'a> {
     forms: TravelForms<'a>,
     motion: &'a TaskMotion,
-    sign: f64,
     /// The distance to the limits with the opposite sign, the speed, and the force.
     figures: [Figure; 3],
     intervals: usize,
@@ -160,7 +196,6 @@ impl Proof<'_> {
             determinant,
             drives,
         } = travel.map_err(|is_beyond| (MotionClaim::Reach, is_beyond))?;
-        let determinant = determinant.times(self.sign);
         if !determinant.is_positive() {
             return Err((MotionClaim::Singularity, determinant.is_negative()));
         }
@@ -177,6 +212,16 @@ impl Proof<'_> {
             figure.most = figure.most.max(upper);
         }
         Ok(())
+    }
+
+    /// Returns the bounds of the figures on the accepted intervals.
+    fn bounds(&self) -> MotionBounds {
+        let [reach, speed, force] = self.figures.each_ref().map(|figure| figure.most);
+        MotionBounds {
+            reach: -reach,
+            speed,
+            force,
+        }
     }
 
     /// Decides the claims over all moments in turn. What is wrong counts more than what is open: where a figure passes its limit, the
@@ -213,50 +258,33 @@ impl Proof<'_> {
             }
             begin += duration + motion.dwell();
         }
-        open.first()
-            .map_or(MotionVerdict::Proved, |moment| MotionVerdict::Open(*moment))
+        match open.first() {
+            Some(moment) => MotionVerdict::Open(*moment),
+            None => MotionVerdict::Proved(self.bounds()),
+        }
     }
 }
 
 impl Model {
     /// Proves that a design follows its motion at every moment, with the drive that it selects, and bounds the distance to the joint
-    /// limits, and the speeds and forces of the actuators. `None` if the design does not follow the motion at its samples already.
+    /// limits, and the speeds and forces of the actuators. `None` if the design does not follow the motion at its samples already, or if
+    /// its bars have no usable stiffness.
     ///
     /// Root mean squares, powers and energies are those of the samples: of them nothing is proved.
-    ///
-    /// # Errors
-    /// [`CertifyError::Degenerate`]: bars without a usable stiffness.
-    pub fn certify_motion(
-        &self,
-        design: &Design,
-        outcome: &TaskOutcome,
-    ) -> Result<Option<MotionCertificate>, CertifyError> {
-        let (Some(motion), Some(figures)) = (&outcome.motion, outcome.figures()) else {
-            return Ok(None);
-        };
+    pub fn certify_motion(&self, design: &Design, outcome: &TaskOutcome) -> Option<MotionCertificate> {
+        let (motion, figures) = (outcome.motion.as_ref()?, outcome.figures()?);
         let driven = self.driven_by(outcome.drive.map(|drive| drive.place));
-        let dynamics = driven.dynamics_in_motion(design).ok_or(CertifyError::Degenerate)?;
+        let begin = motion.rests().next()?.pose;
         let mut proof = Proof {
-            forms: TravelForms::new(&driven, design, dynamics)?,
-            sign: motion.instants().next().map_or(1.0, |first| {
-                let found = self.pose(design, &first.pose);
-                found.map_or(1.0, |found| found.values[PoseScalar::Determinant].signum())
-            }),
+            forms: TravelForms::new(&driven, design, &begin)?,
             motion,
             figures: self.claims(design, outcome, figures),
             intervals: 0,
         };
-        let verdict = proof.run();
-        let [reach, speed, force] = proof.figures.map(|figure| figure.most);
-        Ok(Some(MotionCertificate {
-            verdict,
-            bounds: (verdict == MotionVerdict::Proved).then_some(MotionBounds {
-                reach: -reach,
-                speed,
-                force,
-            }),
+        Some(MotionCertificate {
+            verdict: proof.run(),
             intervals: proof.intervals,
-        }))
+        })
     }
 
     /// Returns the figures of a motion that are to be bounded, with their limits.

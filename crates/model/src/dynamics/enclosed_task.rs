@@ -41,20 +41,12 @@ impl Piece {
     fn enclose(&self, [way, speed, acceleration]: [EnclosedNumber; 3]) -> EnclosedMotion {
         // The numbers that define a path are exact.
         let exactly = |value: f64| EnclosedNumber(TaylorModel::exactly(value));
-        match self {
-            Piece::Straight { from, by } => {
-                let at = [0, 1, 2].map(|k: usize| (exactly(from[k]) + exactly(by[k]) * way).0);
-                let (sine, cosine) = at[2].sine_and_cosine_of();
-                EnclosedMotion {
-                    pose: PoseEnclosure {
-                        position: [at[0], at[1]],
-                        cosine,
-                        sine,
-                    },
-                    twist: by.map(|by| exactly(by) * speed),
-                    acceleration: by.map(|by| exactly(by) * acceleration),
-                }
-            }
+        let (at, twist, acceleration) = match self {
+            Piece::Straight { from, by } => (
+                [0, 1, 2].map(|k: usize| exactly(from[k]) + exactly(by[k]) * way),
+                by.map(|by| exactly(by) * speed),
+                by.map(|by| exactly(by) * acceleration),
+            ),
             Piece::Circle { centre, arm, phi } => {
                 let turn = way.splat(2.0 * std::f64::consts::PI);
                 let (sine, cosine) = (turn * way).0.sine_and_cosine_of();
@@ -67,17 +59,23 @@ impl Piece {
                 let (rate, change) = (turn * speed, turn * acceleration);
                 let towards = [0, 1].map(|k: usize| along[k] * change - out[k] * (rate * rate));
                 let still = exactly(0.0);
-                let (home_sine, home_cosine) = TaylorModel::exactly(*phi).sine_and_cosine_of();
-                EnclosedMotion {
-                    pose: PoseEnclosure {
-                        position: [(exactly(centre.x) + out[0]).0, (exactly(centre.y) + out[1]).0],
-                        cosine: home_cosine,
-                        sine: home_sine,
-                    },
-                    twist: [along[0] * rate, along[1] * rate, still],
-                    acceleration: [towards[0], towards[1], still],
-                }
+                (
+                    [exactly(centre.x) + out[0], exactly(centre.y) + out[1], exactly(*phi)],
+                    [along[0] * rate, along[1] * rate, still],
+                    [towards[0], towards[1], still],
+                )
             }
+        };
+        let [x, y, phi] = at.map(|coordinate| coordinate.0);
+        let (sine, cosine) = phi.sine_and_cosine_of();
+        EnclosedMotion {
+            pose: PoseEnclosure {
+                position: [x, y],
+                cosine,
+                sine,
+            },
+            twist,
+            acceleration,
         }
     }
 }

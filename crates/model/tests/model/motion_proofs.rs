@@ -106,10 +106,7 @@ fn a_proved_motion_keeps_its_bounds_at_every_moment() {
                 let outcome = follow(model, design, &task, &frame);
                 let name = format!("{design} along {:?} by {law:?}", task.shape);
                 assert!(outcome.figures().is_some(), "{name}: {outcome:?}");
-                let found = model
-                    .certify_motion(design, &outcome)
-                    .expect("a proof")
-                    .expect("a motion");
+                let found = model.certify_motion(design, &outcome).expect("a motion");
                 let dense = Task {
                     samples: 3000,
                     ..task.clone()
@@ -123,7 +120,7 @@ fn a_proved_motion_keeps_its_bounds_at_every_moment() {
                     .figures()
                     .expect("figures")
                     .clone();
-                let bounds = found.bounds.unwrap_or_else(|| panic!("{name}: {found:?}"));
+                let bounds = *found.verdict.bounds().unwrap_or_else(|| panic!("{name}: {found:?}"));
                 proved += 1;
                 for (bound, peak) in [
                     (bounds.speed, largest_of_legs(peak_speed)),
@@ -172,12 +169,9 @@ fn what_happens_between_the_samples_is_found() {
             }];
             let limited = Model::new(settings).expect("a model");
             let outcome = follow(&limited, design, &rough, &frame);
-            let found = limited
-                .certify_motion(design, &outcome)
-                .expect("a proof")
-                .expect("a motion");
+            let found = limited.certify_motion(design, &outcome).expect("a motion");
             match found.verdict {
-                MotionVerdict::Proved => assert!(is_kept, "{design}: {limit} of {peak}"),
+                MotionVerdict::Proved(_) => assert!(is_kept, "{design}: {limit} of {peak}"),
                 MotionVerdict::Refuted(moment) => {
                     assert!(!is_kept, "{design}: {limit} of {peak}");
                     assert_eq!(moment.claim, MotionClaim::Limit(quantity));
@@ -218,12 +212,9 @@ fn no_motion_is_proved_that_a_dense_sampling_refutes() {
                 ..straight
             };
             let is_followed = follow(model, design, &dense, &frame).figures().is_some();
-            let found = model
-                .certify_motion(design, &outcome)
-                .expect("a proof")
-                .expect("a motion");
+            let found = model.certify_motion(design, &outcome).expect("a motion");
             match found.verdict {
-                MotionVerdict::Proved => {
+                MotionVerdict::Proved(_) => {
                     assert!(is_followed, "{design} does not follow {dense:?}");
                     proved += 1;
                 }

@@ -38,17 +38,9 @@ pub(super) fn motion(report: &Report) -> Markup {
                 @if has_drives { td { (motion.drive.as_deref().unwrap_or("none")) } }
                 (optional(motion.shortest.map(|shortest| shortest.time)))
                 td { (motion.shortest.map_or("–", |shortest| shortest.limit.quantity.entry().label)) }
-                td { (motion.proof.as_ref().map_or("–", verdict)) }
+                td { (motion.proof.as_ref().map_or("–", MotionVerdict::name)) }
             } } }
         } }
-    }
-}
-
-fn verdict(verdict: &MotionVerdict) -> &'static str {
-    match verdict {
-        MotionVerdict::Proved => "proved",
-        MotionVerdict::Refuted(_) => "refuted",
-        MotionVerdict::Open(_) => "open",
     }
 }
 

@@ -289,45 +289,35 @@ impl Scatter {
 
     fn controls(&mut self, ui: &mut Ui, session: &mut Session) {
         // A row that is wider than the panel would widen the plot as well.
-        let is_narrow = ui.available_width() < 465.0;
-        if is_narrow {
-            ui.horizontal(|ui| self.axis_field(ui, session, 0, "x"));
-            ui.horizontal(|ui| {
-                self.axis_field(ui, session, 1, "y");
-                self.fit(ui);
-            });
-        } else {
-            ui.horizontal(|ui| {
-                self.axis_field(ui, session, 0, "x");
-                self.axis_field(ui, session, 1, "y");
-                self.fit(ui);
-            });
-        }
-        let coloring = |scatter: &mut Self, ui: &mut Ui| scatter.coloring.ui(ui, session.study().named_quantities());
-        if ui.available_width() < 350.0 {
-            ui.horizontal(|ui| coloring(self, ui));
-            ui.horizontal(|ui| self.tool.ui(ui));
-        } else {
-            ui.horizontal(|ui| {
-                coloring(self, ui);
+        let width = ui.available_width();
+        ui.horizontal_wrapped(|ui| {
+            self.axis_field(ui, session, 0, "x");
+            if width < 465.0 {
+                ui.end_row();
+            }
+            self.axis_field(ui, session, 1, "y");
+            if ui
+                .button("Fit")
+                .on_hover_text("fits the view to the feasible designs (or double-click)")
+                .clicked()
+            {
+                self.fitted = true;
+            }
+        });
+        ui.horizontal_wrapped(|ui| {
+            self.coloring.ui(ui, session.study().named_quantities());
+            if width < 350.0 {
+                ui.end_row();
+            } else {
                 ui.separator();
-                self.tool.ui(ui);
-            });
-        }
+            }
+            self.tool.ui(ui);
+        });
         ui.horizontal_wrapped(|ui| {
             for architecture in session.study().architectures.clone() {
                 include(ui, session, architecture);
             }
         });
-    }
-
-    /// Shows the button that fits the view.
-    fn fit(&mut self, ui: &mut Ui) {
-        let button = ui.button("Fit");
-        let hint = "fits the view to the feasible designs (or double-click)";
-        if button.on_hover_text(hint).clicked() {
-            self.fitted = true;
-        }
     }
 
     /// Shows the fields of an axis.

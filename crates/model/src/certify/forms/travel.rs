@@ -1,12 +1,12 @@
 //! What a design does along a motion, over an interval of time (docs/model.md, section 15.11).
 
 use super::strength::planar;
-use super::{CertifyError, Enclosures, Forms, ProvedForms, ReachForms, enclose_legs, turn};
+use super::{Enclosures, Forms, ProvedForms, ReachForms, enclose_legs, turn};
 use crate::dynamics::{DynamicsInputs, DynamicsModel, EnclosedMotion};
 use crate::enclosure::TaylorModel;
 use crate::evaluation::Model;
 use crate::mechanism::{Design, LegEnclosure};
-use crate::spatial::LEGS;
+use crate::spatial::{LEGS, Pose};
 
 /// What a design does over an interval of time.
 pub(in super::super) struct Travel {
@@ -25,11 +25,14 @@ pub(in super::super) struct TravelForms<'a> {
 }
 
 impl<'a> TravelForms<'a> {
-    /// Prepares the forms of a design with the dynamics of the drives that it has.
-    pub fn new(model: &'a Model, design: &'a Design, dynamics: DynamicsModel) -> Result<Self, CertifyError> {
-        let mut forms = Forms::new(model, design)?;
+    /// Prepares the forms of a design for a motion that begins at a pose; `None` for bars without a usable stiffness.
+    pub fn new(model: &'a Model, design: &'a Design, begin: &Pose) -> Option<Self> {
+        let mut forms = Forms::new(model, design).ok()?.with_sign_at(begin);
         forms.reach = Some(ReachForms::without_limit(model, design));
-        Ok(Self { forms, dynamics })
+        Some(Self {
+            forms,
+            dynamics: model.dynamics_in_motion(design)?,
+        })
     }
 
     /// Encloses what the design does over an interval of a motion.
@@ -51,7 +54,7 @@ impl<'a> TravelForms<'a> {
         };
         Ok(Travel {
             reach: distances.iter().map(|(_, value)| *value).collect(),
-            determinant: determinant(&legs),
+            determinant: determinant(&legs).times(forms.sign),
             drives: self.dynamics.enclose_drives(&inputs, motion.twist, motion.acceleration),
         })
     }
