@@ -25,6 +25,8 @@ pub struct DynamicsJson {
     mass_rigid: [[f64; 3]; 3],
     gains: GainsJson,
     pose_error: PoseErrorJson,
+    /// The lowest of the frame of finite elements, in the plane and out of it.
+    frame_frequencies_hz: Option<[f64; 2]>,
     #[serde(flatten)]
     response: Option<ResponseJson>,
 }
@@ -97,6 +99,7 @@ impl DynamicsJson {
                 budget_phi_rad: accuracy.budget_orientation.parts().into_iter().collect(),
                 covariance_m2: accuracy.covariance,
             },
+            frame_frequencies_hz: dynamics.frame_frequencies(),
             response: motion.map(|motion| {
                 let response = dynamics.response(motion);
                 ResponseJson {

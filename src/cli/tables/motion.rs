@@ -25,6 +25,12 @@ pub fn dynamics(design: &Design, dynamics: &PosedDynamics<'_>, motion: Option<&M
             format!("{} Hz", list(out_of_plane)),
         ]);
     }
+    if let Some(of_frame) = dynamics.frame_frequencies() {
+        facts.add_row([
+            "lowest of the frame of finite elements, in and out of the plane".to_owned(),
+            format!("{} Hz", list(&of_frame)),
+        ]);
+    }
     facts.add_row([
         "bending of the leg bars themselves".to_owned(),
         format!("{} Hz", number(report.bar_frequency)),

@@ -39,14 +39,23 @@ impl VibrationPanel {
         let lever = known.evaluation.design.platform_radius();
         let dynamics = session.pose_dynamics();
         let report = dynamics.and_then(|known| known.report);
+        let of_frame = dynamics.and_then(|known| known.frame_frequencies);
         let modes = dynamics.and_then(|known| Some(known.vibrations.as_ref()?.modes.clone()));
         ScrollArea::vertical().show(ui, |ui| {
             match (report, modes) {
                 (Some(report), Some(modes)) => {
                     self.modes(ui, session, &modes, lever);
                     let bars = number(report.bar_frequency);
+                    let lowest = of_frame.map_or(String::new(), |[in_plane, out_of_plane]| {
+                        let [in_plane, out_of_plane] = [in_plane, out_of_plane].map(number);
+                        format!(
+                            "With three finite elements per bar, the lowest ones are {in_plane} Hz in the plane and \
+                             {out_of_plane} Hz out of it. "
+                        )
+                    });
                     ui.weak(format!(
-                        "The bending modes of the leg bars themselves start at {bars} Hz and are not included here."
+                        "These frequencies leave out that the bars also vibrate between their ends. {lowest}The leg bars \
+                         alone bend at {bars} Hz."
                     ));
                 }
                 (Some(_), None) => {

@@ -25,6 +25,8 @@ pub struct PoseDynamics {
     asked: Asked,
     /// Frequencies, masses and errors; `None` at a singular or unreachable pose.
     pub report: Option<DynamicsReport>,
+    /// Lowest frequencies of the frame of finite elements, in the plane and out of it \[Hz\]; `None` also on rails that bend.
+    pub frame_frequencies: Option<[f64; 2]>,
     /// The vibrations; `None` also on rails that bend.
     pub vibrations: Option<Arc<Vibrations>>,
 }
@@ -50,17 +52,19 @@ impl Asked {
             tolerances: self.tolerances.clone(),
             ..self.study.0.study().clone()
         };
-        let (mut report, mut vibrations) = (None, None);
+        let (mut report, mut vibrations, mut frame_frequencies) = (None, None, None);
         if let Ok(model) = study.model()
             && let Ok(Some(posed)) = model.posed(&self.design).dynamics_at(&self.pose)
             && let Some(found) = posed.report()
         {
             vibrations = Vibrations::new(&model, &self.design, &posed, &found).map(Arc::new);
+            frame_frequencies = posed.frame_frequencies();
             report = Some(found);
         }
         PoseDynamics {
             asked: self,
             report,
+            frame_frequencies,
             vibrations,
         }
     }

@@ -9,6 +9,7 @@ mod drive;
 mod effort;
 mod enclosed_task;
 mod error;
+mod frame;
 mod inverse;
 mod legs;
 mod modes;
@@ -28,7 +29,8 @@ use glam::DVec2;
 
 use crate::lanes::{Planar, Real};
 use crate::mechanism::{
-    Architecture, CrossSection, CrossSections, Design, JointKind, JointMasses, JointPart, LegFrame, LegSettings,
+    Architecture, BarLength, CrossSection, CrossSections, Design, JointKind, JointMasses, JointPart, LegFrame,
+    LegSettings, MemberKind,
 };
 use crate::spatial::LEGS;
 use crate::stiffness::{BarCompliance, Material, StiffnessModel};
@@ -44,6 +46,10 @@ pub(crate) struct DynamicsModel {
     /// Square of the radius of gyration of the sections of the legs and of the platform about an axis in the section \[m²\].
     gyration: [f64; 2],
     compliance: [BarCompliance; 2],
+    /// Compliance of an actuator \[m/N or rad/(N·m)\].
+    actuator_compliance: f64,
+    /// Length of a telescopic leg in the beam model where that is the same at all poses \[m\].
+    telescopic_beam: Option<f64>,
     /// Bodies on points of each leg, in the order of its joints: joints, motors and sliders.
     points: [Option<PointMass>; POINTS],
     actuator: JointKind,
@@ -134,6 +140,11 @@ impl DynamicsModel {
                 gyration(&sections.platform, radii[1]),
             ],
             compliance: stiffness.bars_of_design(),
+            actuator_compliance: stiffness.actuator_compliance(),
+            telescopic_beam: match basis.legs.telescopic_bar {
+                BarLength::Longest if chain.distal == MemberKind::TelescopicLeg => Some(longest),
+                _ => None,
+            },
             points: points(architecture, basis.joints, settings.drives.slider_mass, &paths[0]),
             actuator: architecture.actuator(),
             driven: architecture.driven(),

@@ -17,7 +17,7 @@ pub(super) type Row<V> = [V; 3];
 type Displacement<V> = [Row<V>; 3];
 
 /// Abscissas and weights of the Gauss rule with four points on `[−1, 1]`, which is exact for the product of two cubics.
-const GAUSS: [[f64; 2]; 4] = [
+pub(super) const GAUSS: [[f64; 2]; 4] = [
     [-0.861_136_311_594_052_6, 0.347_854_845_137_453_85],
     [-0.339_981_043_584_856_26, 0.652_145_154_862_546_2],
     [0.339_981_043_584_856_26, 0.652_145_154_862_546_2],
@@ -398,7 +398,7 @@ impl DynamicsModel {
 
     /// Returns whether a bar consists of a tube and a rod.
     #[inline(always)]
-    fn is_telescopic(&self, bar: usize) -> bool {
+    pub(super) fn is_telescopic(&self, bar: usize) -> bool {
         bar == DISTAL && self.paths[0].joints.iter().any(|joint| joint.is_bush)
     }
 

@@ -64,7 +64,15 @@ fn evaluate<L: Leg>(
     let mut drive = None;
     if let Some(home) = home {
         let positions = reporter.positions(grid);
-        quantities::add_of_region(&mut quantities, model, checker, &found, home, &positions, grid);
+        quantities::add_of_region(
+            &mut quantities,
+            (model, design),
+            checker,
+            &found,
+            home,
+            &positions,
+            grid,
+        );
         let home_phi_deg = found.orientations[home].phi_deg;
         let frame = model.task_frame(design, workspace_radius, home_phi_deg);
         drive = quantities::add_of_task(&mut quantities, model, design, &frame);

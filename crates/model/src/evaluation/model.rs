@@ -548,9 +548,13 @@ impl Model {
         let ModelSettings {
             thresholds, quantities, ..
         } = &self.settings;
+        let is_asked = |scalar: PoseScalar| {
+            quantities.contains(Quantity::Worst(scalar))
+                || scalar == PoseScalar::NaturalFrequency && quantities.contains(Quantity::FrameFrequency)
+        };
         scalars
             .iter()
-            .any(|&scalar| thresholds.get(scalar).is_some() || quantities.contains(Quantity::Worst(scalar)))
+            .any(|&scalar| thresholds.get(scalar).is_some() || is_asked(scalar))
     }
 }
 

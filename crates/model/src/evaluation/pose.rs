@@ -69,6 +69,14 @@ impl Model {
         self.posed(design).at(pose)
     }
 
+    /// Returns the lowest natural frequency of the frame of finite elements of a design at a pose \[Hz\]; `None` where the design does not
+    /// reach the pose or has none.
+    pub(super) fn frame_frequency(&self, design: &Design, pose: &Pose) -> Option<f64> {
+        let posed = self.posed(design);
+        let [in_plane, out_of_plane] = posed.dynamics_at(pose).ok()??.frame_frequencies()?;
+        Some(in_plane.min(out_of_plane))
+    }
+
     /// Gives a prepared design motors of a mass \[kg\] and rotors of an inertia \[kg or kg·m²\] in place of those of the study.
     pub(super) fn set_drive(&self, posed: &mut PosedDesign, mass: f64, inertia: f64) {
         let (settings, joints) = self.driven(posed.actuator(), mass, inertia);
@@ -239,6 +247,12 @@ impl PosedDynamics<'_> {
     /// Returns how the bars move with the platform in a vibration.
     pub fn vibrating_bars(&self) -> Vec<VibratingBar> {
         self.dynamics.vibrating_bars(&self.inputs)
+    }
+
+    /// Returns the lowest natural frequencies of the frame of finite elements, in the plane and out of it \[Hz\]; `None` on rails that
+    /// bend, and at a singular pose.
+    pub fn frame_frequencies(&self) -> Option<[f64; 2]> {
+        self.dynamics.frame_frequencies(&self.inputs)
     }
 
     /// Returns frequencies, masses, gains and errors; `None` at a singular pose.

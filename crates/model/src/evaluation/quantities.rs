@@ -9,6 +9,7 @@ use super::{
 use crate::dynamics::TaskFrame;
 use crate::mechanism::{Design, Leg};
 use crate::pose::{PoseChecker, ScalarSet};
+use crate::spatial::Pose;
 use crate::workspace::{Grid, Positions, RegularWorkspace, ValueColumns};
 
 /// Returns the quantities of a design that its constraints and dimensions determine, as far as the study asks for them.
@@ -45,7 +46,7 @@ pub(super) fn known(
 /// Adds those quantities over the region of a design that the study asks for.
 pub(super) fn add_of_region<L: Leg>(
     values: &mut QuantityValues,
-    model: &Model,
+    (model, design): (&Model, &Design),
     checker: &PoseChecker<L>,
     found: &RegularWorkspace,
     home: usize,
@@ -53,6 +54,11 @@ pub(super) fn add_of_region<L: Leg>(
     grid: &Grid,
 ) {
     let asked = |quantity: Quantity| model.settings().quantities.contains(quantity);
+    if asked(Quantity::FrameFrequency) {
+        let pose = pose_of_lowest_frequency(checker, found, home, positions);
+        let frequency = pose.and_then(|pose| model.frame_frequency(design, &pose));
+        values.set(Quantity::FrameFrequency, frequency);
+    }
     if asked(Quantity::DexterityMean) {
         let mean = dexterity_mean(model, checker, found, home, grid);
         values.set(Quantity::DexterityMean, Some(mean));
@@ -143,6 +149,29 @@ pub(super) fn of_task(quantity: Quantity, model: &Model, design: &Design, outcom
         _ => return None,
     };
     quantity.is_of(design).then_some(value)
+}
+
+/// Returns the pose of the region at which the condensed frame has the lowest natural frequency.
+fn pose_of_lowest_frequency<L: Leg>(
+    checker: &PoseChecker<L>,
+    found: &RegularWorkspace,
+    home: usize,
+    positions: &Positions,
+) -> Option<Pose> {
+    let set: ScalarSet = [PoseScalar::NaturalFrequency].into_iter().collect();
+    let indices = positions.indices();
+    let mut lowest = (f64::INFINITY, None);
+    for orientation in found.orientation_grid.window(home) {
+        let orientation = &found.orientations[orientation];
+        let minima = checker.worst(set, &orientation.arms, &positions.xs, &positions.ys, &indices);
+        let lowest_here = &minima[PoseScalar::NaturalFrequency as usize];
+        let (value, index) = (lowest_here.value, lowest_here.index);
+        if value < lowest.0 {
+            let phi = orientation.phi_deg.to_radians();
+            lowest = (value, Some(Pose::new(positions.xs[index], positions.ys[index], phi)));
+        }
+    }
+    lowest.1
 }
 
 /// Returns the mean inverse condition number over the region and the window: each position is weighted by its area, and each

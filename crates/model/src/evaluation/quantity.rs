@@ -102,6 +102,11 @@ quantities! {
     DriveUtilization = QuantityEntry::new("drive_utilization", "", "utilization of the drives", Scope::Region, Better::Lower,
         "Largest fraction of the peak force, rated force and speed of the selected drive that the motion uses; above 1, no drive of the catalogue \
          can perform the motion.").above_zero();
+    /// Lowest natural frequency of the frame of finite elements.
+    FrameFrequency = QuantityEntry::new("frame_frequency_hz", "Hz", "frame frequency", Scope::Region, Better::Higher,
+        "Lowest natural frequency of a frame with three finite elements per bar, at the pose of the region where natural_frequency_hz is lowest: \
+         bars also vibrate between their ends, and guides beyond their carriages.")
+        .above_zero().logarithmic().reference(Reference::Number(1e3));
     /// Length that a leg and the platform bridge, the value of g1.
     Assembly = QuantityEntry::new("assembly_m", "m", "assembly", Scope::Design, Better::Higher,
         "Distance that a leg and the platform can span together; g1 requires it to reach from the base to O.");

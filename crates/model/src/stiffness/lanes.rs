@@ -44,6 +44,11 @@ impl StiffnessModel {
         [self.leg_bar, self.platform_bar]
     }
 
+    /// Returns the compliance of an actuator \[m/N or rad/(N·m)\].
+    pub(crate) fn actuator_compliance(&self) -> f64 {
+        self.actuator
+    }
+
     /// Returns whether the legs are on rails that bend.
     #[inline(always)]
     pub(crate) fn is_on_bending_rails(&self) -> bool {

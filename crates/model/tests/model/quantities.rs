@@ -354,3 +354,24 @@ fn limits_of_designs_make_them_infeasible_by_their_relative_shortfall() {
     assert!((wide.violation - (footprint - 1.0)).abs() < 1e-12);
     assert!(with(Quantity::DexterityMean, Bound::AtLeast(0.1)).is_feasible());
 }
+
+#[test]
+fn the_frame_frequency_is_that_of_the_pose_with_the_lowest_one() {
+    let lowest = |pair: [f64; 2]| pair[0].min(pair[1]);
+    check(Quantity::FrameFrequency, 1e-10, |model, evaluation| {
+        let posed = model.posed(&evaluation.design);
+        let mut found = (f64::INFINITY, 0.0);
+        for pose in poses(evaluation) {
+            let Ok(Some(dynamics)) = posed.dynamics_at(&pose) else {
+                continue;
+            };
+            let condensed = dynamics.report().expect("regular").lowest_frequency();
+            let condensed = condensed.expect("rigid rails");
+            // Poses that symmetry makes equal differ by rounding.
+            if condensed < found.0 * (1.0 - 1e-9) {
+                found = (condensed, lowest(dynamics.frame_frequencies().expect("regular")));
+            }
+        }
+        found.1
+    });
+}

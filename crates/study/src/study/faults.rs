@@ -333,7 +333,9 @@ fn missing_input(study: &Study, quantity: Quantity) -> Option<String> {
         Quantity::Worst(PoseScalar::SafetyFactor) if study.material.yield_strength_pa.is_none() => {
             "has no value without a yield strength; set material.yield_strength_pa, or material.name to a known material"
         }
-        Quantity::Worst(PoseScalar::BucklingFactor | PoseScalar::NaturalFrequency) if rails_bend => {
+        Quantity::Worst(PoseScalar::BucklingFactor | PoseScalar::NaturalFrequency) | Quantity::FrameFrequency
+            if rails_bend =>
+        {
             "has no value on rails that bend; omit rails.radius_m, or this quantity"
         }
         Quantity::Worst(PoseScalar::PositionError | PoseScalar::OrientationError)
