@@ -6,7 +6,7 @@ use super::pointing::Description;
 use super::{Session, theme};
 use kinefront_recording::{Viewpoint, VisibleLayers};
 use kinefront_scene::palette;
-use kinefront_scene::text::{number, short};
+use kinefront_scene::text::{self, number, short};
 use kinefront_scene::{ColorMap, Field, FieldLegend, StressLegend};
 
 /// Width and height of the colour bar \[points\].
@@ -67,9 +67,9 @@ fn stress_words(legend: &StressLegend) -> String {
         format!(", {} % of the yield strength", number(100.0 * share))
     });
     format!(
-        "stress: dark 0 to bright {} MPa in {}{of_yield}",
+        "stress: dark 0 to bright {} MPa in the {}{of_yield}",
         number(1e-6 * legend.largest),
-        legend.member
+        text::member(&legend.member)
     )
 }
 

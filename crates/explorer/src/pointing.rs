@@ -7,7 +7,7 @@ use kinefront_model::evaluation::{Better, Contribution, MemberReport};
 use kinefront_model::mechanism::MemberKind;
 use kinefront_model::spatial::Pose;
 use kinefront_recording::SceneTarget;
-use kinefront_scene::text::number;
+use kinefront_scene::text::{self, number};
 use kinefront_scene::{BarStresses, EllipsoidKind, Field, Heatmap, Part, ellipsoids, manipulator};
 
 /// Entity under the pointer.
@@ -122,7 +122,8 @@ fn of_solid(session: &Session, parts: &[Part], index: usize) -> Option<Descripti
             let member = members.iter().find(|member| solid.shows(&member.member))?;
             let mut description = describe_member(member);
             if session.view().layers.stresses
-                && let Some(stress) = BarStresses::new(model, &design, &pose).and_then(|stresses| stresses.of(solid))
+                && let Some(stresses) = BarStresses::new(model, &design, &pose, session.view().layers.wrench)
+                && let Some(stress) = stresses.of(solid)
             {
                 description
                     .lines
@@ -139,7 +140,6 @@ fn of_solid(session: &Session, parts: &[Part], index: usize) -> Option<Descripti
 
 /// Describes a member at the pose of its report.
 pub(super) fn describe_member(report: &MemberReport) -> Description {
-    let kind = report.member.kind.name().replace('_', " ");
     let is_slider = report.member.kind == MemberKind::Slider;
     let thickness = if is_slider { "half width" } else { "radius" };
     let of_rail = if is_slider { " of its rail" } else { "" };
@@ -169,7 +169,7 @@ pub(super) fn describe_member(report: &MemberReport) -> Description {
             .actuator
             .map(|contribution| of_all(" of its actuator", contribution)),
     );
-    Description::new(format!("{kind} of leg {}", report.member.leg + 1), lines)
+    Description::new(text::member(&report.member), lines)
 }
 
 fn of_ellipsoid(session: &Session, kind: EllipsoidKind, index: usize) -> Option<Description> {

@@ -31,6 +31,10 @@ pub(super) const INK: [u8; 3] = [12, 14, 18];
 /// Ellipsoids.
 pub(super) const ELLIPSOID: [u8; 3] = [255, 235, 140];
 
+/// A force on the platform, and a moment.
+pub(super) const FORCE: [u8; 3] = [255, 90, 200];
+pub(super) const MOMENT: [u8; 3] = [90, 220, 255];
+
 /// Returns the colour of an edge of the reachable workspace: orange at the end of a leg's reach, which is a serial
 /// singularity, and where two joints of a leg coincide; grey at a joint limit.
 pub(super) fn edge(reason: ReachReason) -> Color {

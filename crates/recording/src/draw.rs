@@ -5,8 +5,8 @@ use std::cell::RefCell;
 use glam::{DVec2, DVec3};
 use rerun::components::FillMode;
 use rerun::{
-    Angle, AsComponents, Boxes3D, Color, Cylinders3D, Ellipsoids3D, LineStrips3D, Mesh3D, Points3D, Quaternion, Radius,
-    RotationAxisAngle,
+    Angle, Arrows3D, AsComponents, Boxes3D, Color, Cylinders3D, Ellipsoids3D, LineStrips3D, Mesh3D, Points3D,
+    Quaternion, Radius, RotationAxisAngle,
 };
 
 use super::colors::{self, rgb};
@@ -462,6 +462,17 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws a marker with a text.
+    /// Draws an arrow with a text at its head.
+    pub(super) fn arrow(&self, entity: &str, at: DVec3, vector: DVec3, text: &str, color: [u8; 3]) -> DrawResult {
+        let width = 0.03 * vector.length() as f32;
+        let arrows = Arrows3D::from_vectors([point(vector)])
+            .with_origins([point(at)])
+            .with_radii([Radius::new_scene_units(width)])
+            .with_colors([rgb(color)]);
+        self.row(entity, &arrows)?;
+        self.word(&format!("{entity}/text"), at + vector * 1.06, text, colors::TEXT)
+    }
+
     pub(super) fn mark(&self, entity: &str, at: DVec3, text: &str, color: [u8; 3]) -> DrawResult {
         let points = Points3D::new([point(at)])
             .with_radii([Radius::new_ui_points(5.0)])

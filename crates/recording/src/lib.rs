@@ -71,6 +71,7 @@ mod paths {
     pub const PROOF: &str = "/design/proof";
     pub const PATH: &str = "/design/path";
     pub const MOTION: &str = "/motion";
+    pub const WRENCH: &str = "/design/wrench";
     pub const VIBRATION: &str = "/design/vibration";
     pub const HEATMAP: &str = "/design/heatmap";
     pub const HEATMAP_LEGEND: &str = "/legend";

@@ -44,6 +44,9 @@ pub struct VisibleLayers {
     pub platform: bool,
     /// Bars coloured by their stresses at the pose instead of by their parts.
     pub stresses: bool,
+    /// A wrench on the platform at `P`, forces \[N\] before moments \[N·m\], drawn as arrows. The stresses are those under it, instead of under
+    /// the loads of the study.
+    pub wrench: Option<[f64; 6]>,
     /// Names of joints and frames.
     pub labels: bool,
     /// The pair of members with the smallest clearance, with its distance.
@@ -72,6 +75,7 @@ impl Default for VisibleLayers {
             legs: true,
             platform: true,
             stresses: false,
+            wrench: None,
             labels: true,
             clearance: true,
             workspace: true,
@@ -394,12 +398,15 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<SceneLegends, Recordin
     if let Ok(mut scene) = manipulator(model, &evaluation.design, &pose) {
         keep(&mut scene, layers);
         if layers.stresses
-            && let Some(stresses) = BarStresses::new(model, &evaluation.design, &pose)
+            && let Some(stresses) = BarStresses::new(model, &evaluation.design, &pose, layers.wrench)
         {
             scene.set_values(&stresses);
             legends.stress = Some(stresses.legend);
         }
         canvas.manipulator(paths::MANIPULATOR, &scene)?;
+        if let Some(wrench) = layers.wrench {
+            subject.wrench(canvas, &pose, wrench)?;
+        }
     }
     if layers.heatmap.is_some() || layers.singularities {
         let field = layers.heatmap.unwrap_or(Field::DEXTERITY);

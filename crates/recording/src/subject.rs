@@ -10,6 +10,7 @@ use super::{colors, paths};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
+use kinefront_scene::text::number;
 use kinefront_scene::{
     ColorMap, ConfigurationSpace, Field, FieldLegend, Heatmap, HeatmapSettings, MotionPath, RegularCylinder,
     SolidShape, WorkspaceProof, manipulator, region_corners, regular_workspace,
@@ -86,6 +87,26 @@ impl DrawnDesign<'_> {
     pub(super) fn note(&self) -> DVec3 {
         let front = (0.95 * self.design().base_radius()).max(1.3 * self.evaluation.workspace_radius());
         DVec3::new(0.0, -front, 0.0)
+    }
+
+    /// Draws a wrench on the platform at a pose: an arrow for its force and one for its moment, whose lengths tell nothing.
+    pub(super) fn wrench(&self, canvas: &Canvas<'_>, pose: &Pose, wrench: [f64; 6]) -> Result<(), RecordingError> {
+        let [fx, fy, fz, mx, my, mz] = wrench;
+        // Above the bars, so that arrows in the plane are seen.
+        let lift = 0.08 * self.design().base_radius();
+        let at = pose.position.extend(lift);
+        for (name, vector, unit, color) in [
+            ("force", DVec3::new(fx, fy, fz), "N", colors::FORCE),
+            ("moment", DVec3::new(mx, my, mz), "N·m", colors::MOMENT),
+        ] {
+            let size = vector.length();
+            if size > 0.0 {
+                let arrow = vector * (0.45 * self.design().base_radius() / size);
+                let text = format!("{} {unit}", number(size));
+                canvas.arrow(&format!("{}/{name}", paths::WRENCH), at, arrow, &text, color)?;
+            }
+        }
+        Ok(())
     }
 
     pub(super) fn space(&self) -> ConfigurationSpace {

@@ -7,7 +7,7 @@ use kinefront_model::spatial::Pose;
 
 use crate::{Scene, Solid};
 
-/// Stresses of the bars of a design at a pose under the loads of the study.
+/// Stresses of the bars of a design at a pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BarStresses {
     stresses: Vec<(MemberId, f64)>,
@@ -27,9 +27,10 @@ pub struct StressLegend {
 }
 
 impl BarStresses {
-    /// Returns the stresses; `None` where the design does not reach the pose, at a singularity, and where nothing is loaded.
-    pub fn new(model: &Model, design: &Design, pose: &Pose) -> Option<Self> {
-        let report = model.posed(design).strength_at(pose, None).ok()??;
+    /// Returns the stresses under the loads of the study, or under a single wrench on the platform, forces first; `None` where the design
+    /// does not reach the pose, at a singularity, and where nothing is loaded.
+    pub fn new(model: &Model, design: &Design, pose: &Pose, wrench: Option<[f64; 6]>) -> Option<Self> {
+        let report = model.posed(design).strength_at(pose, wrench).ok()??;
         let stresses: Vec<(MemberId, f64)> = report
             .members
             .iter()
@@ -79,7 +80,7 @@ mod tests {
             let design: Design = text.parse().expect("a design");
             let pose = Pose::new(0.05, -0.1, 0.1);
             let mut scene = manipulator(&model, &design, &pose).expect("the pose is reached");
-            let stresses = BarStresses::new(&model, &design, &pose).expect("the study has a load");
+            let stresses = BarStresses::new(&model, &design, &pose, None).expect("the study has a load");
             scene.set_values(&stresses);
             let report = model
                 .posed(&design)
@@ -99,6 +100,17 @@ mod tests {
             assert_eq!(stresses.legend.largest, report.stress);
             let largest = scene.solids.iter().filter(|solid| solid.value == Some(1.0));
             assert!(largest.count() >= 1, "{design}");
+            // Twice the wrench has twice the stress, and the loads of the study have the worst of its wrenches.
+            let under = |force: f64| {
+                let wrench = [0.6 * force, 0.8 * force, 0.0, 0.0, 0.0, 0.0];
+                BarStresses::new(&model, &design, &pose, Some(wrench))
+                    .expect("a load")
+                    .legend
+                    .largest
+            };
+            assert!((under(100.0) / under(50.0) - 2.0).abs() < 1e-9, "{design}");
+            assert!(under(100.0) <= stresses.legend.largest, "{design}");
+            assert_eq!(BarStresses::new(&model, &design, &pose, Some([0.0; 6])), None);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Formatting of numbers and names for display.
 
 use kinefront_model::certify::{MotionCertificate, MotionClaim, MotionMoment, MotionVerdict};
-use kinefront_model::clearance::Clearance;
+use kinefront_model::clearance::{Clearance, MemberId};
 use kinefront_model::dynamics::DriveCatalogue;
 use kinefront_model::evaluation::{Evaluation, Model, Quantity, QuantityValues, TaskFailure, TaskFault, TaskOutcome};
 use kinefront_model::mechanism::{Architecture, CrossSections, Design, DesignVariable, JointKind};
@@ -21,6 +21,11 @@ pub fn number(value: f64) -> String {
     } else {
         format!("{value:.3e}")
     }
+}
+
+/// Returns the name of a member, as in `link of leg 1`.
+pub fn member(member: &MemberId) -> String {
+    format!("{} of leg {}", member.kind.name().replace('_', " "), member.leg + 1)
 }
 
 /// Formats a number with at most four decimals and without trailing zeros, as for the labels of a scale: in decimal

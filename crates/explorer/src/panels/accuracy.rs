@@ -1,14 +1,11 @@
 //! The accuracy panel: the errors of the pose that the tolerances of the study cause, and how much of them each source has.
 
-use egui::{Rect, RichText, ScrollArea, Sense, Stroke, Ui, Vec2, WidgetInfo, WidgetType, pos2, vec2};
+use egui::{RichText, ScrollArea, Sense, Stroke, Ui, Vec2, WidgetInfo, WidgetType, vec2};
 use kinefront_model::dynamics::{Accuracy, ErrorBudget};
 use kinefront_scene::text::number;
 
-use super::fields;
+use super::{fields, share_bar};
 use crate::{Session, theme};
-
-/// Height of a bar of the budget.
-const ROW: f32 = 20.0;
 
 /// Height of the picture of the error.
 const PICTURE: f32 = 130.0;
@@ -134,17 +131,6 @@ fn budget(ui: &mut Ui, what: &str, budget: &ErrorBudget, words: &dyn Fn(f64) -> 
     for (name, part) in parts.into_iter().filter(|(_, part)| *part > 0.0) {
         let share = (part / all) as f32;
         let text = format!("{name}: {}, {:.0} %", words(part), 100.0 * share);
-        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, text.as_str()));
-        let painter = ui.painter_at(rect);
-        let bar = Rect::from_min_size(rect.min, vec2(share * rect.width(), ROW - 3.0));
-        painter.rect_filled(bar, 2.0, theme::active(ui).gamma_multiply(0.35));
-        painter.text(
-            pos2(rect.left() + 5.0, rect.center().y - 1.5),
-            egui::Align2::LEFT_CENTER,
-            text,
-            egui::FontId::proportional(12.5),
-            theme::ink(ui),
-        );
+        share_bar(ui, share, &text, theme::active(ui));
     }
 }

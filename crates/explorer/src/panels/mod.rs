@@ -23,6 +23,7 @@ mod run;
 pub mod scatter;
 mod sketch;
 mod space;
+mod strength;
 mod study;
 mod vibration;
 mod what_if;
@@ -48,6 +49,27 @@ pub(super) fn play_button(ui: &mut Ui, is_playing: &mut bool) {
     if named(ui.add(crate::theme::toggle(*is_playing, symbol)), name).clicked() {
         *is_playing = !*is_playing;
     }
+}
+
+/// Height of a bar that shows a share.
+const SHARE_BAR: f32 = 20.0;
+
+/// Shows a text on a bar that is as long as a share of the width, at most the whole.
+pub(super) fn share_bar(ui: &mut Ui, share: f32, text: &str, color: egui::Color32) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(ui.available_width(), SHARE_BAR), egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, text));
+    let painter = ui.painter_at(rect);
+    let width = share.clamp(0.0, 1.0) * rect.width();
+    let bar = egui::Rect::from_min_size(rect.min, egui::vec2(width, SHARE_BAR - 3.0));
+    painter.rect_filled(bar, 2.0, color.gamma_multiply(0.35));
+    painter.text(
+        egui::pos2(rect.left() + 5.0, rect.center().y - 1.5),
+        egui::Align2::LEFT_CENTER,
+        text,
+        egui::FontId::proportional(12.5),
+        crate::theme::ink(ui),
+    );
+    response
 }
 
 /// Makes a field of a number take what is typed as a whole, when it is left or Enter is pressed: half of a number is often invalid.
@@ -159,6 +181,8 @@ panels! {
     Choose = choose: choose::ChoosePanel, "Choose", Design;
     /// The pose of the selected design.
     Pose = pose: pose::PosePanel, "Pose", Pose;
+    /// Stresses of the bars at the pose, and which of them buckles first.
+    Strength = strength: strength::StrengthPanel, "Strength", Pose;
     /// Natural frequencies at the pose, and how the machine vibrates at each.
     Vibration = vibration: vibration::VibrationPanel, "Vibration", Pose;
     /// Errors of the pose, and what causes them.

@@ -1,9 +1,11 @@
-//! Natural frequencies and errors of the selected design at its pose.
+//! Natural frequencies, errors and stresses of the selected design at its pose.
 
 use egui_kittest::kittest::Queryable as _;
 use kinefront_explorer::{Panel, ShownVibration};
 
-use super::support::{Window, opened_window};
+use kinefront_scene::text::member as member_words;
+
+use super::support::{Window, opened_window, set_slider, type_into};
 
 fn shown(window: &Window) -> Option<ShownVibration> {
     window.state().session().view().vibration
@@ -102,4 +104,52 @@ fn errors_follow_the_tolerances() {
     window.get_by_label(&words);
     assert!(window.query_by_label_contains("platform: ").is_none());
     window.get_by_label_contains("Error ellipse");
+}
+
+/// A wrench that is set and turned in the panel gives the stresses of the bars, names the bar that buckles first, and is drawn.
+#[test]
+fn stresses_follow_a_wrench_that_is_turned() {
+    let mut window = opened_window();
+    window.state_mut().show(Panel::Strength);
+    window.run_steps(3);
+    let wrench = |window: &Window| window.state().session().view().layers.wrench;
+    let report = |window: &Window| {
+        let session = window.state().session();
+        let (known, pose) = (session.known().expect("a design"), session.pose().expect("a pose"));
+        let posed = session.model().posed(&known.evaluation.design);
+        let report = posed.strength_at(&pose, session.view().layers.wrench);
+        report.expect("reached").expect("a report")
+    };
+    let check = |window: &Window| {
+        let report = report(window);
+        for member in &report.members {
+            let stress = kinefront_scene::text::number(1e-6 * member.stress);
+            window.get_by_label_contains(&format!("{}: {stress} MPa", member_words(&member.member)));
+        }
+        let factor = |member: &&kinefront_model::strength::MemberStrength| member.buckling_factor.expect("a factor");
+        let first = report.members.iter().min_by(|a, b| factor(a).total_cmp(&factor(b)));
+        let name = member_words(&first.expect("a bar").member);
+        window.get_by_label_contains(&format!("The {name} is nearest to buckling"));
+        report.stress
+    };
+    assert_eq!(wrench(&window), None);
+    let of_study = check(&window);
+    window.get_by_label("under one wrench, drawn as arrows at P").click();
+    window.run_steps(2);
+    assert_eq!(wrench(&window), Some([100.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
+    assert!(check(&window) <= of_study);
+    type_into(&mut window, "force along z", "-250");
+    window.key_press(egui::Key::Enter);
+    window.run_steps(3);
+    set_slider(&mut window, "direction", 90.0);
+    window.run_steps(3);
+    let [x, y, z, ..] = wrench(&window).expect("a wrench");
+    assert!(x.abs() < 1e-9 && (y - 100.0).abs() < 1e-9 && z == -250.0, "{x} {y} {z}");
+    check(&window);
+    window
+        .get_by_label("under the loads of the study, in their worst directions")
+        .click();
+    window.run_steps(2);
+    assert_eq!(wrench(&window), None);
+    assert_eq!(check(&window), of_study);
 }

@@ -6,7 +6,7 @@ use kinefront_explorer::{InitialContent, Panel};
 use kinefront_model::evaluation::{PoseScalar, Quantity};
 use kinefront_study::{Column, ObjectiveChoice, Study};
 
-use super::support::{Window, click_at, idle_window, small_study, until, window};
+use super::support::{Window, click_at, idle_window, small_study, type_into, type_keys, until, window};
 
 /// Opens a window and runs the small study with other objectives.
 fn run(objectives: &[(&str, &str)]) -> Window {
@@ -133,14 +133,6 @@ fn the_question_is_edited_where_the_study_is() {
     );
 }
 
-/// Types a text key by key, with a frame after each.
-fn type_keys(window: &mut Window, text: &str) {
-    for key in text.chars() {
-        window.event(egui::Event::Text(key.to_string()));
-        window.step();
-    }
-}
-
 /// A number is taken as a whole: neither half of it nor what follows an invalid half is.
 #[test]
 fn numbers_are_typed_into_the_fields_of_the_study() {
@@ -156,15 +148,7 @@ fn numbers_are_typed_into_the_fields_of_the_study() {
             .requirements
             .inverse_condition_min
     };
-    let retype = |window: &mut Window, text: &str| {
-        window
-            .get_by_role_and_label(Role::SpinButton, "inverse condition min")
-            .focus();
-        window.run_steps(2);
-        window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
-        window.step();
-        type_keys(window, text);
-    };
+    let retype = |window: &mut Window, text: &str| type_into(window, "inverse condition min", text);
     // As it is typed, nothing is taken; "0." and "1" would both be refused.
     retype(&mut window, "0.25");
     assert_eq!(dexterity(&window), 0.1);

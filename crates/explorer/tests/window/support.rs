@@ -115,3 +115,20 @@ pub fn copied_text(window: &Window) -> Option<String> {
         _ => None,
     })
 }
+
+/// Types a text key by key, with a frame after each.
+pub fn type_keys(window: &mut Window, text: &str) {
+    for key in text.chars() {
+        window.event(egui::Event::Text(key.to_string()));
+        window.step();
+    }
+}
+
+/// Replaces the text of the field of a number by what is typed, and leaves the field as it is.
+pub fn type_into(window: &mut Window, name: &str, text: &str) {
+    window.get_by_role_and_label(Role::SpinButton, name).focus();
+    window.run_steps(2);
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.step();
+    type_keys(window, text);
+}
