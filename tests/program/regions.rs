@@ -125,3 +125,23 @@ fn reported_designs_hold_their_region() {
         certify(&larger).stdout(contains(r#""verdict":"refuted""#));
     }
 }
+
+/// Neighbours that are improved can end at the same optimum; it is reported once.
+#[test]
+fn no_design_of_a_front_repeats_another_one() {
+    let folder = folder();
+    let out = folder.path().join("run");
+    let study =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/comparison/questions/disc-footprint.toml");
+    optimize(&study, &out, &["--evaluations", "400", "--no-recording"]);
+    let run = RunFolder::open(&out).expect("a run");
+    let front = run.front().expect("a table").expect("a front").rows;
+    assert!(front.len() >= 3, "{} designs", front.len());
+    for (place, entry) in front.iter().enumerate() {
+        for other in &front[place + 1..] {
+            let mut pairs = entry.row.objectives.iter().zip(other.row.objectives.iter());
+            let is_same = pairs.all(|(a, b)| (a - b).abs() <= 1e-5 * a.abs().max(b.abs()));
+            assert!(!is_same, "#{} and #{}", entry.id, other.id);
+        }
+    }
+}

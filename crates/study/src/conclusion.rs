@@ -17,6 +17,9 @@ use kinefront_optimize::{Archive, Objectives, hypervolume, scaled, subset};
 /// Number of times that designs which fell are replaced by their neighbours.
 const ROUNDS: usize = 8;
 
+/// Relative difference of objectives up to which two designs are the same to a reader.
+const SAME: f64 = 1e-5;
+
 /// Verifies the front of a search that was resumed, as at the end of its run; returns the summary of a run that ended for
 /// the reason `outcome`.
 pub(super) fn verify_replayed(mut search: StudySearch, outcome: EndReason) -> Option<RunSummary> {
@@ -188,7 +191,11 @@ impl<'a> Settling<'a> {
             } else {
                 members.into_iter().map(ProvedMember::unproved).collect()
             };
-            self.held.extend(places.into_iter().zip(proved));
+            for (place, proved) in places.into_iter().zip(proved) {
+                if !self.repeats(&proved) {
+                    self.held.push((place, proved));
+                }
+            }
             times.certification_s += proving.elapsed().as_secs_f64();
             if !goes_on() {
                 return None;
@@ -196,6 +203,21 @@ impl<'a> Settling<'a> {
             self.tried += part.len();
         }
         Some(())
+    }
+
+    /// Returns whether a design has the same objectives as one that holds, up to what no table shows: neighbours that are improved can end
+    /// at the same optimum.
+    fn repeats(&self, proved: &ProvedMember) -> bool {
+        let Some(member) = proved.reported() else {
+            return false;
+        };
+        let objectives = member.objectives();
+        let is_same = |other: &FrontMember| {
+            let others = other.objectives();
+            let mut pairs = objectives.iter().zip(others.iter());
+            pairs.all(|(a, b)| (a - b).abs() <= SAME * a.abs().max(b.abs()))
+        };
+        self.held.iter().filter_map(|(_, held)| held.reported()).any(is_same)
     }
 
     /// The member of the front that a candidate becomes.
