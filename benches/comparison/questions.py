@@ -32,6 +32,8 @@ import numpy as np
 HERE = pathlib.Path(__file__).resolve().parent
 FRONTS = HERE.parents[1] / "assets/reference_fronts/questions"
 DESIGN = ("architecture", "working_mode", "R", "r", "Lb", "rj", "rp", "La", "alpha_deg", "beta_deg", "gamma_deg")
+# Quantities that are constraints have columns of their own.
+CONSTRAINTS = {"dexterity_min": "value_g3", "k_xy_n_per_m": "value_g4", "k_z_n_per_m": "value_g5", "k_phi_z_nm_per_rad": "value_g6"}
 # More designs than a front has that a person reads.
 WHOLE = 400
 
@@ -51,6 +53,8 @@ class Question:
         """The designs of a table, and their objectives."""
         with open(path, newline="", encoding="utf-8") as file:
             rows = [row for row in csv.DictReader(file) if row.get("feasible", "true") == "true"]
+        for row in rows:
+            row.update({column: row[CONSTRAINTS[column]] for column in self.columns if column not in row})
         values = np.array([[float(row[column]) for column in self.columns] for row in rows])
         return rows, values.reshape(len(rows), len(self.columns))
 

@@ -135,6 +135,13 @@ pub trait Problem: Sync {
         1
     }
 
+    /// Returns the place of the objective that an algorithm may learn together with the sized one, of two objectives: for a candidate that is
+    /// completed for [`Target::Best`], both are smooth functions of the variables that are not
+    /// [determined](Problem::determined_variables). By default it is the leveled one.
+    fn learned_objective(&self) -> usize {
+        self.leveled_objective()
+    }
+
     /// Sets those variables of a candidate that follow from the other variables and from the target. Returns `None` if
     /// there are no such variables, or if the other variables do not allow the target.
     ///

@@ -170,6 +170,74 @@ fn a_front_is_learned_where_the_problem_determines_variables() {
     }
 }
 
+/// A table of a size `x0`, whose legs have the thickness that its size and its proportion ask for, `0.2 + (1 − x0)² + 2 (x1 − 0.3 x0)²`,
+/// whatever level is asked for: a small table is heavy. On the front, `x1 = 0.3 x0`.
+struct Table;
+
+impl Table {
+    fn thickness(size: f64, proportion: f64) -> f64 {
+        let off = proportion - 0.3 * size;
+        0.2 + (1.0 - size) * (1.0 - size) + 2.0 * off * off
+    }
+
+    /// Fraction of the area under the best front that a search leaves out.
+    fn missing(archive: &Archive) -> f64 {
+        let best = (0..=20_000).map(|step| {
+            let size = f64::from(step) / 20_000.0;
+            [Self::thickness(size, 0.3 * size), size]
+        });
+        let whole = hypervolume(best, [1.2, 1.0]);
+        1.0 - hypervolume(archive.iter().map(|member| member.objectives), [1.2, 1.0]) / whole
+    }
+}
+
+impl Problem for Table {
+    fn variables(&self) -> Vec<Variable> {
+        vec![Variable::Real { lower: 0.0, upper: 1.0 }; 3]
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Outcome {
+        Outcome {
+            objectives: [x[2], x[0]].into(),
+            violation: (Self::thickness(x[0], x[1]) - x[2]).max(0.0),
+        }
+    }
+
+    fn leveled_objective(&self) -> usize {
+        2
+    }
+
+    fn learned_objective(&self) -> usize {
+        1
+    }
+
+    fn complete(&self, x: &[f64], target: Target) -> Option<Vec<f64>> {
+        assert_eq!(target, Target::Best, "no objective has levels");
+        Some(vec![x[0], x[1], Self::thickness(x[0], x[1])])
+    }
+
+    fn determined_variables(&self) -> Vec<usize> {
+        vec![2]
+    }
+}
+
+#[test]
+fn a_front_without_levels_is_learned_too() {
+    let settings = FrontDeSettings::default();
+    let unlearned = FrontDeSettings {
+        learned: 0.0,
+        ..settings
+    };
+    for seed in 1..=5 {
+        let search = |settings| run(&Table, &mut FrontDe::for_problem(&Table, settings, seed), 400);
+        let [learned, without] = [settings, unlearned].map(|settings| Table::missing(&search(settings)));
+        assert!(
+            learned < 0.01 && learned < 0.8 * without,
+            "seed {seed}: {learned} is missing, and {without} without learning"
+        );
+    }
+}
+
 /// Where the algorithm is told nothing of the structure, or the problem has none, learning changes no bit.
 #[test]
 fn without_determined_variables_nothing_is_learned() {

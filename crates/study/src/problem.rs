@@ -430,6 +430,18 @@ impl Problem for DesignProblem {
         objectives.iter().position(is_radius).unwrap_or(objectives.len())
     }
 
+    /// Returns the workspace radius, or, for a study without it, the objective besides the mass: with the lightest bars, both are functions of
+    /// the geometry.
+    fn learned_objective(&self) -> usize {
+        let is_mass = |objective: &Objective| objective.quantity == Quantity::Mass;
+        match self.model.settings().objectives.as_slice() {
+            [first, second] if !self.maximises_radius() && (is_mass(first) || is_mass(second)) => {
+                usize::from(is_mass(first))
+            }
+            _ => self.leveled_objective(),
+        }
+    }
+
     /// Sets the lightest bars for the geometry in `x` that provide the workspace radius of the target, or the region that the
     /// study prescribes, and for the latter also the scale of the geometry if the mass alone is sought. For the target
     /// [`Target::Best`], or for a radius that the geometry does not allow, the bars are sized for the largest radius that it

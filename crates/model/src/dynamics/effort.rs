@@ -83,14 +83,21 @@ impl<V: Real> LaneJob for MotionJob<'_, V> {
 }
 
 impl DynamicsModel {
-    /// Encloses what a limit bounds from above over a box of poses.
+    /// Encloses what a limit bounds from above over a box of poses: all of several values, of which the largest is the demand. The error of
+    /// the position has one for each direction, because the largest of many enclosures that are nearly equal is wide.
     pub fn enclose(
         &self,
         inputs: &DynamicsInputs<EnclosedNumber>,
         legs: &[MovingLeg<EnclosedNumber>; LEGS],
         value: MotionValue,
-    ) -> TaylorModel {
-        self.demand(inputs, legs, value).0
+    ) -> Vec<TaylorModel> {
+        match value {
+            MotionValue::PositionError => {
+                let errors = self.leg_errors(inputs, legs);
+                self.position_errors(&errors).map(|error| error.0).collect()
+            }
+            _ => vec![self.demand(inputs, legs, value).0],
+        }
     }
 
     /// Encloses both blocks of `K − (2πf)² M` over a box of poses, as upper triangles: they are positive definite where all natural

@@ -165,6 +165,14 @@ impl DynamicsModel {
         (worst, direction)
     }
 
+    /// Returns the largest error of the position in each of the directions in which it is determined.
+    pub(super) fn position_errors<V: Real>(&self, legs: &[LegErrors<V>; LEGS]) -> impl Iterator<Item = V> {
+        let zero = legs[0].bound.splat(0.0);
+        CIRCLE
+            .iter()
+            .map(move |[x, y]| self.worst_along(legs, &[zero.splat(*x), zero.splat(*y), zero]))
+    }
+
     /// Returns the largest error of the orientation.
     #[inline(always)]
     pub(super) fn worst_orientation<V: Real>(&self, legs: &[LegErrors<V>; LEGS]) -> V {

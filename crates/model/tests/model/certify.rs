@@ -678,6 +678,47 @@ fn other_definitions_are_certified() {
 }
 
 /// The bound over all home orientations is above the lower bound at the best one, and not far from the radius of the fine grid.
+/// The error of the position has its largest value in one of many directions, which are nearly equal: a proof bounds each by itself, and
+/// needs no more boxes than for a stiffness.
+#[test]
+fn errors_of_the_position_are_proved_in_few_boxes() {
+    let design: Design =
+        "3-RPR R=2.6286599157038495 r=0.1 Lb=3.3818585221458024 rj=0.03566504854894458 rp=0.036285122897956976"
+            .parse()
+            .expect("a design");
+    let model = model(|settings| {
+        settings.dynamics.tolerances = Tolerances {
+            encoder_prismatic: 1e-5,
+            link: 5e-5,
+            base: 5e-5,
+            platform: 5e-5,
+            play: 1e-5,
+            ..Tolerances::default()
+        };
+        settings.thresholds.set(PoseScalar::PositionError, Some(5e-4));
+    });
+    let options = CertifyOptions {
+        phi_deg: 20.0,
+        claimed_radius: 0.8393,
+        max_boxes: 4000,
+        ..CertifyOptions::default()
+    };
+    let found = model.certify(&design, &options).expect("a certificate");
+    assert_eq!(found.verdict, Verdict::Proved, "{found:?}");
+    // The other constraints decide where the disc ends; a tighter limit of the error does.
+    let tighter = self::model(|settings| {
+        settings.dynamics.tolerances = model.settings().dynamics.tolerances;
+        settings.thresholds.set(PoseScalar::PositionError, Some(3.5e-4));
+    });
+    let smaller = tighter.certify(&design, &options).expect("a certificate");
+    assert_eq!(smaller.verdict, Verdict::Refuted, "{smaller:?}");
+    let violation = smaller.violation.expect("a pose");
+    assert_eq!(violation.scalar, PoseScalar::PositionError);
+    let posed = tighter.posed(&design);
+    let dynamics = posed.dynamics_at(&violation.pose).expect("reached").expect("stiff");
+    assert!(dynamics.report().expect("regular").accuracy.worst_position > 3.5e-4);
+}
+
 #[test]
 fn the_bound_of_all_homes_encloses_the_radius() {
     let models = other_models();

@@ -59,6 +59,7 @@ pub struct Learner {
     gaps: Gaps,
     /// Whether the gaps are those of the front.
     is_current: bool,
+    /// Place of the objective that is learned besides the sized one: the level.
     leveled: usize,
 }
 

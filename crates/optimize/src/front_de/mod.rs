@@ -173,17 +173,19 @@ impl FrontDe {
     pub fn for_problem(problem: &impl Problem, settings: FrontDeSettings, seed: u64) -> Self {
         let mut algorithm = Self::new(problem.variables(), settings, seed);
         algorithm.leveled = problem.leveled_objective();
+        let learned = problem.learned_objective();
         let determined = problem.determined_variables();
         if !determined.is_empty() && settings.learned > 0.0 {
             for niche in &mut algorithm.niches {
-                niche.learner = Learner::new(&algorithm.variables, &determined, algorithm.leveled);
+                niche.learner = Learner::new(&algorithm.variables, &determined, learned);
             }
         }
         algorithm
     }
 
-    fn level_of(&self, member: &Evaluated) -> f64 {
-        member.outcome.objectives.get(self.leveled).copied().unwrap_or(0.0)
+    /// Returns the level of a member; `None` if no objective has levels.
+    fn level_of(&self, member: &Evaluated) -> Option<f64> {
+        member.outcome.objectives.get(self.leveled).copied()
     }
 
     /// Returns the first sample: a Sobol sample whose candidates are assigned to the niches in turn.
@@ -356,10 +358,12 @@ impl FrontDe {
                 };
             }
         }
-        let level = |member: &Evaluated| self.level_of(member);
-        let all_feasible = [base, to, from].iter().all(|member| member.outcome.is_feasible());
-        let moved = level(base) + self.settings.scale * (level(to) - level(from));
-        (x, all_feasible.then_some(moved))
+        let level = |member: &Evaluated| self.level_of(member).filter(|_| member.outcome.is_feasible());
+        let moved = match [level(base), level(to), level(from)] {
+            [Some(base), Some(to), Some(from)] => Some(base + self.settings.scale * (to - from)),
+            _ => None,
+        };
+        (x, moved)
     }
 
     /// Crosses two members selected by tournament and mutates the result. Returns the new variables and the second
@@ -376,7 +380,7 @@ impl FrontDe {
         let probability = 1.0 / self.variables.len() as f64;
         mutate(&mut self.random, &self.variables, probability, INDICES[1], &mut x);
         set_categories(&self.variables, &mut x, &self.niches[niche].categories);
-        (x, outcome.is_feasible().then_some(level))
+        (x, level.filter(|_| outcome.is_feasible()))
     }
 }
 
