@@ -120,7 +120,15 @@ def make(arguments):
         with open(question.front, "w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, columns, extrasaction="ignore", lineterminator="\n")
             writer.writeheader()
-            writer.writerows(rows[k] for k in kept)
+            writer.writerows({column: short(rows[k].get(column, "")) for column in columns} for k in kept)
+
+
+def short(value):
+    """A number with the digits that a comparison needs."""
+    try:
+        return f"{float(value):.8g}"
+    except ValueError:
+        return value
 
 
 def is_dominated(signed, place):
