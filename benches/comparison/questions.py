@@ -1,7 +1,7 @@
 """Measures how well questions of machine builders are searched: eight studies beside the paper's, in `questions/`.
 
     python -m pip install -r benches/comparison/requirements.txt
-    python benches/comparison/questions.py run PROGRAM... [--evaluations 3000] [--seeds 7] [--from 1] [--only NAME,NAME] [--others]
+    python benches/comparison/questions.py run PROGRAM... [--evaluations 3000] [--seeds 7] [--from 1] [--only NAME,NAME] [--others [--other-seeds 3]]
     python benches/comparison/questions.py make PROGRAM [--evaluations 30000] [--seeds 5] [--from 101] [--only NAME,NAME]
 
 `run` prints a table. For a question with one objective, a cell is by how many per cent the lightest design of `front.csv` is above the
@@ -232,7 +232,7 @@ def run(arguments):
                 _, values, taken = question.search(program, arguments.evaluations, seed)
                 found[name].append(question.quality(values))
                 seconds.append(taken)
-            for name, other in others.items():
+            for name, other in others.items() if seed < arguments.first + arguments.other_seeds else ():
                 found[name].append(question.quality(other(question, arguments.evaluations, seed)))
         one = len(question.columns) == 1
         worst = max if one else min
@@ -255,6 +255,7 @@ def main():
         part.set_defaults(command=command)
         if command is run:
             part.add_argument("--others", action="store_true")
+            part.add_argument("--other-seeds", type=int, default=3, help="random seeds of the other optimizers")
     arguments = parser.parse_args()
     arguments.command(arguments)
 
