@@ -62,25 +62,12 @@ impl Forms<'_> {
                 }
             } else {
                 let limit = TaylorModel::constant(Interval::exactly(limit));
-                let demands = motion.model.enclose(&inputs, &legs, value).into_iter();
-                let margins: Vec<TaylorModel> = demands.map(|demand| limit - demand).collect();
-                for margin in undecided(&margins) {
-                    found.push(scalar, margin);
+                for demand in motion.model.enclose(&inputs, &legs, value) {
+                    found.push(scalar, limit - demand);
                 }
             }
         }
     }
-}
-
-/// Returns the margins that are not positive everywhere, or the least one where all are.
-fn undecided(margins: &[TaylorModel]) -> Vec<TaylorModel> {
-    let least = |margin: &TaylorModel| margin.range()[0];
-    let open: Vec<TaylorModel> = margins.iter().filter(|margin| !margin.is_positive()).copied().collect();
-    if !open.is_empty() {
-        return open;
-    }
-    let weakest = margins.iter().min_by(|a, b| least(a).total_cmp(&least(b)));
-    weakest.copied().into_iter().collect()
 }
 
 /// Encloses the leading minors of a symmetric matrix, given as an upper triangle, which are all positive where it is positive definite.
