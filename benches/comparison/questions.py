@@ -1,7 +1,7 @@
 """Measures how well questions of machine builders are searched: eight studies beside the paper's, in `questions/`.
 
     python -m pip install -r benches/comparison/requirements.txt
-    python benches/comparison/questions.py run PROGRAM... [--evaluations 3000] [--seeds 7] [--from 1] [--only NAME,NAME] [--others [--other-seeds 3]]
+    python benches/comparison/questions.py run PROGRAM... [--evaluations 3000] [--seeds 7] [--from 1] [--only NAME,NAME] [--others [pymoo,Optuna]] [--other-seeds 3]
     python benches/comparison/questions.py make PROGRAM [--evaluations 30000] [--seeds 5] [--from 101] [--only NAME,NAME]
 
 `run` prints a table. For a question with one objective, a cell is by how many per cent the lightest design of `front.csv` is above the
@@ -221,7 +221,9 @@ OTHERS = {"pymoo NSGA-II": pymoo(nsga2), "pymoo GDE3": pymoo(de), "Optuna TPE": 
 
 
 def run(arguments):
-    others = OTHERS if arguments.others else {}
+    others = {}
+    if arguments.others is not None:
+        others = {name: other for name, other in OTHERS.items() if any(part in name for part in arguments.others.split(","))}
     names = [pathlib.Path(program).name for program in arguments.programs]
     print("| question | | " + " | ".join([*names, *others]) + " | search |")
     print("|---|---|" + "---:|" * (len(names) + len(others) + 1))
@@ -254,7 +256,7 @@ def main():
         part.add_argument("--only", help="questions of these names")
         part.set_defaults(command=command)
         if command is run:
-            part.add_argument("--others", action="store_true")
+            part.add_argument("--others", nargs="?", const="", help="all other optimizers, or those whose names contain one of these: pymoo,Optuna")
             part.add_argument("--other-seeds", type=int, default=3, help="random seeds of the other optimizers")
     arguments = parser.parse_args()
     arguments.command(arguments)

@@ -100,17 +100,20 @@ mod tests {
             assert_eq!(stresses.legend.largest, report.stress);
             let largest = scene.solids.iter().filter(|solid| solid.value == Some(1.0));
             assert!(largest.count() >= 1, "{design}");
-            // Twice the wrench has twice the stress, and the loads of the study have the worst of its wrenches.
-            let under = |force: f64| {
-                let wrench = [0.6 * force, 0.8 * force, 0.0, 0.0, 0.0, 0.0];
-                BarStresses::new(&model, &design, &pose, Some(wrench))
-                    .expect("a load")
-                    .legend
-                    .largest
+            // The loads of the study have the worst of its wrenches.
+            let wrench = |force: f64| Some([0.6 * force, 0.8 * force, 0.0, 0.0, 0.0, 0.0]);
+            let under = |model: &Model, force: f64| {
+                let stresses = BarStresses::new(model, &design, &pose, wrench(force));
+                stresses.expect("a load").legend.largest
             };
-            assert!((under(100.0) / under(50.0) - 2.0).abs() < 1e-9, "{design}");
-            assert!(under(100.0) <= stresses.legend.largest, "{design}");
-            assert_eq!(BarStresses::new(&model, &design, &pose, Some([0.0; 6])), None);
+            assert!(under(&model, 100.0) <= stresses.legend.largest, "{design}");
+            // Bars without weight have twice the stress under twice the wrench, and none without a wrench.
+            let mut settings = model.settings().clone();
+            settings.loads.gravity = [0.0; 3];
+            let weightless = Model::new(settings).expect("a model");
+            let ratio = under(&weightless, 100.0) / under(&weightless, 50.0);
+            assert!((ratio - 2.0).abs() < 1e-9, "{design}: {ratio}");
+            assert_eq!(BarStresses::new(&weightless, &design, &pose, wrench(0.0)), None);
         }
     }
 }
