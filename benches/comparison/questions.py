@@ -17,7 +17,6 @@ A front that is there is improved, never worsened.
 
 import argparse
 import csv
-import json
 import math
 import pathlib
 import statistics
@@ -33,7 +32,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 FRONTS = HERE.parents[1] / "assets/reference_fronts/questions"
 DESIGN = ("architecture", "working_mode", "R", "r", "Lb", "rj", "rp", "La", "alpha_deg", "beta_deg", "gamma_deg")
 # Quantities that are constraints have columns of their own.
-CONSTRAINTS = {"dexterity_min": "value_g3", "k_xy_n_per_m": "value_g4", "k_z_n_per_m": "value_g5", "k_phi_z_nm_per_rad": "value_g6"}
+CONSTRAINTS = {"dexterity": "value_g3", "k_xy_n_per_m": "value_g4", "k_z_n_per_m": "value_g5", "k_phi_z_nm_per_rad": "value_g6"}
 # More designs than a front has that a person reads.
 WHOLE = 400
 
@@ -102,8 +101,12 @@ def with_settings(text, settings):
 
 
 def questions(only):
-    found = [Question(path) for path in sorted((HERE / "questions").glob("*.toml"))]
-    return [question for question in found if not only or question.name in only.split(",")]
+    found = {path.stem: Question(path) for path in sorted((HERE / "questions").glob("*.toml"))}
+    wanted = only.split(",") if only else list(found)
+    unknown = [name for name in wanted if name not in found]
+    if unknown:
+        raise SystemExit(f"there is no question {', '.join(unknown)}; there are: {', '.join(found)}")
+    return [found[name] for name in wanted]
 
 
 def make(arguments):

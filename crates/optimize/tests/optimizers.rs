@@ -101,6 +101,12 @@ fn structure_is_made_use_of() {
     assert!(levels.len() > 20 && levels.iter().any(|level| *level < 0.3) && levels.iter().any(|level| *level > 0.7));
 }
 
+/// Fraction of the area under the best front, a curve over a parameter from 0 to 1, that a search leaves out.
+fn missing(archive: &Archive, best: impl Fn(f64) -> [f64; 2], reference: [f64; 2]) -> f64 {
+    let whole = hypervolume((0..=20_000).map(|step| best(f64::from(step) / 20_000.0)), reference);
+    1.0 - hypervolume(archive.iter().map(|member| member.objectives), reference) / whole
+}
+
 /// A frame of two lengths whose bars follow from the reach asked for: the reach `x0 (1 − 2 (x1 − 0.3 x0)²)` is bought by a thickness that
 /// grows with its square, and the mass is that of the bars. On the front, `x1 = 0.3 x0`, and a reach `R` weighs `(0.2 + R²)(1 + R)`. The
 /// frame comes in two kinds, of which the second one is twice as heavy.
@@ -112,14 +118,9 @@ impl Frame {
         x[0] * (1.0 - 2.0 * off * off)
     }
 
-    /// Fraction of the area under the best front that a search leaves out.
     fn missing(archive: &Archive) -> f64 {
-        let best = (0..=20_000).map(|step| {
-            let reach = f64::from(step) / 20_000.0;
-            [(0.2 + reach * reach) * (1.0 + reach), -reach]
-        });
-        let whole = hypervolume(best, [2.4, 0.0]);
-        1.0 - hypervolume(archive.iter().map(|member| member.objectives), [2.4, 0.0]) / whole
+        let best = |reach: f64| [(0.2 + reach * reach) * (1.0 + reach), -reach];
+        missing(archive, best, [2.4, 0.0])
     }
 }
 
@@ -180,14 +181,9 @@ impl Table {
         0.2 + (1.0 - size) * (1.0 - size) + 2.0 * off * off
     }
 
-    /// Fraction of the area under the best front that a search leaves out.
     fn missing(archive: &Archive) -> f64 {
-        let best = (0..=20_000).map(|step| {
-            let size = f64::from(step) / 20_000.0;
-            [Self::thickness(size, 0.3 * size), size]
-        });
-        let whole = hypervolume(best, [1.2, 1.0]);
-        1.0 - hypervolume(archive.iter().map(|member| member.objectives), [1.2, 1.0]) / whole
+        let best = |size: f64| [Self::thickness(size, 0.3 * size), size];
+        missing(archive, best, [1.2, 1.0])
     }
 }
 
