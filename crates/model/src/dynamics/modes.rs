@@ -8,7 +8,7 @@ use super::legs::{DynamicsInputs, MovingLeg};
 use crate::lanes::{LaneJob, Planar, Real, dot, scaled, sum};
 use crate::spatial::LEGS;
 use crate::stiffness::add_bar;
-use crate::strength::path::{BARS, BarLanes, DISTAL, PLATFORM};
+use crate::strength::path::{BARS, BarLanes, DISTAL, PLATFORM, PathJoint};
 
 /// How a displacement depends on the three of the platform.
 pub(super) type Row<V> = [V; 3];
@@ -489,10 +489,7 @@ impl DynamicsModel {
                 if joint.before != bar {
                     continue;
                 }
-                let distance = match joint.is_bush {
-                    true => leg.path.joints[point.joint].minus(lanes.base).dot(lanes.axis),
-                    false => zero,
-                };
+                let distance = distance_of_joint(leg, joint, point.joint, lanes);
                 let [row, _] = at(&shape.across[0], distance);
                 add_square(mass, &row, like.splat(point.mass));
             }
@@ -514,6 +511,15 @@ impl DynamicsModel {
             to_p,
         );
         compliance
+    }
+}
+
+/// Returns the distance of a joint from the base of the bar that it is before: a bush is along the bar, all others are at its base.
+#[inline(always)]
+pub(super) fn distance_of_joint<V: Real>(leg: &MovingLeg<V>, joint: &PathJoint, place: usize, bar: &BarLanes<V>) -> V {
+    match joint.is_bush {
+        true => leg.path.joints[place].minus(bar.base).dot(bar.axis),
+        false => bar.length.splat(0.0),
     }
 }
 

@@ -12,7 +12,7 @@ use vibration::Frame;
 
 use super::DynamicsModel;
 use super::legs::{DynamicsInputs, MovingLeg};
-use super::modes::GAUSS;
+use super::modes::{GAUSS, distance_of_joint};
 use crate::lanes::Planar;
 use crate::spatial::LEGS;
 use crate::strength::path::{BARS, BarLanes, DISTAL, PLATFORM, Span};
@@ -298,7 +298,7 @@ impl DynamicsModel {
             }
             let mut frame = Frame::new(mass.fixed_view::<3, 3>(0, 0).into_owned());
             for leg in &legs {
-                frame.add(self.frame_leg(plane, leg)?)?;
+                frame.add(self.frame_leg(plane, leg))?;
             }
             *found = frame.lowest_frequency();
         }
@@ -307,7 +307,7 @@ impl DynamicsModel {
     }
 
     /// Returns the stiffness and the mass of a leg in its coordinates.
-    fn frame_leg(&self, plane: Plane, leg: &MovingLeg<f64>) -> Option<[DMatrix<f64>; 2]> {
+    fn frame_leg(&self, plane: Plane, leg: &MovingLeg<f64>) -> [DMatrix<f64>; 2] {
         let frame = self.elements_of(plane, leg);
         let count = frame.coordinates;
         let (mut stiffness, mut mass) = (DMatrix::zeros(count, count), DMatrix::zeros(count, count));
@@ -340,7 +340,7 @@ impl DynamicsModel {
         for (displacement, of_point) in &frame.points {
             displacement.add_square(&mut mass, *of_point);
         }
-        Some([stiffness, mass])
+        [stiffness, mass]
     }
 
     /// Divides the bars of a leg into elements.
@@ -410,10 +410,7 @@ impl DynamicsModel {
             if joint.before != place {
                 continue;
             }
-            let distance = match joint.is_bush {
-                true => leg.path.joints[point.joint].minus(bar.base).dot(bar.axis),
-                false => 0.0,
-            };
+            let distance = distance_of_joint(leg, joint, point.joint, bar);
             let found = elements.iter().find(|element| distance <= element.ends[1].at);
             if let Some(element) = found.or(elements.last()) {
                 let [lift, _] = element.at(distance);
