@@ -158,13 +158,12 @@ fn every_call_fails_once() {
         .collect();
     let (mut injected, mut table) = (0, BTreeMap::new());
     for (place, (scenario, calls, errors)) in cases.into_iter().enumerate() {
-        // All calls until there are no more, or a few of them, others for each kind of call. A report takes seconds.
-        let few = [1 + place % 3, 4 + place % 17];
-        let count = if scenario.name == "report" { 1 } else { few.len() };
-        let times: Vec<usize> = if is_thorough() {
-            (1..10_000).collect()
-        } else {
-            few[..count].to_vec()
+        // All calls until there are no more, or one of them, another for each kind of call. A report takes seconds.
+        let one = if place % 2 == 0 { 1 + place % 3 } else { 4 + place % 17 };
+        let times = match is_thorough() {
+            true => 1..10_000,
+            false if scenario.name == "report" && place % 3 != 0 => continue,
+            false => one..one + 1,
         };
         for when in times {
             let error = errors[when % errors.len()];
@@ -204,7 +203,7 @@ fn every_call_fails_once() {
     for ((scenario, calls), count) in table {
         println!("| {scenario} | {calls} | {count} |");
     }
-    assert!(injected > 30, "only {injected} calls failed");
+    assert!(injected > 15, "only {injected} calls failed");
 }
 
 /// Brings a run that was disturbed to its end: resumes it, or starts it again where it has not begun.

@@ -7,7 +7,7 @@ use kinefront_study::RunFolder;
 use kinefront_testkit::poses_of_region;
 use predicates::str::contains;
 
-use super::support::{check, folder, is_thorough, kinefront, optimize};
+use super::support::{check, folder, kinefront, optimize, repetitions};
 
 /// Studies of builders, each with the least number of designs that its front has.
 const STUDIES: [(&str, &str, usize); 3] = [
@@ -59,7 +59,7 @@ radius_m = 0.5
 #[test]
 fn reported_designs_hold_their_region() {
     let folder = folder();
-    let poses = if is_thorough() { 200_000 } else { 2000 };
+    let poses = repetitions(2000, 200_000);
     for (name, text, least) in STUDIES {
         let study = folder.path().join(format!("{name}.toml"));
         fs::write(&study, text).expect("a study");

@@ -105,6 +105,8 @@ fn a_machine_that_holds_is_found_and_can_be_ordered() {
 name = "cell"
 architectures = ["3-RPR", "3-PRR"]
 objectives = [{ minimize = "mass_kg" }, { maximize = "workspace_radius_m" }]
+[workspace]
+certify = false
 [constraints]
 safety_factor_min = { at_least = 2.0 }
 buckling_factor_min = { at_least = 3.0 }

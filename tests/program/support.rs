@@ -12,7 +12,7 @@ use predicates::Predicate;
 use serde_json::Value;
 use tempfile::TempDir;
 
-pub use kinefront_testkit::{DESIGN, python};
+pub use kinefront_testkit::{DESIGN, is_thorough, python, repetitions, sample};
 
 /// Returns the program without any setting of the caller's environment that Rerun would use.
 pub fn kinefront() -> assert_cmd::Command {
@@ -64,20 +64,6 @@ pub fn optimize(study: &Path, out: &Path, more: &[&str]) -> Value {
             .chain(["--json", "--quiet"].map(OsStr::new))
             .chain(more),
     )
-}
-
-/// Whether tests repeat all of what they otherwise repeat a few times, as every night.
-pub fn is_thorough() -> bool {
-    std::env::var_os("KINEFRONT_THOROUGH").is_some_and(|set| !set.is_empty())
-}
-
-/// The cases of a repeated test: all where `KINEFRONT_THOROUGH` is set; otherwise `count` of them, evenly spread.
-pub fn sample<Cases: ExactSizeIterator>(cases: Cases, count: usize) -> impl Iterator<Item = Cases::Item> {
-    let step = match is_thorough() {
-        true => 1,
-        false => cases.len().div_ceil(count),
-    };
-    cases.step_by(step)
 }
 
 /// Runs a script of `tests/python` and returns what it prints.

@@ -9,16 +9,9 @@ use kinefront_recording::{Recorder, RunFiles};
 use kinefront_study::{
     EndReason, Event, Inspection, ResumeOptions, Resumption, RunControl, RunWriter, Study, StudySearch, spawn_search,
 };
+use kinefront_testkit::repetitions;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-
-/// Number of runs that are disturbed: all of them where `KINEFRONT_THOROUGH` is set, as every night.
-fn seeds() -> u64 {
-    match std::env::var_os("KINEFRONT_THOROUGH").is_some_and(|set| !set.is_empty()) {
-        true => 300,
-        false => 60,
-    }
-}
 
 fn study() -> Study {
     let text = "name = \"tiny\"\n[grid.reference]\nphi_step_deg = 10\ndirections = 3\nray_steps = 6\nhalvings = 2\n\
@@ -70,7 +63,7 @@ fn a_run_survives_its_controls() {
     let (writer, search) = start(&whole, false);
     assert_eq!(perform(writer, search, |_| {}), Some(EndReason::Completed));
     let mut ended = [0; 4];
-    for seed in 0..seeds() {
+    for seed in 0..repetitions(12, 300) as u64 {
         let run = folder.path().join("run");
         let (writer, search) = start(&run, seed.is_multiple_of(20));
         let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -20,6 +20,22 @@ pub fn small_study(evaluations: usize) -> String {
     )
 }
 
+/// Whether tests repeat all of what they otherwise repeat a few times: where `KINEFRONT_THOROUGH` is set, as every night.
+pub fn is_thorough() -> bool {
+    std::env::var_os("KINEFRONT_THOROUGH").is_some_and(|set| !set.is_empty())
+}
+
+/// Returns the number of repetitions of a test: `all` where tests are thorough, otherwise `few`.
+pub fn repetitions(few: usize, all: usize) -> usize {
+    if is_thorough() { all } else { few }
+}
+
+/// Returns the cases of a repeated test: all of them where tests are thorough, otherwise `count` of them, evenly spread.
+pub fn sample<Cases: ExactSizeIterator>(cases: Cases, count: usize) -> impl Iterator<Item = Cases::Item> {
+    let step = cases.len().div_ceil(repetitions(count, cases.len()));
+    cases.step_by(step)
+}
+
 /// Returns the folder of a run of a small study that an earlier version wrote.
 pub fn run_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/run")

@@ -12,6 +12,7 @@ use kinefront_model::polygon::Polygon;
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::{RailSettings, RailSupports, StiffnessDefinition};
 use kinefront_model::strength::{LoadShape, Loads};
+use kinefront_testkit::repetitions;
 use proptest::prelude::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -155,13 +156,13 @@ fn a_blind_proof_stops_before_the_known_pose() {
 /// Random poses of proved discs are feasible, by the model's own formulas.
 #[test]
 fn no_pose_of_a_proved_disc_is_infeasible() {
-    const POSES: usize = 100_000;
+    let count = repetitions(20_000, 100_000);
     let model = Model::default();
     let infeasible: usize = cases()
         .par_iter()
         .map(|case| {
             let proved = certify(&case.design, case.phi_deg, case.fine_radius, 1e-4).lower;
-            let poses = random_poses(&model, proved, case.phi_deg, POSES);
+            let poses = random_poses(&model, proved, case.phi_deg, count);
             poses.filter(|pose| !holds(&model, &case.design, pose, -1e-9)).count()
         })
         .sum();
@@ -627,7 +628,7 @@ fn other_studies_are_certified() {
 /// infeasible, and a proof that looks for no infeasible pose stops before the one that is known.
 #[test]
 fn other_definitions_are_certified() {
-    const POSES: usize = 20_000;
+    let poses = repetitions(2000, 20_000);
     let designs = cases();
     let tasks: Vec<_> = other_models()
         .into_iter()
@@ -659,7 +660,7 @@ fn other_definitions_are_certified() {
             );
             assert!(model.margin_at(&design, &violation.pose, violation.scalar) < 1e-12);
             assert!(upper < 1.01 * evaluation.workspace_radius());
-            for pose in random_poses(&model, found.lower, phi_deg, POSES) {
+            for pose in random_poses(&model, found.lower, phi_deg, poses) {
                 assert!(holds(&model, &design, &pose, -1e-9), "{name}, {design}: {pose:?}");
             }
             let blind = CertifyOptions {

@@ -11,9 +11,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::strategies;
 use kinefront_testkit::oracle::{Fault, Found, distance_to_cylinder, distance_to_prism, oracle};
-
-/// Number of poses of each architecture.
-const POSES: usize = 100_000;
+use kinefront_testkit::repetitions;
 
 /// Generator of random numbers within a range.
 struct Random(ChaCha8Rng);
@@ -146,8 +144,7 @@ fn compare(architecture: Architecture, poses: usize, faults: &[Fault]) -> (usize
 #[test]
 fn clearances_are_those_of_capsules_in_space() {
     for &architecture in Architecture::ALL {
-        let is_of_paper = Architecture::PAPER.contains(&architecture);
-        let poses = if is_of_paper { POSES } else { POSES / 10 };
+        let poses = repetitions(10_000, 100_000);
         let (overlapping, _) = compare(architecture, poses, &[]);
         assert!(
             (poses / 100..=poses * 99 / 100).contains(&overlapping),

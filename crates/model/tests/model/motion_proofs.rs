@@ -10,7 +10,7 @@ use kinefront_model::evaluation::{
 };
 use kinefront_model::mechanism::{Architecture, Design, JointKind};
 use kinefront_model::spatial::Pose;
-use kinefront_testkit::numbers as random_numbers;
+use kinefront_testkit::{numbers as random_numbers, repetitions};
 
 use super::legs::{cases, design, model as model_of};
 use super::reference::pose as pose_of;
@@ -188,7 +188,7 @@ fn no_motion_is_proved_that_a_dense_sampling_refutes() {
     let [mut refuted, mut proved, mut open] = [0; 3];
     for_all(|model, design, pose, _| {
         let frame = about(pose, 0.1 * design.base_radius(), design);
-        for _ in 0..150 {
+        for _ in 0..repetitions(75, 1000) {
             let mut somewhere = || {
                 let mut spread = |by: f64| by * (2.0 * random() - 1.0);
                 let by = 0.9 * design.base_radius();
@@ -227,7 +227,7 @@ fn no_motion_is_proved_that_a_dense_sampling_refutes() {
         }
     });
     assert!(
-        refuted >= 10 && proved >= 100 && open <= proved / 20,
+        refuted >= 2 && proved >= 50 && open <= proved / 20,
         "{refuted} {proved} {open}"
     );
 }

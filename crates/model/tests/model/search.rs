@@ -9,6 +9,7 @@ use kinefront_model::spatial::LEGS;
 use kinefront_model::workspace::Grid;
 use kinefront_model::workspace::plain::{PlainWorkspace, plain};
 use kinefront_optimize::{Variable, sobol};
+use kinefront_testkit::repetitions;
 use proptest::prelude::*;
 use rayon::prelude::*;
 
@@ -108,8 +109,10 @@ fn same(model: &Model, design: &Design) -> Result<(), String> {
 /// The bounds of the paper: `R`, `r`, `L_b`, `r_j` and `r_p` \[m\].
 const BOUNDS: [[f64; 2]; 5] = [[0.5, 4.0], [0.1, 4.0], [0.5, 4.0], [0.0, 0.1], [0.0, 0.1]];
 
-/// Compares `count` designs of each architecture, spread over the paper's bounds.
-fn all_the_same(count: usize) {
+/// Designs of each architecture, spread over the paper's bounds.
+#[test]
+fn designs_of_each_architecture_have_the_plain_radius() {
+    let count = repetitions(500, 10_000);
     let bounds = BOUNDS.map(|[lower, upper]| Variable::Real { lower, upper });
     for &architecture in Architecture::ALL {
         let design = |x: &[f64]| {
@@ -128,18 +131,6 @@ fn all_the_same(count: usize) {
             failures.len()
         );
     }
-}
-
-#[test]
-fn a_thousand_designs_of_each_architecture_have_the_plain_radius() {
-    all_the_same(1000);
-}
-
-/// The same test with 10⁴ designs takes minutes: `cargo test --release -- --ignored ten_thousand`.
-#[test]
-#[ignore = "takes minutes"]
-fn ten_thousand_designs_of_each_architecture_have_the_plain_radius() {
-    all_the_same(10_000);
 }
 
 proptest! {
