@@ -110,7 +110,12 @@ impl PyDesign {
         steps: bool,
         wish: Option<f64>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let options = DriversOptions { bars_only, steps, wish };
+        let options = DriversOptions {
+            bars_only,
+            steps,
+            alternatives: !bars_only,
+            wish,
+        };
         local::prices(py, self.shared.study(), &self.design, &held, options)
     }
 

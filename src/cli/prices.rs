@@ -66,6 +66,7 @@ pub fn run(arguments: &PricesArguments) -> Result<Ending, Failure> {
     let options = DriversOptions {
         bars_only: arguments.bars_only,
         steps: arguments.steps,
+        alternatives: !arguments.bars_only,
         wish: arguments.wish_mass,
     };
     let drivers = local.drivers(options).map_err(Failure::input)?;

@@ -121,6 +121,7 @@ impl<'a> Settling<'a> {
         let most = study.optimizer.front_designs;
         if study.objectives.len() == 1 {
             self.settle_best(times, send)?;
+            self.settle_other_architectures(times, send)?;
         } else {
             let objectives: Vec<Objectives> = self.candidates.iter().map(|entry| entry.row.objectives).collect();
             let points = scaled(&objectives);
@@ -155,6 +156,37 @@ impl<'a> Settling<'a> {
             if since_held > MORE || held.any(|member| member.objectives()[0] <= enough) {
                 break;
             }
+            self.settle(&[place], times, send)?;
+        }
+        Some(())
+    }
+
+    /// Verifies the best designs of the other architectures whose local optimum is better than what holds: a search that has settled on one
+    /// architecture leaves the others far from their optima.
+    fn settle_other_architectures(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
+        let verifying = Instant::now();
+        let (control, problem) = (self.control, &self.search.problem);
+        let others = self.search.found.best_of_other_architectures();
+        let promise = |entry: &Arc<TableRow>| {
+            let is_wanted = !control.is_abandoned();
+            is_wanted.then(|| problem.objective_near(&entry.row.design)).flatten()
+        };
+        let promises: Vec<Option<f64>> = self.search.pool.install(|| others.par_iter().map(promise).collect());
+        times.verification_s += verifying.elapsed().as_secs_f64();
+        let mut promising: Vec<(f64, Arc<TableRow>)> = promises
+            .into_iter()
+            .zip(others)
+            .filter_map(|(promise, entry)| Some((promise?, entry)))
+            .collect();
+        promising.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (promise, entry) in promising {
+            let mut held = self.held.iter().filter_map(|(_, proved)| proved.reported());
+            if held.any(|member| member.objectives()[0] <= promise) {
+                break;
+            }
+            let place = self.candidates.len();
+            self.candidates.push(entry);
+            self.is_tried.push(false);
             self.settle(&[place], times, send)?;
         }
         Some(())

@@ -341,18 +341,13 @@ impl DesignProblem {
 
     /// Returns the variables of an architecture that range freely between their bounds, each with those that are tied to it.
     pub(super) fn free_variables(&self, architecture: Architecture) -> Vec<FreeVariable> {
-        let tied_to = |variable: DesignVariable| {
-            let ties = DESIGN_VARIABLES.into_iter().zip(&self.ties);
-            ties.filter_map(|(tied, tie)| tie.filter(|tie| tie.source == variable).map(|tie| (tied, tie.factor)))
-                .collect()
-        };
         let dimensions = DESIGN_VARIABLES
             .into_iter()
             .filter(|variable| self.is_free(*variable))
             .map(|variable| FreeVariable {
                 variable,
                 range: self.ranges[variable as usize],
-                tied: tied_to(variable),
+                tied: self.tied_to(variable),
             });
         let further = self
             .further
@@ -364,6 +359,18 @@ impl DesignProblem {
             tied: Vec::new(),
         });
         dimensions.chain(further).collect()
+    }
+
+    /// Returns the dimensions that follow a dimension, each with its factor.
+    pub(super) fn tied_to(&self, variable: DesignVariable) -> Vec<(DesignVariable, f64)> {
+        let ties = DESIGN_VARIABLES.into_iter().zip(&self.ties);
+        ties.filter_map(|(tied, tie)| tie.filter(|tie| tie.source == variable).map(|tie| (tied, tie.factor)))
+            .collect()
+    }
+
+    /// Returns the values that a dimension may have, if they are listed; otherwise none.
+    pub(super) fn entries_of(&self, variable: DesignVariable) -> &[f64] {
+        self.listed[variable as usize].as_deref().unwrap_or_default()
     }
 
     /// Whether a dimension has a range of its own.

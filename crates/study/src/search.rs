@@ -212,6 +212,8 @@ pub(super) struct Found {
     front: Vec<Arc<TableRow>>,
     /// With one objective, the best design and others ever farther from it; otherwise empty.
     runners_up: Vec<Arc<TableRow>>,
+    /// With one objective, the best design of each architecture, in the order in which they were found first; otherwise empty.
+    best_of_architectures: Vec<Arc<TableRow>>,
     pub history: Vec<GenerationSummary>,
     pub evaluated: usize,
     feasible: usize,
@@ -225,6 +227,7 @@ impl Found {
             archive: Archive::default(),
             front: Vec::new(),
             runners_up: Vec::new(),
+            best_of_architectures: Vec::new(),
             history: Vec::new(),
             evaluated: 0,
             feasible: 0,
@@ -284,7 +287,18 @@ impl Found {
         self.front.iter().chain(runners_up).cloned().collect()
     }
 
-    /// Keeps the best design of a search with one objective, and runners-up.
+    /// With one objective, the best designs of the architectures other than that of the best design.
+    pub fn best_of_other_architectures(&self) -> Vec<Arc<TableRow>> {
+        let is_other = |entry: &&Arc<TableRow>| {
+            let architecture = entry.row.design.architecture();
+            self.front
+                .iter()
+                .all(|best| best.row.design.architecture() != architecture)
+        };
+        self.best_of_architectures.iter().filter(is_other).cloned().collect()
+    }
+
+    /// Keeps the best design of a search with one objective, runners-up, and the best design of each architecture.
     fn keep_runners_up(&mut self, first_id: usize, rows: &[Row]) {
         if self.reference.len() > 1 {
             return;
@@ -293,7 +307,16 @@ impl Found {
             .zip(rows)
             .filter(|(_, row)| row.is_feasible())
             .map(|(id, row)| Arc::new(TableRow::new(id, *row)));
-        self.runners_up.extend(entries);
+        for entry in entries {
+            let architecture = entry.row.design.architecture();
+            let is_own = |other: &&mut Arc<TableRow>| other.row.design.architecture() == architecture;
+            match self.best_of_architectures.iter_mut().find(is_own) {
+                Some(best) if best.row.objectives[0] <= entry.row.objectives[0] => {}
+                Some(best) => *best = Arc::clone(&entry),
+                None => self.best_of_architectures.push(Arc::clone(&entry)),
+            }
+            self.runners_up.push(entry);
+        }
         keep_runners_up(&mut self.runners_up, |entry| entry.row.objectives[0]);
     }
 }

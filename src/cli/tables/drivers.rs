@@ -60,6 +60,21 @@ pub fn drivers(heading: &str, drivers: &Drivers) -> String {
         }
         text = format!("{text}\n{slack}");
     }
+    if !drivers.alternatives.is_empty() {
+        let mut others = table(["instead", name, "change", "with the design"], &[1, 2]);
+        for other in &drivers.alternatives {
+            let text = |value: Option<String>| value.unwrap_or_else(|| "–".to_owned());
+            others.add_row([
+                other.label.clone(),
+                text(other.value.map(|value| format!("{} {unit}", number(value)))),
+                other.change.map_or("no design is feasible".to_owned(), |change| {
+                    format!("{:+.2} %", 100.0 * change)
+                }),
+                text(other.design.clone()),
+            ]);
+        }
+        text = format!("{text}\n{others}");
+    }
     if let Some(why) = &drivers.why_not {
         text = format!("{text}\n{}", why_not(why, name, unit));
     }
@@ -168,6 +183,9 @@ pub fn wish(heading: &str, outcome: &WishOutcome, shown: &[Quantity]) -> String 
             format!("its workspace is {}", certified.state())
         });
     let mut text = format!("{facts}\n{}: {}; {proved}", outcome.word(), found.design);
+    for changed in &outcome.changed_entries {
+        text = format!("{text}\n{changed}");
+    }
     for (condition, value) in &outcome.unmet {
         let entry = condition.0.quantity.entry();
         text = format!(

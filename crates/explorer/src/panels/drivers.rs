@@ -82,6 +82,12 @@ fn show(ui: &mut Ui, session: &mut Session, name: &str, drivers: &Drivers) {
             text::slack(inactive.slack)
         ));
     }
+    for other in &drivers.alternatives {
+        ui.label(match other.change {
+            Some(change) => format!("{}: {:+.2} % {objective}", other.label, 100.0 * change),
+            None => format!("{}: no design near this one is feasible", other.label),
+        });
+    }
     for warning in &drivers.warnings {
         ui.colored_label(theme::bad(ui), warning);
     }

@@ -211,6 +211,9 @@ fn outcome_of(ui: &mut Ui, session: &mut Session, outcome: &WishOutcome) {
             entry.unit
         ));
     }
+    for changed in &outcome.changed_entries {
+        ui.label(format!("{changed}."));
+    }
     let found = &outcome.found;
     Grid::new("granted").num_columns(4).striped(true).show(ui, |ui| {
         for heading in ["", "before", "after", "change"] {

@@ -52,6 +52,7 @@ impl Question for DriversQuestion {
         let local = self.study.problem()?.local_of(&self.evaluation, &[]);
         let options = DriversOptions {
             steps: self.steps,
+            alternatives: self.steps,
             ..DriversOptions::default()
         };
         let drivers = local.and_then(|local| local.drivers(options));

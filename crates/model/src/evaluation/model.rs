@@ -185,6 +185,12 @@ impl Model {
         })
     }
 
+    /// Returns the model with further quantities asked for.
+    pub fn with_quantities(mut self, further: impl IntoIterator<Item = Quantity>) -> Self {
+        self.settings.quantities = self.settings.quantities.iter().chain(further).collect();
+        self
+    }
+
     /// Returns the model with every quantity asked for.
     pub fn with_all_quantities(mut self) -> Self {
         self.settings.quantities = QuantitySet::all();

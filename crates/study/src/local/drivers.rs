@@ -8,7 +8,7 @@ use kinefront_optimum::{
 };
 use serde::Serialize;
 
-use super::{LocalDesign, LocalFault};
+use super::{AlternativeJson, LocalDesign, LocalFault};
 
 /// What is determined beside the prices.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -17,6 +17,8 @@ pub struct DriversOptions {
     pub bars_only: bool,
     /// Whether the design is optimised again after finite steps of each parameter.
     pub steps: bool,
+    /// Whether the next entries of lists and catalogues, and other home orientations, are examined.
+    pub alternatives: bool,
     /// A value of the objective that is wished for.
     pub wish: Option<f64>,
 }
@@ -51,6 +53,9 @@ pub struct Drivers {
     /// Why a wished value cannot be had.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why_not: Option<WhyNotJson>,
+    /// The next entries of lists and catalogues, and other home orientations that are nearly as good.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub alternatives: Vec<AlternativeJson>,
     /// What the figures leave out.
     pub warnings: Vec<String>,
 }
@@ -214,6 +219,10 @@ impl LocalDesign {
             prices: found.iter().map(|price| price_json(problem, price, actuator)).collect(),
             inactive: inactive(problem, &polished.critical),
             why_not,
+            alternatives: match options.alternatives {
+                true => self.alternatives(problem, polished),
+                false => Vec::new(),
+            },
             warnings,
         }
     }

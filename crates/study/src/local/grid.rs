@@ -5,10 +5,18 @@ use kinefront_model::mechanism::Design;
 use kinefront_model::workspace::Region;
 use kinefront_optimum::{LocalProblem, Polished};
 
+use super::LocalAnswer;
 use crate::DesignProblem;
 
 /// Slack that a design for the fine grid keeps, so that rounding misses no requirement.
-const ROOM: f64 = 2e-7;
+pub(super) const ROOM: f64 = 2e-7;
+
+/// The same where the optimum does not hold on the fine grid: a clearance has kinks, so that its least value can lie between the poses that
+/// an optimum knows.
+pub(super) const ROOMS: [f64; 3] = [ROOM, 1e-5, 1e-3];
+
+/// Number of optima with different entries of lists that are tried on the fine grid.
+pub(super) const ANSWERS: usize = 3;
 
 /// Relative amount by which the other objectives of an improved design may be worse.
 const KEPT: f64 = 1e-3;
@@ -17,15 +25,18 @@ impl DesignProblem {
     /// Verifies the best design near one that a search found, or that design itself if no better one holds on the fine grid.
     pub fn verify_improved(&self, design: &Design) -> Evaluation {
         let found = self.evaluate_design(design);
-        let better = self
-            .improved(&found)
-            .map(|improved| self.model().evaluate(&improved, GridChoice::Fine));
         // The evaluation selects the home orientation by the requirements alone, so that an objective over poses may become worse.
         let keeps_others = |better: &Evaluation| {
             let mut others = better.objectives.iter().zip(&found.objectives).skip(1);
             others.all(|(better, had)| *better <= had + KEPT * had.abs())
         };
-        match better.filter(|better| better.is_feasible() && keeps_others(better)) {
+        let mut better = self
+            .improved(&found)
+            .into_iter()
+            .filter_map(|(problem, polished, room)| self.for_fine_grid(&problem, &polished, 0.0, room))
+            .map(|improved| self.model().evaluate(&improved, GridChoice::Fine))
+            .filter(|better| better.is_feasible() && keeps_others(better));
+        match better.next() {
             // It may be worse in the first objective, because it holds the others between the poses of the grid, too.
             Some(better) if better.objectives.len() > 1 => better,
             Some(better) => {
@@ -37,9 +48,22 @@ impl DesignProblem {
         }
     }
 
-    /// Returns an optimum again with a home orientation of the fine grid, and with a little room for rounding. The radius of a disc is
-    /// increased by a share of itself, and by the resolution of the grid.
-    pub(super) fn for_fine_grid(&self, problem: &LocalProblem, polished: &Polished, increase: f64) -> Option<Design> {
+    /// Returns the value of the first objective, as it is minimised, at the optimum near a design that a search found; `None` if no optimum
+    /// is found.
+    pub fn objective_near(&self, design: &Design) -> Option<f64> {
+        let (problem, polished, _) = self.improved(&self.evaluate_design(design)).into_iter().next()?;
+        polished.is_feasible().then(|| problem.goal_sign() * polished.objective)
+    }
+
+    /// Returns an optimum again with a home orientation of the fine grid, and with the slack `room`. The radius of a disc is increased by a
+    /// share of itself, and by the resolution of the grid.
+    pub(super) fn for_fine_grid(
+        &self,
+        problem: &LocalProblem,
+        polished: &Polished,
+        increase: f64,
+        room: f64,
+    ) -> Option<Design> {
         let grid = &self.model().settings().fine_grid;
         let step = grid.phi_step_deg();
         let home = polished.home.to_degrees() / step;
@@ -47,7 +71,7 @@ impl DesignProblem {
         let home = problem.question().workspace.home_phi_deg.unwrap_or(home.round() * step);
         let mut question = problem.question().clone();
         question.workspace.home_phi_deg = Some(home);
-        question.slack = ROOM;
+        question.slack = room;
         if let Region::Disc(radius) = &mut question.workspace.region {
             let ray_step = polished.design.base_radius() / grid.ray_steps() as f64;
             *radius = *radius * (1.0 + increase) + grid.resolution(ray_step);
@@ -57,12 +81,16 @@ impl DesignProblem {
         Some(found.design).filter(|_| found.is_feasible())
     }
 
-    /// Returns the best design near one that was evaluated on a grid, for the fine grid; `None` if it is infeasible, if its question has no
-    /// local problem, or if no design near it holds.
-    fn improved(&self, evaluation: &Evaluation) -> Option<Design> {
+    /// Returns the optima near a design that was evaluated on a grid, the best first, each with its problem and the slack that it is to keep
+    /// on the fine grid; none if the design is infeasible, or if its question has no local problem. There are several only where dimensions
+    /// are listed or of a catalogue: with those of the design, and with the entries that are better.
+    fn improved(&self, evaluation: &Evaluation) -> Vec<(LocalProblem, Polished, f64)> {
         let local = Some(evaluation)
             .filter(|evaluation| evaluation.is_feasible())
-            .and_then(|evaluation| self.local_of(evaluation, &[]).ok())?;
+            .and_then(|evaluation| self.local_of(evaluation, &[]).ok());
+        let Some((home, local)) = local.and_then(|local| Some((local.home?, local))) else {
+            return Vec::new();
+        };
         // An objective that the local problem does not know would be given up.
         let left_out = local.problem.left_out();
         let objectives = &self.model().settings().objectives;
@@ -70,12 +98,31 @@ impl DesignProblem {
             .iter()
             .any(|objective| left_out.contains(&objective.quantity))
         {
-            return None;
+            return Vec::new();
         }
         let mut question = local.problem.question().clone();
         question.slack = ROOM;
-        let problem = local.problem.with_question(question).ok()?;
-        let polished = problem.polish(&evaluation.design, local.home?)?;
-        self.for_fine_grid(&local.problem, &polished, 0.0)
+        let solve = |design: &Design, home: f64, _: bool| {
+            // Of a design with other entries, the dimensions that are kept are others.
+            let problem = match *design == evaluation.design {
+                true => local.problem.with_question(question.clone()),
+                false => LocalProblem::new(question.clone(), design),
+            };
+            let problem = problem.ok()?;
+            let polished = problem.polish(design, home)?;
+            Some(LocalAnswer {
+                polished,
+                problem,
+                part: 1.0,
+            })
+        };
+        let own = solve(&evaluation.design, home, true);
+        if local.entries.is_empty() {
+            let own = own.map(|own| (local.problem, own.polished, ROOM));
+            return own.into_iter().collect();
+        }
+        let answers = self.follow_entries((evaluation.design, home), own, &solve);
+        let rooms = |answer: LocalAnswer| ROOMS.map(|room| (answer.problem.clone(), answer.polished.clone(), room));
+        answers.into_iter().take(ANSWERS).flat_map(rooms).collect()
     }
 }

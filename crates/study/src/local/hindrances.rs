@@ -9,6 +9,7 @@ use kinefront_optimum::{LocalProblem, Parameter, Polished};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::grid::ROOM;
 use crate::DesignProblem;
 
 /// Designs of an architecture from which a feasible one is looked for: those that miss the requirements least.
@@ -165,7 +166,7 @@ impl DesignProblem {
 
     /// Evaluates an optimum on the fine grid, with every quantity, under the requirements of its problem.
     fn evaluation_for(&self, problem: &LocalProblem, polished: &Polished) -> Option<Evaluation> {
-        let design = self.for_fine_grid(problem, polished, 0.0)?;
+        let design = self.for_fine_grid(problem, polished, 0.0, ROOM)?;
         let question = problem.question();
         let settings = ModelSettings {
             workspace: question.workspace.clone(),

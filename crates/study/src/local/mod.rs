@@ -1,6 +1,7 @@
 //! A design of a study as a local problem: the best design near it, what each requirement costs, wishes, and why a wish cannot be had.
 
 mod along;
+mod alternatives;
 mod drivers;
 mod grid;
 mod hindrances;
@@ -9,6 +10,8 @@ mod wish;
 mod wish_json;
 
 pub use along::{AlongJson, DrivenPart, DriversAlong, PriceCurve, PricedDesignJson, stacked, usual_range};
+use alternatives::LocalAnswer;
+pub use alternatives::{AlternativeJson, OtherEntry};
 pub use drivers::{ActiveJson, Drivers, DriversOptions, InactiveJson, PriceJson, RelaxationJson, WhyNotJson};
 pub use hindrances::Hindrance;
 pub use wish::{Condition, ConditionError, Wish, WishFault, WishOutcome};
@@ -44,6 +47,8 @@ pub struct LocalDesign {
     pub design: Design,
     /// Home orientation of the given design \[rad\], if it has one on the grid.
     pub home: Option<f64>,
+    /// The next entries of lists and catalogues, whose dimensions the problem keeps.
+    pub entries: Vec<OtherEntry>,
     /// The radius that is kept divided by that of the given design; 1 if the latter is not known.
     scale: f64,
 }
@@ -97,6 +102,7 @@ impl DesignProblem {
             problem: LocalProblem::new(question, &evaluation.design)?,
             design: evaluation.design,
             home: evaluation.home_phi_deg.map(f64::to_radians),
+            entries: self.other_entries(&evaluation.design),
             scale: match (stated(Quantity::WorkspaceRadius), evaluation.workspace_radius()) {
                 (Some(radius), own) if own > 0.0 => radius / own,
                 _ => 1.0,

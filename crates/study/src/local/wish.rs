@@ -4,13 +4,14 @@ use std::str::FromStr;
 
 use kinefront_model::certify::CertifyOptions;
 use kinefront_model::evaluation::{
-    Better, Bound, Evaluation, GridChoice, ModelSettings, PoseScalar, Quantity, QuantityLimit,
+    Better, Bound, Evaluation, GridChoice, Model, ModelSettings, PoseScalar, Quantity, QuantityLimit,
 };
 use kinefront_model::mechanism::Design;
 use kinefront_model::workspace::Region;
 use kinefront_optimum::{LocalProblem, LocalQuestion, Polished};
 
-use super::{LocalDesign, LocalFault};
+use super::grid::{ANSWERS, ROOMS};
+use super::{LocalAnswer, LocalDesign, LocalFault};
 use crate::{DesignProblem, FrontMember, FrontProver};
 
 /// Part of a wish up to which the largest one that can be had is determined.
@@ -90,6 +91,16 @@ pub struct Wish {
     pub keep: Vec<Quantity>,
 }
 
+impl Wish {
+    /// Returns the quantities that a wish compares, and those of which one may be wished for next.
+    fn quantities(&self, model: &Model) -> impl Iterator<Item = Quantity> {
+        let named = self.conditions.iter().map(|condition| condition.0.quantity);
+        let limited = model.settings().thresholds.iter().map(|(scalar, _)| scalar);
+        let limited = limited.chain([PoseScalar::Footprint]).map(Quantity::Worst);
+        named.chain(self.keep.iter().copied()).chain(limited)
+    }
+}
+
 /// What became of a wish.
 #[derive(Debug, Clone)]
 pub struct WishOutcome {
@@ -99,8 +110,10 @@ pub struct WishOutcome {
     pub found: FrontMember,
     /// Whether the given design satisfies the wish already.
     pub was_true: bool,
-    /// The conditions that cannot be had, each with the value that can be had instead; empty if the wish is granted.
+    /// The conditions that cannot be had, each with the value that can be had instead; empty if the wish is answer.
     pub unmet: Vec<(Condition, f64)>,
+    /// Dimensions of lists and catalogues that have another entry, in words.
+    pub changed_entries: Vec<String>,
     /// Quantities of the wish that are not part of a local problem; they are compared at the end alone.
     pub left_out: Vec<Quantity>,
 }
@@ -127,11 +140,8 @@ impl DesignProblem {
     /// # Errors
     /// [`WishFault`] if the design is infeasible, or if its question has no local problem.
     pub fn grant(&self, design: &Design, wish: &Wish) -> Result<WishOutcome, WishFault> {
-        let before = self
-            .model()
-            .clone()
-            .with_all_quantities()
-            .evaluate(design, GridChoice::Fine);
+        let model = self.model().clone().with_quantities(wish.quantities(self.model()));
+        let before = model.evaluate(design, GridChoice::Fine);
         if !before.is_feasible() {
             return Err(WishFault::Infeasible);
         }
@@ -148,6 +158,7 @@ impl DesignProblem {
                 before,
                 was_true: true,
                 unmet: Vec::new(),
+                changed_entries: Vec::new(),
                 left_out: Vec::new(),
             });
         }
@@ -158,31 +169,56 @@ impl DesignProblem {
             before: &before,
             conditions: &conditions,
         };
-        let (polished, problem) = target.nearest()?;
-        let at_grid = self
-            .for_fine_grid(&problem, &polished, PROOF)
-            .ok_or_else(|| WishFault::NotVerified(Box::new(polished.design)))?;
+        let own = target.nearest();
+        let mut fault = own.as_ref().err().cloned().map(WishFault::Local);
+        let start = (local.design, local.home.unwrap_or_default());
+        let answers = self.follow_entries(start, own.ok(), &|other, home, is_whole| {
+            target.from(other, home, is_whole)
+        });
+        for answer in answers.iter().take(ANSWERS) {
+            match self.for_grid(answer, &model) {
+                Ok((wished, found)) => {
+                    let unmet = conditions.iter().filter(|condition| !holds(&found, condition));
+                    let unmet =
+                        unmet.filter_map(|condition| Some((*condition, found.quantities.get(condition.0.quantity)?)));
+                    return Ok(WishOutcome {
+                        unmet: unmet.collect(),
+                        changed_entries: self.changed_entries(design, &found.design),
+                        left_out: answer.problem.left_out(),
+                        found: wished.proved(found),
+                        was_true: false,
+                        before,
+                    });
+                }
+                Err(error) => fault = fault.or(Some(error)),
+            }
+        }
+        Err(fault.unwrap_or(WishFault::Local(LocalFault::Infeasible(Box::new(*design)))))
+    }
+
+    /// Returns the design of an answer as it holds on the fine grid, with the problem whose requirements the wish states.
+    fn for_grid(&self, answer: &LocalAnswer, model: &Model) -> Result<(Self, Evaluation), WishFault> {
+        let LocalAnswer { polished, problem, .. } = answer;
         // The home orientation is selected by the requirements, of which the wish is one.
         let wished = self
             .with_thresholds(problem.question().settings.thresholds)
             .map_err(|error| WishFault::Local(LocalFault::Question(error.into())))?;
-        let found = wished
+        let evaluated = wished
             .model()
             .clone()
-            .with_all_quantities()
-            .evaluate(&at_grid, GridChoice::Fine);
-        if !found.is_feasible() {
-            return Err(WishFault::NotVerified(Box::new(at_grid)));
+            .with_quantities(model.settings().quantities.iter());
+        let mut last = polished.design;
+        for room in ROOMS {
+            let Some(at_grid) = self.for_fine_grid(problem, polished, PROOF, room) else {
+                continue;
+            };
+            let found = evaluated.evaluate(&at_grid, GridChoice::Fine);
+            if found.is_feasible() {
+                return Ok((wished, found));
+            }
+            last = at_grid;
         }
-        let unmet = conditions.iter().filter(|condition| !holds(&found, condition));
-        let unmet = unmet.filter_map(|condition| Some((*condition, found.quantities.get(condition.0.quantity)?)));
-        Ok(WishOutcome {
-            unmet: unmet.collect(),
-            left_out: problem.left_out(),
-            found: wished.proved(found),
-            was_true: false,
-            before,
-        })
+        Err(WishFault::NotVerified(Box::new(last)))
     }
 
     /// Proves a design that was evaluated on the fine grid.
@@ -220,30 +256,38 @@ struct Target<'a> {
 }
 
 impl Target<'_> {
-    /// Returns the optimum that satisfies the wish, or as large a part of it as possible.
-    fn nearest(&self) -> Result<(Polished, LocalProblem), LocalFault> {
+    /// Returns the optimum that satisfies the wish with the listed dimensions of the design, or as large a part of it as possible.
+    fn nearest(&self) -> Result<LocalAnswer, LocalFault> {
         let start = self.local.best()?;
-        let at = |part: f64, from: &Polished| -> Option<(Polished, LocalProblem)> {
-            let problem = LocalProblem::new(self.question(part), &from.design).ok()?;
-            let found = problem.polish(&from.design, from.home).filter(Polished::is_feasible)?;
-            Some((found, problem))
+        let found = self.from(&start.design, start.home, false);
+        found.ok_or_else(|| LocalFault::Infeasible(Box::new(self.local.design)))
+    }
+
+    /// Returns the optimum near a design that satisfies the wish, or, unless the whole of it is asked for, as large a part as possible.
+    fn from(&self, design: &Design, home: f64, is_whole: bool) -> Option<LocalAnswer> {
+        let at = |part: f64, design: &Design, home: f64| -> Option<LocalAnswer> {
+            let problem = LocalProblem::new(self.question(part), design).ok()?;
+            let polished = problem.polish(design, home).filter(Polished::is_feasible)?;
+            Some(LocalAnswer {
+                polished,
+                problem,
+                part,
+            })
         };
-        if let Some(found) = at(1.0, &start) {
-            return Ok(found);
+        let whole = at(1.0, design, home);
+        if whole.is_some() || is_whole {
+            return whole;
         }
         // The whole wish is approached from what the design has.
-        let (mut had, mut part, mut step) = (at(0.0, &start), 0.0, 0.25);
-        while step > RESOLUTION && part < 1.0 {
-            let from = had.as_ref().map_or(&start, |(found, _)| found);
-            match at((part + step).min(1.0), from) {
-                Some(found) => {
-                    part = (part + step).min(1.0);
-                    had = Some(found);
-                }
+        let (mut had, mut step) = (at(0.0, design, home)?, 0.25);
+        while step > RESOLUTION && had.part < 1.0 {
+            let part = (had.part + step).min(1.0);
+            match at(part, &had.polished.design, had.polished.home) {
+                Some(found) => had = found,
                 None => step *= 0.5,
             }
         }
-        had.ok_or_else(|| LocalFault::Infeasible(Box::new(self.local.design)))
+        Some(had)
     }
 
     /// Returns the question with a part of the wish, from the values that the design has (0) to those that are wished for (1).

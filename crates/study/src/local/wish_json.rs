@@ -25,6 +25,9 @@ pub struct WishJson {
     pub proof: Option<&'static str>,
     /// What was compared at the end alone.
     pub warnings: Vec<String>,
+    /// Dimensions of lists and catalogues that have another entry, in words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub changed_entries: Vec<String>,
 }
 
 /// A condition that is not met.
@@ -87,6 +90,7 @@ impl WishOutcome {
             after: values(found),
             proof: self.found.certified.as_ref().map(|certified| certified.state()),
             warnings: left_out.collect(),
+            changed_entries: self.changed_entries.clone(),
         }
     }
 }
