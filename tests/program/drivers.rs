@@ -455,3 +455,78 @@ fn a_limit_over_a_motion_stands_in_the_way() {
         assert_eq!(evaluated["feasible"], is_feasible, "{limit}: {evaluated}");
     }
 }
+
+/// Tubes of a catalogue have no derivative: the prices tell what the next ones cost, a reported design has none that would be better, and
+/// a wish exchanges them.
+#[test]
+fn tubes_of_a_catalogue_are_exchanged() {
+    let folder = folder();
+    let study = folder.path().join("tubes.toml");
+    let text = r#"
+        name = "tubes"
+        architectures = ["3-PRR"]
+        objectives = [{ minimize = "mass_kg" }, { maximize = "k_xy_n_per_m" }]
+        [constraints]
+        footprint_m = { at_most = 1.2 }
+        [workspace.region]
+        kind = "rectangle"
+        width_m = 0.5
+        height_m = 0.3
+        [sections]
+        legs = { kind = "tube", catalogue = "en-10255-medium" }
+        platform = { kind = "square_tube", wall_ratio = 0.15 }
+        [optimizer]
+        front_designs = 6
+    "#;
+    fs::write(&study, text).expect("a study");
+    let run = folder.path().join("run");
+    optimize(&study, &run, &["--evaluations", "400", "--no-recording"]);
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let front = fs::read_to_string(run.join("front.csv")).expect("a front");
+    let mut optima = 0;
+    for row in front.lines().skip(1) {
+        let id = row.split(',').next().expect("an id");
+        let subject = format!("{}#{id}", run.join("front.csv").display());
+        let prices = json(["prices", &subject, "--json"]);
+        let others = prices["alternatives"].as_array().expect("other tubes");
+        assert!(
+            (1..=2).contains(&others.len()),
+            "one or two tubes are beside one: {prices}"
+        );
+        // A design whose optimum does not hold on the fine grid stays as it was found.
+        if number(&prices["excess"]) < 1e-3 {
+            optima += 1;
+            for other in others.iter().filter(|other| other["change"].is_number()) {
+                assert!(number(&other["change"]) > -1e-3, "{id}: {other}");
+            }
+        }
+    }
+    assert!(optima >= 3, "{optima} of the reported designs are optima:\n{front}");
+
+    let thick =
+        "3-PRR R=0.8959856810761102 r=0.4178926328195201 Lb=0.6136237256603441 rj=0.03805 rp=0.030739628007979688";
+    let study = study.to_str().expect("a path");
+    let wish = |more: &[&str]| {
+        let arguments = [
+            "wish",
+            "--design",
+            thick,
+            "--study",
+            study,
+            "--set",
+            "k_xy_n_per_m >= 4e6",
+        ];
+        arguments
+            .into_iter()
+            .chain(more.iter().copied())
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    let granted = json(wish(&["--json"]));
+    assert_eq!(granted["outcome"], "granted", "{granted}");
+    assert!(number(&granted["after"]["mass_kg"]) < 0.9 * number(&granted["before"]["mass_kg"]));
+    assert!(number(&granted["after"]["k_xy_n_per_m"]) >= 4e6 * (1.0 - 1e-6));
+    let changed = granted["changed_entries"][0].as_str().expect("another tube");
+    assert!(changed.starts_with("legs: DN 65 M becomes DN "), "{changed}");
+    kinefront().args(wish(&[])).assert().success().stdout(contains(changed));
+}

@@ -1,7 +1,6 @@
-//! Designs beside an optimum that no derivative shows: the next entries of lists and catalogues, and other home orientations.
+//! Designs beside an optimum that no derivative shows: those with other entries of lists and catalogues.
 
 use std::cmp::Ordering;
-use std::f64::consts::TAU;
 
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignVariable};
 use kinefront_optimum::{LocalProblem, Polished};
@@ -10,12 +9,6 @@ use serde::Serialize;
 
 use super::LocalDesign;
 use crate::DesignProblem;
-
-/// Relative difference of the objective up to which another home orientation is told: the better one of both may change there.
-const SAME_OBJECTIVE: f64 = 5e-3;
-
-/// Home orientations that are nearer to each other than this are one \[rad\].
-const SAME_HOME: f64 = 1e-2;
 
 /// Another entry of the list or catalogue of a dimension.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,6 +66,13 @@ impl OtherEntry {
 }
 
 impl DesignProblem {
+    /// Whether a dimension is listed or of a catalogue.
+    pub(super) fn has_lists(&self) -> bool {
+        DESIGN_VARIABLES
+            .into_iter()
+            .any(|variable| !self.entries_of(variable).is_empty())
+    }
+
     /// Returns the next smaller and the next larger entry of each list and catalogue.
     pub(super) fn other_entries(&self, design: &Design) -> Vec<OtherEntry> {
         let beside = |variable: DesignVariable| {
@@ -168,31 +168,14 @@ impl DesignProblem {
 }
 
 impl LocalDesign {
-    /// Returns what an optimum becomes with the next entries of lists and catalogues, and optima in other home orientations that are
-    /// nearly as good.
+    /// Returns what an optimum becomes with the next entries of lists and catalogues.
     pub(super) fn alternatives(&self, problem: &LocalProblem, polished: &Polished) -> Vec<AlternativeJson> {
         let with_entry = |entry: &OtherEntry| {
             let start = entry.applied_to(&polished.design);
             let found = start.and_then(|start| optimum_of(problem, &start, polished.home));
             alternative(polished, entry.label.clone(), found.as_ref())
         };
-        let mut found: Vec<AlternativeJson> = self.entries.par_iter().map(with_entry).collect();
-        let homes: Vec<Option<Polished>> = problem
-            .homes(&polished.design)
-            .into_par_iter()
-            .map(|home| problem.polish(&polished.design, home).filter(Polished::is_optimal))
-            .collect();
-        let mut known = vec![polished.home];
-        for other in homes.into_iter().flatten() {
-            let is_close = (other.objective / polished.objective - 1.0).abs() <= SAME_OBJECTIVE;
-            if is_close && known.iter().all(|home| turn_between(*home, other.home) > SAME_HOME) {
-                known.push(other.home);
-                let home = other.home.to_degrees().rem_euclid(360.0);
-                let label = format!("home orientation {home:.1}°");
-                found.push(alternative(polished, label, Some(&other)));
-            }
-        }
-        found
+        self.entries.par_iter().map(with_entry).collect()
     }
 }
 
@@ -210,10 +193,4 @@ fn alternative(polished: &Polished, label: String, found: Option<&Polished>) -> 
         design: found.map(|found| found.design.to_string()),
         home_phi_deg: found.map(|found| found.home.to_degrees().rem_euclid(360.0)),
     }
-}
-
-/// Returns the least turn between two orientations \[rad\].
-fn turn_between(one: f64, other: f64) -> f64 {
-    let turn = (one - other).rem_euclid(TAU);
-    turn.min(TAU - turn)
 }

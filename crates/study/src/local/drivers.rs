@@ -17,7 +17,7 @@ pub struct DriversOptions {
     pub bars_only: bool,
     /// Whether the design is optimised again after finite steps of each parameter.
     pub steps: bool,
-    /// Whether the next entries of lists and catalogues, and other home orientations, are examined.
+    /// Whether the next entries of lists and catalogues are examined.
     pub alternatives: bool,
     /// A value of the objective that is wished for.
     pub wish: Option<f64>,
@@ -53,7 +53,7 @@ pub struct Drivers {
     /// Why a wished value cannot be had.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why_not: Option<WhyNotJson>,
-    /// The next entries of lists and catalogues, and other home orientations that are nearly as good.
+    /// The design with the next entries of lists and catalogues.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub alternatives: Vec<AlternativeJson>,
     /// What the figures leave out.

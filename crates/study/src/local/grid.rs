@@ -30,12 +30,19 @@ impl DesignProblem {
             let mut others = better.objectives.iter().zip(&found.objectives).skip(1);
             others.all(|(better, had)| *better <= had + KEPT * had.abs())
         };
-        let mut better = self
-            .improved(&found)
-            .into_iter()
-            .filter_map(|(problem, polished, room)| self.for_fine_grid(&problem, &polished, 0.0, room))
-            .map(|improved| self.model().evaluate(&improved, GridChoice::Fine))
-            .filter(|better| better.is_feasible() && keeps_others(better));
+        let has_lists = self.has_lists();
+        // With other entries than those of the best answer, a design may be worse than the one that was found.
+        let is_no_worse = |better: &Evaluation| {
+            let (value, had) = (better.objectives[0], found.objectives[0]);
+            !has_lists || value <= had + KEPT * had.abs()
+        };
+        let improved = self.improved(&found);
+        // Without lists, a front has other designs in place of one that does not hold.
+        let rooms = if has_lists { &ROOMS[..] } else { &ROOMS[..1] };
+        let mut better = improved
+            .iter()
+            .filter_map(|(problem, polished)| self.held_on_fine_grid(problem, polished, rooms))
+            .filter(|better| keeps_others(better) && is_no_worse(better));
         match better.next() {
             // It may be worse in the first objective, because it holds the others between the poses of the grid, too.
             Some(better) if better.objectives.len() > 1 => better,
@@ -48,10 +55,19 @@ impl DesignProblem {
         }
     }
 
+    /// Evaluates an optimum on the fine grid, with more slack where it does not hold there; `None` if it does not.
+    fn held_on_fine_grid(&self, problem: &LocalProblem, polished: &Polished, rooms: &[f64]) -> Option<Evaluation> {
+        let mut evaluations = rooms.iter().filter_map(|room| {
+            let design = self.for_fine_grid(problem, polished, 0.0, *room)?;
+            Some(self.model().evaluate(&design, GridChoice::Fine))
+        });
+        evaluations.find(Evaluation::is_feasible)
+    }
+
     /// Returns the value of the first objective, as it is minimised, at the optimum near a design that a search found; `None` if no optimum
     /// is found.
     pub fn objective_near(&self, design: &Design) -> Option<f64> {
-        let (problem, polished, _) = self.improved(&self.evaluate_design(design)).into_iter().next()?;
+        let (problem, polished) = self.improved(&self.evaluate_design(design)).into_iter().next()?;
         polished.is_feasible().then(|| problem.goal_sign() * polished.objective)
     }
 
@@ -81,10 +97,9 @@ impl DesignProblem {
         Some(found.design).filter(|_| found.is_feasible())
     }
 
-    /// Returns the optima near a design that was evaluated on a grid, the best first, each with its problem and the slack that it is to keep
-    /// on the fine grid; none if the design is infeasible, or if its question has no local problem. There are several only where dimensions
+    /// Returns the optima near a design that was evaluated on a grid, the best first, each with its problem; none if the design is infeasible, or if its question has no local problem. There are several only where dimensions
     /// are listed or of a catalogue: with those of the design, and with the entries that are better.
-    fn improved(&self, evaluation: &Evaluation) -> Vec<(LocalProblem, Polished, f64)> {
+    fn improved(&self, evaluation: &Evaluation) -> Vec<(LocalProblem, Polished)> {
         let local = Some(evaluation)
             .filter(|evaluation| evaluation.is_feasible())
             .and_then(|evaluation| self.local_of(evaluation, &[]).ok());
@@ -118,11 +133,11 @@ impl DesignProblem {
         };
         let own = solve(&evaluation.design, home, true);
         if local.entries.is_empty() {
-            let own = own.map(|own| (local.problem, own.polished, ROOM));
+            let own = own.map(|own| (local.problem, own.polished));
             return own.into_iter().collect();
         }
         let answers = self.follow_entries((evaluation.design, home), own, &solve);
-        let rooms = |answer: LocalAnswer| ROOMS.map(|room| (answer.problem.clone(), answer.polished.clone(), room));
-        answers.into_iter().take(ANSWERS).flat_map(rooms).collect()
+        let answers = answers.into_iter().take(ANSWERS);
+        answers.map(|answer| (answer.problem, answer.polished)).collect()
     }
 }
