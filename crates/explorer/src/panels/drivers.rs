@@ -71,6 +71,15 @@ fn show(ui: &mut Ui, session: &mut Session, name: &str, drivers: &Drivers) {
     }
     ui.add_space(6.0);
     ui.weak("Outlines show the prices if only the bars change, whiskers those of steps up to 20 %. Click a bar to see the pose that determines its price.");
+    if !drivers.alternatives.is_empty() {
+        ui.label(RichText::new(format!("Change of the {objective} with the next entry of a list")).strong());
+    }
+    for other in &drivers.alternatives {
+        ui.label(match other.change {
+            Some(change) => format!("{}: {:+.2} %", other.label, 100.0 * change),
+            None => format!("{}: no design is feasible", other.label),
+        });
+    }
     let free = drivers.free(FREE);
     if !free.is_empty() {
         ui.label(format!("Practically free: {}.", free.join(", ")));
@@ -81,12 +90,6 @@ fn show(ui: &mut Ui, session: &mut Session, name: &str, drivers: &Drivers) {
             inactive.label,
             text::slack(inactive.slack)
         ));
-    }
-    for other in &drivers.alternatives {
-        ui.label(match other.change {
-            Some(change) => format!("{}: {:+.2} % {objective}", other.label, 100.0 * change),
-            None => format!("{}: no design near this one is feasible", other.label),
-        });
     }
     for warning in &drivers.warnings {
         ui.colored_label(theme::bad(ui), warning);
