@@ -145,3 +145,28 @@ fn no_design_of_a_front_repeats_another_one() {
         }
     }
 }
+
+/// A search that has settled on one architecture leaves the others far from their optima: the best design of each is optimised before one
+/// is reported.
+#[test]
+fn the_lightest_of_all_architectures_is_not_that_of_the_search() {
+    let folder = folder();
+    let out = folder.path().join("run");
+    let study = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/comparison/questions/polygon-all.toml");
+    optimize(&study, &out, &["--evaluations", "200", "--seed", "4", "--no-recording"]);
+    let run = RunFolder::open(&out).expect("a run");
+    let rows = run.designs().expect("a table").rows;
+    let found = rows.iter().filter(|entry| entry.row.is_feasible());
+    let best = found
+        .min_by(|a, b| a.row.objectives[0].total_cmp(&b.row.objectives[0]))
+        .expect("a feasible design");
+    let front = run.front().expect("a table").expect("a front").rows;
+    let reported = &front[0].row;
+    assert_ne!(reported.design.architecture(), best.row.design.architecture());
+    assert!(
+        reported.objectives[0] < 0.5 * best.row.objectives[0],
+        "{reported:?} instead of {:?}",
+        best.row
+    );
+    check(&out).success();
+}
