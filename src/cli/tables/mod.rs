@@ -54,6 +54,27 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             model.platform_mass(design)
         ),
     ]);
+    add_workspace(&mut facts, evaluation, model);
+    for bar in text::selected_parts(model, evaluation) {
+        facts.add_row(bar);
+    }
+    add_quantities(&mut facts, evaluation, model);
+    add_limits(&mut facts, evaluation);
+    if let Some(nearest) = &evaluation.nearest {
+        let where_least = match (evaluation.home, model.settings().workspace.region.is_prescribed()) {
+            (_, true) => "the smallest over the region",
+            (Some(_), false) => "the smallest over the workspace",
+            (None, false) => "at the centre in the best orientation",
+        };
+        facts.add_row([
+            "clearance".to_owned(),
+            format!("{}, {where_least}", text::clearance(nearest)),
+        ]);
+    }
+    format!("{facts}\n{}", constraints(evaluation))
+}
+
+fn add_workspace(facts: &mut Table, evaluation: &Evaluation, model: &Model) {
     match (&evaluation.home, evaluation.home_phi_deg) {
         (Some(home), Some(phi_deg)) => {
             let region = &model.settings().workspace.region;
@@ -73,9 +94,10 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             facts.add_row(["regular workspace", "none: the design is infeasible"]);
         }
     }
-    for bar in text::selected_parts(model, evaluation) {
-        facts.add_row(bar);
-    }
+}
+
+/// Adds the quantities that no other row or table tells.
+fn add_quantities(facts: &mut Table, evaluation: &Evaluation, model: &Model) {
     let told_elsewhere = [
         Quantity::Mass,
         Quantity::LegsMass,
@@ -84,7 +106,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
     ];
     let is_fact = |quantity: &Quantity| quantity.constraint().is_none() && !told_elsewhere.contains(quantity);
     let tells = |quantity: &Quantity| match quantity {
-        Quantity::Worst(scalar) => model.tells(design, *scalar),
+        Quantity::Worst(scalar) => model.tells(&evaluation.design, *scalar),
         _ => true,
     };
     for quantity in Quantity::all().filter(is_fact).filter(tells) {
@@ -96,6 +118,9 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             ]);
         }
     }
+}
+
+fn add_limits(facts: &mut Table, evaluation: &Evaluation) {
     for result in &evaluation.limits {
         let entry = result.limit.quantity.entry();
         let sign = match result.limit.bound {
@@ -114,17 +139,9 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             },
         ]);
     }
-    if let Some(nearest) = &evaluation.nearest {
-        let where_least = match (evaluation.home, model.settings().workspace.region.is_prescribed()) {
-            (_, true) => "the smallest over the region",
-            (Some(_), false) => "the smallest over the workspace",
-            (None, false) => "at the centre in the best orientation",
-        };
-        facts.add_row([
-            "clearance".to_owned(),
-            format!("{}, {where_least}", text::clearance(nearest)),
-        ]);
-    }
+}
+
+fn constraints(evaluation: &Evaluation) -> Table {
     let mut constraints = table(
         [
             "",
@@ -150,7 +167,7 @@ pub fn evaluation(evaluation: &Evaluation, model: &Model) -> String {
             report.pose.as_ref().map(pose_text).unwrap_or_default(),
         ]);
     }
-    format!("{facts}\n{constraints}")
+    constraints
 }
 
 /// Formats a margin in per cent, with as many digits as it takes to tell a violation from 0.
