@@ -138,6 +138,9 @@ section! {
     }
 }
 
+/// A key that is at fault, and what is wrong.
+type Fault = (&'static str, String);
+
 /// Largest number of samples of a motion.
 const MOST_SAMPLES: i64 = 1_000_000;
 
@@ -239,18 +242,21 @@ impl TaskSection {
     }
 
     /// Returns the keys that are at fault together with others, and what is wrong.
-    pub(crate) fn faults(&self) -> Vec<(&'static str, String)> {
+    pub(crate) fn faults(&self) -> Vec<Fault> {
+        let (Some(shape), Some(task)) = (self.shape, self.task()) else {
+            let words = "is missing; without it, nothing else in [task] has an effect";
+            let is_stated = *self != Self::default();
+            return is_stated.then(|| ("shape", words.to_owned())).into_iter().collect();
+        };
+        let pieces = task.pieces() as i64;
+        let mut faults = self.faults_of_path(shape, pieces);
+        faults.extend(self.faults_of_timing(shape, pieces));
+        faults
+    }
+
+    fn faults_of_path(&self, shape: TaskShapeChoice, pieces: i64) -> Vec<Fault> {
         let mut faults = Vec::new();
         let mut fault = |key, message: String| faults.push((key, message));
-        let (Some(shape), Some(task)) = (self.shape, self.task()) else {
-            if *self != Self::default() {
-                fault(
-                    "shape",
-                    "is missing; without it, nothing else in [task] has an effect".to_owned(),
-                );
-            }
-            return faults;
-        };
         let is_of_points = shape == TaskShapeChoice::Waypoints;
         if is_of_points {
             let differ = self.points().windows(2).any(|pair| pair[0] != pair[1]);
@@ -267,7 +273,6 @@ impl TaskSection {
                 "has no effect; set shape = \"waypoints\", or omit it".to_owned(),
             );
         }
-        let pieces = task.pieces() as i64;
         if pieces.saturating_mul(self.samples) > MOST_SAMPLES {
             let key = if is_of_points { "waypoints" } else { "samples" };
             fault(
@@ -279,6 +284,12 @@ impl TaskSection {
                 ),
             );
         }
+        faults
+    }
+
+    fn faults_of_timing(&self, shape: TaskShapeChoice, pieces: i64) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        let mut fault = |key, message: String| faults.push((key, message));
         let limits = self.limits();
         match self.cycle_time_s {
             Some(time) => {
@@ -309,7 +320,7 @@ impl TaskSection {
                     TaskShapeChoice::PickAndPlace => self.swing_deg != 0.0,
                     _ => false,
                 };
-                let shifts = !is_of_points || moves(0) || moves(1);
+                let shifts = shape != TaskShapeChoice::Waypoints || moves(0) || moves(1);
                 let is_bound = shifts && limits[..2].iter().any(|(_, limit)| limit.is_some())
                     || turns && limits[2..].iter().any(|(_, limit)| limit.is_some());
                 if !is_bound {
