@@ -162,7 +162,7 @@ impl<'a> Settling<'a> {
     }
 
     /// Verifies the best designs of the other architectures whose local optimum is better than what holds: a search that has settled on one
-    /// architecture leaves the others far from their optima.
+    /// architecture leaves the others far from their optima. Returns `None` if the run was abandoned.
     fn settle_other_architectures(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
         let verifying = Instant::now();
         let (control, problem) = (self.control, &self.search.problem);
@@ -173,6 +173,9 @@ impl<'a> Settling<'a> {
         };
         let promises: Vec<Option<f64>> = self.search.pool.install(|| others.par_iter().map(promise).collect());
         times.verification_s += verifying.elapsed().as_secs_f64();
+        if control.is_abandoned() {
+            return None;
+        }
         let mut promising: Vec<(f64, Arc<TableRow>)> = promises
             .into_iter()
             .zip(others)

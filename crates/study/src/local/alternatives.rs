@@ -11,14 +11,10 @@ use super::LocalDesign;
 use crate::DesignProblem;
 
 /// Another entry of the list or catalogue of a dimension.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OtherEntry {
-    /// The dimension.
-    pub variable: DesignVariable,
-    /// The value of the entry \[m\].
-    pub value: f64,
+#[derive(Debug, Clone)]
+pub(super) struct OtherEntry {
     /// Its name.
-    pub label: String,
+    label: String,
     /// The dimension and those that are tied to it, with their values.
     changes: Vec<(DesignVariable, f64)>,
 }
@@ -66,11 +62,11 @@ impl OtherEntry {
 }
 
 impl DesignProblem {
-    /// Whether a dimension is listed or of a catalogue.
-    pub(super) fn has_lists(&self) -> bool {
+    /// Returns the dimensions that are listed or of a catalogue.
+    pub(super) fn listed_variables(&self) -> impl Iterator<Item = DesignVariable> {
         DESIGN_VARIABLES
             .into_iter()
-            .any(|variable| !self.entries_of(variable).is_empty())
+            .filter(|variable| !self.entries_of(*variable).is_empty())
     }
 
     /// Returns the next smaller and the next larger entry of each list and catalogue.
@@ -85,7 +81,7 @@ impl DesignProblem {
                 .flatten()
                 .map(move |value| self.entry(variable, value))
         };
-        DESIGN_VARIABLES.into_iter().flat_map(beside).collect()
+        self.listed_variables().flat_map(beside).collect()
     }
 
     /// Follows the entries of lists and catalogues beside those of a design, as long as one of them is better. Returns all answers, the best
@@ -119,18 +115,14 @@ impl DesignProblem {
 
     /// Returns the values of the dimensions that are listed.
     fn listed_values(&self, design: &Design) -> Vec<f64> {
-        let listed = DESIGN_VARIABLES
-            .into_iter()
-            .filter(|variable| !self.entries_of(*variable).is_empty());
-        listed.map(|variable| design.value(variable)).collect()
+        self.listed_variables().map(|variable| design.value(variable)).collect()
     }
 
     /// Returns the dimensions of lists and catalogues that differ between two designs, in words such as `legs: DN 20 becomes DN 25`.
     pub(super) fn changed_entries(&self, before: &Design, after: &Design) -> Vec<String> {
-        let listed = DESIGN_VARIABLES
-            .into_iter()
-            .filter(|variable| !self.entries_of(*variable).is_empty());
-        let changed = listed.filter(|variable| before.value(*variable) != after.value(*variable));
+        let changed = self
+            .listed_variables()
+            .filter(|variable| before.value(*variable) != after.value(*variable));
         let words = changed.map(|variable| {
             let [(part, from), (_, to)] = [before, after].map(|design| self.named(variable, design.value(variable)));
             format!("{part}: {from} becomes {to}")
@@ -159,8 +151,6 @@ impl DesignProblem {
             .into_iter()
             .map(|(tied, factor)| (tied, factor * value));
         OtherEntry {
-            variable,
-            value,
             label: format!("{part}: {name}"),
             changes: std::iter::once((variable, value)).chain(tied).collect(),
         }

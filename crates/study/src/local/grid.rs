@@ -30,7 +30,7 @@ impl DesignProblem {
             let mut others = better.objectives.iter().zip(&found.objectives).skip(1);
             others.all(|(better, had)| *better <= had + KEPT * had.abs())
         };
-        let has_lists = self.has_lists();
+        let has_lists = self.listed_variables().next().is_some();
         // With other entries than those of the best answer, a design may be worse than the one that was found.
         let is_no_worse = |better: &Evaluation| {
             let (value, had) = (better.objectives[0], found.objectives[0]);

@@ -9,9 +9,10 @@ mod why;
 mod wish;
 mod wish_json;
 
+use alternatives::{LocalAnswer, OtherEntry};
+
 pub use along::{AlongJson, DrivenPart, DriversAlong, PriceCurve, PricedDesignJson, stacked, usual_range};
-use alternatives::LocalAnswer;
-pub use alternatives::{AlternativeJson, OtherEntry};
+pub use alternatives::AlternativeJson;
 pub use drivers::{ActiveJson, Drivers, DriversOptions, InactiveJson, PriceJson, RelaxationJson, WhyNotJson};
 pub use hindrances::Hindrance;
 pub use wish::{Condition, ConditionError, Wish, WishFault, WishOutcome};
@@ -48,7 +49,7 @@ pub struct LocalDesign {
     /// Home orientation of the given design \[rad\], if it has one on the grid.
     pub home: Option<f64>,
     /// The next entries of lists and catalogues, whose dimensions the problem keeps.
-    pub entries: Vec<OtherEntry>,
+    entries: Vec<OtherEntry>,
     /// The radius that is kept divided by that of the given design; 1 if the latter is not known.
     scale: f64,
 }
