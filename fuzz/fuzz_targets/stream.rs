@@ -21,7 +21,7 @@ fuzz_target!(|line: &str| {
         return;
     }
     let found = model.evaluate(&design, GridChoice::Reference);
-    let json = serde_json::to_value(EvaluationJson::new(&found)).expect("JSON");
+    let json = serde_json::to_value(EvaluationJson::new(&found, &model)).expect("JSON");
     for key in ["mass_kg", "workspace_radius_m", "violation"] {
         assert!(json[key].is_number(), "{key} of {line}: {json}");
     }

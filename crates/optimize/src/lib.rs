@@ -68,7 +68,7 @@
 //! | [`Problem`], [`Variable`], [`Objectives`], [`Outcome`], [`Target`] | what is optimized |
 //! | [`Algorithm`], [`FrontDe`], [`CmaEs`], [`Nsga2`], [`Moga2`] | how it is optimized |
 //! | [`Archive`], [`hypervolume()`], [`compare`] | what was found, and how good it is |
-//! | [`knee`], [`spread`], [`ranking`], [`groups`] | choosing from a front |
+//! | [`knee`], [`spread`], [`ranking`], [`groups`], [`subset()`], [`gaps()`] | choosing from a front |
 
 mod archive;
 mod categories;
@@ -76,6 +76,7 @@ mod cma_es;
 mod doe;
 mod dominance;
 mod front_de;
+mod gaps;
 mod hypervolume;
 mod moga2;
 mod nsga2;
@@ -92,6 +93,7 @@ pub use cma_es::{CmaEs, CmaEsSettings};
 pub use doe::sobol;
 pub use dominance::{Relation, compare, crowding_distances, non_dominated_ranks};
 pub use front_de::{FrontDe, FrontDeSettings};
+pub use gaps::{Gap, added_share, gaps, halfway};
 pub use hypervolume::hypervolume;
 pub use moga2::{Moga2, Moga2Settings};
 pub use nsga2::{Nsga2, Nsga2Settings};

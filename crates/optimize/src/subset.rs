@@ -67,14 +67,16 @@ fn covered(scales: &[Scale], chosen: &[usize]) -> f64 {
 }
 
 /// The front on one scale of its objectives.
-struct Scale {
-    points: Vec<Vec<f64>>,
-    reference: Vec<f64>,
+pub(super) struct Scale {
+    pub points: Vec<Vec<f64>>,
+    pub reference: Vec<f64>,
     /// Reciprocal of the hypervolume of the whole front; 0 if it has none.
-    weight: f64,
+    pub weight: f64,
 }
 
-fn scales(front: &[impl AsRef<[f64]>], reference: &[f64]) -> Vec<Scale> {
+/// Returns the front as it is, and with logarithms of the objectives that are positive and extend over more than a factor of `e`, if
+/// there are any.
+pub(super) fn scales(front: &[impl AsRef<[f64]>], reference: &[f64]) -> Vec<Scale> {
     let is_logarithmic: Vec<bool> = (0..reference.len())
         .map(|k| {
             let values = || front.iter().map(|point| point.as_ref()[k]);

@@ -60,12 +60,16 @@ pub struct LocalQuestion {
 }
 
 impl LocalQuestion {
-    /// Requires that a quantity keeps at least the value that it has.
+    /// Requires that a quantity is no worse than a value; a limit that is stricter already stays.
     pub fn hold(&mut self, objective: Objective, value: f64) {
         let better = objective.quantity.entry().better;
         match objective.quantity {
             Quantity::WorkspaceRadius => {}
-            Quantity::Worst(scalar) if better == objective.goal => self.settings.thresholds.set(scalar, Some(value)),
+            Quantity::Worst(scalar) if better == objective.goal => {
+                let stated = self.settings.thresholds.get(scalar);
+                let limit = stated.map_or(value, |stated| scalar.stricter(stated, value));
+                self.settings.thresholds.set(scalar, Some(limit));
+            }
             quantity => self.settings.limits.push(QuantityLimit {
                 quantity,
                 bound: Bound::no_worse_than(value, objective.goal),
@@ -125,7 +129,7 @@ impl LocalProblem {
                 Goal::Design(quantity)
             }
             Quantity::WorkspaceRadius => Goal::Radius,
-            Quantity::Worst(scalar) if scalar.bounds_poses() => Goal::Level(scalar),
+            Quantity::Worst(scalar) if scalar.bounds_poses() || scalar == PoseScalar::Footprint => Goal::Level(scalar),
             other => return Err(LocalError::Objective(other)),
         };
         let area = Area::new(&question.workspace.region).ok_or(LocalError::NoRadius)?;

@@ -99,7 +99,7 @@ impl LocalProblem {
                 self.excess_of_quantity(prepared, limit).unwrap_or(NOWHERE)
             }
             Requirement::Scalar(_) | Requirement::Determinant | Requirement::Quantity(_) => {
-                let scalars = self.scalars(prepared, place);
+                let scalars = self.scalars(prepared, place, self.scalar_of(requirement));
                 self.of_scalars(prepared, requirement, |scalar| scalars[scalar])
             }
         };
@@ -110,9 +110,22 @@ impl LocalProblem {
         }
     }
 
-    fn scalars(&self, prepared: &Prepared, place: &Place) -> PoseScalars<f64> {
+    /// Returns the scalar that a requirement compares; `None` for one of those that every evaluation of a pose determines, or for none.
+    fn scalar_of(&self, requirement: Requirement) -> Option<PoseScalar> {
+        match requirement {
+            Requirement::Scalar(scalar) => Some(scalar),
+            Requirement::Quantity(index) => match self.question().settings.limits[index].quantity {
+                Quantity::Worst(scalar) => Some(scalar),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    fn scalars(&self, prepared: &Prepared, place: &Place, scalar: Option<PoseScalar>) -> PoseScalars<f64> {
         let (position, arms) = prepared.located(place);
-        prepared.evaluator().evaluate_beyond_limits(&arms, position)
+        let set = scalar.into_iter().collect();
+        prepared.evaluator().evaluate_beyond_limits(&arms, position, set)
     }
 
     /// Returns the value of g2 for a distance from a joint limit or from the end of reach \[m\].
@@ -154,7 +167,7 @@ impl LocalProblem {
             spot: self.spots(Density::Coarse).all[0],
             turn: 0.0,
         };
-        let determinant = self.scalars(prepared, &anywhere)[PoseScalar::Determinant];
+        let determinant = self.scalars(prepared, &anywhere, None)[PoseScalar::Determinant];
         if determinant < 0.0 { -1.0 } else { 1.0 }
     }
 

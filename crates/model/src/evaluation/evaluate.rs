@@ -1,10 +1,10 @@
 //! The one call by which all other code evaluates a design.
 
 use super::worst::ConstraintSearch;
-use super::{Constraint, Evaluation, GridChoice, LimitResult, Model, SelectedDrive, quantities};
+use super::{Constraint, Evaluation, GridChoice, LimitResult, Model, Quantity, SelectedDrive, quantities};
 use crate::lanes::InstructionSet;
 use crate::mechanism::{Design, Leg};
-use crate::pose::PoseChecker;
+use crate::pose::{EXAMINED_ALWAYS, PoseChecker, PoseScalar, Thresholds};
 use crate::spatial::Pose;
 use crate::workspace::{Region, WorkspaceSampling, search, search_prescribed};
 
@@ -35,7 +35,8 @@ fn evaluate<L: Leg>(
     let (found, worst) = match sampling.spec().region {
         Region::Largest => (search(checker, sampling, design.base_radius(), symmetric), None),
         _ => {
-            let (found, worst) = search_prescribed(checker, sampling, design.base_radius(), symmetric);
+            let objective = examined_objective(model, &checker.thresholds);
+            let (found, worst) = search_prescribed(checker, sampling, design.base_radius(), symmetric, objective);
             (found, Some(worst))
         }
     };
@@ -109,4 +110,18 @@ fn evaluate<L: Leg>(
         limits,
         violation,
     }
+}
+
+/// Returns the scalar of the first objective whose value the search of a prescribed region knows at every pose that it examines.
+fn examined_objective(model: &Model, thresholds: &Thresholds) -> Option<PoseScalar> {
+    let objectives = &model.settings().objectives;
+    objectives.iter().find_map(|objective| {
+        let Quantity::Worst(scalar) = objective.quantity else {
+            return None;
+        };
+        let is_examined = EXAMINED_ALWAYS.contains(&scalar) || thresholds.get(scalar).is_some();
+        // The distance between members is examined no further than to its limit.
+        let is_known = is_examined && scalar != PoseScalar::Clearance;
+        (is_known && objective.goal == scalar.entry().quantity.better).then_some(scalar)
+    })
 }

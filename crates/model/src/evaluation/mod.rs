@@ -26,7 +26,7 @@ mod worst;
 
 pub use crate::pose::{
     Better, Constraint, ConstraintSet, MarginUnit, PoseScalar, PoseScalarEntry, PoseScalars, PoseValues, QuantityEntry,
-    Reference, Scale, Scope, Thresholds,
+    Reference, ScalarSet, Scale, Scope, Thresholds,
 };
 pub use crate::stiffness::Contribution;
 pub use cycle::ShortestCycle;

@@ -6,7 +6,7 @@ use super::ValueColumns;
 use crate::kinematics::Jacobian;
 use crate::lanes::{InstructionSet, Planar};
 use crate::mechanism::{Leg, ReachReason};
-use crate::pose::{PoseChecker, PoseScalar, PoseScalars, PoseValues, Thresholds};
+use crate::pose::{PoseChecker, PoseScalar, PoseScalars, PoseValues, ScalarSet, Thresholds};
 use crate::spatial::{LEGS, NUMBER_LIMIT, Rotation};
 
 /// One design, prepared for evaluation at many poses, whatever its legs are.
@@ -37,9 +37,10 @@ pub trait PoseEvaluator: Sync {
     fn evaluate_position(&self, arms: &[DVec2; LEGS], position: DVec2) -> Result<PoseValues, f64>;
 
     /// Returns the values at one position \[m\], also where joints are beyond their limits: functions that continue there, for methods
-    /// that approach the limits from both sides. A value that was not computed has no meaning; where the inverse kinematics has no
-    /// solution, the determinant is not a number, and the distance from the limits alone has a meaning.
-    fn evaluate_beyond_limits(&self, arms: &[DVec2; LEGS], position: DVec2) -> PoseScalars<f64>;
+    /// that approach the limits from both sides. Those of `set` are computed besides those that every evaluation determines, and any
+    /// other value has no meaning; where the inverse kinematics has no solution, the determinant is not a number, and the distance from
+    /// the limits alone has a meaning.
+    fn evaluate_beyond_limits(&self, arms: &[DVec2; LEGS], position: DVec2, set: ScalarSet) -> PoseScalars<f64>;
 
     /// Returns the values at one position \[m\] by the closed form as it is defined, with which the others are compared.
     ///
@@ -96,9 +97,8 @@ impl<L: Leg> PoseEvaluator for PoseChecker<L> {
         }
     }
 
-    fn evaluate_beyond_limits(&self, arms: &[DVec2; LEGS], position: DVec2) -> PoseScalars<f64> {
-        self.lanes(position.into(), &arms.map(Planar::from), self.computed)
-            .scalars
+    fn evaluate_beyond_limits(&self, arms: &[DVec2; LEGS], position: DVec2, set: ScalarSet) -> PoseScalars<f64> {
+        self.lanes(position.into(), &arms.map(Planar::from), set).scalars
     }
 
     fn evaluate_plainly(&self, arms: &[DVec2; LEGS], position: DVec2) -> Result<PoseValues, f64> {

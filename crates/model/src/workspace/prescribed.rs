@@ -1,6 +1,7 @@
-//! The home orientation of a prescribed region: the one with the best worst margin (docs/model.md, section 7.4).
+//! The home orientation of a prescribed region: of those that keep all limits, the one with the best objective, and else the one with the
+//! best worst margin (docs/model.md, section 7.4).
 //!
-//! The worst margin of an orientation over a few positions of the boundary bounds that over the whole region. Windows are
+//! The worst values of an orientation over a few positions of the boundary bound those over the whole region. Windows are
 //! therefore examined best first, and only the orientations of leading windows are examined at all positions.
 
 use glam::DVec2;
@@ -24,16 +25,55 @@ const CUT: f64 = -1.0;
 pub(crate) struct Examined {
     /// The worst margin of the limits.
     pub margin: f64,
-    /// The worst values of the limited scalars that depend on loads, with their signs reversed where smaller values are better; infinite for
-    /// all others.
-    pub of_loads: PoseScalars<f64>,
+    /// The worst values of the objective and of the limited scalars that depend on loads, with their signs reversed where smaller values are
+    /// better; infinite for all others.
+    pub kept: PoseScalars<f64>,
 }
 
 impl Examined {
     fn and(self, other: Self) -> Self {
         Self {
             margin: self.margin.min(other.margin),
-            of_loads: PoseScalars::from_fn(|scalar| self.of_loads[scalar].min(other.of_loads[scalar])),
+            kept: PoseScalars::from_fn(|scalar| self.kept[scalar].min(other.kept[scalar])),
+        }
+    }
+}
+
+/// What orders orientations and windows, or bounds it from above.
+#[derive(Clone, Copy)]
+struct Standing {
+    /// The worst margin.
+    margin: f64,
+    /// The worst value of the objective, whose larger values are better; the margin without an objective.
+    objective: f64,
+}
+
+impl Standing {
+    const BEST: Self = Self {
+        margin: f64::INFINITY,
+        objective: f64::INFINITY,
+    };
+
+    fn new(found: &Examined, objective: Option<PoseScalar>) -> Self {
+        Self {
+            margin: found.margin,
+            objective: objective.map_or(found.margin, |scalar| found.kept[scalar]),
+        }
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self {
+            margin: self.margin.min(other.margin),
+            objective: self.objective.min(other.objective),
+        }
+    }
+
+    fn is_better_than(self, other: Self) -> bool {
+        match (self.margin >= 0.0, other.margin >= 0.0) {
+            (true, true) => self.objective > other.objective,
+            (true, false) => true,
+            (false, true) => false,
+            (false, false) => self.margin > other.margin,
         }
     }
 }
@@ -45,6 +85,8 @@ pub(crate) struct RegionMargins<'a, L> {
     without_loads: Option<PoseChecker<L>>,
     sampling: &'a WorkspaceSampling,
     step_base: f64,
+    /// Scalars whose worst values are kept; those that depend on loads are not, where their limits are left out.
+    kept: ScalarSet,
     /// Orientations of the grid.
     orientations: Vec<Orientation>,
     /// Values at the centre for every orientation.
@@ -69,6 +111,7 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         let symmetric = symmetric && matches!(spec.region, Region::Disc(_));
         let (orientations, centres) = orientations(&checker, spec.centre, sampling.orientation_grid());
         let mut margins = Self {
+            kept: checker.limited_of_loads(),
             without_loads: checker.without_loads(),
             checker,
             sampling,
@@ -149,13 +192,17 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         self.at(orientation, &self.parts[0]).margin
     }
 
-    /// Returns an upper bound of it, which costs less where limits depend on loads; without such limits it is the worst margin itself.
-    fn bound_at_first(&self, orientation: usize) -> f64 {
+    /// Returns an upper bound of what they show, which costs less where limits depend on loads; without such limits it is what they show.
+    fn bound_at_first(&self, orientation: usize) -> Examined {
         let checker = self.without_loads.as_ref().unwrap_or(&self.checker);
+        let without_loads = self.checker.limited_of_loads().complement();
+        let kept = self
+            .kept
+            .iter()
+            .filter(|scalar| without_loads.contains(*scalar))
+            .collect();
         let Positions { xs, ys, .. } = &self.parts[0];
-        checker
-            .worst_margin(self.oriented(orientation), xs, ys, self.step_base)
-            .margin
+        checker.worst_margin(self.oriented(orientation), (xs, ys), self.step_base, kept)
     }
 
     /// Returns what all positions show in one orientation, but for what their bound has shown of those that are examined first.
@@ -175,7 +222,7 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         let [_, others] = &self.parts;
         let parts = others.xs.chunks(PART).zip(others.ys.chunks(PART));
         parts
-            .map(|(xs, ys)| self.checker.worst_margin(oriented, xs, ys, self.step_base))
+            .map(|columns| self.checker.worst_margin(oriented, columns, self.step_base, self.kept))
             .all(|found| found.margin >= 0.0)
     }
 
@@ -187,25 +234,32 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
     }
 
     fn at(&self, orientation: usize, positions: &Positions) -> Examined {
+        let columns = (&positions.xs[..], &positions.ys[..]);
         self.checker
-            .worst_margin(self.oriented(orientation), &positions.xs, &positions.ys, self.step_base)
+            .worst_margin(self.oriented(orientation), columns, self.step_base, self.kept)
     }
 }
 
 /// Finds the home orientation of the prescribed region of the design in `checker`, and the worst margin over its window.
 ///
 /// `step_base` is the base radius `R`, by which margins of lengths are divided and of which the ray step is a fraction.
-/// `symmetric` states that a rotation by 120° maps the design onto itself.
+/// `symmetric` states that a rotation by 120° maps the design onto itself. Of the home orientations that keep all limits, the one is
+/// returned whose worst value of `objective` is the best, which is a scalar that is examined at every pose.
 pub fn search_prescribed<L: Leg>(
     checker: &PoseChecker<L>,
     sampling: &WorkspaceSampling,
     step_base: f64,
     symmetric: bool,
+    objective: Option<PoseScalar>,
 ) -> (RegularWorkspace, f64) {
     let (spec, orientation_grid) = (sampling.spec(), *sampling.orientation_grid());
-    let margins = RegionMargins::new(checker.clone(), sampling, step_base, symmetric);
+    let mut margins = RegionMargins::new(checker.clone(), sampling, step_base, symmetric);
+    margins.kept = objective.into_iter().fold(margins.kept, ScalarSet::with);
     let signs = &margins.signs;
-    let mut worst: Vec<f64> = (0..signs.len()).map(|k| margins.bound_at_first(k)).collect();
+    let standing_of = |found: &Examined| Standing::new(found, objective);
+    let mut worst: Vec<Standing> = (0..signs.len())
+        .map(|k| standing_of(&margins.bound_at_first(k)))
+        .collect();
     let has_loads = margins.without_loads.is_some();
     let are_known = !has_loads && margins.samples.first == margins.samples.all.len();
     let mut is_known = vec![are_known; worst.len()];
@@ -213,43 +267,42 @@ pub fn search_prescribed<L: Leg>(
     if has_loads {
         of_loads = vec![PoseScalars::splat(f64::INFINITY); worst.len()];
     }
-    let of_window = |home: usize, worst: &[f64]| {
-        let mut least = f64::INFINITY;
+    let of_window = |home: usize, worst: &[Standing]| {
+        let mut least = Standing::BEST;
         for k in orientation_grid.window(home) {
-            least = least.min(worst[k]);
+            least = least.and(worst[k]);
             if signs[k] != signs[home] {
-                least = least.min(CUT);
+                least.margin = least.margin.min(CUT);
             }
         }
         least
     };
     let homes = orientation_grid.homes();
-    let mut bounds: Vec<f64> = homes.clone().map(|home| of_window(home, &worst)).collect();
+    let mut bounds: Vec<Standing> = homes.clone().map(|home| of_window(home, &worst)).collect();
     let (home, margin) = loop {
-        let leader = bounds.iter().enumerate().fold(
-            0,
-            |best, (place, bound)| if *bound > bounds[best] { place } else { best },
-        );
+        let leader = bounds.iter().enumerate().fold(0, |best, (place, bound)| {
+            if bound.is_better_than(bounds[best]) {
+                place
+            } else {
+                best
+            }
+        });
         let home = homes.start + leader;
         let unknown = orientation_grid.window(home).find(|&k| !is_known[k]);
         let Some(k) = unknown else {
-            break (home, bounds[leader]);
+            break (home, bounds[leader].margin);
         };
         let found = margins.beyond_bound(k);
-        worst[k] = worst[k].min(found.margin);
+        worst[k] = worst[k].and(standing_of(&found));
         if let Some(of_loads) = of_loads.get_mut(k) {
-            *of_loads = found.of_loads;
+            *of_loads = found.kept;
         }
         is_known[k] = true;
         // An orientation belongs to the windows of exactly those home orientations that lie in the window about it.
         for (place, bound) in bounds.iter_mut().enumerate() {
-            *bound = bound.min(
-                if orientation_grid.window(homes.start + place).any(|other| other == k) {
-                    worst[k]
-                } else {
-                    f64::INFINITY
-                },
-            );
+            if orientation_grid.window(homes.start + place).any(|other| other == k) {
+                *bound = bound.and(worst[k]);
+            }
         }
     };
     let found = RegularWorkspace {
@@ -281,15 +334,15 @@ fn signs(values: &ValueColumns, count: usize) -> Vec<f64> {
     (0..count).map(sign).collect()
 }
 
-/// Determines the worst margin over many positions in one orientation.
+/// Determines the worst margin over many positions in one orientation, and the worst values of some scalars.
 struct WorstMargin<'a, L> {
     checker: &'a PoseChecker<L>,
     oriented: OrientationLanes<'a>,
     xs: &'a [f64],
     ys: &'a [f64],
     base_radius: f64,
-    /// Limited scalars that depend on loads.
-    of_loads: ScalarSet,
+    /// Scalars whose worst values are kept.
+    kept: ScalarSet,
 }
 
 impl<L: Leg> WithSimd for WorstMargin<'_, L> {
@@ -299,7 +352,7 @@ impl<L: Leg> WithSimd for WorstMargin<'_, L> {
     fn with_simd<S: Simd>(self, simd: S) -> Examined {
         let (arms, sign) = self.oriented.lanes(simd);
         let mut least = sign.splat(f64::INFINITY);
-        let mut least_of_loads = PoseScalars::splat(least);
+        let mut least_kept = PoseScalars::splat(least);
         let limited = self.checker.computed;
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         for (x, y) in xs.iter().zip(ys) {
@@ -310,17 +363,17 @@ impl<L: Leg> WithSimd for WorstMargin<'_, L> {
                 sign,
                 self.base_radius,
                 limited,
-                (self.of_loads, &mut least_of_loads),
+                (self.kept, &mut least_kept),
             );
             least = margin.smaller(least);
         }
-        let mut of_loads = PoseScalars::splat(f64::INFINITY);
-        for scalar in self.of_loads.iter() {
-            of_loads[scalar] = least_lane(least_of_loads[scalar]);
+        let mut kept = PoseScalars::splat(f64::INFINITY);
+        for scalar in self.kept.iter() {
+            kept[scalar] = least_lane(least_kept[scalar]);
         }
         Examined {
             margin: least_lane(least),
-            of_loads,
+            kept,
         }
     }
 }
@@ -334,8 +387,15 @@ fn least_lane<S: Simd>(numbers: Lanes<S>) -> f64 {
 }
 
 impl<L: Leg> PoseChecker<L> {
-    /// Returns what many positions in one orientation show, in the columns of equal lengths, a multiple of [`MAX_LANES`].
-    fn worst_margin(&self, oriented: OrientationLanes<'_>, xs: &[f64], ys: &[f64], base_radius: f64) -> Examined {
+    /// Returns what many positions in one orientation show, in the columns of equal lengths, a multiple of [`MAX_LANES`]; `kept` are the
+    /// scalars whose worst values are returned.
+    fn worst_margin(
+        &self,
+        oriented: OrientationLanes<'_>,
+        (xs, ys): (&[f64], &[f64]),
+        base_radius: f64,
+        kept: ScalarSet,
+    ) -> Examined {
         assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MAX_LANES));
         self.instructions.run(WorstMargin {
             checker: self,
@@ -343,13 +403,13 @@ impl<L: Leg> PoseChecker<L> {
             xs,
             ys,
             base_radius,
-            of_loads: self.limited_of_loads(),
+            kept,
         })
     }
 
     /// Returns the worst margin of the limits at several poses at once, no less than −1, and less than −1 where a leg does not reach
-    /// the pose. Margins of lengths are divided by `base_radius`. `set` are the scalars that are limited; of those that depend on loads,
-    /// the worst values so far are kept.
+    /// the pose. Margins of lengths are divided by `base_radius`. `set` are the scalars that are limited; of those in `kept`, the worst
+    /// values so far are kept.
     #[inline(always)]
     fn margin_lanes<V: Real>(
         &self,
@@ -358,7 +418,7 @@ impl<L: Leg> PoseChecker<L> {
         sign: V,
         base_radius: f64,
         set: ScalarSet,
-        (of_loads, least_of_loads): (ScalarSet, &mut PoseScalars<V>),
+        (kept, least_kept): (ScalarSet, &mut PoseScalars<V>),
     ) -> V {
         let (values, distals) = self.core_lanes(position, arms);
         let scalars = &values.scalars;
@@ -395,9 +455,14 @@ impl<L: Leg> PoseChecker<L> {
                     worst = worst.smaller(margin.larger(none));
                 }
             }
-            for scalar in of_loads.iter() {
+            for scalar in kept.iter() {
                 let reversed = sign.splat(scalar.entry().quantity.better.sign());
-                least_of_loads[scalar] = (scalars[scalar] * reversed).smaller(least_of_loads[scalar]);
+                least_kept[scalar] = (scalars[scalar] * reversed).smaller(least_kept[scalar]);
+            }
+        } else {
+            // Of those that every loop over poses determines, larger values are better.
+            for scalar in kept.iter() {
+                least_kept[scalar] = scalars[scalar].smaller(least_kept[scalar]);
             }
         }
         if let Some(threshold) = self.thresholds.get(PoseScalar::Clearance) {

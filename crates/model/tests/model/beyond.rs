@@ -1,7 +1,7 @@
 //! Values beyond the limits of joints.
 
 use glam::DVec2;
-use kinefront_model::evaluation::{Model, PoseScalar};
+use kinefront_model::evaluation::{Model, PoseScalar, ScalarSet};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Rotation;
 
@@ -12,7 +12,7 @@ fn values_continue_across_a_joint_limit() {
     let design: Design = "3-PRR R=1 r=0.3 Lb=0.9 rj=0.01 rp=0.015".parse().expect("a design");
     let evaluator = Model::default().pose_evaluator(&design);
     let arms = evaluator.arms(&Rotation::new(0.3));
-    let at = |x: f64| evaluator.evaluate_beyond_limits(&arms, DVec2::new(x, 0.05));
+    let at = |x: f64| evaluator.evaluate_beyond_limits(&arms, DVec2::new(x, 0.05), ScalarSet::default());
     let reached = |x: f64| evaluator.evaluate_position(&arms, DVec2::new(x, 0.05));
     // The pose from which on a slider passes the end of its rail.
     let (mut inside, mut outside) = (0.0, 1.0);

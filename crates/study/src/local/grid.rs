@@ -1,6 +1,6 @@
 //! Optima for the fine grid, on which reported designs are verified.
 
-use kinefront_model::evaluation::{Evaluation, GridChoice};
+use kinefront_model::evaluation::{Evaluation, GridChoice, Quantity};
 use kinefront_model::mechanism::Design;
 use kinefront_model::workspace::Region;
 use kinefront_optimum::{LocalProblem, Polished};
@@ -21,6 +21,17 @@ pub(super) const ANSWERS: usize = 3;
 /// Relative amount by which the other objectives of an improved design may be worse.
 const KEPT: f64 = 1e-3;
 
+/// What is improved of a design, and what is held.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Aim {
+    /// Place of the objective that is improved.
+    pub improved: usize,
+    /// Values that other objectives have to keep; those of the design for all that are not named.
+    pub held: Vec<(Quantity, f64)>,
+    /// Whether the dimensions that are listed or of a catalogue stay as they are.
+    pub keeps_entries: bool,
+}
+
 impl DesignProblem {
     /// Verifies the best design near one that a search found, or that design itself if no better one holds on the fine grid.
     pub fn verify_improved(&self, design: &Design) -> Evaluation {
@@ -36,12 +47,12 @@ impl DesignProblem {
             let (value, had) = (better.objectives[0], found.objectives[0]);
             !has_lists || value <= had + KEPT * had.abs()
         };
-        let improved = self.improved(&found);
+        let improved = self.improved(&found, &Aim::default());
         // Without lists, a front has other designs in place of one that does not hold.
         let rooms = if has_lists { &ROOMS[..] } else { &ROOMS[..1] };
         let mut better = improved
             .iter()
-            .filter_map(|(problem, polished)| self.held_on_fine_grid(problem, polished, rooms))
+            .filter_map(|answer| self.held_on_fine_grid(answer, rooms))
             .filter(|better| keeps_others(better) && is_no_worse(better));
         match better.next() {
             // It may be worse in the first objective, because it holds the others between the poses of the grid, too.
@@ -55,8 +66,16 @@ impl DesignProblem {
         }
     }
 
+    /// Returns the best design near another one for an aim, verified on the fine grid; `None` if none holds there.
+    pub(crate) fn verify_toward(&self, near: &Evaluation, aim: &Aim) -> Option<Evaluation> {
+        let improved = self.improved(near, aim);
+        improved
+            .iter()
+            .find_map(|answer| self.held_on_fine_grid(answer, &ROOMS))
+    }
+
     /// Evaluates an optimum on the fine grid, with more slack where it does not hold there; `None` if it does not.
-    fn held_on_fine_grid(&self, problem: &LocalProblem, polished: &Polished, rooms: &[f64]) -> Option<Evaluation> {
+    fn held_on_fine_grid(&self, (problem, polished): &(LocalProblem, Polished), rooms: &[f64]) -> Option<Evaluation> {
         let mut evaluations = rooms.iter().filter_map(|room| {
             let design = self.for_fine_grid(problem, polished, 0.0, *room)?;
             Some(self.model().evaluate(&design, GridChoice::Fine))
@@ -67,7 +86,8 @@ impl DesignProblem {
     /// Returns the value of the first objective, as it is minimised, at the optimum near a design that a search found; `None` if no optimum
     /// is found.
     pub fn objective_near(&self, design: &Design) -> Option<f64> {
-        let (problem, polished) = self.improved(&self.evaluate_design(design)).into_iter().next()?;
+        let evaluation = self.evaluate_design(design);
+        let (problem, polished) = self.improved(&evaluation, &Aim::default()).into_iter().next()?;
         polished.is_feasible().then(|| problem.goal_sign() * polished.objective)
     }
 
@@ -97,12 +117,13 @@ impl DesignProblem {
         Some(found.design).filter(|_| found.is_feasible())
     }
 
-    /// Returns the optima near a design that was evaluated on a grid, the best first, each with its problem; none if the design is infeasible, or if its question has no local problem. There are several only where dimensions
-    /// are listed or of a catalogue: with those of the design, and with the entries that are better.
-    fn improved(&self, evaluation: &Evaluation) -> Vec<(LocalProblem, Polished)> {
+    /// Returns the optima near a design that was evaluated on a grid, the best first, each with its problem; none if the design is infeasible,
+    /// or if its question has no local problem. There are several only where dimensions are listed or of a catalogue: with those of the
+    /// design, and with the entries that are better.
+    fn improved(&self, evaluation: &Evaluation, aim: &Aim) -> Vec<(LocalProblem, Polished)> {
         let local = Some(evaluation)
             .filter(|evaluation| evaluation.is_feasible())
-            .and_then(|evaluation| self.local_of(evaluation, &[]).ok());
+            .and_then(|evaluation| self.local_toward(evaluation, aim.improved, &aim.held).ok());
         let Some((home, local)) = local.and_then(|local| Some((local.home?, local))) else {
             return Vec::new();
         };
@@ -132,7 +153,7 @@ impl DesignProblem {
             })
         };
         let own = solve(&evaluation.design, home, true);
-        if local.entries.is_empty() {
+        if local.entries.is_empty() || aim.keeps_entries {
             let own = own.map(|own| (local.problem, own.polished));
             return own.into_iter().collect();
         }

@@ -14,6 +14,7 @@ use alternatives::{LocalAnswer, OtherEntry};
 pub use along::{AlongJson, DrivenPart, DriversAlong, PriceCurve, PricedDesignJson, stacked, usual_range};
 pub use alternatives::AlternativeJson;
 pub use drivers::{ActiveJson, Drivers, DriversOptions, InactiveJson, PriceJson, RelaxationJson, WhyNotJson};
+pub(crate) use grid::Aim;
 pub use hindrances::Hindrance;
 pub use wish::{Condition, ConditionError, Wish, WishFault, WishOutcome};
 pub use wish_json::{UnmetJson, WishJson};
@@ -69,6 +70,17 @@ impl DesignProblem {
     /// # Errors
     /// As [`DesignProblem::local`].
     pub fn local_of(&self, evaluation: &Evaluation, held: &[(Quantity, f64)]) -> Result<LocalDesign, LocalFault> {
+        self.local_toward(evaluation, 0, held)
+    }
+
+    /// Returns the local problem of a design that was evaluated, in which the objective at the place `improved` is improved and the others
+    /// are held.
+    fn local_toward(
+        &self,
+        evaluation: &Evaluation,
+        improved: usize,
+        held: &[(Quantity, f64)],
+    ) -> Result<LocalDesign, LocalFault> {
         let settings = self.model().settings();
         let is_feasible = evaluation.is_feasible();
         let stated = |quantity: Quantity| {
@@ -90,10 +102,11 @@ impl DesignProblem {
             ),
             region => region.clone(),
         };
-        let Some((first, others)) = settings.objectives.split_first() else {
+        let Some(objective) = settings.objectives.get(improved) else {
             return Err(LocalFault::Unknown("objective"));
         };
-        let mut question = self.question_for(region, *first, evaluation.design.architecture());
+        let mut question = self.question_for(region, *objective, evaluation.design.architecture());
+        let others = settings.objectives.iter().filter(|other| *other != objective);
         for objective in others {
             let quantity = objective.quantity;
             let held = value(quantity).ok_or(LocalFault::Unknown(quantity.entry().label))?;

@@ -315,10 +315,10 @@ impl Target<'_> {
                 Quantity::Worst(scalar)
                     if scalar.bounds_poses() && is_at_least == (scalar.entry().quantity.better == Better::Higher) =>
                 {
-                    question
-                        .settings
-                        .thresholds
-                        .set(scalar, Some(self.stricter(scalar, value)));
+                    // A wish never breaks the study.
+                    let stated = self.settings.thresholds.get(scalar).unwrap_or(value);
+                    let limit = scalar.stricter(value, stated);
+                    question.settings.thresholds.set(scalar, Some(limit));
                 }
                 _ => {
                     let limits = &mut question.settings.limits;
@@ -335,14 +335,5 @@ impl Target<'_> {
             }
         }
         question
-    }
-
-    /// Returns the stricter of a value and of the limit that the study states, so that a wish never breaks the study.
-    fn stricter(&self, scalar: PoseScalar, value: f64) -> f64 {
-        let stated = self.settings.thresholds.get(scalar).unwrap_or(value);
-        match scalar.entry().quantity.better {
-            Better::Higher => value.max(stated),
-            Better::Lower => value.min(stated),
-        }
     }
 }

@@ -128,7 +128,7 @@ impl<L: Leg> Sizer<'_, L> {
     fn best_home(&self, design: &Design, grid: GridChoice) -> (usize, f64) {
         let sampling = self.model.sampling(grid);
         let checker = self.model.checker::<L>(design);
-        let (found, margin) = search_prescribed(&checker, sampling, design.base_radius(), self.sectors == 1);
+        let (found, margin) = search_prescribed(&checker, sampling, design.base_radius(), self.sectors == 1, None);
         (found.home.unwrap_or(0), margin)
     }
 

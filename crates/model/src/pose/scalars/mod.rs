@@ -414,6 +414,14 @@ impl PoseScalar {
         self.is_of_loads() || self.of_motion().is_some()
     }
 
+    /// Returns the stricter one of two limits.
+    pub fn stricter(self, a: f64, b: f64) -> f64 {
+        match self.entry().quantity.better {
+            Better::Higher => a.max(b),
+            Better::Lower => a.min(b),
+        }
+    }
+
     /// Whether a limit of the quantity bounds each pose.
     pub fn bounds_poses(self) -> bool {
         self.entry().quantity.scope == Scope::Poses

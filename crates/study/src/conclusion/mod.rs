@@ -1,12 +1,15 @@
 //! The end of a run: the designs that are reported are selected, verified on the fine grid, and proved.
 //!
 //! A search leaves many more designs than a person looks at. Those that together cover the front best are selected first, and only they
-//! are verified and proved. One that does not hold, or that another one dominates then, is replaced by its neighbours.
+//! are verified and proved. One that does not hold, or that another one dominates then, is replaced by its neighbours. Gaps that are left are
+//! filled with designs that are optimised for them.
 
 use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::prelude::*;
+
+mod gaps;
 
 use super::prove::{FrontProver, ProvedMember, proved_front};
 use super::search::{Found, StudySearch};
@@ -135,6 +138,7 @@ impl<'a> Settling<'a> {
                 }
                 self.settle(&replacements, times, send)?;
             }
+            self.fill_gaps(times, send)?;
         }
         Some(self.reported(most))
     }
@@ -197,47 +201,70 @@ impl<'a> Settling<'a> {
 
     /// Verifies some candidates and proves those that hold; `None` if the run was abandoned.
     fn settle(&mut self, places: &[usize], times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
-        let (control, problem, pool) = (self.control, &self.search.problem, &self.search.pool);
+        let (control, problem) = (self.control, &self.search.problem);
+        let verify = |candidates: &[Arc<TableRow>], &place: &usize| {
+            let is_wanted = !control.is_abandoned();
+            is_wanted.then(|| (place, Some(problem.verify_improved(&candidates[place].row.design))))
+        };
+        self.verify_and_prove(places, verify, times, send)?;
+        places.iter().for_each(|&place| self.is_tried[place] = true);
+        Some(())
+    }
+
+    /// Obtains an evaluation on the fine grid for each of some tasks, and proves those that hold; `None` if the run was abandoned.
+    /// `verify` returns the place of the candidate that a task begins with, and the evaluation if there is one; `None` if the run was
+    /// abandoned.
+    fn verify_and_prove<T: Sync>(
+        &mut self,
+        tasks: &[T],
+        verify: impl Fn(&[Arc<TableRow>], &T) -> Option<(usize, Option<Evaluation>)> + Sync,
+        times: &mut RunTimes,
+        send: &mut dyn FnMut(Event),
+    ) -> Option<()> {
+        let (control, pool) = (self.control, &self.search.pool);
         let goes_on = || !control.is_abandoned();
-        let prover = FrontProver::new(problem, &goes_on);
-        self.planned += places.len();
-        for part in places.chunks(4 * self.search.threads()) {
+        let prover = FrontProver::new(&self.search.problem, &goes_on);
+        self.planned += tasks.len();
+        for part in tasks.chunks(4 * self.search.threads()) {
             send(Event::Verifying {
                 done: self.tried,
                 total: self.planned,
             });
             let verifying = Instant::now();
             let candidates = &self.candidates;
-            let verify = |&place: &usize| goes_on().then(|| problem.verify_improved(&candidates[place].row.design));
-            let evaluations: Option<Vec<Evaluation>> = pool.install(|| part.par_iter().map(verify).collect());
+            let verified = |task: &T| verify(candidates, task);
+            let evaluations: Option<Vec<_>> = pool.install(|| part.par_iter().map(verified).collect());
             let mut members = Vec::new();
-            for (&place, evaluation) in part.iter().zip(evaluations?) {
-                self.is_tried[place] = true;
-                if evaluation.is_feasible() {
-                    let member = self.member(place, evaluation);
-                    members.push((place, member));
+            for (place, evaluation) in evaluations? {
+                if let Some(evaluation) = evaluation.filter(Evaluation::is_feasible) {
+                    members.push((place, self.member(place, evaluation)));
                 }
             }
             times.verification_s += verifying.elapsed().as_secs_f64();
-            let proving = Instant::now();
-            let (places, members): (Vec<usize>, Vec<FrontMember>) = members.into_iter().unzip();
-            let proved = if self.search.study().workspace.certify {
-                pool.install(|| prover.prove(&members))
-            } else {
-                members.into_iter().map(ProvedMember::unproved).collect()
-            };
-            for (place, proved) in places.into_iter().zip(proved) {
-                if !self.repeats(&proved) {
-                    self.held.push((place, proved));
-                }
-            }
-            times.certification_s += proving.elapsed().as_secs_f64();
+            self.prove(members, &prover, times);
             if !goes_on() {
                 return None;
             }
             self.tried += part.len();
         }
         Some(())
+    }
+
+    /// Proves designs, each with the place of its candidate, and keeps those that repeat no other one.
+    fn prove(&mut self, members: Vec<(usize, FrontMember)>, prover: &FrontProver, times: &mut RunTimes) {
+        let proving = Instant::now();
+        let (places, members): (Vec<usize>, Vec<FrontMember>) = members.into_iter().unzip();
+        let proved = if self.search.study().workspace.certify {
+            self.search.pool.install(|| prover.prove(&members))
+        } else {
+            members.into_iter().map(ProvedMember::unproved).collect()
+        };
+        for (place, proved) in places.into_iter().zip(proved) {
+            if !self.repeats(&proved) {
+                self.held.push((place, proved));
+            }
+        }
+        times.certification_s += proving.elapsed().as_secs_f64();
     }
 
     /// Returns whether a design has the same objectives as one that holds, up to what no table shows: neighbours that are improved can end

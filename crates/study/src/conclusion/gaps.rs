@@ -1,0 +1,177 @@
+//! Gaps of the front that is reported: designs between two neighbours, and at the ends.
+
+use std::sync::Arc;
+
+use kinefront_model::evaluation::{Better, Evaluation, Quantity};
+use kinefront_optimize::{Archive, Objectives, added_share, gaps, halfway};
+
+use super::Settling;
+use crate::local::Aim;
+use crate::{DesignProblem, Event, RunTimes, TableRow};
+
+/// Largest number of gaps that are filled before they are looked for again.
+const AT_ONCE: usize = 16;
+
+/// Gaps are left if as many of them as designs are reported would add less than this share to what the front covers.
+const WORTH: f64 = 0.02;
+
+/// The same for designs that were found for a gap or an end: they are kept only if they add more.
+const KEPT: f64 = 0.005;
+
+/// Distance of the reference point from the worst values of a front, as a share of its extent.
+const BEYOND: f64 = 0.1;
+
+/// Share of its radius that the best design in an objective keeps as it is improved. A region without a size has no design.
+const RADIUS: f64 = 0.5;
+
+/// A design that is to be found.
+struct Wanted {
+    /// The design to start from, as a place in `held`.
+    near: usize,
+    aim: Aim,
+}
+
+impl Settling<'_> {
+    /// Fills the gaps of a front of two or three objectives, and improves its ends; `None` if the run was abandoned.
+    ///
+    /// The search leaves gaps where the designs that it found end at the same optimum, and its ends are seldom the best designs. Beside a
+    /// gap there is an optimum, from which another one with a value in the gap is a short way. No more designs are looked for than are
+    /// reported.
+    pub(super) fn fill_gaps(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
+        let mut tried: Vec<[usize; 2]> = Vec::new();
+        let mut ends: Vec<Option<usize>> = vec![None; self.search.found.reference.len()];
+        let most = self.search.study().optimizer.front_designs;
+        let mut left = most;
+        loop {
+            let standing = self.standing();
+            let mut wanted = self.wanted_at_ends(&standing, &mut ends);
+            wanted.extend(self.wanted_between(&standing, &mut tried));
+            wanted.truncate(left);
+            if wanted.is_empty() {
+                break;
+            }
+            left -= wanted.len();
+            let starts: Vec<(usize, Evaluation, Aim)> = wanted
+                .into_iter()
+                .filter_map(|Wanted { near, aim }| {
+                    let (place, proved) = &self.held[near];
+                    Some((*place, proved.reported()?.evaluation.clone(), aim))
+                })
+                .collect();
+            let (control, problem) = (self.control, &self.search.problem);
+            let points = objectives(&standing);
+            // Beyond the ends, a design adds something only as the study's own reference point shows it.
+            let references = [self.reference_near(&points), self.search.found.reference];
+            let adds = |found: &Evaluation| {
+                let found = DesignProblem::outcome(found).objectives;
+                let mut shares = references
+                    .iter()
+                    .map(|reference| added_share(&points, reference, &found));
+                shares.any(|share| share * most as f64 > KEPT)
+            };
+            let verify = |_: &[Arc<TableRow>], (place, near, aim): &(usize, Evaluation, Aim)| {
+                let is_wanted = !control.is_abandoned();
+                is_wanted.then(|| (*place, problem.verify_toward(near, aim).filter(adds)))
+            };
+            self.verify_and_prove(&starts, verify, times, send)?;
+        }
+        Some(())
+    }
+
+    /// Returns designs in the largest gaps. `tried` are the pairs of neighbours between which a design was looked for already, once for each
+    /// time.
+    fn wanted_between(&self, standing: &Archive, tried: &mut Vec<[usize; 2]>) -> Vec<Wanted> {
+        let (points, most) = (objectives(standing), self.search.study().optimizer.front_designs);
+        let mut found = gaps(&points, &self.reference_near(&points));
+        found.retain(|gap| gap.share * most as f64 > WORTH);
+        found.sort_by(|a, b| b.share.total_cmp(&a.share));
+        let mut wanted = Vec::new();
+        for gap in found {
+            let [first, second] = gap.between.map(|place| standing[place].id);
+            let [near_first, near_second] = gap.between.map(|place| halfway(&gap.middle, &points[place]));
+            // The second one keeps more of what is asked of the other objectives. A shorter way may lead where the middle is out of reach.
+            let ways = [
+                (second, gap.middle),
+                (first, gap.middle),
+                (second, near_second),
+                (first, near_first),
+            ];
+            let times = tried.iter().filter(|pair| **pair == [first, second]).count();
+            if let Some((near, target)) = ways.get(times).filter(|_| wanted.len() < AT_ONCE) {
+                tried.push([first, second]);
+                wanted.push(Wanted {
+                    near: *near,
+                    aim: Aim {
+                        // Both neighbours have the entries that are best for them.
+                        keeps_entries: true,
+                        ..self.aim(0, target)
+                    },
+                });
+            }
+        }
+        wanted
+    }
+
+    /// Returns the designs that are best in one objective, where the others are no worse than the reference point; none where the end was
+    /// tried before.
+    fn wanted_at_ends(&self, standing: &Archive, ends: &mut [Option<usize>]) -> Vec<Wanted> {
+        let (points, reference) = (objectives(standing), &self.search.found.reference);
+        let counts = |point: &Objectives| point.iter().zip(reference.iter()).all(|(value, worst)| value < worst);
+        let mut wanted = Vec::new();
+        for (improved, tried) in ends.iter_mut().enumerate() {
+            let places = (0..points.len()).filter(|&place| counts(&points[place]));
+            let end = places.min_by(|&a, &b| points[a][improved].total_cmp(&points[b][improved]));
+            let Some(near) = end.map(|end| standing[end].id).filter(|near| *tried != Some(*near)) else {
+                continue;
+            };
+            *tried = Some(near);
+            let mut aim = self.aim(improved, reference);
+            let radius = self.held[near]
+                .1
+                .reported()
+                .map(|member| member.evaluation.workspace_radius());
+            for (quantity, value) in &mut aim.held {
+                if let (Quantity::WorkspaceRadius, Some(radius)) = (*quantity, radius) {
+                    *value = RADIUS * radius;
+                }
+            }
+            wanted.push(Wanted { near, aim });
+        }
+        wanted
+    }
+
+    /// Returns the reference point, no farther from a front than a tenth of its extent: where it is far away, no gap would matter.
+    fn reference_near(&self, points: &[Objectives]) -> Objectives {
+        let stated = self.search.found.reference.iter().enumerate();
+        Objectives::new(stated.map(|(place, stated)| {
+            let values = || points.iter().map(|point| point[place]);
+            let (best, worst) = (
+                values().fold(f64::INFINITY, f64::min),
+                values().fold(f64::NEG_INFINITY, f64::max),
+            );
+            stated.min(worst + BEYOND * (worst - best))
+        }))
+    }
+
+    /// Returns the aim to improve an objective while the others are no worse than some minimised values.
+    fn aim(&self, improved: usize, minimised: &Objectives) -> Aim {
+        let objectives = &self.search.problem.model().settings().objectives;
+        let held = objectives.iter().zip(minimised.iter()).enumerate();
+        let held = held.filter(|(place, _)| *place != improved);
+        let value = |goal: Better, minimised: f64| match goal {
+            Better::Lower => minimised,
+            Better::Higher => -minimised,
+        };
+        Aim {
+            improved,
+            held: held
+                .map(|(_, (objective, minimised))| (objective.quantity, value(objective.goal, *minimised)))
+                .collect(),
+            keeps_entries: false,
+        }
+    }
+}
+
+fn objectives(standing: &Archive) -> Vec<Objectives> {
+    standing.iter().map(|member| member.objectives).collect()
+}
