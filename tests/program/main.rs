@@ -9,6 +9,7 @@ mod documents;
 mod drivers;
 mod exports;
 mod faults;
+mod fronts;
 mod handed_over;
 mod injected;
 mod merging;

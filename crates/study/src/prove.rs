@@ -14,6 +14,9 @@ use kinefront_optimize::{Archive, Objectives, hypervolume, subset};
 /// Part of the verified `R_w` that the proved radius of a refuted design must have; otherwise a stronger design is looked for.
 const RESTORED: f64 = 0.999;
 
+/// Slack, as a logarithm or a share of `R`, that makes a proof easier of a design whose requirements hold with less.
+const SLACK: f64 = 1e-4;
+
 /// Ends a proof once a function returns false.
 struct Until<'a>(&'a dyn Fn() -> bool);
 
@@ -28,7 +31,7 @@ impl ProofObserver for Until<'_> {
 pub struct ProvedMember {
     member: FrontMember,
     refuted: Option<RefutedDesign>,
-    /// The stronger design that is reported instead, and the increase; its id is not known yet.
+    /// The design that is reported instead, stronger or with more slack, and the increase; its id is not known yet.
     instead: Option<(FrontMember, f64)>,
     /// Whether the design does what the study requires, as far as it is known.
     holds: bool,
@@ -45,7 +48,12 @@ impl ProvedMember {
         }
     }
 
-    /// Returns the design that is reported: the member, or the stronger one; `None` if neither does what the study requires.
+    /// Returns the design that is reported instead of another one, with the increase, which is none.
+    fn into_reported(self) -> Option<(FrontMember, f64)> {
+        self.reported().cloned().map(|member| (member, 0.0))
+    }
+
+    /// Returns the design that is reported: the member, or the one instead of it; `None` if neither does what the study requires.
     pub(super) fn reported(&self) -> Option<&FrontMember> {
         match &self.instead {
             Some((instead, _)) => Some(instead),
@@ -78,9 +86,33 @@ impl<'a> FrontProver<'a> {
         self.problem.model()
     }
 
-    /// Proves the workspaces of some designs, on the threads of the pool in which it is called.
+    /// Proves the workspaces of some designs, on the threads of the pool in which it is called. Of a design whose region stays open, one
+    /// near it with more slack is proved instead, if possible.
     pub fn prove(&self, members: &[FrontMember]) -> Vec<ProvedMember> {
-        members.par_iter().map(|member| self.prove_one(member)).collect()
+        let prove = |member: &FrontMember| {
+            let mut proved = self.prove_one(member);
+            let is_open = |proved: &ProvedMember| {
+                let certified = proved.reported().and_then(|member| member.certified);
+                certified.is_some_and(|certified| certified.is_of_region && !certified.is_proved)
+            };
+            if is_open(&proved) && (self.goes_on)() {
+                proved.instead = self
+                    .with_slack(member)
+                    .filter(|instead| !is_open(instead))
+                    .and_then(ProvedMember::into_reported);
+            }
+            proved
+        };
+        members.par_iter().map(prove).collect()
+    }
+
+    /// Proves a design near a member that keeps every requirement with more slack; `None` if there is none.
+    fn with_slack(&self, member: &FrontMember) -> Option<ProvedMember> {
+        let evaluation = self.problem.with_slack(&member.evaluation, SLACK)?;
+        Some(self.prove_one(&FrontMember {
+            evaluation,
+            ..member.clone()
+        }))
     }
 
     fn prove_one(&self, member: &FrontMember) -> ProvedMember {

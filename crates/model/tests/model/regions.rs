@@ -1,7 +1,9 @@
 //! Prescribed regions: against the largest disc, against every pose one by one, and the bars that are sized for them.
 
 use glam::DVec2;
-use kinefront_model::evaluation::{Constraint, GridChoice, Model, SizingRanges, WorkspaceTarget};
+use kinefront_model::evaluation::{
+    Better, Constraint, GridChoice, Model, Objective, PoseScalar, Quantity, SizingRanges, WorkspaceTarget,
+};
 use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
 use kinefront_model::polygon::{Polygon, PolygonError};
 use kinefront_model::spatial::{Pose, unit};
@@ -63,6 +65,56 @@ fn the_disc_of_the_workspace_radius_is_feasible_and_a_larger_one_is_not() {
     for (inside, beyond, design) in results {
         assert!(inside && !beyond, "{design}: {inside}, {beyond}");
     }
+}
+
+/// Of all home orientations in which a region is feasible, the one with the best objective is found, also where the objective is limited.
+#[test]
+fn the_home_orientation_is_the_best_one_for_the_objective() {
+    let regions = |radius: f64| [Region::Disc(0.7 * radius), rectangle(radius, 0.6 * radius)];
+    let objectives = [PoseScalar::StiffnessXy, PoseScalar::Dexterity, PoseScalar::Transmission];
+    let cases: Vec<(Design, Region, PoseScalar)> = designs(40)
+        .into_iter()
+        .flat_map(|(design, radius)| regions(radius).map(|region| (design, region)))
+        .flat_map(|(design, region)| objectives.map(|scalar| (design, region.clone(), scalar)))
+        .collect();
+    let best_and_found = |(design, region, scalar): &(Design, Region, PoseScalar)| {
+        let quantity = Quantity::Worst(*scalar);
+        let value = |home_phi_deg: Option<f64>| {
+            let model = strategies::model(|settings| {
+                settings.workspace.region = region.clone();
+                settings.workspace.home_phi_deg = home_phi_deg;
+                settings.thresholds.set(PoseScalar::Transmission, Some(0.05));
+                let [lower, higher] = [Better::Lower, Better::Higher];
+                settings.objectives = [(Quantity::Mass, lower), (quantity, higher)]
+                    .map(|(quantity, goal)| Objective { quantity, goal })
+                    .to_vec();
+            });
+            let found = model.evaluate(design, GridChoice::Reference);
+            found.quantities.get(quantity).filter(|_| found.is_feasible())
+        };
+        let homes = (0..144).map(|k| 2.5 * f64::from(k));
+        let values: Vec<f64> = homes.filter_map(|home| value(Some(home))).collect();
+        let best = values.iter().copied().reduce(f64::max);
+        let worst = values.iter().copied().reduce(f64::min);
+        (best, worst, value(None))
+    };
+    let mut differ = 0;
+    for (case, (best, worst, found)) in cases
+        .iter()
+        .zip(cases.par_iter().map(best_and_found).collect::<Vec<_>>())
+    {
+        let difference = best.zip(found).map(|(best, found)| (found / best - 1.0).abs());
+        assert!(
+            best.is_some() == found.is_some() && difference.is_none_or(|difference| difference < 1e-9),
+            "{case:?}: {best:?} {found:?}"
+        );
+        differ += usize::from(best.zip(worst).is_some_and(|(best, worst)| best > 1.01 * worst));
+    }
+    assert!(
+        differ > cases.len() / 4,
+        "{differ} of {} cases have a choice",
+        cases.len()
+    );
 }
 
 /// Every pose of the region that an evaluation calls feasible holds every constraint; the reports are their least values.

@@ -74,6 +74,18 @@ impl DesignProblem {
             .find_map(|answer| self.held_on_fine_grid(answer, &ROOMS))
     }
 
+    /// Returns the best design near another one that keeps every requirement with a slack, verified on the fine grid; `None` if none does.
+    pub(crate) fn with_slack(&self, near: &Evaluation, slack: f64) -> Option<Evaluation> {
+        let aim = Aim {
+            keeps_entries: true,
+            ..Aim::default()
+        };
+        let improved = self.improved(near, &aim);
+        improved
+            .iter()
+            .find_map(|answer| self.held_on_fine_grid(answer, &[slack]))
+    }
+
     /// Evaluates an optimum on the fine grid, with more slack where it does not hold there; `None` if it does not.
     fn held_on_fine_grid(&self, (problem, polished): &(LocalProblem, Polished), rooms: &[f64]) -> Option<Evaluation> {
         let mut evaluations = rooms.iter().filter_map(|room| {

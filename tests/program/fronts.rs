@@ -1,0 +1,77 @@
+//! Reported fronts: without gaps, and with the best designs at their ends.
+
+use std::fs;
+use std::path::Path;
+
+use kinefront_study::{RunFolder, TableRow};
+
+use super::support::{check, folder, optimize};
+
+fn front(out: &Path) -> Vec<TableRow> {
+    let run = RunFolder::open(out).expect("a run");
+    run.front().expect("a table").expect("a front").rows
+}
+
+/// NSGA-II finds few designs with so few evaluations; those between them are optimised for the gaps.
+#[test]
+fn a_short_search_reports_a_front_without_gaps() {
+    let folder = folder();
+    let out = folder.path().join("run");
+    let settings = [
+        "--algorithm",
+        "nsga2",
+        "--evaluations",
+        "300",
+        "--seed",
+        "3",
+        "--no-recording",
+    ];
+    optimize(Path::new("paper"), &out, &settings);
+    let found = front(&out);
+    let of_the_search = found.iter().filter(|entry| entry.id < 300).count();
+    assert!(
+        found.len() > 60 && of_the_search < 20,
+        "{} and {of_the_search}",
+        found.len()
+    );
+    let sizes: Vec<[f64; 2]> = found
+        .iter()
+        .map(|entry| [entry.row.mass(), entry.row.workspace_radius()])
+        .collect();
+    for pair in sizes.windows(2) {
+        let [[lighter, smaller], [heavier, larger]] = [pair[0], pair[1]];
+        if smaller > 0.3 && heavier < 1500.0 {
+            assert!(heavier < 1.25 * lighter && larger < 1.15 * smaller, "{pair:?}");
+        }
+    }
+    let proved = found
+        .iter()
+        .filter(|entry| entry.certified.is_some_and(|certified| certified.is_proved));
+    assert_eq!(proved.count(), found.len());
+    check(&out).success();
+}
+
+/// The lightest design of a front of two objectives is that of the question for the mass alone, though the search has found no design near it.
+#[test]
+fn the_ends_of_a_front_are_the_best_designs() {
+    let folder = folder();
+    let question = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/comparison/questions/rectangle-stiffness.toml");
+    let both = fs::read_to_string(question).expect("a study");
+    let lightest = |name: &str, text: &str, evaluations: &str| {
+        let (study, out) = (folder.path().join(format!("{name}.toml")), folder.path().join(name));
+        fs::write(&study, format!("{text}\n[workspace]\ncertify = false\n")).expect("a study");
+        optimize(
+            &study,
+            &out,
+            &["--evaluations", evaluations, "--seed", "5", "--no-recording"],
+        );
+        front(&out)[0].row.mass()
+    };
+    let of_both = lightest("both", &both, "300");
+    let alone = both
+        .replace(r#", { maximize = "k_xy_n_per_m" }"#, "")
+        .replace("[hypervolume]\nreference = [120.0, 0.0]\n", "");
+    assert_ne!(alone, both);
+    let of_mass = lightest("mass", &alone, "1000");
+    assert!(of_both < 1.001 * of_mass, "{of_both} kg, and {of_mass} kg");
+}
