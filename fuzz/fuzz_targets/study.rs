@@ -1,12 +1,8 @@
-//! A study that is read is valid: its model can be built, and it reads back what it writes.
 #![no_main]
 
-use kinefront_study::Study;
 use libfuzzer_sys::fuzz_target;
 
-fuzz_target!(|text: &str| {
-    let Ok(study) = Study::parse(text, "fuzz") else { return };
-    study.model().expect("a valid study has a model");
-    let written = toml::to_string(&study).expect("a study is TOML");
-    assert_eq!(Study::parse(&written, "again").expect("a valid study"), study);
-});
+#[path = "../checks/study.rs"]
+mod study;
+
+fuzz_target!(|text: &str| study::check(text));

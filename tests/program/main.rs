@@ -10,6 +10,7 @@ mod drivers;
 mod exports;
 mod faults;
 mod fronts;
+mod fuzzed;
 mod handed_over;
 mod injected;
 mod merging;

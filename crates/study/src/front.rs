@@ -123,14 +123,16 @@ impl fmt::Display for FrontProofs {
             )?;
         }
         let thickened = self.refuted.iter().filter(|refuted| refuted.thickened.is_some());
-        match (self.refuted.len(), thickened.count()) {
-            (0, _) => write!(f, "."),
-            (refuted, 0) => write!(f, ". {refuted} radii of the fine grid were too large and are reduced."),
-            (refuted, thickened) => write!(
-                f,
-                ". {refuted} radii of the fine grid were too large: {thickened} of these designs have thicker bars now, \
-                 and the other radii are reduced."
-            ),
-        }
+        let refuted = match self.refuted.len() {
+            0 => return write!(f, "."),
+            1 => "1 design".to_owned(),
+            count => format!("{count} designs"),
+        };
+        let thickened = thickened.count();
+        let others = self.refuted.len() - thickened;
+        write!(
+            f,
+            ". The proofs refuted {refuted} of the fine grid: {thickened} with thicker bars now, {others} with a smaller radius or left out."
+        )
     }
 }

@@ -101,11 +101,7 @@ impl Settling<'_> {
                 tried.push([first, second]);
                 wanted.push(Wanted {
                     near: *near,
-                    aim: Aim {
-                        // Both neighbours have the entries that are best for them.
-                        keeps_entries: true,
-                        ..self.aim(0, target)
-                    },
+                    aim: self.aim(0, target),
                 });
             }
         }

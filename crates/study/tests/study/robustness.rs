@@ -1,11 +1,9 @@
-//! Small forms of the fuzz targets: mutated texts and files are read or refused, and never give a number that is not finite.
+//! Mutated tables are read or refused, and never give a number that is not finite.
 
 use std::fs;
 
-use kinefront_model::evaluation::{Model, Quantity};
-use kinefront_model::mechanism::{Design, WorkingMode};
-use kinefront_model::spatial::Pose;
-use kinefront_study::{BUILTIN, RunFolder, Study, read_designs, read_table};
+use kinefront_model::evaluation::Quantity;
+use kinefront_study::{RunFolder, read_designs, read_table};
 use proptest::prelude::*;
 
 /// Edits of a text: at a fraction of its length, a byte is replaced, inserted or removed.
@@ -24,42 +22,6 @@ fn edited(text: &[u8], edits: &[(f64, u8, u8)]) -> Vec<u8> {
         }
     }
     text
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
-
-    #[test]
-    fn a_mutated_study_is_read_or_refused(which in 0..BUILTIN.len(), edits in edits()) {
-        let bytes = edited(BUILTIN[which].text.as_bytes(), &edits);
-        let text = String::from_utf8_lossy(&bytes);
-        match Study::parse(&text, "mutated") {
-            Ok(study) => {
-                prop_assert!(study.model().is_ok());
-                let written = toml::to_string(&study).expect("a study is TOML");
-                prop_assert_eq!(Study::parse(&written, "again").expect("a valid study"), study);
-            }
-            Err(error) => prop_assert!(!error.to_string().is_empty()),
-        }
-    }
-
-    #[test]
-    fn mutated_designs_and_poses_are_read_or_refused(design in edits(), pose in edits()) {
-        let design = edited(b"3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056 mode=+-+", &design);
-        let pose = edited(b"x=0.1 y=-0.2 phi_deg=30", &pose);
-        let (Ok(design), Ok(pose)) = (
-            Design::parse(&String::from_utf8_lossy(&design), WorkingMode::ALL_PLUS),
-            String::from_utf8_lossy(&pose).parse::<Pose>(),
-        ) else {
-            return Ok(());
-        };
-        prop_assert!(design.values().iter().all(|value| value.is_finite()));
-        let model = Model::default();
-        prop_assert!(model.mass(&design).is_finite());
-        if let Ok(found) = model.pose(&design, &pose) {
-            prop_assert!(found.actuators.iter().all(|value| value.is_finite()));
-        }
-    }
 }
 
 proptest! {
