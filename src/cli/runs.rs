@@ -131,75 +131,86 @@ fn tell(
 ) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     if output.json {
-        // The text is that of the file, if there is one: reading JSON may change the last bit of a number.
-        let written = is_written
-            .then(|| std::fs::read_to_string(path.join("run.json")).ok())
-            .flatten();
-        match written {
-            Some(text) => write!(out, "{text}")?,
-            None => {
-                let report = serde_json::to_string_pretty(&RunReport::new(study, summary));
-                writeln!(out, "{}", report.map_err(Failure::runtime)?)?;
-            }
-        }
-    } else if !output.quiet {
-        let last = summary.history.last();
-        if summary.outcome == EndReason::Interrupted {
-            writeln!(
-                out,
-                "interrupted after {} evaluations; kinefront optimize --resume {} continues the run",
-                last.map_or(0, |last| last.evaluations),
-                path.display()
-            )?;
-            return Ok(());
-        }
-        writeln!(out, "{}", tables::front(study, summary))?;
-        if let Some(proofs) = &summary.proofs {
-            writeln!(out, "{proofs}")?;
-        }
-        writeln!(
-            out,
-            "{} evaluations ({} feasible) in {:.1} s{}, verified in {:.1} s{}; front: {} of {} verified designs kept, \
-             {} dropped by verification; hypervolume {:.1} {}",
-            last.map_or(0, |last| last.evaluations),
-            last.map_or(0, |last| last.feasible),
-            summary.times.search_s,
-            match summary.outcome {
-                EndReason::Completed | EndReason::Stopped | EndReason::Interrupted => "",
-                EndReason::TimeUp => " (time limit reached)",
-                EndReason::Stagnated => " (stagnated)",
-            },
-            summary.times.verification_s,
-            match &summary.proofs {
-                Some(_) => format!(", proved in {:.1} s", summary.times.certification_s),
-                None => String::new(),
-            },
-            summary.front.len(),
-            summary.verified,
-            summary.dropped,
-            summary.verified_hypervolume,
-            study.hypervolume_unit(),
-        )?;
-        if is_written {
-            writeln!(out, "wrote {}", path.display())?;
-        } else {
-            writeln!(
-                out,
-                "{} is incomplete; kinefront optimize --resume {} continues the run",
-                path.display(),
-                path.display()
-            )?;
-        }
-        if is_written && last.is_some_and(|last| last.feasible == 0) {
-            // The answer takes seconds.
-            writeln!(out, "No design is feasible.")?;
-            // It is told beside the run: that it cannot be told makes no run fail.
-            if let Ok(found) = hindrances(&path.join("designs.csv"), study) {
-                writeln!(out, "{}", tables::hindrances(&found))?;
-            }
+        return tell_json(&mut out, study, summary, path, is_written);
+    }
+    if output.quiet {
+        return Ok(());
+    }
+    let last = summary.history.last();
+    let resume = format!("kinefront optimize --resume {} continues the run", path.display());
+    if summary.outcome == EndReason::Interrupted {
+        let evaluations = last.map_or(0, |last| last.evaluations);
+        writeln!(out, "interrupted after {evaluations} evaluations; {resume}")?;
+        return Ok(());
+    }
+    writeln!(out, "{}", tables::front(study, summary))?;
+    if let Some(proofs) = &summary.proofs {
+        writeln!(out, "{proofs}")?;
+    }
+    writeln!(out, "{}", figures(study, summary))?;
+    if !is_written {
+        writeln!(out, "{} is incomplete; {resume}", path.display())?;
+        return Ok(());
+    }
+    writeln!(out, "wrote {}", path.display())?;
+    if last.is_some_and(|last| last.feasible == 0) {
+        // The answer takes seconds.
+        writeln!(out, "No design is feasible.")?;
+        // It is told beside the run: that it cannot be told makes no run fail.
+        if let Ok(found) = hindrances(&path.join("designs.csv"), study) {
+            writeln!(out, "{}", tables::hindrances(&found))?;
         }
     }
     Ok(())
+}
+
+/// Tells the report of a run as JSON.
+fn tell_json(
+    out: &mut impl Write,
+    study: &Study,
+    summary: &RunSummary,
+    path: &Path,
+    is_written: bool,
+) -> Result<(), Failure> {
+    // The text is that of the file, if there is one: reading JSON may change the last bit of a number.
+    let written = is_written
+        .then(|| std::fs::read_to_string(path.join("run.json")).ok())
+        .flatten();
+    match written {
+        Some(text) => write!(out, "{text}")?,
+        None => {
+            let report = serde_json::to_string_pretty(&RunReport::new(study, summary));
+            writeln!(out, "{}", report.map_err(Failure::runtime)?)?;
+        }
+    }
+    Ok(())
+}
+
+/// Returns the figures of a run in one line.
+fn figures(study: &Study, summary: &RunSummary) -> String {
+    let last = summary.history.last();
+    format!(
+        "{} evaluations ({} feasible) in {:.1} s{}, verified in {:.1} s{}; front: {} of {} verified designs kept, \
+         {} dropped by verification; hypervolume {:.1} {}",
+        last.map_or(0, |last| last.evaluations),
+        last.map_or(0, |last| last.feasible),
+        summary.times.search_s,
+        match summary.outcome {
+            EndReason::Completed | EndReason::Stopped | EndReason::Interrupted => "",
+            EndReason::TimeUp => " (time limit reached)",
+            EndReason::Stagnated => " (stagnated)",
+        },
+        summary.times.verification_s,
+        match &summary.proofs {
+            Some(_) => format!(", proved in {:.1} s", summary.times.certification_s),
+            None => String::new(),
+        },
+        summary.front.len(),
+        summary.verified,
+        summary.dropped,
+        summary.verified_hypervolume,
+        study.hypervolume_unit(),
+    )
 }
 
 pub fn write_failure(error: WriteError) -> Failure {

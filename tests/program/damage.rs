@@ -108,7 +108,7 @@ fn a_table_cut_at_every_byte_resumes() {
     let text = "name = \"tiny\"\narchitectures = [\"3-PRR\"]\n\
                 [grid.reference]\nphi_step_deg = 10\ndirections = 3\nray_steps = 4\nhalvings = 1\n\
                 [grid.fine]\nphi_step_deg = 10\ndirections = 6\nray_steps = 4\nhalvings = 1\n\
-                [optimizer]\nevaluations = 12\nthreads = 1\nalgorithm = \"nsga2\"\n[optimizer.nsga2]\npopulation = 4\n";
+                [optimizer]\nevaluations = 12\nthreads = 1\nfront_designs = 4\nalgorithm = \"nsga2\"\n[optimizer.nsga2]\npopulation = 4\n";
     fs::write(&study, text).expect("a study");
     let (whole, run) = (folder.path().join("whole"), folder.path().join("run"));
     optimize(&study, &whole, &["--no-recording"]);

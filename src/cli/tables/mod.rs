@@ -250,7 +250,11 @@ fn strength_tables(design: &Design, report: &StrengthReport) -> String {
     let unit = design.architecture().actuator().effort_unit();
     let efforts = report.actuators.map(number).join(", ");
     worst.add_row(["actuators of legs 1, 2, 3".to_owned(), format!("{efforts} {unit}")]);
+    format!("\n{worst}\n{}\n{}", member_table(report), joint_table(report))
+}
 
+/// Formats what each member carries.
+fn member_table(report: &StrengthReport) -> Table {
     let headings = [
         "member",
         "stress MPa",
@@ -290,6 +294,11 @@ fn strength_tables(design: &Design, report: &StrengthReport) -> String {
             },
         ]);
     }
+    members
+}
+
+/// Formats what each joint carries.
+fn joint_table(report: &StrengthReport) -> Table {
     let mut joints = table(
         ["joint", "kind", "radial N", "axial N", "force N", "moment N·m"],
         &[2, 3, 4, 5],
@@ -305,7 +314,7 @@ fn strength_tables(design: &Design, report: &StrengthReport) -> String {
             number(joint.moment),
         ]);
     }
-    format!("\n{worst}\n{members}\n{joints}")
+    joints
 }
 
 /// Formats all poses at which the actuated joints of a design have the given values.

@@ -1,9 +1,10 @@
 //! Tables of the motion of a design.
 
+use comfy_table::Table;
 use kinefront_model::certify::MotionCertificate;
-use kinefront_model::dynamics::{DriveCatalogue, Motion};
+use kinefront_model::dynamics::{Accuracy, DriveCatalogue, Motion, Response};
 use kinefront_model::evaluation::{PosedDynamics, ShortestCycle, TaskOutcome};
-use kinefront_model::mechanism::Design;
+use kinefront_model::mechanism::{Design, JointKind};
 use kinefront_scene::text::{self, number};
 
 use super::table;
@@ -35,21 +36,7 @@ pub fn dynamics(design: &Design, dynamics: &PosedDynamics<'_>, motion: Option<&M
         "bending of the leg bars themselves".to_owned(),
         format!("{} Hz", number(report.bar_frequency)),
     ]);
-    let accuracy = &report.accuracy;
-    if accuracy.worst_position > 0.0 {
-        let position = format!("{} mm", number(1e3 * accuracy.worst_position));
-        facts.add_row(["largest position error".to_owned(), position]);
-        let orientation = format!("{}°", number(accuracy.worst_orientation.to_degrees()));
-        facts.add_row(["largest orientation error".to_owned(), orientation]);
-        let share = |part: f64| number(100.0 * part / accuracy.worst_position);
-        let parts = accuracy
-            .budget_position
-            .parts()
-            .into_iter()
-            .filter(|(_, part)| *part > 0.0);
-        let parts: Vec<String> = parts.map(|(name, part)| format!("{name} {} %", share(part))).collect();
-        facts.add_row(["sources of the position error".to_owned(), parts.join(", ")]);
-    }
+    facts.add_rows(accuracy(&report.accuracy));
     let actuator = design.architecture().actuator();
     for (name, value, unit) in [
         (
@@ -70,19 +57,48 @@ pub fn dynamics(design: &Design, dynamics: &PosedDynamics<'_>, motion: Option<&M
     let Some(motion) = motion else {
         return format!("\n{facts}");
     };
+    format!("\n{facts}\n{}", drives(actuator, &dynamics.response(motion)))
+}
+
+/// Returns the rows of the errors of the pose; none without tolerances.
+fn accuracy(found: &Accuracy) -> Vec<[String; 2]> {
+    if found.worst_position <= 0.0 {
+        return Vec::new();
+    }
+    let share = |part: f64| number(100.0 * part / found.worst_position);
+    let parts = found
+        .budget_position
+        .parts()
+        .into_iter()
+        .filter(|(_, part)| *part > 0.0);
+    let parts: Vec<String> = parts.map(|(name, part)| format!("{name} {} %", share(part))).collect();
+    vec![
+        [
+            "largest position error".to_owned(),
+            format!("{} mm", number(1e3 * found.worst_position)),
+        ],
+        [
+            "largest orientation error".to_owned(),
+            format!("{}°", number(found.worst_orientation.to_degrees())),
+        ],
+        ["sources of the position error".to_owned(), parts.join(", ")],
+    ]
+}
+
+/// Formats what each actuator does during a motion.
+fn drives(actuator: JointKind, response: &Response) -> Table {
     let (unit, effort) = (actuator.unit(), actuator.effort_unit());
     let columns = [
         format!("speed [{unit}/s]"),
         format!("acceleration [{unit}/s²]"),
         format!("effort [{effort}]"),
     ];
-    let response = dynamics.response(motion);
     let mut drives = table(["leg", &columns[0], &columns[1], &columns[2]], &[1, 2, 3]);
     for leg in 0..3 {
         let values = [response.speeds[leg], response.accelerations[leg], response.forces[leg]].map(number);
         drives.add_row([vec![(leg + 1).to_string()], values.to_vec()].concat());
     }
-    format!("\n{facts}\n{drives}")
+    drives
 }
 
 /// Formats what a motion asks of the drives.

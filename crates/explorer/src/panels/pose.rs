@@ -185,29 +185,9 @@ impl PosePanel {
                 session.jump_to(&mode);
             }
         }
-        let workspace = session.known().and_then(|known| {
-            regular_workspace(
-                &known.evaluation,
-                session.model().settings().workspace.rotation_range_deg,
-            )
-        });
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 4.0, theme::ground(ui.visuals().dark_mode));
-        let corners = workspace.and_then(|_| region_corners(session.model()));
-        if let Some(corners) = corners {
-            // The outline may be concave, so that it is not filled.
-            let outline: Vec<_> = corners.into_iter().map(|corner| plan.screen(corner)).collect();
-            painter.add(egui::Shape::closed_line(outline, Stroke::new(1.2, theme::good(ui))));
-        } else if let Some(cylinder) = workspace {
-            let centre = plan.screen(cylinder.centre);
-            let radius = (cylinder.radius * plan.scale) as f32;
-            painter.circle(
-                centre,
-                radius,
-                theme::good(ui).gamma_multiply(0.12),
-                Stroke::new(1.2, theme::good(ui)),
-            );
-        }
+        paint_workspace(ui, &painter, &plan, session);
         draw_path(ui, &painter, &plan, session);
         self.modes.ghosts(&painter, &plan, session, design, theme::ink(ui));
         paint(ui, &painter, &plan, &scene);
@@ -247,6 +227,24 @@ impl PosePanel {
         {
             session.drag_platform(grip.target(at, &pose));
         }
+    }
+}
+
+/// Draws the region in which the design has its workspace.
+fn paint_workspace(ui: &Ui, painter: &egui::Painter, plan: &Plan, session: &Session) {
+    let rotation_range_deg = session.model().settings().workspace.rotation_range_deg;
+    let known = session.known();
+    let Some(cylinder) = known.and_then(|known| regular_workspace(&known.evaluation, rotation_range_deg)) else {
+        return;
+    };
+    let good = theme::good(ui);
+    if let Some(corners) = region_corners(session.model()) {
+        // The outline may be concave, so that it is not filled.
+        let outline: Vec<_> = corners.into_iter().map(|corner| plan.screen(corner)).collect();
+        painter.add(egui::Shape::closed_line(outline, Stroke::new(1.2, good)));
+    } else {
+        let (centre, radius) = (plan.screen(cylinder.centre), (cylinder.radius * plan.scale) as f32);
+        painter.circle(centre, radius, good.gamma_multiply(0.12), Stroke::new(1.2, good));
     }
 }
 
