@@ -28,7 +28,7 @@ pub struct Gap {
 /// let front = [[0.0, 4.0], [1.0, 3.0], [3.0, 0.0]].map(Into::into);
 /// let found = gaps(&front, &[5.0, 5.0]);
 /// assert_eq!(found[1].between, [1, 2]);
-/// assert_eq!(found[1].share, 6.0 * found[0].share);
+/// assert!((found[1].share - 6.0 * found[0].share).abs() < 1e-12);
 /// ```
 pub fn gaps(front: &[Objectives], reference: &[f64]) -> Vec<Gap> {
     let pairs = match reference.len() {
@@ -70,7 +70,8 @@ fn share_between(scale: &Scale, between: [usize; 2]) -> f64 {
 /// use kinefront_optimize::added_share;
 ///
 /// let front = [[0.0, 4.0], [2.0, 2.0]].map(Into::into);
-/// assert_eq!(added_share(&front, &[5.0, 5.0], &[1.0, 3.0].into()), 1.0 / 11.0);
+/// let added = added_share(&front, &[5.0, 5.0], &[1.0, 3.0].into());
+/// assert!((added - 1.0 / 11.0).abs() < 1e-12);
 /// ```
 pub fn added_share(front: &[Objectives], reference: &[f64], member: &Objectives) -> f64 {
     let all: Vec<Objectives> = front.iter().chain([member]).copied().collect();
