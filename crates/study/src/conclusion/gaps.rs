@@ -12,6 +12,9 @@ use crate::{DesignProblem, Event, RunTimes, TableRow};
 /// Largest number of gaps that are filled before they are looked for again.
 const AT_ONCE: usize = 16;
 
+/// Number of evaluations of the search for which one design is looked for, so that a short search has a short end.
+const EVALUATIONS: usize = 3;
+
 /// Gaps are left if as many of them as designs are reported would add less than this share to what the front covers.
 const WORTH: f64 = 0.02;
 
@@ -36,12 +39,12 @@ impl Settling<'_> {
     ///
     /// The search leaves gaps where the designs that it found end at the same optimum, and its ends are seldom the best designs. Beside a
     /// gap there is an optimum, from which another one with a value in the gap is a short way. No more designs are looked for than are
-    /// reported.
+    /// reported, and no more than a third of the evaluations.
     pub(super) fn fill_gaps(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
         let mut tried: Vec<[usize; 2]> = Vec::new();
         let mut ends: Vec<Option<usize>> = vec![None; self.search.found.reference.len()];
         let most = self.search.study().optimizer.front_designs;
-        let mut left = most;
+        let mut left = most.min(self.search.found.evaluated / EVALUATIONS);
         loop {
             let standing = self.standing();
             let mut wanted = self.wanted_at_ends(&standing, &mut ends);
