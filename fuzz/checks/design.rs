@@ -14,8 +14,10 @@ pub fn check(text: &str) {
         Design::parse(&design.to_string(), WorkingMode::ALL_PLUS).expect("a design"),
         design
     );
+    let model = Model::default();
+    assert!(model.mass(&design).is_finite());
     let Ok(pose) = pose.parse::<Pose>() else { return };
-    if let Ok(found) = Model::default().pose(&design, &pose) {
+    if let Ok(found) = model.pose(&design, &pose) {
         assert!(found.actuators.iter().all(|value| value.is_finite()));
     }
 }

@@ -3,7 +3,13 @@
 use kinefront_study::Study;
 
 pub fn check(text: &str) {
-    let Ok(study) = Study::parse(text, "fuzz") else { return };
+    let study = match Study::parse(text, "fuzz") {
+        Ok(study) => study,
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            return;
+        }
+    };
     study.model().expect("a valid study has a model");
     let written = toml::to_string(&study).expect("a study is TOML");
     assert_eq!(Study::parse(&written, "again").expect("a valid study"), study);

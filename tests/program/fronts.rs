@@ -3,14 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use kinefront_study::{RunFolder, TableRow};
-
-use super::support::{check, folder, optimize};
-
-fn front(out: &Path) -> Vec<TableRow> {
-    let run = RunFolder::open(out).expect("a run");
-    run.front().expect("a table").expect("a front").rows
-}
+use super::support::{check, folder, front, optimize, question};
 
 /// NSGA-II finds few designs with so few evaluations; those between them are optimised for the gaps.
 #[test]
@@ -51,12 +44,11 @@ fn a_short_search_reports_a_front_without_gaps() {
     check(&out).success();
 }
 
-/// The lightest design of a front of two objectives is that of the question for the mass alone, though the search has found no design near it.
+/// The lightest design of a front of two objectives is that of the question for the mass alone.
 #[test]
 fn the_ends_of_a_front_are_the_best_designs() {
     let folder = folder();
-    let question = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/comparison/questions/rectangle-stiffness.toml");
-    let both = fs::read_to_string(question).expect("a study");
+    let both = fs::read_to_string(question("rectangle-stiffness")).expect("a study");
     let lightest = |name: &str, text: &str, evaluations: &str| {
         let (study, out) = (folder.path().join(format!("{name}.toml")), folder.path().join(name));
         fs::write(&study, format!("{text}\n[workspace]\ncertify = false\n")).expect("a study");

@@ -65,7 +65,7 @@ fn as_text(check: impl Fn(&str)) -> impl Fn(&[u8]) {
 
 #[test]
 fn changed_texts_are_read_or_refused() {
-    let count = repetitions(300, 20_000);
+    let count = repetitions(1000, 20_000);
     each_input("fuzz/corpus/study", count, as_text(study::check));
     each_input("crates/study/assets/studies", count, as_text(study::check));
     each_input("fuzz/corpus/design", count, as_text(design::check));

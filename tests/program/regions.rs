@@ -7,7 +7,7 @@ use kinefront_study::RunFolder;
 use kinefront_testkit::poses_of_region;
 use predicates::str::contains;
 
-use super::support::{check, folder, kinefront, optimize, repetitions};
+use super::support::{check, folder, front, kinefront, optimize, question, repetitions};
 
 /// Studies of builders, each with the least number of designs that its front has.
 const STUDIES: [(&str, &str, usize); 3] = [
@@ -131,11 +131,12 @@ fn reported_designs_hold_their_region() {
 fn no_design_of_a_front_repeats_another_one() {
     let folder = folder();
     let out = folder.path().join("run");
-    let study =
-        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/comparison/questions/disc-footprint.toml");
-    optimize(&study, &out, &["--evaluations", "400", "--no-recording"]);
-    let run = RunFolder::open(&out).expect("a run");
-    let front = run.front().expect("a table").expect("a front").rows;
+    optimize(
+        &question("disc-footprint"),
+        &out,
+        &["--evaluations", "400", "--no-recording"],
+    );
+    let front = front(&out);
     assert!(front.len() >= 3, "{} designs", front.len());
     for (place, entry) in front.iter().enumerate() {
         for other in &front[place + 1..] {
@@ -152,16 +153,18 @@ fn no_design_of_a_front_repeats_another_one() {
 fn the_lightest_of_all_architectures_is_not_that_of_the_search() {
     let folder = folder();
     let out = folder.path().join("run");
-    let study = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/comparison/questions/polygon-all.toml");
-    optimize(&study, &out, &["--evaluations", "200", "--seed", "4", "--no-recording"]);
+    optimize(
+        &question("polygon-all"),
+        &out,
+        &["--evaluations", "200", "--seed", "4", "--no-recording"],
+    );
     let run = RunFolder::open(&out).expect("a run");
     let rows = run.designs().expect("a table").rows;
     let found = rows.iter().filter(|entry| entry.row.is_feasible());
     let best = found
         .min_by(|a, b| a.row.objectives[0].total_cmp(&b.row.objectives[0]))
         .expect("a feasible design");
-    let front = run.front().expect("a table").expect("a front").rows;
-    let reported = &front[0].row;
+    let reported = &front(&out)[0].row;
     assert_ne!(reported.design.architecture(), best.row.design.architecture());
     assert!(
         reported.objectives[0] < 0.5 * best.row.objectives[0],

@@ -8,6 +8,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::cargo_bin_cmd;
+use kinefront_study::{RunFolder, TableRow};
 use predicates::Predicate;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -47,6 +48,18 @@ pub fn small_study(folder: &Path) -> PathBuf {
 pub fn json<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Value {
     let told = kinefront().args(arguments).assert().success();
     serde_json::from_slice(&told.get_output().stdout).expect("one JSON object")
+}
+
+/// Returns the path of a question of `benches/comparison`.
+pub fn question(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/comparison/questions");
+    folder.join(format!("{name}.toml"))
+}
+
+/// Returns the front that a run reports.
+pub fn front(out: &Path) -> Vec<TableRow> {
+    let run = RunFolder::open(out).expect("a run");
+    run.front().expect("a table").expect("a front").rows
 }
 
 /// Runs a study into `out` and returns `run.json`.

@@ -48,11 +48,6 @@ impl ProvedMember {
         }
     }
 
-    /// Returns the design that is reported instead of another one, with the increase, which is none.
-    fn into_reported(self) -> Option<(FrontMember, f64)> {
-        self.reported().cloned().map(|member| (member, 0.0))
-    }
-
     /// Returns the design that is reported: the member, or the one instead of it; `None` if neither does what the study requires.
     pub(super) fn reported(&self) -> Option<&FrontMember> {
         match &self.instead {
@@ -89,30 +84,28 @@ impl<'a> FrontProver<'a> {
     /// Proves the workspaces of some designs, on the threads of the pool in which it is called. Of a design whose region stays open, one
     /// near it with more slack is proved instead, if possible.
     pub fn prove(&self, members: &[FrontMember]) -> Vec<ProvedMember> {
+        let is_open = |member: &FrontMember| {
+            let is_of_region = member.certified.is_some_and(|certified| certified.is_of_region);
+            is_of_region && !member.is_proved()
+        };
         let prove = |member: &FrontMember| {
             let mut proved = self.prove_one(member);
-            let is_open = |proved: &ProvedMember| {
-                let certified = proved.reported().and_then(|member| member.certified);
-                certified.is_some_and(|certified| certified.is_of_region && !certified.is_proved)
-            };
-            if is_open(&proved) && (self.goes_on)() {
-                proved.instead = self
-                    .with_slack(member)
-                    .filter(|instead| !is_open(instead))
-                    .and_then(ProvedMember::into_reported);
+            if proved.reported().is_some_and(is_open) && (self.goes_on)() {
+                proved.instead = self.proved_with_slack(member).map(|instead| (instead, 0.0));
             }
             proved
         };
         members.par_iter().map(prove).collect()
     }
 
-    /// Proves a design near a member that keeps every requirement with more slack; `None` if there is none.
-    fn with_slack(&self, member: &FrontMember) -> Option<ProvedMember> {
+    /// Returns a design near a member that keeps every requirement with more slack, if it is proved.
+    fn proved_with_slack(&self, member: &FrontMember) -> Option<FrontMember> {
         let evaluation = self.problem.with_slack(&member.evaluation, SLACK)?;
-        Some(self.prove_one(&FrontMember {
+        let proved = self.prove_one(&FrontMember {
             evaluation,
             ..member.clone()
-        }))
+        });
+        proved.reported().filter(|member| member.is_proved()).cloned()
     }
 
     fn prove_one(&self, member: &FrontMember) -> ProvedMember {

@@ -1,13 +1,11 @@
 //! Gaps of the front that is reported: designs between two neighbours, and at the ends.
 
-use std::sync::Arc;
-
 use kinefront_model::evaluation::{Better, Evaluation, Quantity};
 use kinefront_optimize::{Archive, Objectives, added_share, gaps, halfway};
 
 use super::Settling;
 use crate::local::Aim;
-use crate::{DesignProblem, Event, RunTimes, TableRow};
+use crate::{DesignProblem, Event, RunTimes};
 
 /// Largest number of gaps that are filled before they are looked for again.
 const AT_ONCE: usize = 16;
@@ -26,13 +24,6 @@ const BEYOND: f64 = 0.1;
 
 /// Share of its radius that the best design in an objective keeps as it is improved. A region without a size has no design.
 const RADIUS: f64 = 0.5;
-
-/// A design that is to be found.
-struct Wanted {
-    /// The design to start from, as a place in `held`.
-    near: usize,
-    aim: Aim,
-}
 
 impl Settling<'_> {
     /// Fills the gaps of a front of two or three objectives, and improves its ends; `None` if the run was abandoned.
@@ -54,14 +45,12 @@ impl Settling<'_> {
                 break;
             }
             left -= wanted.len();
-            let starts: Vec<(usize, Evaluation, Aim)> = wanted
-                .into_iter()
-                .filter_map(|Wanted { near, aim }| {
-                    let (place, proved) = &self.held[near];
-                    Some((*place, proved.reported()?.evaluation.clone(), aim))
-                })
-                .collect();
-            let (control, problem) = (self.control, &self.search.problem);
+            let start = |(near, aim): (usize, Aim)| {
+                let (place, proved) = &self.held[near];
+                Some((*place, (proved.reported()?.evaluation.clone(), aim)))
+            };
+            let starts: Vec<(usize, (Evaluation, Aim))> = wanted.into_iter().filter_map(start).collect();
+            let problem = &self.search.problem;
             let points = objectives(&standing);
             // Beyond the ends, a design adds something only as the study's own reference point shows it.
             let references = [self.reference_near(&points), self.search.found.reference];
@@ -72,18 +61,15 @@ impl Settling<'_> {
                     .map(|reference| added_share(&points, reference, &found));
                 shares.any(|share| share * most as f64 > KEPT)
             };
-            let verify = |_: &[Arc<TableRow>], (place, near, aim): &(usize, Evaluation, Aim)| {
-                let is_wanted = !control.is_abandoned();
-                is_wanted.then(|| (*place, problem.verify_toward(near, aim).filter(adds)))
-            };
+            let verify = |(near, aim): &(Evaluation, Aim)| problem.verify_toward(near, aim).filter(adds);
             self.verify_and_prove(&starts, verify, times, send)?;
         }
         Some(())
     }
 
-    /// Returns designs in the largest gaps. `tried` are the pairs of neighbours between which a design was looked for already, once for each
+    /// Returns the designs that are wanted in the largest gaps: each the design to start from, as a place in `held`, and the aim. `tried` are the pairs of neighbours between which a design was looked for already, once for each
     /// time.
-    fn wanted_between(&self, standing: &Archive, tried: &mut Vec<[usize; 2]>) -> Vec<Wanted> {
+    fn wanted_between(&self, standing: &Archive, tried: &mut Vec<[usize; 2]>) -> Vec<(usize, Aim)> {
         let (points, most) = (objectives(standing), self.search.study().optimizer.front_designs);
         let mut found = gaps(&points, &self.reference_near(&points));
         found.retain(|gap| gap.share * most as f64 > WORTH);
@@ -102,18 +88,15 @@ impl Settling<'_> {
             let times = tried.iter().filter(|pair| **pair == [first, second]).count();
             if let Some((near, target)) = ways.get(times).filter(|_| wanted.len() < AT_ONCE) {
                 tried.push([first, second]);
-                wanted.push(Wanted {
-                    near: *near,
-                    aim: self.aim(0, target),
-                });
+                wanted.push((*near, self.aim(0, target)));
             }
         }
         wanted
     }
 
-    /// Returns the designs that are best in one objective, where the others are no worse than the reference point; none where the end was
-    /// tried before.
-    fn wanted_at_ends(&self, standing: &Archive, ends: &mut [Option<usize>]) -> Vec<Wanted> {
+    /// The same for the designs that are best in one objective, where the others are no worse than the reference point; none where the end
+    /// was tried before.
+    fn wanted_at_ends(&self, standing: &Archive, ends: &mut [Option<usize>]) -> Vec<(usize, Aim)> {
         let (points, reference) = (objectives(standing), &self.search.found.reference);
         let counts = |point: &Objectives| point.iter().zip(reference.iter()).all(|(value, worst)| value < worst);
         let mut wanted = Vec::new();
@@ -134,7 +117,7 @@ impl Settling<'_> {
                     *value = RADIUS * radius;
                 }
             }
-            wanted.push(Wanted { near, aim });
+            wanted.push((near, aim));
         }
         wanted
     }

@@ -15,6 +15,7 @@ use super::prove::{FrontProver, ProvedMember, proved_front};
 use super::search::{Found, StudySearch};
 use super::{DesignProblem, EndReason, Event, FrontMember, FrontProofs, RunControl, RunSummary, RunTimes, TableRow};
 use kinefront_model::evaluation::Evaluation;
+use kinefront_model::mechanism::Design;
 use kinefront_optimize::{Archive, Objectives, hypervolume, scaled, subset};
 
 /// Number of times that designs which fell are replaced by their neighbours.
@@ -201,23 +202,20 @@ impl<'a> Settling<'a> {
 
     /// Verifies some candidates and proves those that hold; `None` if the run was abandoned.
     fn settle(&mut self, places: &[usize], times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
-        let (control, problem) = (self.control, &self.search.problem);
-        let verify = |candidates: &[Arc<TableRow>], &place: &usize| {
-            let is_wanted = !control.is_abandoned();
-            is_wanted.then(|| (place, Some(problem.verify_improved(&candidates[place].row.design))))
-        };
-        self.verify_and_prove(places, verify, times, send)?;
+        let problem = &self.search.problem;
+        let design = |&place: &usize| (place, self.candidates[place].row.design);
+        let designs: Vec<(usize, Design)> = places.iter().map(design).collect();
+        self.verify_and_prove(&designs, |design| Some(problem.verify_improved(design)), times, send)?;
         places.iter().for_each(|&place| self.is_tried[place] = true);
         Some(())
     }
 
-    /// Obtains an evaluation on the fine grid for each of some tasks, and proves those that hold; `None` if the run was abandoned.
-    /// `verify` returns the place of the candidate that a task begins with, and the evaluation if there is one; `None` if the run was
-    /// abandoned.
+    /// Obtains an evaluation on the fine grid for each of some tasks, if there is one, and proves those that hold; `None` if the run was
+    /// abandoned. Each task has the place of the candidate with which it begins.
     fn verify_and_prove<T: Sync>(
         &mut self,
-        tasks: &[T],
-        verify: impl Fn(&[Arc<TableRow>], &T) -> Option<(usize, Option<Evaluation>)> + Sync,
+        tasks: &[(usize, T)],
+        verify: impl Fn(&T) -> Option<Evaluation> + Sync,
         times: &mut RunTimes,
         send: &mut dyn FnMut(Event),
     ) -> Option<()> {
@@ -231,13 +229,12 @@ impl<'a> Settling<'a> {
                 total: self.planned,
             });
             let verifying = Instant::now();
-            let candidates = &self.candidates;
-            let verified = |task: &T| verify(candidates, task);
+            let verified = |(_, task): &(usize, T)| goes_on().then(|| verify(task));
             let evaluations: Option<Vec<_>> = pool.install(|| part.par_iter().map(verified).collect());
             let mut members = Vec::new();
-            for (place, evaluation) in evaluations? {
+            for ((place, _), evaluation) in part.iter().zip(evaluations?) {
                 if let Some(evaluation) = evaluation.filter(Evaluation::is_feasible) {
-                    members.push((place, self.member(place, evaluation)));
+                    members.push((*place, self.member(*place, evaluation)));
                 }
             }
             times.verification_s += verifying.elapsed().as_secs_f64();

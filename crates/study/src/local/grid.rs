@@ -36,7 +36,7 @@ impl DesignProblem {
     /// Verifies the best design near one that a search found, or that design itself if no better one holds on the fine grid.
     pub fn verify_improved(&self, design: &Design) -> Evaluation {
         let found = self.evaluate_design(design);
-        // The evaluation selects the home orientation by the requirements alone, so that an objective over poses may become worse.
+        // The evaluation may select another home orientation than the optimum has, in which an objective over poses is worse.
         let keeps_others = |better: &Evaluation| {
             let mut others = better.objectives.iter().zip(&found.objectives).skip(1);
             others.all(|(better, had)| *better <= had + KEPT * had.abs())
@@ -68,10 +68,7 @@ impl DesignProblem {
 
     /// Returns the best design near another one for an aim, verified on the fine grid; `None` if none holds there.
     pub(crate) fn verify_toward(&self, near: &Evaluation, aim: &Aim) -> Option<Evaluation> {
-        let improved = self.improved(near, aim);
-        improved
-            .iter()
-            .find_map(|answer| self.held_on_fine_grid(answer, &ROOMS))
+        self.verify_with(near, aim, &ROOMS)
     }
 
     /// Returns the best design near another one that keeps every requirement with a slack, verified on the fine grid; `None` if none does.
@@ -80,10 +77,12 @@ impl DesignProblem {
             keeps_entries: true,
             ..Aim::default()
         };
-        let improved = self.improved(near, &aim);
-        improved
-            .iter()
-            .find_map(|answer| self.held_on_fine_grid(answer, &[slack]))
+        self.verify_with(near, &aim, &[slack])
+    }
+
+    fn verify_with(&self, near: &Evaluation, aim: &Aim, rooms: &[f64]) -> Option<Evaluation> {
+        let improved = self.improved(near, aim);
+        improved.iter().find_map(|answer| self.held_on_fine_grid(answer, rooms))
     }
 
     /// Evaluates an optimum on the fine grid, with more slack where it does not hold there; `None` if it does not.

@@ -199,7 +199,7 @@ impl DesignProblem {
     /// Returns the design of an answer as it holds on the fine grid, with the problem whose requirements the wish states.
     fn for_grid(&self, answer: &LocalAnswer, model: &Model) -> Result<(Self, Evaluation), WishFault> {
         let LocalAnswer { polished, problem, .. } = answer;
-        // The home orientation is selected by the requirements, of which the wish is one.
+        // The requirements, of which the wish is one, decide which home orientations can be selected.
         let wished = self
             .with_thresholds(problem.question().settings.thresholds)
             .map_err(|error| WishFault::Local(LocalFault::Question(error.into())))?;
