@@ -16,7 +16,7 @@ pub fn small_study(evaluations: usize) -> String {
     format!(
         "name = \"small\"\n[grid.reference]\nphi_step_deg = 5\ndirections = 12\nray_steps = 20\nhalvings = 6\n\
          [grid.fine]\nphi_step_deg = 2.5\ndirections = 24\nray_steps = 40\nhalvings = 8\n\
-         [optimizer]\nevaluations = {evaluations}\nseed = 5\nfront_designs = 24\n"
+         [optimizer]\nevaluations = {evaluations}\nseed = 5\nfront_designs = 8\n"
     )
 }
 
