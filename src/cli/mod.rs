@@ -111,6 +111,11 @@ enum Command {
 }
 
 impl Command {
+    /// Whether the command opens the window. Its drivers abort for reasons of their own, which tools for crashes are to see.
+    fn opens_window(&self) -> bool {
+        matches!(self, Command::Explore(_))
+    }
+
     /// Whether the command computes on the threads that the whole program shares. Those that do not start without them; unpacking a
     /// recording has little memory for their stacks, too.
     fn shares_threads(&self) -> bool {
@@ -195,6 +200,9 @@ pub fn run() -> ExitCode {
         unpack_with(program);
     }
     OUTSIDE_FILES.store(arguments.outside_files, Ordering::Relaxed);
+    if !arguments.command.as_ref().is_none_or(Command::opens_window) {
+        signals::end_without_memory(FILES_INCOMPLETE);
+    }
     let outcome = match &arguments.command {
         Some(command) if !command.shares_threads() => Ok(()),
         _ => start_threads(),

@@ -39,6 +39,22 @@ pub fn keep_going_at_limits() {
 #[cfg(not(unix))]
 pub fn keep_going_at_limits() {}
 
+/// Lets a program that runs out of memory end with `code`. The standard library prints that an allocation has failed and aborts, which
+/// would otherwise end the program by a signal; its files are those of a run that was killed at that moment.
+#[cfg(unix)]
+pub fn end_without_memory(code: u8) {
+    // Without the handler, the program is as it was.
+    let _ = signal_hook::flag::register_conditional_shutdown(
+        signal_hook::consts::SIGABRT,
+        code.into(),
+        Arc::new(AtomicBool::new(true)),
+    );
+}
+
+/// Elsewhere, an allocation that fails ends the program without a signal.
+#[cfg(not(unix))]
+pub fn end_without_memory(_code: u8) {}
+
 /// Calls `end` at each of these signals, on a thread of its own. A signal that the caller ignores, as `nohup` does with SIGHUP,
 /// stays ignored.
 ///

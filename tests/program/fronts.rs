@@ -55,7 +55,15 @@ fn the_ends_of_a_front_are_the_best_designs() {
         optimize(
             &study,
             &out,
-            &["--evaluations", evaluations, "--seed", "5", "--no-recording"],
+            &[
+                "--evaluations",
+                evaluations,
+                "--front",
+                "8",
+                "--seed",
+                "5",
+                "--no-recording",
+            ],
         );
         front(&out)[0].row.mass()
     };

@@ -7,10 +7,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use super::support::{check, folder, is_thorough, kinefront, optimize, resume, small_study, tables};
+use super::support::{check, folder, is_thorough, kinefront, optimize, resume, sample, small_study, tables};
 
 /// Calls that a run makes to its files, with the error that each fails with in turn.
-const CALLS: [(&str, &[&str]); 9] = [
+const CALLS: [(&str, &[&str]); 10] = [
     ("openat", &["EACCES", "EMFILE", "ENOSPC"]),
     ("write", &["ENOSPC", "EIO", "EINTR"]),
     ("fsync,fdatasync", &["EIO", "ENOSPC"]),
@@ -20,6 +20,7 @@ const CALLS: [(&str, &[&str]); 9] = [
     ("flock", &["EIO", "EINTR"]),
     ("ftruncate", &["EIO"]),
     ("clone,clone3", &["EAGAIN"]),
+    ("mmap,brk,mprotect", &["ENOMEM"]),
 ];
 
 /// A command to disturb, on a copy of a run in the folder.
@@ -96,6 +97,14 @@ const SCENARIOS: [Scenario; 6] = [
     },
 ];
 
+/// Writes a small study with few designs on its front, which make each of the many runs short.
+fn short_study(folder: &Path) -> PathBuf {
+    let study = small_study(folder);
+    let text = fs::read_to_string(&study).expect("a study");
+    fs::write(&study, text.replace("front_designs = 8", "front_designs = 3")).expect("a study");
+    study
+}
+
 /// Runs the program with the `when`-th of the calls failing.
 fn disturb(arguments: &[PathBuf], calls: &str, error: &str, when: usize) -> (Output, bool) {
     let log = tempfile::NamedTempFile::new().expect("a file");
@@ -121,7 +130,7 @@ fn every_call_fails_once() {
         return;
     }
     let folder = folder();
-    let study = small_study(folder.path());
+    let study = short_study(folder.path());
     let (whole, longer, other) = (
         folder.path().join("whole"),
         folder.path().join("longer"),
@@ -204,6 +213,112 @@ fn every_call_fails_once() {
         println!("| {scenario} | {calls} | {count} |");
     }
     assert!(injected > 15, "only {injected} calls failed");
+}
+
+/// A command that runs out of memory says so and ends with a documented code. What it leaves is what a command that is killed leaves.
+#[test]
+fn little_memory_ends_a_command_in_good_order() {
+    let folder = folder();
+    let study = short_study(folder.path());
+    let [whole, longer] = ["whole", "longer"].map(|name| folder.path().join(name));
+    optimize(&study, &whole, &["--evaluations", "90"]);
+    optimize(&study, &longer, &["--evaluations", "120"]);
+    let [kept, extended] = [tables(&whole), tables(&longer)];
+    // The shell limits the address space, in KiB. With one heap for all threads, an allocation fails where the memory ends.
+    let limited = |space: usize, arguments: &[PathBuf]| {
+        let mut command = Command::new("sh");
+        command
+            .args(["-c", &format!("ulimit -v {space} && exec \"$0\" \"$@\"")])
+            .arg(env!("CARGO_BIN_EXE_kinefront"))
+            .args(arguments)
+            .env_remove("RERUN")
+            .env("NO_COLOR", "1")
+            .env("MALLOC_ARENA_MAX", "1");
+        command.output().expect("a shell")
+    };
+    // Below, the loader of the program has no space for the program itself.
+    let is_loaded = |space: usize| limited(space, &["--version".into()]).status.success();
+    let (mut low, mut high) = (10_000, 4_000_000);
+    while high - low > 500 {
+        let middle = usize::midpoint(low, high);
+        if is_loaded(middle) { high = middle } else { low = middle }
+    }
+    let run = folder.path().join("run");
+    let (mut lacking, mut enough) = (BTreeMap::new(), 0);
+    for scenario in ["optimize", "resume", "repair", "export", "report"] {
+        if scenario == "report" && !is_thorough() {
+            continue;
+        }
+        for step in sample(0..60_usize, 10) {
+            let out = folder.path().join("new");
+            for path in [&run, &out] {
+                let _ = fs::remove_dir_all(path);
+            }
+            let _ = fs::remove_file(folder.path().join("new.csv"));
+            copy_folder(&whole, &run);
+            let mut arguments = match scenario {
+                "optimize" => paths(["optimize", "--evaluations", "90", "--quiet", "--out"]),
+                "resume" => paths(["optimize", "--evaluations", "120", "--quiet", "--resume"]),
+                "repair" => paths(["check", "--repair"]),
+                "export" => paths(["export", "--out"]),
+                _ => paths([
+                    "report",
+                    "--quiet",
+                    "--picture-width",
+                    "160",
+                    "--scale",
+                    "0.25",
+                    "--out",
+                ]),
+            };
+            arguments.extend(match scenario {
+                "optimize" => vec![out.clone(), study.clone()],
+                "resume" => vec![run.clone()],
+                "repair" => {
+                    fs::remove_file(run.join("recording.rrd")).expect("a recording");
+                    vec![run.clone()]
+                }
+                "export" => vec![folder.path().join("new.csv"), run.clone()],
+                _ => vec![out.clone(), run.clone()],
+            });
+            let output = limited(high + 2000 * step, &arguments);
+            let said = String::from_utf8_lossy(&output.stderr);
+            let what = format!("{scenario} with {step}: {:?} {said}", output.status);
+            // Code 2 is that of `check` where a file cannot be judged.
+            match output.status.code() {
+                Some(0) => enough += 1,
+                Some(code @ 1..=3) => *lacking.entry((scenario, code)).or_insert(0) += 1,
+                _ => panic!("{what}"),
+            }
+            assert!(!said.contains("panicked"), "{what}");
+            assert!(tables(&whole) == kept && tables(&longer) == extended, "{what}");
+            if scenario == "optimize" {
+                complete(&study, &out);
+                assert!(tables(&out) == kept, "{what}");
+            } else if scenario == "resume" {
+                resume(&run, &["--evaluations", "120"]).success();
+                assert!(tables(&run) == extended, "{what}");
+            } else {
+                assert!(tables(&run) == kept, "{what}");
+            }
+        }
+    }
+    for ((scenario, code), count) in &lacking {
+        println!("| {scenario} | {code} | {count} |");
+    }
+    let is_out_of_memory = lacking.keys().any(|(_, code)| *code == 3);
+    assert!(
+        is_out_of_memory && enough > 5,
+        "{lacking:?}, {enough} ended as without a limit"
+    );
+}
+
+fn copy_folder(from: &Path, to: &Path) {
+    fs::create_dir(to).expect("a folder");
+    for entry in fs::read_dir(from).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        fs::copy(&path, to.join(path.file_name().expect("a name"))).expect("a file");
+    }
 }
 
 /// Brings a run that was disturbed to its end: resumes it, or starts it again where it has not begun.

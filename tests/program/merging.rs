@@ -92,6 +92,7 @@ fn runs_of_several_seeds_become_one_whose_front_is_no_worse() {
         .arg(&out)
         .arg("--out")
         .arg(place("report"))
+        .args(["--sensitivity", "0", "--picture-width", "160"])
         .assert()
         .success();
     assert!(place("report").join("index.html").exists());

@@ -108,7 +108,7 @@ fn a_front_with_pockets_is_proved() {
             "--seed",
             "7",
         ])
-        .args(["--quiet", "--no-recording", "--out"])
+        .args(["--front", "40", "--quiet", "--no-recording", "--out"])
         .arg(&out)
         .assert()
         .success();

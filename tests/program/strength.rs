@@ -65,7 +65,7 @@ fn the_cell_of_a_builder_is_proved() {
     optimize(
         Path::new("builders-cell"),
         &run,
-        &["--evaluations", "600", "--no-recording", "--threads", "2"],
+        &["--evaluations", "600", "--front", "10", "--no-recording"],
     );
     let front = fs::read_to_string(run.join("front.csv")).expect("a front");
     let mut rows = front.lines().map(|line| line.split(',').collect::<Vec<_>>());
@@ -127,7 +127,7 @@ platform = { kind = "tube", catalogue = "en-10255-medium" }
     let report = optimize(
         &study,
         &out,
-        &["--evaluations", "200", "--no-recording", "--threads", "2"],
+        &["--evaluations", "200", "--front", "10", "--no-recording"],
     );
     assert!(report["front_size"].as_u64().is_some_and(|size| size > 5), "{report}");
     let front = fs::read_to_string(out.join("front.csv")).expect("a front");

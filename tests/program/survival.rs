@@ -14,7 +14,8 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 #[cfg(unix)]
 use super::support::signal;
 use super::support::{
-    DESIGN, check, folder, kinefront, optimize, program, report, resume, sample, small_study, start, tables, wait_for,
+    DESIGN, check, folder, kinefront, optimize, program, repetitions, report, resume, sample, small_study, start,
+    tables, wait_for,
 };
 
 /// Killed at any moment of its start, search, verification or end, and resumed on any number of threads, a run leaves the
@@ -243,7 +244,7 @@ fn telling_never_stops_work() {
 fn a_folder_is_taken_once() {
     let folder = folder();
     let study = small_study(folder.path());
-    for round in 0..10 {
+    for round in 0..repetitions(4, 10) {
         let run = folder.path().join(format!("run{round}"));
         let seeds = ["1", "2"];
         let children =
