@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use kinefront_study::{Merge, MergeError, RunControl};
+use kinefront_study::{Merge, MergeError, ReplayError, RunControl, SearchError};
 
 use super::runs::{RunArguments, perform, write_failure};
 use super::signals::interrupt_on_signals;
@@ -49,6 +49,7 @@ pub fn run(arguments: &MergeArguments) -> Result<Ending, Failure> {
 fn failure(error: MergeError) -> Failure {
     match error {
         MergeError::Write(error) => write_failure(error),
+        error @ MergeError::Replay(ReplayError::Search(SearchError::Threads(_))) => Failure::runtime(error),
         error => Failure::input(error),
     }
 }

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use kinefront_model::mechanism::Architecture;
 use kinefront_study::{
-    AlgorithmName, Builtin, Overrides, ResumeError, ResumeOptions, Resumption, RunControl, RunFolder, RunFolderError,
-    RunWriter, Study, StudySearch, WHOLE_FRONT, WriteError,
+    AlgorithmName, Builtin, Overrides, ResumeError, ResumeOptions, Resumption, RunControl, RunFolder, RunWriter, Study,
+    StudySearch, WHOLE_FRONT, WriteError,
 };
 use miette::miette;
 
@@ -97,7 +97,7 @@ fn resume(
     };
     let resumption = Resumption::open(path, &options).map_err(|error| match error {
         ResumeError::Lock(error) => write_failure(error),
-        ResumeError::Folder(error @ RunFolderError::Read { .. }) => Failure::runtime(error),
+        ResumeError::Folder(error) if error.is_of_system() => Failure::runtime(error),
         error => Failure::input(error),
     })?;
     if !arguments.run.quiet {

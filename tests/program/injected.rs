@@ -9,7 +9,10 @@ use std::process::{Command, Output};
 
 use super::support::{check, folder, is_thorough, kinefront, optimize, resume, sample, small_study, tables};
 
-/// Calls that a run makes to its files, with the error that each fails with in turn.
+/// Calls that ask for memory.
+const MEMORY: &str = "mmap,brk,mprotect";
+
+/// Calls that a run makes to its files and for its memory and threads, with the error that each fails with in turn.
 const CALLS: [(&str, &[&str]); 10] = [
     ("openat", &["EACCES", "EMFILE", "ENOSPC"]),
     ("write", &["ENOSPC", "EIO", "EINTR"]),
@@ -20,7 +23,7 @@ const CALLS: [(&str, &[&str]); 10] = [
     ("flock", &["EIO", "EINTR"]),
     ("ftruncate", &["EIO"]),
     ("clone,clone3", &["EAGAIN"]),
-    ("mmap,brk,mprotect", &["ENOMEM"]),
+    (MEMORY, &["ENOMEM"]),
 ];
 
 /// A command to disturb, on a copy of a run in the folder.
@@ -105,6 +108,19 @@ fn short_study(folder: &Path) -> PathBuf {
     study
 }
 
+/// Returns the number of calls that the loader of the program and its start make, which are not those of a command.
+fn calls_of_start(calls: &str) -> usize {
+    let log = tempfile::NamedTempFile::new().expect("a file");
+    let status = Command::new("strace")
+        .args(["-f", "-qq", "-e", &format!("trace={calls}"), "-o"])
+        .arg(log.path())
+        .arg(env!("CARGO_BIN_EXE_kinefront"))
+        .arg("--version")
+        .output();
+    assert!(status.expect("strace runs").status.success());
+    fs::read_to_string(log.path()).expect("a log").lines().count()
+}
+
 /// Runs the program with the `when`-th of the calls failing.
 fn disturb(arguments: &[PathBuf], calls: &str, error: &str, when: usize) -> (Output, bool) {
     let log = tempfile::NamedTempFile::new().expect("a file");
@@ -169,11 +185,17 @@ fn every_call_fails_once() {
     for (place, (scenario, calls, errors)) in cases.into_iter().enumerate() {
         // All calls until there are no more, or one of them, another for each kind of call. A report takes seconds.
         let one = if place % 2 == 0 { 1 + place % 3 } else { 4 + place % 17 };
+        // A loader without memory ends by a signal.
+        let start = match calls == MEMORY {
+            true => calls_of_start(calls),
+            false => 0,
+        };
         let times = match is_thorough() {
             true => 1..10_000,
             false if scenario.name == "report" && place % 3 != 0 => continue,
             false => one..one + 1,
         };
+        let times = start + times.start..start + times.end;
         for when in times {
             let error = errors[when % errors.len()];
             let run = prepare();

@@ -1,8 +1,8 @@
 //! Control of a run in progress.
 
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
-
 use super::EndReason;
+// The test of all interleavings has these of its own.
+use super::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 /// Pauses, resumes, steps and stops a run from any thread.
 #[derive(Debug, Default)]

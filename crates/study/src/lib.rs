@@ -44,6 +44,7 @@ mod settings;
 mod stopping;
 mod study;
 mod sum;
+mod sync;
 mod table;
 
 pub use builtin::{BUILTIN, Builtin};

@@ -7,7 +7,7 @@ use super::merge::ORIGINS;
 use super::write::front_table;
 use super::{RunFolder, RunFolderError, RunReport};
 use crate::conclusion::verify_replayed;
-use crate::{EndReason, RunSummary, StudySearch, TableError, TableRow, open_regular};
+use crate::{EndReason, ReplayError, RunSummary, SearchError, StudySearch, TableError, TableRow, open_regular};
 
 /// Largest length of a line of the origins of merged designs \[bytes\].
 const LONGEST_ORIGIN: u64 = 1024;
@@ -49,7 +49,8 @@ impl Inspection {
     /// from them. The recording is not read.
     ///
     /// # Errors
-    /// [`RunFolderError`] if the path is not a run folder, or if its study or its report cannot be read.
+    /// [`RunFolderError`] if the path is not a run folder, if its study or its report cannot be read, or if the threads that
+    /// check the designs cannot be started.
     pub fn new(path: &Path) -> Result<Self, RunFolderError> {
         let folder = RunFolder::open(path)?;
         folder.require_this_version()?;
@@ -58,7 +59,7 @@ impl Inspection {
             findings: Vec::new(),
             designs: None,
         };
-        inspection.check_designs();
+        inspection.check_designs()?;
         Ok(inspection)
     }
 
@@ -76,10 +77,13 @@ impl Inspection {
         self.add(error.path, error.fault.to_string(), None);
     }
 
-    fn check_designs(&mut self) {
+    fn check_designs(&mut self) -> Result<(), RunFolderError> {
         let contents = match self.folder.designs() {
             Ok(contents) => contents,
-            Err(error) => return self.add_table_error(error),
+            Err(error) => {
+                self.add_table_error(error);
+                return Ok(());
+            }
         };
         let path = self.folder.designs_path();
         if let Some(line) = contents.cut_line {
@@ -94,12 +98,19 @@ impl Inspection {
         };
         let search = match search {
             Ok(search) => search,
-            Err(error) => return self.add(path, error.to_string(), None),
+            Err(ReplayError::Search(SearchError::Threads(cause))) => {
+                return Err(RunFolderError::Threads { path, cause });
+            }
+            Err(error) => {
+                self.add(path, error.to_string(), None);
+                return Ok(());
+            }
         };
         self.check_outcome(contents.rows.len());
         self.check_merged(contents.rows.len());
         self.designs = Some(contents.rows);
         self.check_results(search);
+        Ok(())
     }
 
     /// Checks that a run can have ended as its report says.

@@ -59,6 +59,14 @@ pub enum RunFolderError {
         /// Cause of the error.
         cause: std::io::Error,
     },
+    /// The designs cannot be checked, because the system has no threads to spare.
+    #[error("{}: cannot start the worker threads: {cause}", path.display())]
+    Threads {
+        /// Path of the table of the designs.
+        path: PathBuf,
+        /// Cause of the error.
+        cause: rayon::ThreadPoolBuildError,
+    },
     /// A file is not JSON, or lacks a key.
     #[error("{} is damaged: {cause}", path.display())]
     Damaged {
@@ -87,6 +95,13 @@ pub enum RunFolderError {
         /// How it differs.
         difference: Difference,
     },
+}
+
+impl RunFolderError {
+    /// Whether the system is the reason, and not what is in the folder.
+    pub fn is_of_system(&self) -> bool {
+        matches!(self, Self::Read { .. } | Self::Threads { .. })
+    }
 }
 
 impl RunFolder {

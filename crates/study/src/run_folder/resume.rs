@@ -9,7 +9,7 @@ use super::lock::open_locked;
 use super::{DESIGNS, RECORDING, RunFolder, RunFolderError, RunWriter};
 use crate::WriteError;
 use crate::durable::remove;
-use crate::{EndReason, ReplayError, StudySearch, TableError};
+use crate::{EndReason, ReplayError, SearchError, StudySearch, TableError};
 
 /// A run that can be resumed: its folder is locked, and its designs were replayed.
 ///
@@ -134,9 +134,10 @@ impl Resumption {
         } else {
             StudySearch::resume(study, contents.rows, threads)
         };
-        let search = search.map_err(|cause| ResumeError::Replay {
-            path: folder.designs_path(),
-            cause,
+        let path = folder.designs_path();
+        let search = search.map_err(|cause| match cause {
+            ReplayError::Search(SearchError::Threads(cause)) => RunFolderError::Threads { path, cause }.into(),
+            cause => ResumeError::Replay { path, cause },
         })?;
         let kept = search.replayed();
         if kept < evaluated {
