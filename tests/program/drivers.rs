@@ -273,6 +273,22 @@ fn prices_along_a_front_are_those_of_its_designs() {
                 assert_eq!(Some(cell), price["price"].as_f64(), "{name}");
             }
         }
+        // Both fronts end where the other architecture becomes the lighter one (an independent solver: 0.1389536 m and 2.370432 kg,
+        // where 1 % of the radius costs 2.0177 % below and 0.0157 % above).
+        let crossing = &front["crossings"][0];
+        for (key, expected, accuracy) in [
+            ("at", 0.138_953_6, 1e-6),
+            ("objective", 2.370_432, 1e-6),
+            ("price_below", 2.0177, 1e-4),
+            ("price_above", 0.0157, 1e-4),
+        ] {
+            let found = crossing[key].as_f64().expect("a number");
+            assert!((found - expected).abs() < accuracy, "{key}: {found}");
+        }
+        assert_eq!(
+            (&crossing["below"], &crossing["above"]),
+            (&"3-RPR".into(), &"3-PRR".into())
+        );
         if let Some(design) = designs.first() {
             let alone = json(["prices", &format!("{table}#{}", design["id"]), "--json"]);
             assert_eq!(alone, design["drivers"], "a design alone has the same prices");

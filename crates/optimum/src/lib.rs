@@ -8,6 +8,7 @@
 mod convex;
 mod exchange;
 mod finish;
+mod meeting;
 mod multipliers;
 mod parameter;
 mod place;
@@ -23,6 +24,7 @@ mod start;
 mod survey;
 mod value;
 
+pub use meeting::{Branch, Meeting};
 pub use multipliers::Multipliers;
 pub use parameter::{Change, Parameter, ParameterKind};
 pub use place::{Place, Spot};

@@ -241,6 +241,12 @@ fn prices(along: &DriversAlong, kinds: &[ParameterKind], mark: Mark) -> Chart {
         .collect();
     // The highest area is drawn first, so that the lower ones cover it.
     series.reverse();
+    series.extend(along.crossings.iter().enumerate().map(|(index, crossing)| Series {
+        name: if index == 0 { "change of architecture" } else { "" }.to_owned(),
+        color: GREY,
+        mark: Mark::ThinLine,
+        points: vec![[crossing.at, low], [crossing.at, high]],
+    }));
     let x = ChartAxis::about(Column::Quantity(along.along).title(), values(&series, 0));
     let y = ChartAxis {
         label: "price [% for 1 %]".into(),

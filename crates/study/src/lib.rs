@@ -56,9 +56,10 @@ pub use front::{FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
 pub use kinefront_optimum::ParameterKind;
 pub use levels::{EqualLevel, equal_levels, levels_between};
 pub use local::{
-    ActiveJson, AlongJson, AlternativeJson, Condition, ConditionError, DrivenPart, Drivers, DriversAlong,
-    DriversOptions, Hindrance, InactiveJson, LocalDesign, LocalFault, PriceCurve, PriceJson, PricedDesignJson,
-    RelaxationJson, UnmetJson, WhyNotJson, Wish, WishFault, WishJson, WishOutcome, stacked, usual_range,
+    ActiveJson, AlongJson, AlternativeJson, Condition, ConditionError, Crossing, CrossingJson, DrivenPart, Drivers,
+    DriversAlong, DriversOptions, Hindrance, InactiveJson, LocalDesign, LocalFault, PriceCurve, PriceJson,
+    PricedDesignJson, RelaxationJson, UnmetJson, WhyNotJson, Wish, WishFault, WishJson, WishOutcome, stacked,
+    usual_range,
 };
 pub use overrides::Overrides;
 pub use prepared::PreparedStudy;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Stroke, Ui, WidgetInfo, WidgetType};
-use egui_plot::{FilledArea, Line, Plot, PlotBounds, PlotPoints, PlotUi, VLine};
+use egui_plot::{FilledArea, Line, LineStyle, Plot, PlotBounds, PlotPoints, PlotUi, VLine};
 use kinefront_model::mechanism::Architecture;
 use kinefront_scene::text;
 use kinefront_study::{Column, DriversAlong, ParameterKind, PriceCurve, stacked, usual_range};
@@ -166,13 +166,17 @@ fn plots([limits, others]: [&mut Ui; 2], session: &mut Session, along: &DriversA
             .allow_zoom(false)
             .include_y(0.0);
         let [low, high] = usual_range(curves);
+        let weak = ui.visuals().weak_text_color();
+        let [first, last] = range(along);
         let shown = plot.show(ui, |plot| {
-            if let [first, .., last] = along.designs.as_slice() {
-                plot.set_plot_bounds(PlotBounds::from_min_max([first.1, low], [last.1, high.max(low + 1e-3)]));
-            }
+            plot.set_plot_bounds(PlotBounds::from_min_max([first, low], [last, high.max(low + 1e-3)]));
             match is_stacked {
                 true => areas(plot, curves),
                 false => lines(plot, curves),
+            }
+            for crossing in &along.crossings {
+                let line = VLine::new("", crossing.at).color(weak);
+                plot.vline(line.style(LineStyle::dashed_loose()).allow_hover(false));
             }
             if let Some(at) = place {
                 plot.vline(VLine::new("", at).color(theme::SELECTED).allow_hover(false));
@@ -189,6 +193,16 @@ fn plots([limits, others]: [&mut Ui; 2], session: &mut Session, along: &DriversA
     if let Some(at) = clicked {
         select_nearest(session, along, at);
     }
+}
+
+/// Returns the places of the first and the last design along the front, or of the change of architecture before or after it.
+fn range(along: &DriversAlong) -> [f64; 2] {
+    let designs = along.designs.iter().map(|(_, at, _)| *at);
+    let crossings = along.crossings.iter().map(|crossing| crossing.at);
+    let all = designs.chain(crossings);
+    all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
+        [low.min(at), high.max(at)]
+    })
 }
 
 /// Names the curves in their colours.

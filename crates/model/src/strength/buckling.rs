@@ -65,14 +65,13 @@ impl StrengthModel {
         };
         let mut columns = [[nothing; BARS]; LEGS];
         let mut largest = zero;
-        let compliance = V::symmetric_inverse(&inputs.in_plane());
         for (index, leg) in loaded.legs.iter().enumerate() {
             largest = largest.larger(leg.line.most());
             for bar in self.first()..BARS {
                 let [compression, most] = self.compression(leg, bar);
                 let length = leg.path.bars[bar].length;
                 let bending = self.section(bar).compliance.bending;
-                let inside = self.give_in_plane(leg, index, bar, inputs.along[index], &compliance);
+                let inside = self.give_in_plane(loaded, index, bar, &inputs.along);
                 let outside = self.give_out_of_plane(loaded, index, bar);
                 largest = largest.larger(most);
                 columns[index][bar] = Column {
@@ -120,17 +119,11 @@ impl StrengthModel {
         [compression, most]
     }
 
-    /// Returns `c_in`: by how much the chord of a bar turns in the plane per unit couple of two forces at its ends \[rad/(N·m)\]; `along` is
-    /// `c_i`, and `compliance` is `K_in⁻¹`.
+    /// Returns `c_in`: by how much the chord of a bar turns in the plane per unit couple of two forces at its ends \[rad/(N·m)\]; `along` are
+    /// the `c_i`.
     #[inline(always)]
-    fn give_in_plane<V: Real>(
-        &self,
-        leg: &LoadedLeg<'_, V>,
-        index: usize,
-        column: usize,
-        along: V,
-        compliance: &[V; 6],
-    ) -> V {
+    fn give_in_plane<V: Real>(&self, loaded: &LoadedLegs<'_, V>, index: usize, column: usize, along: &[V; LEGS]) -> V {
+        let leg = &loaded.legs[index];
         let like = leg.moment;
         let (zero, one) = (like.splat(0.0), like.splat(1.0));
         // The wrench at `P` that keeps the drives and joints of the leg in balance with the couple.
@@ -167,13 +160,17 @@ impl StrengthModel {
             of_couple = of_couple + axial * n * n + third * (m1 * m1 + m1 * m2 + m2 * m2);
             of_both = of_both + axial * n * nw + sixth * (m1 * w1 + m1 * w1 + m1 * w2 + m2 * w1 + m2 * w2 + m2 * w2);
         }
-        let taken = of_both / along;
-        let left = [
-            own[0] - taken * leg.u.x,
-            own[1] - taken * leg.u.y,
-            own[2] - taken * leg.moment,
+        // The lines of the legs carry the wrench. Their forces are statically determinate, so that nothing is inverted but the Jacobian.
+        let lines = [
+            dot(&loaded.by[0], &own),
+            dot(&loaded.by[1], &own),
+            dot(&loaded.by[2], &own),
         ];
-        of_couple - of_both * taken + dot(&left, &times(compliance, &left))
+        let mut give = of_couple - of_both * (lines[index] + lines[index]);
+        for leg in 0..LEGS {
+            give = give + along[leg] * lines[leg] * lines[leg];
+        }
+        give
     }
 
     /// Returns `c_out`, the same about the normal of the bar \[rad/(N·m)\].

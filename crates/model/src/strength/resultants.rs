@@ -81,6 +81,8 @@ impl<V: Real> std::ops::Deref for LoadedLeg<'_, V> {
 /// The three legs at several poses at once, with what they transmit.
 pub(super) struct LoadedLegs<'a, V: Real> {
     pub legs: [LoadedLeg<'a, V>; LEGS],
+    /// `A⁻ᵀ`: what the line of each leg takes of a wrench in the plane.
+    pub by: [[V; 3]; LEGS],
     /// `C_out`.
     pub bending: [V; 6],
 }
@@ -145,6 +147,7 @@ impl StrengthModel {
                 self.loaded_leg(&legs[1], (&by[1], &left), (&wrench, &held[1]), &bending),
                 self.loaded_leg(&legs[2], (&by[2], &left), (&wrench, &held[2]), &bending),
             ],
+            by,
             bending,
         }
     }

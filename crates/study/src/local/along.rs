@@ -6,6 +6,7 @@ use kinefront_optimum::ParameterKind;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::crossings::Crossing;
 use super::{Drivers, DriversOptions};
 use crate::DesignProblem;
 
@@ -24,6 +25,8 @@ pub struct DriversAlong {
     pub along: Quantity,
     /// Each design that has prices: its index among the evaluations that were given, its value of that quantity, and its drivers.
     pub designs: Vec<(usize, f64, Drivers)>,
+    /// Where other architectures take over from this one, and this one from others, in the order of their places.
+    pub crossings: Vec<Crossing>,
     /// Number of designs that have no prices.
     pub without: usize,
 }
@@ -79,6 +82,7 @@ impl DesignProblem {
             architecture: *architecture,
             along: along.quantity,
             designs: Vec::new(),
+            crossings: Vec::new(),
             without: 0,
         };
         let mut fronts: Vec<DriversAlong> = Architecture::ALL.iter().filter(has_designs).map(front).collect();
@@ -97,6 +101,11 @@ impl DesignProblem {
         }
         for front in &mut fronts {
             front.designs.sort_by(|a, b| a.1.total_cmp(&b.1));
+        }
+        let crossings = self.crossings(evaluations, &fronts);
+        for front in &mut fronts {
+            let own = crossings.iter().filter(|crossing| crossing.is_of(front.architecture));
+            front.crossings.extend(own);
         }
         fronts
     }
@@ -194,6 +203,15 @@ impl DriversAlong {
                 part.label
             )
         });
+        let crossings = self.crossings.iter().map(|crossing| {
+            let entry = self.along.entry();
+            let ([before, after], [below, above]) = (crossing.architectures, crossing.prices);
+            format!(
+                "The {after} takes over from the {before} at {} {:.4} {}: an increase of 1 % there changes the {objective} by {below:+.2} % below \
+                 and by {above:+.2} % above.",
+                entry.short, crossing.at, entry.unit
+            )
+        });
         let without = match self.without {
             0 => None,
             1 => Some("1 design has no prices: no optimum was found near it.".to_owned()),
@@ -201,7 +219,7 @@ impl DriversAlong {
                 "{count} designs have no prices: no optimum was found near them."
             )),
         };
-        limits.chain(bounds).chain(without).collect()
+        limits.chain(bounds).chain(crossings).chain(without).collect()
     }
 
     /// Returns where a part is, in words.
@@ -273,6 +291,25 @@ pub struct AlongJson<'a> {
     pub designs: Vec<PricedDesignJson<'a>>,
     /// Number of designs that have no prices.
     pub without_prices: usize,
+    /// Where the best architecture changes.
+    pub crossings: Vec<CrossingJson>,
+}
+
+/// Where another architecture becomes the better one.
+#[derive(Debug, Clone, Serialize)]
+pub struct CrossingJson {
+    /// Value of the quantity along the front.
+    pub at: f64,
+    /// The first objective of both architectures there.
+    pub objective: f64,
+    /// The architecture that is better below.
+    pub below: String,
+    /// The architecture that is better above.
+    pub above: String,
+    /// Price of the quantity along the front below.
+    pub price_below: f64,
+    /// The same above.
+    pub price_above: f64,
 }
 
 /// A design with what drives its first objective.
@@ -300,6 +337,21 @@ impl DriversAlong {
             sentences: self.sentences(),
             designs: designs.collect(),
             without_prices: self.without,
+            crossings: self.crossings.iter().map(Crossing::to_json).collect(),
+        }
+    }
+}
+
+impl Crossing {
+    fn to_json(&self) -> CrossingJson {
+        let [below, above] = self.architectures.map(|architecture| architecture.to_string());
+        CrossingJson {
+            at: self.at,
+            objective: self.objective,
+            below,
+            above,
+            price_below: self.prices[0],
+            price_above: self.prices[1],
         }
     }
 }

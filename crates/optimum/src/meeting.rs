@@ -1,0 +1,141 @@
+//! Where two optima meet: the value of a requirement at which a design of another kind becomes the better one.
+
+use kinefront_model::evaluation::Quantity;
+
+use super::parameter::Parameter;
+use super::polished::Polished;
+use super::problem::LocalProblem;
+
+/// Accuracy of the logarithm of the requirement.
+const ACCURACY: f64 = 1e-9;
+
+/// Largest number of secants.
+const SECANTS: usize = 40;
+
+/// An optimum whose requirement changes.
+#[derive(Debug, Clone, Copy)]
+pub struct Branch<'a> {
+    /// The problem.
+    pub problem: &'a LocalProblem,
+    /// Its optimum.
+    pub optimum: &'a Polished,
+    /// The requirement.
+    pub parameter: Parameter,
+}
+
+/// The value of a requirement at which two optima have the same objective: a concave kink of the best that can be had.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Meeting {
+    /// The value of the requirement.
+    pub at: f64,
+    /// The objective of both.
+    pub objective: f64,
+    /// The price of the requirement at each of them.
+    pub prices: [f64; 2],
+}
+
+/// Both optima at a value of the requirement.
+struct Both {
+    /// Logarithm of the value.
+    at: f64,
+    optima: [Polished; 2],
+    /// Logarithm by which the first is worse than the second.
+    worse: f64,
+}
+
+impl Branch<'_> {
+    /// Returns the logarithm of the requirement; `None` if it is 0.
+    fn place(&self) -> Option<f64> {
+        let actuator = self.optimum.design.architecture().actuator();
+        let value = self.parameter.value(self.problem.question(), actuator)?;
+        (value > 0.0).then(|| libm::log(value))
+    }
+
+    /// Returns the optimum for a logarithm of the requirement, starting from another one.
+    fn optimum_at(&self, from: &Polished, at: f64) -> Option<Polished> {
+        let step = at - self.place()?;
+        let found = self.problem.after(from, &[(self.parameter, 1.0)], step);
+        found.filter(Polished::is_optimal)
+    }
+
+    fn price_at(&self, optimum: &Polished, at: f64) -> Option<f64> {
+        let actuator = optimum.design.architecture().actuator();
+        let (question, base_radius) = (self.problem.question(), optimum.design.base_radius());
+        let changed = self
+            .parameter
+            .changed(question, at - self.place()?, base_radius, actuator)?;
+        let problem = self.problem.with_question(changed).ok()?;
+        let prices = problem.prices(optimum, false).prices;
+        let own = prices.iter().find(|price| price.parameter == self.parameter);
+        own.map(|price| price.price)
+    }
+}
+
+impl Meeting {
+    /// Returns where two optima with the same objective meet, the first of which is the better one at its own requirement and the second at
+    /// its own; `None` if no such place was found between them, or as far beyond either.
+    pub fn of(branches: [Branch<'_>; 2]) -> Option<Self> {
+        let [first, second] = [branches[0].place()?, branches[1].place()?];
+        let sign = branches[0].problem.goal_sign();
+        let both = |from: [&Polished; 2], at: f64| -> Option<Both> {
+            let optima = [
+                branches[0].optimum_at(from[0], at)?,
+                branches[1].optimum_at(from[1], at)?,
+            ];
+            let [a, b] = [0, 1].map(|k| branches[k].problem.log_of(&optima[k]));
+            Some(Both {
+                at,
+                worse: sign * (a - b),
+                optima,
+            })
+        };
+        let starts = [branches[0].optimum, branches[1].optimum];
+        let width = second - first;
+        let mut near = both(starts, first)?;
+        if near.worse > 0.0 {
+            near = both([&near.optima[0], &near.optima[1]], first - width)?;
+        }
+        let mut far = both(starts, second)?;
+        if far.worse < 0.0 {
+            far = both([&far.optima[0], &far.optima[1]], second + width)?;
+        }
+        if near.worse > 0.0 || far.worse < 0.0 {
+            return None;
+        }
+        for _ in 0..SECANTS {
+            if (far.at - near.at).abs() <= ACCURACY || near.worse == far.worse {
+                break;
+            }
+            let share = (near.worse / (near.worse - far.worse)).clamp(0.01, 0.99);
+            let from = if share < 0.5 { &near.optima } else { &far.optima };
+            let next = both([&from[0], &from[1]], near.at + share * (far.at - near.at))?;
+            if next.worse.abs() <= ACCURACY {
+                near = next;
+                break;
+            }
+            if next.worse < 0.0 { near = next } else { far = next }
+        }
+        let prices = [
+            branches[0].price_at(&near.optima[0], near.at)?,
+            branches[1].price_at(&near.optima[1], near.at)?,
+        ];
+        Some(Self {
+            at: libm::exp(near.at),
+            objective: near.optima[0].objective,
+            prices,
+        })
+    }
+}
+
+impl LocalProblem {
+    /// Returns the requirement of a quantity, if it is one of the problem: its limit, of several the last one, or the radius of the disc.
+    pub fn parameter_of(&self, quantity: Quantity) -> Option<Parameter> {
+        let is_of = |parameter: &Parameter| match *parameter {
+            Parameter::WorkspaceRadius => quantity == Quantity::WorkspaceRadius,
+            Parameter::Threshold(scalar) => quantity == Quantity::Worst(scalar),
+            Parameter::Limit(place) => self.question().settings.limits[place].quantity == quantity,
+            _ => false,
+        };
+        Parameter::all(self).into_iter().rfind(is_of)
+    }
+}
