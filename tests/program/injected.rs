@@ -10,7 +10,7 @@ use std::process::{Command, Output};
 use super::support::{check, folder, is_thorough, kinefront, optimize, resume, sample, small_study, tables};
 
 /// Calls that ask for memory.
-const MEMORY: &str = "mmap,brk,mprotect";
+const MEMORY: &str = "mmap";
 
 /// Calls that a run makes to its files and for its memory and threads, with the error that each fails with in turn.
 const CALLS: [(&str, &[&str]); 10] = [
