@@ -337,13 +337,13 @@ impl DriversAlong {
             sentences: self.sentences(),
             designs: designs.collect(),
             without_prices: self.without,
-            crossings: self.crossings.iter().map(Crossing::to_json).collect(),
+            crossings: self.crossings.iter().map(|crossing| crossing.to_json()).collect(),
         }
     }
 }
 
 impl Crossing {
-    fn to_json(&self) -> CrossingJson {
+    fn to_json(self) -> CrossingJson {
         let [below, above] = self.architectures.map(|architecture| architecture.to_string());
         CrossingJson {
             at: self.at,
