@@ -6,7 +6,7 @@ use kinefront_optimum::ParameterKind;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::crossings::Crossing;
+use super::crossings::{Crossing, CrossingJson};
 use super::{Drivers, DriversOptions};
 use crate::DesignProblem;
 
@@ -102,7 +102,9 @@ impl DesignProblem {
         for front in &mut fronts {
             front.designs.sort_by(|a, b| a.1.total_cmp(&b.1));
         }
-        let crossings = self.crossings(evaluations, &fronts);
+        let places = fronts.iter().flat_map(|front| &front.designs);
+        let places = places.map(|(index, at, _)| (*at, &evaluations[*index]));
+        let crossings = self.crossings(places.collect());
         for front in &mut fronts {
             let own = crossings.iter().filter(|crossing| crossing.is_of(front.architecture));
             front.crossings.extend(own);
@@ -295,23 +297,6 @@ pub struct AlongJson<'a> {
     pub crossings: Vec<CrossingJson>,
 }
 
-/// Where another architecture becomes the better one.
-#[derive(Debug, Clone, Serialize)]
-pub struct CrossingJson {
-    /// Value of the quantity along the front.
-    pub at: f64,
-    /// The first objective of both architectures there.
-    pub objective: f64,
-    /// The architecture that is better below.
-    pub below: String,
-    /// The architecture that is better above.
-    pub above: String,
-    /// Price of the quantity along the front below.
-    pub price_below: f64,
-    /// The same above.
-    pub price_above: f64,
-}
-
 /// A design with what drives its first objective.
 #[derive(Debug, Clone, Serialize)]
 pub struct PricedDesignJson<'a> {
@@ -338,20 +323,6 @@ impl DriversAlong {
             designs: designs.collect(),
             without_prices: self.without,
             crossings: self.crossings.iter().map(|crossing| crossing.to_json()).collect(),
-        }
-    }
-}
-
-impl Crossing {
-    fn to_json(self) -> CrossingJson {
-        let [below, above] = self.architectures.map(|architecture| architecture.to_string());
-        CrossingJson {
-            at: self.at,
-            objective: self.objective,
-            below,
-            above,
-            price_below: self.prices[0],
-            price_above: self.prices[1],
         }
     }
 }

@@ -2,10 +2,10 @@
 
 use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::Architecture;
-use kinefront_optimum::{Branch, Meeting};
+use kinefront_optimum::{Branch, LocalProblem, Meeting};
 use rayon::prelude::*;
+use serde::Serialize;
 
-use super::along::DriversAlong;
 use crate::DesignProblem;
 
 /// A place of a front at which another architecture becomes the better one.
@@ -21,26 +21,54 @@ pub struct Crossing {
     pub prices: [f64; 2],
 }
 
+/// A crossing, as other programs read it.
+#[derive(Debug, Clone, Serialize)]
+pub struct CrossingJson {
+    /// Value of the quantity along the front.
+    pub at: f64,
+    /// The first objective of both architectures there.
+    pub objective: f64,
+    /// The architecture that is better below.
+    pub below: String,
+    /// The architecture that is better above.
+    pub above: String,
+    /// Price of the quantity along the front below.
+    pub price_below: f64,
+    /// The same above.
+    pub price_above: f64,
+}
+
 impl Crossing {
     /// Whether an architecture begins or ends there.
     pub fn is_of(&self, architecture: Architecture) -> bool {
         self.architectures.contains(&architecture)
     }
+
+    /// Returns what other programs read.
+    pub fn to_json(self) -> CrossingJson {
+        let [below, above] = self.architectures.map(|architecture| architecture.to_string());
+        CrossingJson {
+            at: self.at,
+            objective: self.objective,
+            below,
+            above,
+            price_below: self.prices[0],
+            price_above: self.prices[1],
+        }
+    }
 }
 
 impl DesignProblem {
-    /// Determines where one architecture takes over from another along a front of two objectives, given its designs with prices. Of more
-    /// objectives, two neighbours differ in all, so that there is no such place.
-    pub(super) fn crossings(&self, evaluations: &[Evaluation], fronts: &[DriversAlong]) -> Vec<Crossing> {
+    /// Determines where one architecture takes over from another along a front of two objectives, given its designs with their places. Of
+    /// more objectives, two neighbours differ in all, so that there is no such place.
+    pub(super) fn crossings(&self, mut designs: Vec<(f64, &Evaluation)>) -> Vec<Crossing> {
         if self.model().settings().objectives.len() != 2 {
             return Vec::new();
         }
-        let places = fronts.iter().flat_map(|front| &front.designs);
-        let mut places: Vec<(f64, usize)> = places.map(|(index, at, _)| (*at, *index)).collect();
-        places.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let changes: Vec<[&Evaluation; 2]> = places
+        designs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let changes: Vec<[&Evaluation; 2]> = designs
             .windows(2)
-            .map(|pair| [&evaluations[pair[0].1], &evaluations[pair[1].1]])
+            .map(|pair| [pair[0].1, pair[1].1])
             .filter(|[before, after]| before.design.architecture() != after.design.architecture())
             .collect();
         changes.par_iter().filter_map(|change| self.crossing(*change)).collect()
@@ -53,7 +81,7 @@ impl DesignProblem {
         let locals = [before?, after?];
         let optima = [locals[0].optimum()?, locals[1].optimum()?];
         let branch = |place: usize| {
-            let problem: &kinefront_optimum::LocalProblem = &locals[place].problem;
+            let problem: &LocalProblem = &locals[place].problem;
             Some(Branch {
                 problem,
                 optimum: &optima[place],

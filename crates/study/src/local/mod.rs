@@ -12,11 +12,9 @@ mod wish_json;
 
 use alternatives::{LocalAnswer, OtherEntry};
 
-pub use along::{
-    AlongJson, CrossingJson, DrivenPart, DriversAlong, PriceCurve, PricedDesignJson, stacked, usual_range,
-};
+pub use along::{AlongJson, DrivenPart, DriversAlong, PriceCurve, PricedDesignJson, stacked, usual_range};
 pub use alternatives::AlternativeJson;
-pub use crossings::Crossing;
+pub use crossings::{Crossing, CrossingJson};
 pub use drivers::{ActiveJson, Drivers, DriversOptions, InactiveJson, PriceJson, RelaxationJson, WhyNotJson};
 pub(crate) use grid::Aim;
 pub use hindrances::Hindrance;
