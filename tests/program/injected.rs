@@ -7,7 +7,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use super::support::{check, folder, is_thorough, kinefront, optimize, resume, sample, small_study, tables};
+use super::support::{
+    check, folder, is_thorough, kinefront, optimize, repetitions, resume, sample, small_study, tables,
+};
 
 /// Calls that ask for memory.
 const MEMORY: &str = "mmap";
@@ -306,7 +308,7 @@ fn little_memory_ends_a_command_in_good_order() {
         .iter()
         .filter(|scenario| scenario.name != "report" || is_thorough());
     for scenario in scenarios {
-        for step in sample(0..60_usize, 8) {
+        for step in sample(0..repetitions(24, 60), 8) {
             let (_, mut arguments) = ground.prepare(scenario);
             // Recordings need most of the memory.
             arguments.retain(|argument| argument != Path::new("--no-recording"));
