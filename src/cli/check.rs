@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use kinefront_recording::{RecordedRunError, is_recorded, read_apart};
-use kinefront_study::{EndReason, Inspection, Repair, ResumeError, ResumeOptions, Resumption, RunControl, TableRow};
+use kinefront_study::{EndReason, Inspection, Repair, ResumeOptions, Resumption, RunControl, TableRow};
 use miette::miette;
 
 use super::progress::Progress;
@@ -101,9 +101,9 @@ fn soundness(path: &Path, inspection: &Inspection) -> String {
 }
 
 fn inspect(path: &Path) -> Result<Inspection, Failure> {
-    let mut inspection = Inspection::new(path).map_err(|error| match error.is_of_system() {
-        true => Failure::runtime(error),
-        false => Failure::input(error),
+    let mut inspection = Inspection::new(path).map_err(|error| match error {
+        error if error.is_of_system() => Failure::runtime(error),
+        error => Failure::input(error),
     })?;
     check_recording(&mut inspection)?;
     Ok(inspection)
@@ -161,7 +161,7 @@ fn check_recording(inspection: &mut Inspection) -> Result<(), Failure> {
 /// Cuts an incomplete row off, and writes anew what follows from the study and the designs.
 fn repair(path: &Path) -> Result<(), Failure> {
     let resumption = Resumption::open(path, &ResumeOptions::default()).map_err(|error| match error {
-        ResumeError::Folder(error) if error.is_of_system() => Failure::runtime(error),
+        error if error.is_of_system() => Failure::runtime(error),
         error => Failure::input(error),
     })?;
     let Some(outcome) = resumption.folder().report().map(|report| report.outcome) else {

@@ -200,7 +200,11 @@ pub fn run() -> ExitCode {
         unpack_with(program);
     }
     OUTSIDE_FILES.store(arguments.outside_files, Ordering::Relaxed);
-    if !arguments.command.as_ref().is_none_or(Command::opens_window) {
+    if arguments
+        .command
+        .as_ref()
+        .is_some_and(|command| !command.opens_window())
+    {
         signals::end_without_memory(FILES_INCOMPLETE);
     }
     let outcome = match &arguments.command {

@@ -97,7 +97,7 @@ fn resume(
     };
     let resumption = Resumption::open(path, &options).map_err(|error| match error {
         ResumeError::Lock(error) => write_failure(error),
-        ResumeError::Folder(error) if error.is_of_system() => Failure::runtime(error),
+        error if error.is_of_system() => Failure::runtime(error),
         error => Failure::input(error),
     })?;
     if !arguments.run.quiet {

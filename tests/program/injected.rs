@@ -170,7 +170,7 @@ impl Ground {
         };
         // What is disturbed does its work when it is not.
         for scenario in &SCENARIOS {
-            kinefront().args(ground.prepare(scenario).1).assert().success();
+            kinefront().args(ground.prepare(scenario)).assert().success();
         }
         ground
     }
@@ -179,8 +179,8 @@ impl Ground {
         self.folder.path().join(name)
     }
 
-    /// Copies the run, removes what an earlier command made, and returns the copy and the arguments of a command.
-    fn prepare(&self, scenario: &Scenario) -> (PathBuf, Vec<PathBuf>) {
+    /// Copies the run, removes what an earlier command made, and returns the arguments of a command.
+    fn prepare(&self, scenario: &Scenario) -> Vec<PathBuf> {
         let run = self.path("run");
         for path in [&self.path("new"), &run] {
             let _ = fs::remove_dir_all(path);
@@ -190,8 +190,7 @@ impl Ground {
         for name in ["study.toml", "designs.csv", "front.csv", "run.json"] {
             fs::copy(self.path("whole").join(name), run.join(name)).expect("a copy");
         }
-        let arguments = (scenario.arguments)(self.folder.path(), &run);
-        (run, arguments)
+        (scenario.arguments)(self.folder.path(), &run)
     }
 
     /// Checks what a disturbed command has said and left: it has not panicked, no design is lost, and what it changed can be completed to
@@ -250,7 +249,7 @@ fn every_call_fails_once() {
         };
         for when in times.map(|when| start + when) {
             let error = errors[when % errors.len()];
-            let (_, arguments) = ground.prepare(scenario);
+            let arguments = ground.prepare(scenario);
             let (output, fired) = disturb(&arguments, calls, error, when);
             if !fired {
                 break;
@@ -309,7 +308,7 @@ fn little_memory_ends_a_command_in_good_order() {
         .filter(|scenario| scenario.name != "report" || is_thorough());
     for scenario in scenarios {
         for step in sample(0..repetitions(24, 60), 8) {
-            let (_, mut arguments) = ground.prepare(scenario);
+            let mut arguments = ground.prepare(scenario);
             // Recordings need most of the memory.
             arguments.retain(|argument| argument != Path::new("--no-recording"));
             let output = limited(least + 2000 * step, &arguments);

@@ -50,7 +50,7 @@ fn runs_of_several_seeds_become_one_whose_front_is_no_worse() {
     let of_the_search = |report: &serde_json::Value| report["hypervolume_kg_m"].as_f64().expect("a number");
     for report in &reports {
         assert!(of_the_search(&merged) >= of_the_search(report));
-        // Of 24 designs, it matters where the last one before the reference point happens to lie.
+        // Of eight designs, it matters where the last one before the reference point happens to lie.
         assert!(hypervolume(&merged) >= 0.995 * hypervolume(report));
     }
     let sources: Vec<(&str, u64)> = merged["merged"]

@@ -58,13 +58,10 @@ impl Branch<'_> {
         found.filter(Polished::is_optimal)
     }
 
+    /// Returns the price of the requirement at an optimum for a logarithm of it.
     fn price_at(&self, optimum: &Polished, at: f64) -> Option<f64> {
-        let actuator = optimum.design.architecture().actuator();
-        let (question, base_radius) = (self.problem.question(), optimum.design.base_radius());
-        let changed = self
-            .parameter
-            .changed(question, at - self.place()?, base_radius, actuator)?;
-        let problem = self.problem.with_question(changed).ok()?;
+        let step = at - self.place()?;
+        let problem = self.problem.changed(optimum, &[(self.parameter, 1.0)], step)?;
         let prices = problem.prices(optimum, false).prices;
         let own = prices.iter().find(|price| price.parameter == self.parameter);
         own.map(|price| price.price)

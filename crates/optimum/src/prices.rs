@@ -123,12 +123,17 @@ impl LocalProblem {
 
     /// Returns the optimum for parameters that are changed by a step times the weight of each, starting from another optimum.
     pub(crate) fn after(&self, from: &Polished, weights: &[(Parameter, f64)], step: f64) -> Option<Polished> {
-        let actuator = from.design.architecture().actuator();
+        self.changed(from, weights, step)?.polish_from(&from.unknowns)
+    }
+
+    /// Returns the problem with parameters that are changed by a step times the weight of each, near an optimum.
+    pub(crate) fn changed(&self, near: &Polished, weights: &[(Parameter, f64)], step: f64) -> Option<Self> {
+        let actuator = near.design.architecture().actuator();
         let change = |question: LocalQuestion, (parameter, weight): &(Parameter, f64)| {
-            parameter.changed(&question, weight * step, from.design.base_radius(), actuator)
+            parameter.changed(&question, weight * step, near.design.base_radius(), actuator)
         };
         let question = weights.iter().try_fold(self.question.clone(), change)?;
-        self.with_question(question).ok()?.polish_from(&from.unknowns)
+        self.with_question(question).ok()
     }
 
     /// Returns the logarithm of the objective of an optimum.

@@ -2,6 +2,7 @@
 
 use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::Architecture;
+use kinefront_optimize::{Outcome, non_dominated_ranks};
 use kinefront_optimum::{Branch, LocalProblem, Meeting};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -59,12 +60,19 @@ impl Crossing {
 }
 
 impl DesignProblem {
-    /// Determines where one architecture takes over from another along a front of two objectives, given its designs with their places. Of
-    /// more objectives, two neighbours differ in all, so that there is no such place.
+    /// Determines where one architecture takes over from another along a front of two objectives, given designs with their places, of which
+    /// some may be dominated by a design of another architecture. Of more objectives, two neighbours differ in all, so that there is no such
+    /// place.
     pub(super) fn crossings(&self, mut designs: Vec<(f64, &Evaluation)>) -> Vec<Crossing> {
         if self.model().settings().objectives.len() != 2 {
             return Vec::new();
         }
+        let outcomes: Vec<Outcome> = designs
+            .iter()
+            .map(|(_, evaluation)| Self::outcome(evaluation))
+            .collect();
+        let mut ranks = non_dominated_ranks(&outcomes).into_iter();
+        designs.retain(|_| ranks.next() == Some(0));
         designs.sort_by(|a, b| a.0.total_cmp(&b.0));
         let changes: Vec<[&Evaluation; 2]> = designs
             .windows(2)

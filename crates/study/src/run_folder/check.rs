@@ -7,7 +7,7 @@ use super::merge::ORIGINS;
 use super::write::front_table;
 use super::{RunFolder, RunFolderError, RunReport};
 use crate::conclusion::verify_replayed;
-use crate::{EndReason, ReplayError, RunSummary, SearchError, StudySearch, TableError, TableRow, open_regular};
+use crate::{EndReason, RunSummary, StudySearch, TableError, TableRow, open_regular};
 
 /// Largest length of a line of the origins of merged designs \[bytes\].
 const LONGEST_ORIGIN: u64 = 1024;
@@ -98,11 +98,12 @@ impl Inspection {
         };
         let search = match search {
             Ok(search) => search,
-            Err(ReplayError::Search(SearchError::Threads(cause))) => {
-                return Err(RunFolderError::Threads { path, cause });
-            }
-            Err(error) => {
-                self.add(path, error.to_string(), None);
+            Err(cause) => {
+                let cause = match RunFolderError::of_system(cause, &path) {
+                    Ok(error) => return Err(error),
+                    Err(cause) => cause,
+                };
+                self.add(path, cause.to_string(), None);
                 return Ok(());
             }
         };

@@ -9,7 +9,7 @@ use super::{Checkpoint, DESIGNS, FRONT, FileSums, MergedRun, PROGRESS, RECORDING
 use crate::{
     Column, Study, StudyError, TableContents, TableError, TableFault, read_run_table, read_table, table_bytes,
 };
-use crate::{Difference, FileSum, open_regular, read_regular};
+use crate::{Difference, FileSum, ReplayError, SearchError, open_regular, read_regular};
 
 /// Largest `run.json` \[bytes\]: the history of ten million generations.
 const LARGEST_JSON: u64 = 1 << 32;
@@ -101,6 +101,17 @@ impl RunFolderError {
     /// Whether the system is the reason, and not what is in the folder.
     pub fn is_of_system(&self) -> bool {
         matches!(self, Self::Read { .. } | Self::Threads { .. })
+    }
+
+    /// Separates what the system lacks for the replay of the designs at `path` from what is wrong with them.
+    pub(super) fn of_system(cause: ReplayError, path: &Path) -> Result<Self, ReplayError> {
+        match cause {
+            ReplayError::Search(SearchError::Threads(cause)) => Ok(Self::Threads {
+                path: path.to_owned(),
+                cause,
+            }),
+            cause => Err(cause),
+        }
     }
 }
 

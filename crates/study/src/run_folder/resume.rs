@@ -9,7 +9,7 @@ use super::lock::open_locked;
 use super::{DESIGNS, RECORDING, RunFolder, RunFolderError, RunWriter};
 use crate::WriteError;
 use crate::durable::remove;
-use crate::{EndReason, ReplayError, SearchError, StudySearch, TableError};
+use crate::{EndReason, ReplayError, StudySearch, TableError};
 
 /// A run that can be resumed: its folder is locked, and its designs were replayed.
 ///
@@ -86,6 +86,13 @@ pub enum ResumeError {
     },
 }
 
+impl ResumeError {
+    /// Whether the system is the reason, and not what is in the folder.
+    pub fn is_of_system(&self) -> bool {
+        matches!(self, Self::Folder(error) if error.is_of_system())
+    }
+}
+
 impl Resumption {
     /// Locks the run folder at `path` and replays its designs.
     ///
@@ -135,9 +142,9 @@ impl Resumption {
             StudySearch::resume(study, contents.rows, threads)
         };
         let path = folder.designs_path();
-        let search = search.map_err(|cause| match cause {
-            ReplayError::Search(SearchError::Threads(cause)) => RunFolderError::Threads { path, cause }.into(),
-            cause => ResumeError::Replay { path, cause },
+        let search = search.map_err(|cause| match RunFolderError::of_system(cause, &path) {
+            Ok(error) => error.into(),
+            Err(cause) => ResumeError::Replay { path, cause },
         })?;
         let kept = search.replayed();
         if kept < evaluated {
