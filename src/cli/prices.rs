@@ -1,16 +1,19 @@
 //! The command `kinefront prices`: what each requirement of a study costs at a design, or along a front.
 
 use std::io::Write;
+use std::path::PathBuf;
 
 use kinefront_model::evaluation::{Evaluation, Quantity};
 use kinefront_model::mechanism::Design;
+use kinefront_recording::record_prices;
 use kinefront_study::{
-    AlongJson, Column, DesignProblem, Drivers, DriversAlong, DriversOptions, PriceJson, Row, Study, TableRow,
+    AlongJson, Column, DesignProblem, Drivers, DriversAlong, DriversOptions, PreparedStudy, PriceJson, Row, Study,
+    TableRow,
 };
 use miette::miette;
 
 use super::subject::{A_DESIGN, SubjectArguments, exactly_one_of};
-use super::{Ending, Failure, tables, to_json};
+use super::{Ending, Failure, exists_already, tables, to_json};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -19,7 +22,8 @@ is the change of the first objective in per cent for +1 % of a requirement; the 
 values of the design. A requirement that is not active is listed with the amount by which it can increase at no cost.
 
 Without #ID, the command computes the prices of all designs of the table and prints, in sentences, what drives the first objective along the front; with
---csv, it prints the table of the designs with a column price_* for each parameter.")]
+--csv, it prints the table of the designs with a column price_* for each parameter, and with --record it also writes a recording of the designs with
+their prices along the front.")]
 #[command(group = exactly_one_of(A_DESIGN))]
 pub struct PricesArguments {
     #[command(flatten)]
@@ -42,6 +46,9 @@ pub struct PricesArguments {
     /// Print the result as one JSON object.
     #[arg(long)]
     json: bool,
+    /// Also write a recording of a front with its prices; the file must not exist.
+    #[arg(long, value_name = "FILE.rrd")]
+    record: Option<PathBuf>,
 }
 
 pub fn run(arguments: &PricesArguments) -> Result<Ending, Failure> {
@@ -51,9 +58,13 @@ pub fn run(arguments: &PricesArguments) -> Result<Ending, Failure> {
     if !arguments.subject.is_design() {
         return along_front(arguments);
     }
-    if arguments.csv {
-        let words = "--csv prints the designs of a front; name the table without #ID";
-        return Err(Failure::Input(miette!("{words}")));
+    for (is_given, words) in [
+        (arguments.csv, "--csv prints the designs of a front"),
+        (arguments.record.is_some(), "--record writes a recording of a front"),
+    ] {
+        if is_given {
+            return Err(Failure::Input(miette!("{words}; name the table without #ID")));
+        }
     }
     let (study, design, heading) = arguments.subject.read().map_err(Failure::Input)?;
     let problem = DesignProblem::new(&study).map_err(Failure::runtime)?;
@@ -86,11 +97,19 @@ fn along_front(arguments: &PricesArguments) -> Result<Ending, Failure> {
         let words = "--radius, --bars-only, --steps and --wish-mass require a single design; specify it as TABLE#ID";
         return Err(Failure::Input(miette!("{words}")));
     }
+    if let Some(path) = arguments.record.as_deref().filter(|path| path.exists()) {
+        return Err(exists_already(path));
+    }
     let (study, designs) = arguments.subject.read_table().map_err(Failure::Input)?;
     let problem = DesignProblem::new(&study).map_err(Failure::runtime)?;
     let (ids, designs): (Vec<usize>, Vec<Design>) = designs.into_iter().unzip();
     let evaluations = problem.evaluate_on_fine_grid(&designs);
     let along = problem.drivers_along(&evaluations);
+    if let Some(path) = &arguments.record {
+        let prepared = PreparedStudy::new(study.clone()).map_err(Failure::runtime)?;
+        record_prices(path, &prepared, &evaluations, &ids, &along).map_err(Failure::runtime)?;
+        let _ = writeln!(std::io::stderr(), "wrote {}", path.display());
+    }
     let mut out = std::io::stdout().lock();
     if arguments.json {
         let all: Vec<AlongJson<'_>> = along.iter().map(|along| along.to_json(&ids)).collect();

@@ -7,7 +7,9 @@ use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use serde_json::Value;
 
-use super::support::{design_of, folder, json, kinefront, optimize, says};
+use kinefront_testkit::python;
+
+use super::support::{design_of, folder, json, kinefront, optimize, says, script};
 
 /// The lightest 3-PRR for a disc of 1.2 m, and its home orientation, as an independent solver found them.
 const OPTIMUM: &str = "3-PRR R=3.8908964188791515 r=0.7103100290509872 Lb=2.5672756542491637 rj=0.024643653700447767 rp=0.03482665497108131";
@@ -295,6 +297,7 @@ fn prices_along_a_front_are_those_of_its_designs() {
         }
     }
     assert_eq!(priced, rows.len());
+    is_recorded(&table, folder.path(), &along);
     for (arguments, message) in [
         (vec!["prices", &table, "--steps"], "require a single design"),
         (
@@ -302,9 +305,46 @@ fn prices_along_a_front_are_those_of_its_designs() {
             "name the table without #ID",
         ),
         (vec!["prices", &table, "--csv", "--json"], "cannot be used with"),
+        (
+            vec!["prices", &format!("{table}#1"), "--record", "prices.rrd"],
+            "--record writes a recording of a front; name the table without #ID",
+        ),
     ] {
         kinefront().args(&arguments).assert().code(2).stderr(contains(message));
     }
+}
+
+/// The recording of a front holds the prices that the command prints.
+fn is_recorded(table: &str, folder: &Path, along: &Value) {
+    let (recording, printed) = (folder.join("prices.rrd"), folder.join("along.json"));
+    let record = || {
+        let mut command = kinefront();
+        command.args(["prices", table, "--json", "--record"]).arg(&recording);
+        command
+    };
+    let output = record()
+        .assert()
+        .success()
+        .stderr(contains("wrote"))
+        .get_output()
+        .clone();
+    let repeated: Value = serde_json::from_slice(&output.stdout).expect("nothing but JSON");
+    assert_eq!(&repeated, along);
+    fs::write(&printed, output.stdout).expect("a file");
+    if let Some(python) = python(&["rerun", "pyarrow"]) {
+        let found = script(python, "check_prices.py", &[&recording, &printed]);
+        let found: Value = serde_json::from_str(&found).expect("JSON");
+        let fronts = along.as_array().expect("architectures").len();
+        let priced = along.as_array().expect("architectures").iter();
+        let priced: usize = priced
+            .map(|front| front["designs"].as_array().expect("designs").len())
+            .sum();
+        assert_eq!(found["steps"], priced, "{found}");
+        assert_eq!(found["plots"], 2 * fronts, "{found}");
+        assert!(found["curves"].as_u64() >= Some(4), "{found}");
+    }
+    // A file that exists is never replaced.
+    record().assert().code(2).stderr(contains("exists"));
 }
 
 /// Scaling all forces, or all lengths, changes nothing but the unit: the prices of what has them add up.

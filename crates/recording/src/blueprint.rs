@@ -13,9 +13,9 @@ use rerun::{AsComponents, EntityPath, RecordingStream, StoreId, StoreKind, TimeP
 
 use super::legend::legend_bounds;
 use super::motion::curve_path;
-use super::{APPLICATION_ID, Viewpoint, paths, timelines};
+use super::{APPLICATION_ID, Viewpoint, paths, prices, timelines};
 use kinefront_model::evaluation::PoseScalar;
-use kinefront_model::mechanism::JointKind;
+use kinefront_model::mechanism::{Architecture, JointKind};
 use kinefront_scene::{Field, MotionCurve};
 
 /// Sends the layout of a run's recording; `clouds` are the entities whose rows together form the cloud of designs; `plot`
@@ -148,6 +148,42 @@ pub(super) fn send_design_layout(
     let root = layout.container(ContainerKind::Horizontal, &[maps, right], &[1.7, 1.0])?;
     let timeline = if moves { timelines::TIME } else { timelines::TOUR };
     layout.finish(&root, timeline, PlayState::Paused)?;
+    layout.send(recording);
+    Ok(())
+}
+
+/// Sends the layout of the recording of prices along the fronts of some architectures, whose designs extend to the distance `extent` \[m\]
+/// from O.
+pub(super) fn send_prices_layout(
+    recording: &RecordingStream,
+    architectures: &[Architecture],
+    extent: f64,
+) -> Result<(), ChunkError> {
+    let mut layout = ViewLayout::new();
+    let mut fronts = Vec::new();
+    for &architecture in architectures {
+        let mut views = Vec::new();
+        for (view, title, _) in prices::VIEWS {
+            let path = prices::view_path(architecture, view);
+            let view = layout.curve(title, &path, "+ $origin/**")?;
+            layout.legend(&view)?;
+            views.push(view);
+        }
+        let views = layout.container(ContainerKind::Vertical, &views, &[1.0, 1.0])?;
+        fronts.push(layout.named(views, architecture.name())?);
+    }
+    let fronts = layout.container(ContainerKind::Tabs, &fronts, &[])?;
+    let manipulator = layout.space("Manipulator", paths::DESIGN, &["+ $origin/**"], extent)?;
+    let manipulator = layout.beside_legend(manipulator, "Manipulator", Field::DEXTERITY)?;
+    let summary = layout.text("What drives the front", paths::SUMMARY)?;
+    let card = layout.text("Design", paths::CARD)?;
+    let right = layout.container(ContainerKind::Vertical, &[summary, card], &[0.6, 1.0])?;
+    let root = layout.container(
+        ContainerKind::Horizontal,
+        &[fronts, manipulator, right],
+        &[1.2, 1.2, 0.8],
+    )?;
+    layout.finish(&root, timelines::FRONT, PlayState::Paused)?;
     layout.send(recording);
     Ok(())
 }
@@ -292,9 +328,14 @@ impl ViewLayout {
         let legend = self.view("2D", &field.title(), paths::HEATMAP_LEGEND, &[&contents])?;
         self.property(&legend, "VisualBounds2D", &parts::VisualBounds2D::new(legend_bounds()))?;
         let together = self.container(ContainerKind::Horizontal, &[map, legend], &[5.0, 1.0])?;
-        let name = parts::ContainerBlueprint::update_fields().with_display_name(title);
-        self.log(together.path.clone(), &name)?;
-        Ok(together)
+        self.named(together, title)
+    }
+
+    /// Gives a container a name, which its tab shows.
+    fn named(&mut self, container: Node, name: &str) -> Result<Node, ChunkError> {
+        let update = parts::ContainerBlueprint::update_fields().with_display_name(name);
+        self.log(container.path.clone(), &update)?;
+        Ok(container)
     }
 
     /// Adds a view of the manipulator, seen from the front and above.

@@ -36,6 +36,14 @@ pub fn record_design(
     heading: &str,
     first: Option<Field>,
 ) -> Result<(), RecordingError> {
+    write_new(path, |part| draw_design(part, study, evaluation, heading, first))
+}
+
+/// Writes a recording to a new file, which appears when it is complete.
+pub(super) fn write_new(
+    path: &Path,
+    draw: impl FnOnce(&Path) -> Result<(), RecordingError>,
+) -> Result<(), RecordingError> {
     let failed = |cause: std::io::Error| RecordingError::Write {
         path: path.to_owned(),
         cause,
@@ -43,8 +51,7 @@ pub fn record_design(
     if path.exists() {
         return Err(failed(std::io::ErrorKind::AlreadyExists.into()));
     }
-    // The file appears when it is complete.
-    replace(path, |part| draw_design(part, study, evaluation, heading, first)).map_err(|error| match error {
+    replace(path, draw).map_err(|error| match error {
         RecordingError::Write { cause, .. } => failed(cause),
         error => error,
     })

@@ -17,6 +17,7 @@
 //! | `/design/proof/…`, `/configuration/proof/…` | the boxes of the proof of the workspace, and an infeasible pose | static |
 //! | `/card` | the design's numbers, as markdown | `front`, or static |
 //! | `/along_front/…` | design variables and `R_w` along the front | `front` |
+//! | `/prices/ARCHITECTURE/…` | prices along the front; in the recording of `kinefront prices` only | `front` |
 //! | `/pins/N/…` | pinned designs side by side; in a window only | static |
 //!
 //! `evaluation` is the id of the design; a row that belongs to a generation is recorded at the generation's last
@@ -38,6 +39,7 @@ mod motion;
 mod plot;
 mod point;
 mod pointed;
+mod prices;
 mod proof;
 mod read;
 mod recorder;
@@ -54,6 +56,7 @@ pub use design::record_design;
 pub use live::{LiveScene, Picked, Pinned, SceneLegends, Shown, VisibleLayers};
 pub use point::FrontPoint;
 pub use pointed::SceneTarget;
+pub use prices::record_prices;
 pub use read::{CopyError, ReadError, RecordedDesign, RecordedRun, read_run, save_copy};
 pub use recorder::{Recorder, is_recorded};
 pub use run_files::{RunFileError, RunFiles};
@@ -81,6 +84,7 @@ mod paths {
     pub const PINS: &str = "/pins";
     pub const CARD: &str = "/card";
     pub const ALONG_FRONT: &str = "/along_front";
+    pub const PRICES: &str = "/prices";
     pub const SELECTED: &str = "/scatter/plot/front/selected";
     pub const STUDY: &str = "/study";
     pub const SUMMARY: &str = "/summary";
