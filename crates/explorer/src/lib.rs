@@ -41,8 +41,8 @@ pub use panels::{Panel, Panels};
 pub use platform_drag::PlatformDrag;
 pub use pointing::{Description, Pointed, describe};
 pub use session::{
-    Beside, MOST_PINS, MarkedCounts, Notice, Phase, PoseDynamics, ReferenceMark, Session, ShownVibration, ViewState,
-    WhyPoint,
+    Beside, MOST_PINS, MarkedCounts, Notice, Phase, PoseDynamics, ReferenceMark, Session, ShownVibration, Subject,
+    ViewState, WhyPoint,
 };
 pub use study_editor::StudyEditor;
 pub use theme::dress;

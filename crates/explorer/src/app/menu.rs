@@ -10,7 +10,6 @@ use super::super::{Panel, Phase, theme};
 use super::shortcuts::SHORTCUTS;
 use super::{Explorer, layout};
 use kinefront_export::Format;
-use kinefront_study::BUILTIN;
 
 /// Entries of the menu "File" that select a file first.
 const FILE_ENTRIES: [(&str, Purpose); 10] = [
@@ -58,15 +57,9 @@ impl Explorer {
                 requested = Some(purpose);
             }
         }
-        ui.menu_button("New study from", |ui| {
-            for builtin in BUILTIN {
-                let hint = builtin.study().map(|study| study.description).unwrap_or_default();
-                if ui.button(builtin.name).on_hover_text(hint).clicked() {
-                    self.session.edit_builtin(&builtin);
-                    self.show(Panel::Study);
-                }
-            }
-        });
+        if ui.button("New study from an example").clicked() {
+            self.show(Panel::Examples);
+        }
         ui.menu_button("Export design", |ui| {
             for &format in Format::ALL {
                 if ui.button(format!("{}…", format.title())).clicked() {
@@ -195,7 +188,7 @@ impl Explorer {
         const LINES: [(&str, &str); 6] = [
             (
                 "Run",
-                "selects a study and starts its search; Mechanisms and Study change the study",
+                "starts the search of the study; Examples lists studies to start from, and Study and Mechanisms change them",
             ),
             (
                 "Scatter",

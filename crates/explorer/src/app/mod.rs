@@ -30,7 +30,7 @@ use super::panels::scatter::{Scatter, ScatterAxis, objective_columns};
 use super::panels::{Panel, Panels};
 use super::platform_drag::PlatformDrag;
 use super::viewer::Viewer;
-use super::{Phase, Session, StudyEditor, theme};
+use super::{Phase, Session, StudyEditor, Subject, theme};
 use kinefront_study::{Column, Study};
 
 /// Content that the window opens with.
@@ -303,8 +303,10 @@ impl eframe::App for Explorer {
                 frame,
             };
             self.tree.ui(&mut drawing, ui);
-            if self.session.take_new_why() {
-                self.show(Panel::WhyNot);
+            match self.session.take_subject() {
+                Some(Subject::Study) => self.show(Panel::Study),
+                Some(Subject::WhyNot) => self.show(Panel::WhyNot),
+                None => {}
             }
             if let Some(purpose) = self.session.take_file_request() {
                 self.ask(&ctx, purpose);

@@ -5,6 +5,7 @@ mod beside;
 mod choose;
 mod compare;
 mod drivers;
+mod examples;
 mod fields;
 mod front;
 mod inspector;
@@ -160,6 +161,8 @@ panels! {
     Run = run: run::RunPanel, "Run", Run;
     /// The study's settings.
     Study = study: study::StudyPanel, "Study", Run;
+    /// The built-in studies with pictures.
+    Examples = examples: examples::ExamplesPanel, "Examples", Run;
     /// The architectures, and which of them the study searches.
     Mechanisms = mechanisms: mechanisms::MechanismsPanel, "Mechanisms", Run;
     /// The scatter plot.

@@ -5,13 +5,16 @@ use glam::{DVec2, DVec3};
 
 use crate::pointing::describe_member;
 use crate::theme;
-use kinefront_model::evaluation::MemberReport;
+use kinefront_model::evaluation::{Evaluation, MemberReport, Model};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::nearest_on_segment;
-use kinefront_scene::{Part, Scene, Solid, SolidShape};
+use kinefront_scene::{Part, Scene, Solid, SolidShape, region_corners, regular_workspace};
 
 /// Largest distance of the pointer from the axis of a thin member at which the member is still under the pointer \[points\].
 const CATCH: f32 = 4.0;
+
+/// Share of a rectangle that points fill that are fitted into it.
+const FILLED: f64 = 0.9;
 
 /// Conversion between metres and screen coordinates.
 pub(super) struct Plan {
@@ -29,6 +32,20 @@ impl Plan {
         Self {
             centre: rect.center(),
             scale: 0.5 * f64::from(rect.width().min(rect.height())) / reach,
+        }
+    }
+
+    /// Fits all points into a rectangle, with a margin about them.
+    pub fn around(rect: Rect, points: impl Iterator<Item = DVec2>) -> Self {
+        let [low, high] = points.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], point| {
+            [low.min(point), high.max(point)]
+        });
+        let (middle, size) = (0.5 * (low + high), (high - low).max(DVec2::splat(1e-9)));
+        let scale = (f64::from(rect.width()) / size.x).min(f64::from(rect.height()) / size.y) * FILLED;
+        let offset = Vec2::new((middle.x * scale) as f32, -(middle.y * scale) as f32);
+        Self {
+            centre: rect.center() - offset,
+            scale,
         }
     }
 
@@ -68,6 +85,23 @@ impl Plan {
         let side = (ends[1] - ends[0]).normalized().rot90() * ((member.radius * self.scale) as f32).max(2.0);
         let corners = vec![ends[0] + side, ends[1] + side, ends[1] - side, ends[0] - side];
         painter.add(Shape::closed_line(corners, Stroke::new(1.5, color)));
+    }
+}
+
+/// Draws the region in which a design has its workspace.
+pub(super) fn paint_workspace(ui: &Ui, painter: &Painter, plan: &Plan, model: &Model, evaluation: &Evaluation) {
+    let rotation_range_deg = model.settings().workspace.rotation_range_deg;
+    let Some(cylinder) = regular_workspace(evaluation, rotation_range_deg) else {
+        return;
+    };
+    let good = theme::good(ui);
+    if let Some(corners) = region_corners(model) {
+        // The outline may be concave, so that it is not filled.
+        let outline: Vec<_> = corners.into_iter().map(|corner| plan.screen(corner)).collect();
+        painter.add(Shape::closed_line(outline, Stroke::new(1.2, good)));
+    } else {
+        let (centre, radius) = (plan.screen(cylinder.centre), (cylinder.radius * plan.scale) as f32);
+        painter.circle(centre, radius, good.gamma_multiply(0.12), Stroke::new(1.2, good));
     }
 }
 

@@ -6,13 +6,13 @@ use kinefront_scene::text;
 
 use super::modes::ModesView;
 use super::obstacles::ObstacleDrag;
-use super::plan::{Plan, card, paint};
+use super::plan::{Plan, card, paint, paint_workspace};
 use crate::grip::Grip;
 use crate::{Session, theme};
 use kinefront_model::evaluation::PoseScalar;
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
-use kinefront_scene::{Tour, drawn_samples, manipulator, region_corners, regular_workspace, tour};
+use kinefront_scene::{Tour, drawn_samples, manipulator, regular_workspace, tour};
 
 /// Number of poses around each rim of the tour.
 const TOUR_STEPS: usize = 90;
@@ -187,7 +187,9 @@ impl PosePanel {
         }
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 4.0, theme::ground(ui.visuals().dark_mode));
-        paint_workspace(ui, &painter, &plan, session);
+        if let Some(known) = session.known() {
+            paint_workspace(ui, &painter, &plan, session.model(), &known.evaluation);
+        }
         draw_path(ui, &painter, &plan, session);
         self.modes.ghosts(&painter, &plan, session, design, theme::ink(ui));
         paint(ui, &painter, &plan, &scene);
@@ -227,24 +229,6 @@ impl PosePanel {
         {
             session.drag_platform(grip.target(at, &pose));
         }
-    }
-}
-
-/// Draws the region in which the design has its workspace.
-fn paint_workspace(ui: &Ui, painter: &egui::Painter, plan: &Plan, session: &Session) {
-    let rotation_range_deg = session.model().settings().workspace.rotation_range_deg;
-    let known = session.known();
-    let Some(cylinder) = known.and_then(|known| regular_workspace(&known.evaluation, rotation_range_deg)) else {
-        return;
-    };
-    let good = theme::good(ui);
-    if let Some(corners) = region_corners(session.model()) {
-        // The outline may be concave, so that it is not filled.
-        let outline: Vec<_> = corners.into_iter().map(|corner| plan.screen(corner)).collect();
-        painter.add(egui::Shape::closed_line(outline, Stroke::new(1.2, good)));
-    } else {
-        let (centre, radius) = (plan.screen(cylinder.centre), (cylinder.radius * plan.scale) as f32);
-        painter.circle(centre, radius, good.gamma_multiply(0.12), Stroke::new(1.2, good));
     }
 }
 

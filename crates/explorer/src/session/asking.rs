@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Session;
+use super::{Session, Subject};
 use crate::data::{DesignOrigin, Selected, Wished};
 use crate::threads::{
     AlongQuestion, AnsweringThread, DriversQuestion, HindrancesQuestion, MotionQuestion, StudyOfRun, Wake, WhyQuestion,
@@ -26,8 +26,6 @@ pub(super) struct Asking {
     wishes: u64,
     /// Whether the answer to the last wish has become a design.
     is_wish_taken: bool,
-    /// Whether the user has asked why since the window looked last.
-    is_why_new: bool,
     /// The designs of a front, with its number.
     designs: Option<(u64, Arc<Vec<Design>>)>,
 }
@@ -53,7 +51,6 @@ impl Asking {
             motion: AnsweringThread::new(Arc::clone(wake)),
             wishes: 0,
             is_wish_taken: true,
-            is_why_new: false,
             designs: None,
         }
     }
@@ -214,7 +211,7 @@ impl Session {
             wished,
         };
         drop(self.asking.why.ask(question));
-        self.asking.is_why_new = true;
+        self.turn_to(Subject::WhyNot);
     }
 
     /// Returns the point of which the user asked last why it cannot be had.
@@ -233,11 +230,6 @@ impl Session {
     /// Withdraws the question.
     pub fn withdraw_why(&mut self) {
         self.asking.why.forget();
-    }
-
-    /// Returns whether the user has asked why since the last call.
-    pub fn take_new_why(&mut self) -> bool {
-        std::mem::take(&mut self.asking.is_why_new)
     }
 
     /// Returns whether the run has ended without any feasible design.

@@ -102,6 +102,15 @@ pub struct ViewState {
     pub drawing_path: bool,
 }
 
+/// What the user turns to, which the window shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Subject {
+    /// The study that is edited.
+    Study,
+    /// Why a point beyond the front cannot be had.
+    WhyNot,
+}
+
 /// The complete state of the window.
 pub struct Session {
     /// The study being edited, which the next run uses.
@@ -114,6 +123,8 @@ pub struct Session {
     history: History<Document>,
     /// Purpose of the file that a panel requests.
     requested_file: Option<Purpose>,
+    /// What a panel or a key has turned to since the window looked last.
+    subject: Option<Subject>,
     as_run: Arc<PreparedStudy>,
     run: Option<Running>,
     phase: Phase,
@@ -162,6 +173,7 @@ impl Session {
             notices: Vec::new(),
             history: History::default(),
             requested_file: None,
+            subject: None,
             run: None,
             phase: Phase::Ready,
             threads: None,
@@ -236,6 +248,16 @@ impl Session {
     /// Takes the request for a file, if there is one.
     pub fn take_file_request(&mut self) -> Option<Purpose> {
         self.requested_file.take()
+    }
+
+    /// Makes the window show a subject.
+    pub fn turn_to(&mut self, subject: Subject) {
+        self.subject = Some(subject);
+    }
+
+    /// Takes the subject to which the user has turned since the last call, if there is one.
+    pub fn take_subject(&mut self) -> Option<Subject> {
+        self.subject.take()
     }
 
     /// Returns the study to which the stored designs belong.

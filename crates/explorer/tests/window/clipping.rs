@@ -12,7 +12,9 @@ use super::panels::drawing;
 /// Sizes of a panel in the three windows, without the frame.
 fn sizes(panel: Panel) -> [[f32; 2]; 3] {
     match panel {
-        Panel::Run | Panel::Study | Panel::Mechanisms => [[470.0, 370.0], [376.0, 290.0], [290.0, 250.0]],
+        Panel::Run | Panel::Study | Panel::Examples | Panel::Mechanisms => {
+            [[470.0, 370.0], [376.0, 290.0], [290.0, 250.0]]
+        }
         Panel::Scatter | Panel::Space => [[470.0, 550.0], [376.0, 430.0], [290.0, 370.0]],
         Panel::Front | Panel::Parallel | Panel::Prices | Panel::Motion | Panel::Compare | Panel::Beside => {
             [[724.0, 310.0], [576.0, 240.0], [448.0, 200.0]]

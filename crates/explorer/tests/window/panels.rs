@@ -59,6 +59,7 @@ fn size(panel: Panel) -> egui::Vec2 {
         Panel::Scatter => egui::vec2(560.0, 480.0),
         Panel::Front | Panel::Parallel | Panel::Compare | Panel::Motion => egui::vec2(820.0, 360.0),
         Panel::Pose => egui::vec2(400.0, 560.0),
+        Panel::Examples => egui::vec2(480.0, 760.0),
         _ => egui::vec2(420.0, 520.0),
     }
 }
@@ -96,8 +97,8 @@ fn every_panel_looks_as_it_did() {
                 .with_options(SnapshotOptions::new().threshold(2.0).max_failed_pixels(300))
                 .wgpu()
                 .build_ui(drawing(panel, theme));
-            // Drawing the cloud of designs takes several frames, and so does a layout that measures itself.
-            harness.run_steps(12);
+            // Drawing the cloud of designs takes several frames, and so do a layout that measures itself and the pictures of examples.
+            harness.run_steps(16);
             harness.snapshot(format!(
                 "{}_{}",
                 panel.title().replace(' ', "_").to_lowercase(),

@@ -34,6 +34,19 @@ fn the_studies_that_come_with_the_program_are_sound() {
     }
 }
 
+/// The design with which a study is shown is an answer to its question.
+#[test]
+fn the_studies_that_come_with_the_program_are_shown_with_feasible_designs() {
+    for builtin in BUILTIN {
+        let study = builtin.study().expect("a valid study");
+        let design = Design::parse(builtin.design, study.working_mode).expect("a design");
+        assert!(study.architectures.contains(&design.architecture()), "{}", builtin.name);
+        let model = study.model().expect("the grids fit");
+        let evaluation = model.evaluate(&design, GridChoice::Reference);
+        assert!(evaluation.is_feasible(), "{}: {:?}", builtin.name, evaluation.limits);
+    }
+}
+
 /// The file of the paper's study states the defaults of the program, so that omitting a key changes nothing.
 #[test]
 fn the_paper_is_the_default() {
