@@ -357,7 +357,7 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws below `root` the poses at which the active constraints limit the regular workspace, with the names of the
-    /// constraints in the corners of a square at the distance `away` from the centre.
+    /// constraints in a corner of a square at the distance `away` from the centre.
     pub(super) fn limits(&self, root: &str, evaluation: &Evaluation, z: f64, away: f64) -> DrawResult {
         let active: Vec<(&ConstraintResult, DVec2)> = evaluation
             .constraints
@@ -371,13 +371,12 @@ impl<'a> Canvas<'a> {
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(6.0), active.len()))
             .with_colors(tints());
         self.row(&format!("{root}/poses"), &points)?;
-        // In the corners beside A3, where nothing else is drawn; several names are stacked.
+        // In the corner beside A3 where neither the manipulator nor the legend of the window is; several names are stacked.
         let names: Vec<(DVec3, String)> = active
             .iter()
             .enumerate()
-            .map(|(k, (report, at))| {
-                let side = if at.x < 0.0 { -0.85 } else { 0.85 };
-                let corner = DVec3::new(side, 1.0 - 0.13 * k as f64, 0.0) * away;
+            .map(|(k, (report, _))| {
+                let corner = DVec3::new(-0.85, 1.0 - 0.13 * k as f64, 0.0) * away;
                 (corner + DVec3::Z * z, limit_text(report))
             })
             .collect();
@@ -461,7 +460,6 @@ impl<'a> Canvas<'a> {
         self.labels(&format!("{root}/ticks"), labels, rgb(colors::TEXT))
     }
 
-    /// Draws a marker with a text.
     /// Draws an arrow with a text at its head.
     pub(super) fn arrow(&self, entity: &str, at: DVec3, vector: DVec3, text: &str, color: [u8; 3]) -> DrawResult {
         let width = 0.03 * vector.length() as f32;
@@ -473,6 +471,7 @@ impl<'a> Canvas<'a> {
         self.word(&format!("{entity}/text"), at + vector * 1.06, text, colors::TEXT)
     }
 
+    /// Draws a marker with a text.
     pub(super) fn mark(&self, entity: &str, at: DVec3, text: &str, color: [u8; 3]) -> DrawResult {
         let points = Points3D::new([point(at)])
             .with_radii([Radius::new_ui_points(5.0)])

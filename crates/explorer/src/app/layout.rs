@@ -1,6 +1,6 @@
 //! The default layout of the panels, and drawing the panels in their tiles.
 
-use egui::Ui;
+use egui::{Ui, UiBuilder};
 use egui_tiles::{Linear, LinearDir, SimplificationOptions, TileId, Tiles, Tree, UiResponse};
 
 use super::super::Session;
@@ -69,12 +69,13 @@ impl egui_tiles::Behavior<Panel> for Drawing<'_> {
             match &mut self.viewer {
                 Some(viewer) => {
                     let pane = ui.max_rect();
-                    viewer.ui(ui, self.frame);
+                    let view = overlay::view_in(pane, self.session);
+                    ui.scope_builder(UiBuilder::new().max_rect(view), |ui| viewer.ui(ui, self.frame));
                     self.platform_drag.ui(ui, self.session, viewer.view_of_design(ui.ctx()));
                     // What passes under a dragged platform is of no interest.
                     let pointed = viewer.pointed().filter(|_| !self.platform_drag.is_dragging());
                     let pointed = pointed.and_then(|pointed| describe(self.session, &pointed));
-                    overlay::ui(ui, pane, self.session, pointed.as_ref());
+                    overlay::ui(ui, pane, view, self.session, pointed.as_ref());
                 }
                 None => drop(ui.weak("the 3-D viewer is not available")),
             }
