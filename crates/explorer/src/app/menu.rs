@@ -188,7 +188,7 @@ impl Explorer {
         const LINES: [(&str, &str); 6] = [
             (
                 "Run",
-                "starts the search of the study; Examples lists studies to start from, and Study and Mechanisms change them",
+                "starts the search of the study, which Examples, Study and Mechanisms change",
             ),
             (
                 "Scatter",
