@@ -13,7 +13,7 @@ use rerun::{AsComponents, EntityPath, RecordingStream, StoreId, StoreKind, TimeP
 
 use super::legend::legend_bounds;
 use super::motion::curve_path;
-use super::{APPLICATION_ID, Viewpoint, paths, prices, timelines};
+use super::{APPLICATION_ID, Viewpoint, paths, price_curves, timelines};
 use kinefront_model::evaluation::PoseScalar;
 use kinefront_model::mechanism::{Architecture, JointKind};
 use kinefront_scene::{Field, MotionCurve};
@@ -163,8 +163,8 @@ pub(super) fn send_prices_layout(
     let mut fronts = Vec::new();
     for &architecture in architectures {
         let mut views = Vec::new();
-        for (view, title, _) in prices::VIEWS {
-            let path = prices::view_path(architecture, view);
+        for (view, title, _) in price_curves::VIEWS {
+            let path = price_curves::view_path(architecture, view);
             let view = layout.curve(title, &path, "+ $origin/**")?;
             layout.legend(&view)?;
             views.push(view);

@@ -39,6 +39,7 @@ mod motion;
 mod plot;
 mod point;
 mod pointed;
+mod price_curves;
 mod prices;
 mod proof;
 mod read;
