@@ -5,9 +5,10 @@ use std::fs;
 use kinefront_model::evaluation::PoseScalar;
 use kinefront_study::RunFolder;
 use kinefront_testkit::poses_of_region;
+use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 
-use super::support::{check, folder, front, kinefront, optimize, question, repetitions};
+use super::support::{check, folder, front, json, kinefront, optimize, question, repetitions};
 
 /// Studies of builders, each with the least number of designs that its front has.
 const STUDIES: [(&str, &str, usize); 3] = [
@@ -172,4 +173,53 @@ fn the_lightest_of_all_architectures_is_not_that_of_the_search() {
         best.row
     );
     check(&out).success();
+}
+
+/// Legs that cross in the plane are put into layers of their own where the study allows it, and the program tells in which.
+#[test]
+fn legs_in_layers_of_their_own_are_told() {
+    let folder = folder();
+    let study = folder.path().join("study.toml");
+    let write = |stacking: &str| {
+        let text = format!(
+            "architectures = [\"3-RPR\"]\nrequirements.clearance_min_m = 0.004\nbodies.stacking = \"{stacking}\"\n"
+        );
+        fs::write(&study, text).expect("a study");
+    };
+    let design = "3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018";
+    let path = study.to_str().expect("a path");
+    let evaluate = ["evaluate", "--design", design, "--study", path];
+    write("common");
+    let common = json(evaluate.iter().chain(&["--json"]));
+    assert_eq!((&common["feasible"], common.get("layers")), (&false.into(), None));
+    write("chosen");
+    let chosen = json(evaluate.iter().chain(&["--json"]));
+    assert_eq!(
+        (&chosen["feasible"], &chosen["layers"]["stack"]),
+        (&true.into(), &"legs".into())
+    );
+    let mut order: Vec<u64> = chosen["layers"]["order"]
+        .as_array()
+        .expect("an order")
+        .iter()
+        .filter_map(serde_json::Value::as_u64)
+        .collect();
+    order.sort_unstable();
+    assert_eq!(order, [1, 2, 3]);
+    kinefront()
+        .args(evaluate)
+        .assert()
+        .success()
+        .stdout(contains(", stacked"));
+    // Its workspace is proved with the pins of the joints between the layers.
+    let certify = ["certify", "--design", design, "--study", path, "--json"];
+    let proof = json(certify);
+    let (lower, radius) = (&proof["lower_m"], &chosen["workspace_radius_m"]);
+    assert!(lower.as_f64() > radius.as_f64().map(|radius| 0.99 * radius), "{proof}");
+    write("free");
+    kinefront()
+        .args(evaluate)
+        .assert()
+        .code(2)
+        .stderr(contains("bodies.stacking").and(contains("chosen")));
 }

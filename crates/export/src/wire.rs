@@ -7,11 +7,12 @@ use serde::Serialize;
 use super::dynamics::{DynamicsJson, OverWorkspaceJson, TaskJson};
 use super::pose::PoseJson;
 use super::strength::StrengthJson;
-use kinefront_model::clearance::Clearance;
+use kinefront_model::clearance::{Clearance, StackOrder, Stacking};
 use kinefront_model::evaluation::{
     Bound, Evaluation, LimitResult, Model, PoseEvaluation, PoseScalar, Quantity, Unreachable,
 };
 use kinefront_model::mechanism::{CrossSection, Design, DesignVariable};
+use kinefront_model::spatial::LEGS;
 use kinefront_model::strength::StrengthReport;
 
 /// The variables of a design \[m, and deg where the key says so\].
@@ -102,6 +103,33 @@ pub struct EvaluationJson {
     /// Name of the bars of the platform, where the study has a catalogue of them; null if the catalogue does not have such a bar.
     #[serde(skip_serializing_if = "Option::is_none")]
     platform_section: Option<Option<String>>,
+    /// How the legs are stacked, where the study lets the stack be chosen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    layers: Option<LayersJson>,
+}
+
+/// How the legs of a design are stacked.
+#[derive(Debug, Serialize)]
+struct LayersJson {
+    /// `common`, `distal` or `legs`.
+    stack: &'static str,
+    /// Numbers of the legs from the platform; absent for common layers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    order: Option<[usize; LEGS]>,
+}
+
+impl From<StackOrder> for LayersJson {
+    fn from(order: StackOrder) -> Self {
+        let (stack, order) = match order {
+            StackOrder::Common => ("common", None),
+            StackOrder::Distal(order) => ("distal", Some(order)),
+            StackOrder::Legs(order) => ("legs", Some(order)),
+        };
+        Self {
+            stack,
+            order: order.map(|order| order.map(|leg| leg + 1)),
+        }
+    }
 }
 
 /// A limit of a quantity.
@@ -175,6 +203,7 @@ impl EvaluationJson {
             over_workspace: None,
             leg_section: name_of(&sections.legs, design.leg_bar_radius()),
             platform_section: name_of(&sections.platform, design.platform_bar_radius()),
+            layers: (model.settings().bodies.stacking == Stacking::Chosen).then(|| model.stack_of(design).order.into()),
         }
     }
 

@@ -4,10 +4,12 @@ use glam::{DVec2, DVec3};
 
 use super::{Label, Line, Nearest, Part, Scene, Solid, SolidShape, surroundings};
 use crate::text::number;
-use kinefront_model::clearance::{BodySettings, Clearance, Neighbour};
+use kinefront_model::clearance::{Bodies, BodySettings, Clearance, Neighbour, Stack, UprightBody};
 use kinefront_model::evaluation::{Model, PoseScalar, Unreachable};
-use kinefront_model::mechanism::{AnyLeg, CrossSections, Design, Leg, LegPart, Manipulator, MemberKind, TravelKind};
-use kinefront_model::spatial::{Pose, unit};
+use kinefront_model::mechanism::{
+    AnyLeg, CrossSections, Design, JointKind, JointPoint, JointSizes, Leg, LegPart, Manipulator, MemberKind, TravelKind,
+};
+use kinefront_model::spatial::{LEGS, Pose, unit};
 
 /// Distance from a member's axis to the end of a pin, as a multiple of the member's radius.
 const PIN: f64 = 1.2;
@@ -29,14 +31,14 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
     let bodies = model.bodies_of(design);
     let clearance = bodies.nearest(&manipulator, pose.position, &posture);
     let mut scene = Scene {
-        nearest: Some(nearest(model, design, &clearance)),
+        nearest: Some(nearest(model, design, &bodies, &clearance)),
         ..Scene::default()
     };
     let sizes = Sizes::new(model, design);
 
     // The base triangle lies at the height of the members that are attached to it.
     let chain = design.architecture().chain();
-    let base = sizes.height(chain.proximal.unwrap_or(chain.distal));
+    let base = sizes.stack.base_height(design);
     let anchors = manipulator.legs.each_ref().map(|leg| leg.frame().anchor.extend(base));
     scene.lines.push(Line {
         part: Part::Base,
@@ -50,7 +52,8 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
     let top = kinds
         .into_iter()
         .flatten()
-        .fold(0.0, |top, kind| sizes.height(kind).max(top));
+        .flat_map(|kind| (0..LEGS).map(move |leg| (kind, leg)))
+        .fold(0.0, |top, (kind, leg)| sizes.height(kind, leg).max(top));
     let lift = top
         + 3.4
             * design
@@ -58,6 +61,9 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
                 .max(design.platform_bar_radius())
                 .max(LEAST * design.base_radius());
     surroundings::add(&mut scene, &model.settings().surroundings, [-lift, lift]);
+    let joints = bodies.joints(&manipulator, pose.position, &posture);
+    let motors = joints.iter().filter(|joint| joint.member.kind == MemberKind::Motor);
+    scene.solids.extend(motors.map(motor));
     for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
         let c = pose.position + posture.arms[index];
         let number = index + 1;
@@ -69,7 +75,7 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
             scene.lines.push(Line {
                 part,
                 points: [travel.from, travel.to]
-                    .map(|end| end.extend(sizes.height(kind)))
+                    .map(|end| end.extend(sizes.height(kind, index)))
                     .to_vec(),
             });
         }
@@ -122,6 +128,8 @@ pub(super) struct Sizes<'a> {
     bodies: &'a BodySettings,
     sections: &'a CrossSections,
     design: &'a Design,
+    joints: &'a JointSizes,
+    stack: Stack,
 }
 
 impl<'a> Sizes<'a> {
@@ -130,12 +138,14 @@ impl<'a> Sizes<'a> {
             bodies: &model.settings().bodies,
             sections: &model.settings().sections,
             design,
+            joints: &model.settings().joint_sizes,
+            stack: model.stack_of(design),
         }
     }
 
-    /// Returns the height of the layer of a kind of member.
-    pub(super) fn height(&self, kind: MemberKind) -> f64 {
-        self.bodies.height(kind, self.design)
+    /// Returns the height of the layer of a kind of member of a leg.
+    pub(super) fn height(&self, kind: MemberKind, leg: usize) -> f64 {
+        self.stack.height(kind, leg, self.design)
     }
 
     /// Returns the radius of the bars of a kind of member.
@@ -143,8 +153,8 @@ impl<'a> Sizes<'a> {
         self.bodies.radius(kind, self.design)
     }
 
-    fn bar(&self, kind: MemberKind, from: DVec2, to: DVec2, fraction: f64) -> SolidShape {
-        let (z, outer) = (self.height(kind), self.radius(kind));
+    fn bar(&self, leg: usize, kind: MemberKind, from: DVec2, to: DVec2, fraction: f64) -> SolidShape {
+        let (z, outer) = (self.height(kind, leg), self.radius(kind));
         let section = match kind {
             MemberKind::PlatformBar => &self.sections.platform,
             _ => &self.sections.legs,
@@ -173,22 +183,32 @@ impl<'a> Sizes<'a> {
         (self.bodies.slider_half_length(self.design) / 3.0).max(half_width)
     }
 
-    /// Returns the pin of a joint: it passes through the members it joins and is as thick as the thinner one, or
-    /// thicker if it would otherwise be too thin to see.
-    fn pin(&self, at: DVec2, joins: [MemberKind; 2]) -> SolidShape {
+    /// Returns a joint: its pin passes through the members it joins and is as thick as the thinner one, or thicker if it would otherwise be
+    /// too thin to see; a joint that is a body has its own size if that is larger.
+    fn pin(&self, leg: usize, at: DVec2, joins: [MemberKind; 2], kind: JointKind) -> SolidShape {
         let least = LEAST * self.design.base_radius();
         let ends = joins.map(|kind| {
             let out = (PIN * self.bodies.radius(kind, self.design)).max(1.4 * least);
-            [self.height(kind) - out, self.height(kind) + out]
+            [self.height(kind, leg) - out, self.height(kind, leg) + out]
         });
         let bars = joins.into_iter().filter(|&kind| kind != MemberKind::Slider);
         let radius = bars.fold(f64::INFINITY, |least, kind| {
             least.min(self.bodies.radius(kind, self.design))
         });
+        let point = match joins {
+            [_, MemberKind::PlatformBar] | [MemberKind::PlatformBar, _] => JointPoint::C,
+            [first, second] if first == second => JointPoint::A,
+            _ => JointPoint::B,
+        };
+        let is_revolute = kind == JointKind::Revolute;
+        let body = is_revolute
+            .then(|| self.stack.joint(leg, point, self.joints, self.design))
+            .flatten();
+        let [low, high, thick] = body.unwrap_or([f64::INFINITY, f64::NEG_INFINITY, 0.0]);
         SolidShape::Bar {
-            from: at.extend(ends[0][0].min(ends[1][0])),
-            to: at.extend(ends[0][1].max(ends[1][1])),
-            radius: radius.max(least),
+            from: at.extend(ends[0][0].min(ends[1][0]).min(low)),
+            to: at.extend(ends[0][1].max(ends[1][1]).max(high)),
+            radius: radius.max(least).max(thick),
             inner: 0.0,
         }
     }
@@ -199,37 +219,42 @@ impl<'a> Sizes<'a> {
             LegPart::Slider { at, axis, actuated } => {
                 let half_width = self.bodies.radius(MemberKind::Slider, self.design);
                 let shape = SolidShape::Block {
-                    centre: at.extend(self.height(MemberKind::Slider)),
+                    centre: at.extend(self.height(MemberKind::Slider, leg)),
                     half_size: DVec3::new(self.bodies.slider_half_length(self.design), half_width, half_width),
                     angle: libm::atan2(axis.y, axis.x),
                     inner: 0.0,
                 };
                 (carriage(actuated), shape)
             }
-            LegPart::Tube { from, to } => (Part::Tube, self.bar(MemberKind::TelescopicLeg, from, to, 1.0)),
+            LegPart::Tube { from, to } => (Part::Tube, self.bar(leg, MemberKind::TelescopicLeg, from, to, 1.0)),
             // The rod slides inside the tube, so it is drawn thinner.
-            LegPart::Rod { from, to } => (Part::Rod, self.bar(MemberKind::TelescopicLeg, from, to, ROD)),
+            LegPart::Rod { from, to } => (Part::Rod, self.bar(leg, MemberKind::TelescopicLeg, from, to, ROD)),
             LegPart::Carriage { at, axis, on, actuated } => {
                 // As wide as a slider, and shorter, so that carriages on crossing guides stay apart to the eye.
                 let half_width = self.bodies.radius(MemberKind::Slider, self.design);
                 let shape = SolidShape::Block {
-                    centre: at.extend(self.height(on)),
+                    centre: at.extend(self.height(on, leg)),
                     half_size: DVec3::new(self.carriage_half_length(), half_width, half_width),
                     angle: libm::atan2(axis.y, axis.x),
                     inner: 0.0,
                 };
                 (carriage(actuated), shape)
             }
-            LegPart::GuideBar { from, to, kind } => (Part::Guide, self.bar(kind, from, to, 1.0)),
-            LegPart::Crank { from, to } => (Part::Crank, self.bar(MemberKind::Crank, from, to, 1.0)),
-            LegPart::Link { from, to } => (Part::Link, self.bar(MemberKind::Link, from, to, 1.0)),
-            LegPart::Joint { at, actuated, joins } => {
+            LegPart::GuideBar { from, to, kind } => (Part::Guide, self.bar(leg, kind, from, to, 1.0)),
+            LegPart::Crank { from, to } => (Part::Crank, self.bar(leg, MemberKind::Crank, from, to, 1.0)),
+            LegPart::Link { from, to } => (Part::Link, self.bar(leg, MemberKind::Link, from, to, 1.0)),
+            LegPart::Joint {
+                at,
+                actuated,
+                joins,
+                kind,
+            } => {
                 let part = if actuated {
                     Part::ActuatedJoint
                 } else {
                     Part::PassiveJoint
                 };
-                (part, self.pin(at, joins))
+                (part, self.pin(leg, at, joins, kind))
             }
         };
         Solid {
@@ -245,18 +270,33 @@ impl<'a> Sizes<'a> {
         Solid {
             part: Part::PlatformBar,
             leg: Some(leg),
-            shape: self.bar(MemberKind::PlatformBar, c, p, 1.0),
+            shape: self.bar(leg, MemberKind::PlatformBar, c, p, 1.0),
             value: None,
         }
     }
 }
 
+/// Returns the motor of a revolute joint.
+fn motor(body: &UprightBody) -> Solid {
+    Solid {
+        part: Part::ActuatedJoint,
+        leg: Some(body.member.leg),
+        shape: SolidShape::Bar {
+            from: body.at.extend(body.heights[0]),
+            to: body.at.extend(body.heights[1]),
+            radius: body.radius,
+            inner: 0.0,
+        },
+        value: None,
+    }
+}
+
 /// Returns the pair of members with the smallest clearance as a line from surface to surface.
-fn nearest(model: &Model, design: &Design, clearance: &Clearance) -> Nearest {
+fn nearest(model: &Model, design: &Design, bodies: &Bodies, clearance: &Clearance) -> Nearest {
     let thickest = design.leg_bar_radius().max(design.platform_bar_radius());
     let [from, to] = clearance.between;
     let way = to - from;
-    let member = model.settings().bodies.radius(clearance.member.kind, design);
+    let member = bodies.radius_of(&clearance.member);
     let line = match &clearance.neighbour {
         _ if clearance.distance <= 0.0 || way == DVec3::ZERO => {
             let out = DVec3::Z * (4.0 * thickest).max(5.0 * LEAST * design.base_radius());
@@ -265,10 +305,7 @@ fn nearest(model: &Model, design: &Design, clearance: &Clearance) -> Nearest {
         }
         Neighbour::Member(other) => {
             let along = way.normalize_or_zero();
-            [
-                from + along * member,
-                to - along * model.settings().bodies.radius(other.kind, design),
-            ]
+            [from + along * member, to - along * bodies.radius_of(other)]
         }
         Neighbour::Obstacle(_) | Neighbour::Room => [from + way.normalize_or_zero() * member, to],
         Neighbour::RailEnd { .. } => [from, to],

@@ -1,10 +1,11 @@
 //! Formatting of numbers and names for display.
 
 use kinefront_model::certify::{MotionCertificate, MotionClaim, MotionMoment, MotionVerdict};
-use kinefront_model::clearance::{Clearance, MemberId};
+use kinefront_model::clearance::{Clearance, MemberId, StackOrder, Stacking};
 use kinefront_model::dynamics::DriveCatalogue;
 use kinefront_model::evaluation::{Evaluation, Model, Quantity, QuantityValues, TaskFailure, TaskFault, TaskOutcome};
 use kinefront_model::mechanism::{Architecture, CrossSections, Design, DesignVariable, JointKind};
+use kinefront_model::spatial::LEGS;
 use kinefront_model::workspace::Region;
 
 /// Formats a number with four significant digits: in decimal notation from 0.001 up to 100 000, otherwise in scientific
@@ -70,7 +71,21 @@ pub fn selected_parts(model: &Model, evaluation: &Evaluation) -> impl Iterator<I
             format!("3 × {}, {} kg each", drive.name, number(drive.mass)),
         ]
     });
-    catalogue_bars(&model.settings().sections, &evaluation.design).chain(drive)
+    let is_chosen = model.settings().bodies.stacking == Stacking::Chosen;
+    let layers = is_chosen.then(|| ["layers".to_owned(), layers(model.stack_of(&evaluation.design).order)]);
+    catalogue_bars(&model.settings().sections, &evaluation.design)
+        .chain(drive)
+        .chain(layers)
+}
+
+/// Writes how the legs of a design are stacked, beginning at the platform, for example `legs 2, 1, 3, stacked`.
+pub fn layers(order: StackOrder) -> String {
+    let names = |order: [usize; LEGS]| order.map(|leg| (leg + 1).to_string()).join(", ");
+    match order {
+        StackOrder::Common => "common to all legs".to_owned(),
+        StackOrder::Distal(order) => format!("legs {}, distal members stacked", names(order)),
+        StackOrder::Legs(order) => format!("legs {}, stacked", names(order)),
+    }
 }
 
 fn catalogue_bars(sections: &CrossSections, design: &Design) -> impl Iterator<Item = [String; 2]> {

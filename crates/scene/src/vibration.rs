@@ -4,6 +4,7 @@ use glam::DVec3;
 use kinefront_model::dynamics::{DynamicsReport, VibratingBar, VibratingPoint};
 use kinefront_model::evaluation::{Model, PosedDynamics};
 use kinefront_model::mechanism::{Design, MemberKind};
+use kinefront_model::spatial::LEGS;
 
 use super::manipulator::Sizes;
 
@@ -33,8 +34,8 @@ pub struct Vibrations {
     /// The modes, in the order of their frequencies.
     pub modes: Vec<VibrationMode>,
     bars: Vec<VibratingBar>,
-    /// Heights and radii of the bars of a leg and of the platform \[m\].
-    sizes: [[f64; 2]; 3],
+    /// Heights and radii of the bars of each leg and of the platform \[m\].
+    sizes: [[[f64; 2]; 3]; LEGS],
 }
 
 impl VibrationMode {
@@ -81,7 +82,7 @@ impl Vibrations {
         Some(Self {
             modes,
             bars: posed.vibrating_bars(),
-            sizes: kinds.map(|kind| [sizes.height(kind), sizes.radius(kind)]),
+            sizes: [0, 1, 2].map(|leg| kinds.map(|kind| [sizes.height(kind, leg), sizes.radius(kind)])),
         })
     }
 
@@ -94,7 +95,7 @@ impl Vibrations {
         let largest = all.map(|point| mode.displacement(point).length()).fold(0.0, f64::max);
         let scale = if largest > 0.0 { amplitude / largest } else { 0.0 };
         let bent = |bar: &VibratingBar| {
-            let [height, radius] = self.sizes[bar.bar];
+            let [height, radius] = self.sizes[bar.leg][bar.bar];
             let at = |point: &VibratingPoint| point.place.extend(height) + mode.displacement(point) * scale;
             BentBar {
                 points: bar.points.iter().map(at).collect(),

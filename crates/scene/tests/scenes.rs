@@ -1,9 +1,12 @@
 //! Checks that scenes show what the model computes.
 
 use glam::{DVec2, DVec3};
+use kinefront_model::clearance::Stacking;
 use kinefront_model::dynamics::{MotionLaw, Task, TaskShape, TaskTiming};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model, ModelSettings, PoseEvaluation, PoseScalar};
-use kinefront_model::mechanism::{Architecture, Design, JointKind, JointMasses, MemberKind, WorkingMode};
+use kinefront_model::mechanism::{
+    Architecture, CylinderSize, Design, JointKind, JointMasses, JointSizes, MemberKind, WorkingMode,
+};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::StiffnessDefinition;
 use kinefront_scene::{
@@ -45,6 +48,93 @@ fn ends(solid: &Solid) -> (DVec3, DVec3) {
 fn report(model: &Model, design: &Design, position: DVec2, phi: f64) -> PoseEvaluation {
     let pose = Pose { position, phi };
     model.pose(design, &pose).expect("reachable")
+}
+
+/// Joints and motors are drawn with the size that the study gives them, and legs in layers of their own at their heights.
+#[test]
+fn joints_are_drawn_with_their_size() {
+    let (joint, motor) = (
+        CylinderSize {
+            radius: 0.11,
+            height: 0.4,
+        },
+        CylinderSize {
+            radius: 0.17,
+            height: 0.3,
+        },
+    );
+    let sizes = JointSizes { revolute: joint, motor };
+    for text in [
+        "3-RRR R=3.3658 r=0.2537 Lb=1.9157 rj=0.0787 rp=0.0891",
+        "3-RPR R=2.2462 r=1.2453 Lb=3.5382 rj=0.0224 rp=0.083",
+        "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
+    ] {
+        let design: Design = text.parse().expect("a design");
+        let model = |joint_sizes: JointSizes| {
+            let settings = ModelSettings {
+                joint_sizes,
+                ..ModelSettings::default()
+            };
+            Model::new(settings).expect("the grids fit")
+        };
+        let home = Model::default()
+            .evaluate(&design, GridChoice::Reference)
+            .home
+            .expect("a home");
+        let thickness = |model: &Model| -> Vec<f64> {
+            let scene = manipulator(model, &design, &home).expect("reachable");
+            let joints = scene.solids.into_iter();
+            let joints = joints.filter(|solid| matches!(solid.part, Part::ActuatedJoint | Part::PassiveJoint));
+            let cylinders = joints.filter_map(|solid| match solid.shape {
+                SolidShape::Bar { from, to, radius, .. } => Some((from.z - to.z, radius)),
+                SolidShape::Block { .. } => None,
+            });
+            cylinders
+                .map(|(height, radius)| {
+                    assert!(
+                        radius < joint.radius || -height >= joint.height.min(motor.height),
+                        "{text}"
+                    );
+                    radius
+                })
+                .collect()
+        };
+        let with_radius = |radii: &[f64], radius: f64| radii.iter().filter(|found| **found == radius).count();
+        let (points, bodies) = (thickness(&model(JointSizes::default())), thickness(&model(sizes)));
+        assert_eq!(
+            with_radius(&points, joint.radius) + with_radius(&points, motor.radius),
+            0
+        );
+        let chain = design.architecture().chain();
+        let revolute = chain.joints.iter().filter(|kind| **kind == JointKind::Revolute).count();
+        assert_eq!(with_radius(&bodies, joint.radius), 3 * revolute, "{text}");
+        let is_turned = chain.joints[design.architecture().driven()] == JointKind::Revolute;
+        assert_eq!(
+            with_radius(&bodies, motor.radius),
+            if is_turned { 3 } else { 0 },
+            "{text}"
+        );
+    }
+    // The legs of this design cross each other.
+    let design: Design = "3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018"
+        .parse()
+        .expect("a design");
+    let mut settings = ModelSettings::default();
+    settings.thresholds.set(PoseScalar::Clearance, Some(0.004));
+    settings.bodies.stacking = Stacking::Chosen;
+    let model = Model::new(settings).expect("the grids fit");
+    let home = model.evaluate(&design, GridChoice::Reference).home.expect("a home");
+    let scene = manipulator(&model, &design, &home).expect("reachable");
+    let rods = scene.solids.iter().filter(|solid| solid.part == Part::Rod);
+    let mut heights: Vec<f64> = rods.map(|rod| ends(rod).0.z).collect();
+    heights.sort_by(f64::total_cmp);
+    heights.dedup();
+    assert_eq!(heights.len(), 3, "{heights:?}");
+    let of_bodies = linkage(&model, &design, &home).expect("reachable").bodies;
+    let rods = of_bodies.iter().filter(|body| body.name.ends_with("rod"));
+    let mut of_bodies: Vec<f64> = rods.map(|body| body.height).collect();
+    of_bodies.sort_by(f64::total_cmp);
+    assert_eq!(of_bodies, heights);
 }
 
 #[test]

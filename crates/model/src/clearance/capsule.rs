@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::mechanism::MemberKind;
 
@@ -70,11 +70,17 @@ pub struct Capsule {
     pub radius: f64,
 }
 
-impl Capsule {
-    /// Returns the centres of both ends.
-    pub(super) fn ends(&self) -> [DVec3; 2] {
-        [self.from, self.to]
-    }
+/// A joint or a motor as an upright cylinder in the base frame \[m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UprightBody {
+    /// The joint or motor.
+    pub member: MemberId,
+    /// Its axis in the plane.
+    pub at: DVec2,
+    /// Radius.
+    pub radius: f64,
+    /// Lowest and highest point.
+    pub heights: [f64; 2],
 }
 
 /// Clearance of the nearest pair that is not joined: two members, a slider and an end of its rail, or a member and what stands beside

@@ -35,6 +35,25 @@ pub struct BodySettings {
     pub slider_half_width: f64,
     /// Layers in which the members lie.
     pub layers: Layers,
+    /// Whether all legs share their layers.
+    pub stacking: Stacking,
+}
+
+/// Whether the legs share their layers.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stacking {
+    /// Members of a kind are in one layer, whatever their leg.
+    #[default]
+    Common,
+    /// For each design, the order of the legs that gives the largest clearance, if their common layers do not give the one that is
+    /// required.
+    Chosen,
+}
+
+impl Stacking {
+    /// The names in study files.
+    pub const NAMES: [&'static str; 2] = ["common", "chosen"];
 }
 
 impl Layers {
@@ -59,6 +78,8 @@ impl Layers {
             MemberKind::Guide => self.guide,
             MemberKind::Link => self.link,
             MemberKind::PlatformBar => self.platform,
+            // Joints have no layer of their own: they reach from one member to another.
+            MemberKind::Joint(_) | MemberKind::Motor => 0.0,
         }
     }
 }
@@ -86,17 +107,13 @@ impl Default for BodySettings {
             slider_length: 6.0,
             slider_half_width: 1.5,
             layers: Layers::default(),
+            stacking: Stacking::default(),
         }
     }
 }
 
 impl BodySettings {
-    /// Returns the height of members of `kind` above `z = 0` \[m\].
-    pub fn height(&self, kind: MemberKind, design: &Design) -> f64 {
-        self.layers.of(kind) * 2.0 * design.leg_bar_radius().max(design.platform_bar_radius())
-    }
-
-    /// Returns the radius of members of `kind` \[m\].
+    /// Returns the radius of members of `kind`, or that of a leg's bars for joints \[m\].
     pub fn radius(&self, kind: MemberKind, design: &Design) -> f64 {
         match kind {
             MemberKind::Slider => self.slider_half_width * design.leg_bar_radius(),

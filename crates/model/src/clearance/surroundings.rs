@@ -122,6 +122,19 @@ impl Surroundings {
     }
 }
 
+/// Size of a body about its axis.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BodySize {
+    /// Twice the height of a horizontal axis, or the lowest and the highest point of an upright cylinder \[m\].
+    pub heights: [f64; 2],
+    /// Radius, or half the width of a square tube \[m\].
+    pub radius: f64,
+    /// How far the body extends beyond these heights \[m\].
+    pub beyond: f64,
+    /// Whether its sides are upright.
+    pub is_prism: bool,
+}
+
 impl Barrier {
     fn of_polygon(neighbour: Neighbour, side: Side, polygon: &Polygon, heights: [f64; 2]) -> Self {
         let [low, high] = polygon.bounds();
@@ -136,10 +149,10 @@ impl Barrier {
         }
     }
 
-    /// Returns by how much a height lies above or below the outline \[m\]; negative between its ends.
-    pub fn gap_to_height(&self, height: f64) -> f64 {
+    /// Returns by how much a range of heights lies above or below the outline \[m\]; negative where they overlap.
+    pub fn gap_to_heights(&self, [from, to]: [f64; 2]) -> f64 {
         let [low, high] = self.heights;
-        (low - height).max(height - high).clamp(-NUMBER_LIMIT, NUMBER_LIMIT)
+        (low - to).max(from - high).clamp(-NUMBER_LIMIT, NUMBER_LIMIT)
     }
 
     /// Returns whether a member with an axis is on the right side of the outline, of which it is known that the axis does not cross
@@ -168,10 +181,9 @@ impl Barrier {
         }
     }
 
-    /// Returns the clearance of a member from the outline at several poses at once \[m\]: its axis lies at a height, and it has a radius
-    /// or, for a square tube, half a width. Where it overlaps, the result is negative.
+    /// Returns the clearance of a body from the outline at several poses at once \[m\]. Where it overlaps, the result is negative.
     #[inline(always)]
-    pub fn clearance<V: Real>(&self, axis: &MemberAxis<V>, height: f64, radius: f64, is_prism: bool) -> V {
+    pub fn clearance<V: Real>(&self, axis: &MemberAxis<V>, size: &BodySize) -> V {
         let like = axis.length;
         let zero = like.splat(0.0);
         let mut nearest = like.splat(f64::INFINITY);
@@ -182,10 +194,15 @@ impl Barrier {
         // The only edge of a disc, its centre, winds about no point.
         let is_right = self.is_on_right_side_lanes(axis.from);
         let across = distance.select(is_right, -distance) - like.splat(self.rounding);
-        // A bar keeps its radius in every direction, a square tube both widths.
-        let (of_prism, of_bar) = if is_prism { (radius, 0.0) } else { (0.0, radius) };
+        // A bar keeps its radius in every direction, a square tube both widths, and an upright cylinder its radius in the plane.
+        let (of_prism, of_bar) = if size.is_prism {
+            (size.radius, 0.0)
+        } else {
+            (0.0, size.radius)
+        };
         let across = across - like.splat(of_prism);
-        let along_z = like.splat(self.gap_to_height(height) - of_prism);
+        let beyond = if size.is_prism { size.beyond } else { 0.0 };
+        let along_z = like.splat(self.gap_to_heights(size.heights) - beyond);
         let (outside_x, outside_z) = (across.larger(zero), along_z.larger(zero));
         let outside = (outside_x * outside_x + outside_z * outside_z).sqrt();
         outside + across.larger(along_z).smaller(zero) - like.splat(of_bar)

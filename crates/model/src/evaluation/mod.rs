@@ -21,6 +21,7 @@ mod pose;
 mod quantities;
 mod quantity;
 mod sizing;
+mod stacking;
 mod task;
 mod worst;
 

@@ -7,13 +7,13 @@ use glam::DVec2;
 use super::{
     Better, Bound, Constraint, Evaluation, Objective, PoseScalar, Quantity, QuantityLimit, QuantitySet, Thresholds,
 };
-use crate::clearance::{Barrier, Bodies, BodySettings, Surroundings};
+use crate::clearance::{Barrier, Bodies, BodyBasis, BodySettings, Stack, StackOrder, Surroundings};
 use crate::dynamics::{Drive, DriveCatalogue, DynamicsBasis, DynamicsModel, DynamicsSettings, MotionValue, Task};
 use crate::kinematics::{CharacteristicLength, Jacobian};
 use crate::lanes::{InstructionSet, Planar, Real};
 use crate::mechanism::{
-    AnyLeg, Architecture, Assembly, CrossSection, CrossSections, Design, Geometry, JointKind, JointMasses, Leg,
-    LegSettings, Manipulator,
+    AnyLeg, Architecture, Assembly, CrossSection, CrossSections, Design, Geometry, JointKind, JointMasses, JointSizes,
+    Leg, LegSettings, Manipulator,
 };
 use crate::pose::{PoseChecker, ScalarSet, computed};
 use crate::spatial::{LEGS, Pose, Rotation};
@@ -34,6 +34,8 @@ pub struct ModelSettings {
     pub actuators: ActuatorStiffness,
     /// Masses of joints and motors.
     pub joints: JointMasses,
+    /// Sizes of joints and motors.
+    pub joint_sizes: JointSizes,
     /// Rails of the base; `None` if they are rigid and have no mass, as in the paper.
     pub rails: Option<RailSettings>,
     /// Settings of the legs.
@@ -124,6 +126,7 @@ impl Default for ModelSettings {
                 revolute: 1e7,
             },
             joints: JointMasses::default(),
+            joint_sizes: JointSizes::default(),
             rails: None,
             legs: LegSettings::default(),
             bodies: BodySettings::default(),
@@ -282,6 +285,11 @@ impl Model {
 
     /// Prepares the design for evaluation at many poses.
     pub(crate) fn checker<L: Leg>(&self, design: &Design) -> PoseChecker<L> {
+        self.checker_in(design, &self.stack_of(design))
+    }
+
+    /// Prepares the design with its members in a stack.
+    pub(super) fn checker_in<L: Leg>(&self, design: &Design, stack: &Stack) -> PoseChecker<L> {
         let manipulator = Manipulator::new(design, &self.settings.legs);
         let stiffness = self.stiffness(design);
         let thresholds = self.thresholds_of(design);
@@ -292,7 +300,7 @@ impl Model {
             stiffness,
             definition: self.settings.stiffness_definition,
             length: self.length(design, &manipulator),
-            bodies: self.bodies_of(design),
+            bodies: self.bodies_in(design, stack),
             base_radius: design.base_radius(),
             longest_lever: design.architecture().longest_lever(design),
             actuator: design.architecture().actuator(),
@@ -416,13 +424,19 @@ impl Model {
 
     /// Returns the members of a design, prepared for clearance computations.
     pub fn bodies_of(&self, design: &Design) -> Bodies {
-        Bodies::new(
-            design,
-            &self.settings.legs.geometry,
-            &self.settings.bodies,
-            &self.settings.sections,
-            &self.barriers,
-        )
+        self.bodies_in(design, &self.stack_of(design))
+    }
+
+    /// Returns the members of a design in a stack.
+    pub(super) fn bodies_in(&self, design: &Design, stack: &Stack) -> Bodies {
+        let basis = BodyBasis {
+            legs: &self.settings.legs,
+            settings: &self.settings.bodies,
+            joints: &self.settings.joint_sizes,
+            sections: &self.settings.sections,
+            barriers: &self.barriers,
+        };
+        Bodies::new(design, stack, &basis)
     }
 
     /// Returns what no member may cross.
@@ -493,7 +507,13 @@ impl Model {
 
     /// Returns whether a rotation by 120° about the centre of the workspace maps the design onto itself.
     pub fn is_symmetric(&self, design: &Design) -> bool {
-        self.settings.workspace.centre == DVec2::ZERO
+        self.is_symmetric_in(design, self.stack_of(design).order)
+    }
+
+    /// Does the same with the legs stacked in an order.
+    pub(crate) fn is_symmetric_in(&self, design: &Design, order: StackOrder) -> bool {
+        order == StackOrder::Common
+            && self.settings.workspace.centre == DVec2::ZERO
             && design.working_mode().is_uniform()
             && self.settings.legs.geometry.is_three_fold()
             && self.settings.surroundings.is_empty()

@@ -56,14 +56,15 @@ impl<L: Leg> ConstraintSearch<'_, L> {
     /// Returns the nearest pair of members at a pose that the search has found reachable.
     pub fn nearest(&self, pose: Pose) -> Option<Clearance> {
         // At the very end of a leg's reach, rounding decides whether the leg reaches the pose; slightly nearer to the
-        // centre it does.
-        let inwards =
-            (self.model.settings().workspace.centre - pose.position).clamp_length_max(1e-9 * self.design.base_radius());
-        let position = pose.position + inwards;
+        // centre it does, or, at the centre, slightly beside it.
+        let step = 1e-9 * self.design.base_radius();
+        let inwards = (self.model.settings().workspace.centre - pose.position).clamp_length_max(step);
+        let aside = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].map(|direction| step * direction);
         let manipulator = &self.checker.manipulator;
-        [pose, Pose { position, ..pose }].iter().find_map(|pose| {
-            let posture = manipulator.posture(pose).ok()?;
-            Some(self.checker.bodies.nearest(manipulator, pose.position, &posture))
+        [DVec2::ZERO, inwards].into_iter().chain(aside).find_map(|way| {
+            let position = pose.position + way;
+            let posture = manipulator.posture(&Pose { position, ..pose }).ok()?;
+            Some(self.checker.bodies.nearest(manipulator, position, &posture))
         })
     }
 

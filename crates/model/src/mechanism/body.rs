@@ -73,6 +73,8 @@ pub enum LegPart {
         actuated: bool,
         /// Kinds of the two members that it connects; the same kind twice if the second one is the base.
         joins: [MemberKind; 2],
+        /// Kind of the joint.
+        kind: JointKind,
     },
 }
 

@@ -48,6 +48,24 @@ pub struct JointMasses {
     pub motor: f64,
 }
 
+/// Size of an upright cylinder \[m\].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct CylinderSize {
+    /// Radius.
+    pub radius: f64,
+    /// Height.
+    pub height: f64,
+}
+
+/// Sizes of joints and motors, which are upright cylinders. One of radius 0 is a point.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct JointSizes {
+    /// A revolute joint.
+    pub revolute: CylinderSize,
+    /// The motor of an actuated revolute joint.
+    pub motor: CylinderSize,
+}
+
 /// A joint of a leg without its motor, or the motor of the actuated joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointPart {
@@ -89,7 +107,7 @@ impl JointMasses {
 }
 
 /// Point of a leg at which a revolute joint can be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum JointPoint {
     /// `A_i`.
     A,

@@ -1,5 +1,6 @@
 //! Axes of the members of a manipulator, used for collision checks and for picking with the pointer.
 
+use super::JointPoint;
 use crate::lanes::{Planar, Real};
 
 /// Kind of a member.
@@ -19,6 +20,10 @@ pub enum MemberKind {
     Link,
     /// Bar of the platform, from `C_i` to `P`.
     PlatformBar,
+    /// Revolute joint with a size, or its pin.
+    Joint(JointPoint),
+    /// Motor of a revolute joint.
+    Motor,
 }
 
 impl MemberKind {
@@ -32,6 +37,10 @@ impl MemberKind {
             MemberKind::Guide => "guide",
             MemberKind::Link => "link",
             MemberKind::PlatformBar => "platform_bar",
+            MemberKind::Joint(JointPoint::A) => "joint_A",
+            MemberKind::Joint(JointPoint::B) => "joint_B",
+            MemberKind::Joint(JointPoint::C) => "joint_C",
+            MemberKind::Motor => "motor",
         }
     }
 }

@@ -30,7 +30,7 @@ pub use chain_enclosure::{ChainEnclosure, LegFrameEnclosure, ProximalEnclosure, 
 pub use design::{DESIGN_VARIABLES, Design, DesignError, DesignVariable, FURTHER_VARIABLES, WorkingMode};
 pub use driven_leg::DrivenLeg;
 pub use geometry::{Arrangement, Geometry, LegFrame};
-pub use joint::{JointKind, JointMasses, JointPart, JointPoint};
+pub use joint::{CylinderSize, JointKind, JointMasses, JointPart, JointPoint, JointSizes};
 pub use leg::{BarLoads, Leg, LegLanes, LegPosture, LineLoads, Manipulator, Posture};
 pub use leg_enclosure::{EnclosedLoads, LegEnclosure};
 pub use member::{MemberAxis, MemberKind, Members};

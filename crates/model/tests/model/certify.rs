@@ -2,12 +2,12 @@
 
 use glam::DVec2;
 use kinefront_model::certify::{Certificate, CertifyError, CertifyOptions, Verdict};
-use kinefront_model::clearance::{Layers, Obstacle, ObstacleShape, Surroundings};
+use kinefront_model::clearance::{Layers, Obstacle, ObstacleShape, Stacking, Surroundings};
 use kinefront_model::dynamics::{Anywhere, DriveInertia, DynamicsSettings, Payload, Tolerances};
 use kinefront_model::enclosure::{Interval, PoseEnclosure, TaylorModel};
 use kinefront_model::evaluation::{GridChoice, Model, ModelSettings, PoseScalar};
 use kinefront_model::kinematics::CharacteristicLength;
-use kinefront_model::mechanism::{CrossSection, Design, Wall, WorkingMode};
+use kinefront_model::mechanism::{CrossSection, CylinderSize, Design, JointSizes, Wall, WorkingMode};
 use kinefront_model::polygon::Polygon;
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::{RailSettings, RailSupports, StiffnessDefinition};
@@ -307,6 +307,23 @@ fn other_models() -> Vec<(&'static str, Model)> {
             "limits of a motion with a payload beside P, in an inclined plane",
             model(limit_motion),
         ),
+        (
+            "a clearance of joints with a size in layers that are chosen",
+            model(|settings| {
+                settings.thresholds.set(PoseScalar::Clearance, Some(0.005));
+                settings.bodies.stacking = Stacking::Chosen;
+                settings.joint_sizes = JointSizes {
+                    revolute: CylinderSize {
+                        radius: 0.06,
+                        height: 0.1,
+                    },
+                    motor: CylinderSize {
+                        radius: 0.09,
+                        height: 0.2,
+                    },
+                };
+            }),
+        ),
     ]
 }
 
@@ -405,7 +422,7 @@ proptest! {
         x in -1.0..1.0f64,
         y in -1.0..1.0f64,
         phi in -3.0..3.0f64,
-        place in prop::sample::select(vec![0, 1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 12]),
+        place in prop::sample::select(vec![0, 1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 12, 13]),
     ) {
         let (name, model) = other_models().swap_remove(place);
         let scale = 0.4 * design.base_radius();
@@ -448,7 +465,7 @@ proptest! {
         middle in (0.0..0.3f64, -3.0..3.0f64, -3.0..3.0f64),
         width in 0.001..0.1f64,
         places in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64), 20),
-        place in prop::sample::select(vec![3, 4, 11]),
+        place in prop::sample::select(vec![3, 4, 11, 13]),
     ) {
         let (_, model) = other_models().swap_remove(place);
         let (pose, widths) = polar_box(&design, middle, width);

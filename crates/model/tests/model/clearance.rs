@@ -14,15 +14,15 @@ use kinefront_testkit::oracle::{Fault, Found, distance_to_cylinder, distance_to_
 use kinefront_testkit::repetitions;
 
 /// Generator of random numbers within a range.
-struct Random(ChaCha8Rng);
+pub struct Random(pub ChaCha8Rng);
 
 impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// Draws a model with random settings for members and legs, and a random design of an architecture.
-    fn subject(&mut self, architecture: Architecture) -> (ModelSettings, Design) {
+    pub fn subject(&mut self, architecture: Architecture) -> (ModelSettings, Design) {
         let mut model = ModelSettings::default();
         let half_width = self.between(0.5, 3.0);
         // The default layers, all layers in one plane, or random layers.
@@ -43,6 +43,7 @@ impl Random {
             slider_half_width: half_width,
             slider_length: self.between(2.0 * half_width, 12.0),
             layers,
+            ..BodySettings::default()
         };
         model.legs.telescopic_shortest = self.between(0.0, 0.7);
         let signs = [(); 3].map(|()| self.0.next_u32().is_multiple_of(2));
@@ -71,7 +72,7 @@ impl Random {
         (model, strategies::with_variables(design, further))
     }
 
-    fn pose(&mut self) -> Pose {
+    pub fn pose(&mut self) -> Pose {
         Pose::new(
             self.between(-2.0, 2.0),
             self.between(-2.0, 2.0),

@@ -20,5 +20,6 @@ mod regions;
 mod search;
 mod sections;
 mod sizing;
+mod stacks;
 mod strategies;
 mod strength;

@@ -139,6 +139,7 @@ pub fn bodies() -> impl Strategy<Value = BodySettings> {
         slider_length: length * half_width,
         slider_half_width: half_width,
         layers,
+        ..BodySettings::default()
     })
 }
 

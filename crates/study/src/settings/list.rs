@@ -1,5 +1,6 @@
 //! All settings of a study, in the order of the study file.
 
+use kinefront_model::clearance::Stacking;
 use kinefront_model::mechanism::Architecture;
 
 use super::declare::{Check, Initial, Setting, settings};
@@ -69,6 +70,8 @@ const SECTIONS: [&[Setting]; 33] = [
             "Length of a slider along its rail, including the rounded ends, as a multiple of `r_j`.";
         slider_half_width: Check::Positive,
             "Half the width of a slider as a multiple of `r_j`; at most half its length.";
+        stacking: Check::Choice(&Stacking::NAMES),
+            "Whether all legs share their layers, or may be in layers of their own where the required clearance asks for it.";
     }),
     settings!("bodies.layers" {
         platform: LAYER, "Layer of the platform bars, in diameters of the thicker bar.";

@@ -7,7 +7,7 @@ use crate::settings::{DynamicsSections, LengthChoice, StiffnessChoice, Telescopi
 use kinefront_model::dynamics::DynamicsSettings;
 use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar, Thresholds};
 use kinefront_model::kinematics::CharacteristicLength;
-use kinefront_model::mechanism::{Arrangement, BarLength, JointMasses, LegSettings};
+use kinefront_model::mechanism::{Arrangement, BarLength, JointMasses, JointSizes, LegSettings};
 use kinefront_model::stiffness::{ActuatorStiffness, Material, StiffnessDefinition};
 use kinefront_model::workspace::{GridError, WorkspaceSpec};
 
@@ -31,6 +31,7 @@ impl Study {
                 revolute: self.actuators.revolute_stiffness_nm_per_rad,
             },
             joints: JointMasses::from(&self.joints),
+            joint_sizes: JointSizes::from(&self.joints),
             legs: LegSettings {
                 telescopic_bar: match model.telescopic_bar {
                     TelescopicBar::Current => BarLength::Current,

@@ -57,9 +57,10 @@ impl<'a, L: Leg> Growth<'a, L> {
         // What depends on the bars is left to sizing.
         checker.drop_limits(|scalar| scalar.entry().is_of_bars);
         let orientation_grid = *sampling.orientation_grid();
+        let symmetric = model.is_symmetric_in(design, checker.bodies.order());
         Self {
             orientation_grid,
-            margins: RegionMargins::new(checker, sampling, design.base_radius(), model.is_symmetric(design)),
+            margins: RegionMargins::new(checker, sampling, design.base_radius(), symmetric),
             signs: vec![None; orientation_grid.count],
         }
     }

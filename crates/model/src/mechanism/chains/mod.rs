@@ -232,7 +232,12 @@ fn prismatic(value: f64, limits: [f64; 2], is_driven: bool) -> LegJoint {
 
 /// Returns the pin of a revolute joint between two members.
 fn pin(at: DVec2, actuated: bool, joins: [MemberKind; 2]) -> LegPart {
-    LegPart::Joint { at, actuated, joins }
+    LegPart::Joint {
+        at,
+        actuated,
+        joins,
+        kind: JointKind::Revolute,
+    }
 }
 
 /// Returns the slider at `b`, with a mark if it is driven.

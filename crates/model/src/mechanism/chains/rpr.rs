@@ -236,7 +236,12 @@ impl Chain for RprChain {
                 parts: vec![
                     LegPart::Tube { from: a, to: mouth },
                     pin(a, driven == 0, of_leg),
-                    pin(mouth, driven == 1, of_leg),
+                    LegPart::Joint {
+                        at: mouth,
+                        actuated: driven == 1,
+                        joins: of_leg,
+                        kind: JointKind::Prismatic,
+                    },
                 ],
             },
             LegBody {

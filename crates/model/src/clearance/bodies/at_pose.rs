@@ -1,0 +1,180 @@
+//! The bodies at one posture: the nearest pair, capsules and joints.
+
+use glam::{DVec2, DVec3};
+
+use super::super::capsule::{Capsule, Clearance, MemberId, Neighbour, UprightBody};
+use super::super::distance::nearest_points;
+use super::super::places::MEMBERS;
+use super::super::surroundings::Barrier;
+use super::{Axes, Bodies, Pair, members};
+use crate::lanes::Planar;
+use crate::mechanism::{DistalLanes, Leg, Manipulator, Members, Posture};
+use crate::spatial::{LEGS, NUMBER_LIMIT};
+
+impl Bodies {
+    /// Returns the joints and motors that are bodies, at a posture with `P` at `position`.
+    pub fn joints<L: Leg>(&self, manipulator: &Manipulator<L>, position: DVec2, posture: &Posture) -> Vec<UprightBody> {
+        let (_, axes) = self.laid_out(manipulator, position, posture);
+        let joints = self.uprights.iter().enumerate().map(|(index, (upright, heights))| {
+            let at = self.point(&axes, MEMBERS + index).from;
+            UprightBody {
+                member: MemberId {
+                    leg: upright.leg,
+                    kind: upright.kind,
+                },
+                at: DVec2::new(at.x, at.y),
+                radius: upright.radius,
+                heights: *heights,
+            }
+        });
+        joints.collect()
+    }
+
+    /// Returns the radius of a member or joint \[m\]; 0 if there is no such body.
+    pub fn radius_of(&self, member: &MemberId) -> f64 {
+        let place = self.places().find(|&place| self.member(place) == *member);
+        place.map_or(0.0, |place| self.size(place).radius)
+    }
+
+    /// Returns the nearest pair at a posture with `P` at `position`.
+    pub fn nearest<L: Leg>(&self, manipulator: &Manipulator<L>, position: DVec2, posture: &Posture) -> Clearance {
+        enum Found<'a> {
+            RailEnd { leg: usize, end: usize, distance: f64 },
+            Pair(&'a Pair),
+            Barrier { place: usize, barrier: &'a Barrier },
+        }
+        let (members, axes) = self.laid_out(manipulator, position, posture);
+        let ends = members.iter().enumerate().flat_map(|(leg, members)| {
+            let of_rail = members.rail.iter().flatten().enumerate();
+            of_rail.map(move |(end, &distance)| (distance - self.slider[0], Found::RailEnd { leg, end, distance }))
+        });
+        let pairs = self.pairs.iter();
+        let axis = |place: usize| match place < MEMBERS {
+            true => axes[place],
+            false => self.point(&axes, place),
+        };
+        let bodies_beside = self.places();
+        let beside = bodies_beside.flat_map(|place| self.barriers.iter().map(move |barrier| (place, barrier)));
+        let (distance, found) = ends
+            .chain(pairs.map(|pair| {
+                let [first, second] = pair.places.map(axis);
+                (Self::gap(pair, &first, &second), Found::Pair(pair))
+            }))
+            .chain(beside.map(|(place, barrier)| {
+                let distance = barrier.clearance(&axis(place), &self.size(place));
+                (distance, Found::Barrier { place, barrier })
+            }))
+            .map(|(distance, found)| (distance.clamp(-NUMBER_LIMIT, NUMBER_LIMIT), found))
+            .reduce(|least, next| if next.0 < least.0 { next } else { least })
+            .expect("a manipulator has pairs of members");
+        match found {
+            Found::RailEnd {
+                leg,
+                end,
+                distance: way,
+            } => {
+                let slider = &axes[leg];
+                let outwards = if end == 0 { -1.0 } else { 1.0 };
+                let middle = slider.from.plus(slider.direction.scaled(0.5 * slider.length));
+                let at = |along: f64| self.lift(middle.plus(slider.direction.scaled(outwards * along)), leg);
+                Clearance {
+                    distance,
+                    member: self.member(leg),
+                    neighbour: Neighbour::RailEnd {
+                        leg,
+                        anchor: (leg + end) % LEGS,
+                    },
+                    between: [at(self.slider[0]), at(way)],
+                }
+            }
+            Found::Barrier { place, barrier } => {
+                let [on_axis, on_outline] = barrier.nearest_points(&axis(place));
+                let of_barrier = barrier.heights;
+                let of_body = self.size(place).heights;
+                let height = 0.5 * (of_body[0] + of_body[1]);
+                let on_barrier = height.max(of_barrier[0]).min(of_barrier[1]);
+                Clearance {
+                    distance,
+                    member: self.member(place),
+                    neighbour: barrier.neighbour.clone(),
+                    between: [
+                        on_axis.extend(on_barrier.max(of_body[0]).min(of_body[1])),
+                        on_outline.extend(on_barrier),
+                    ],
+                }
+            }
+            Found::Pair(pair) => {
+                let [first, second] = pair.places.map(axis).map(|axis| {
+                    let ends = [axis.from, axis.to()];
+                    ends.map(|end| DVec2::new(end.x, end.y))
+                });
+                let [member, neighbour] = pair.places.map(|place| self.member(place));
+                let [heights, other_heights] = pair.places.map(|place| self.size(place).heights);
+                // Points at the same height, if the bodies have one in common.
+                let height = (0.5 * (other_heights[0] + other_heights[1]))
+                    .max(heights[0])
+                    .min(heights[1]);
+                let other_height = height.max(other_heights[0]).min(other_heights[1]);
+                let [on_a, on_b] = nearest_points(first, second);
+                Clearance {
+                    distance,
+                    member,
+                    neighbour: Neighbour::Member(neighbour),
+                    between: [on_a.extend(height), on_b.extend(other_height)],
+                }
+            }
+        }
+    }
+
+    /// Returns the capsules of the members at a posture with `P` at `position`.
+    pub fn capsules<L: Leg>(&self, manipulator: &Manipulator<L>, position: DVec2, posture: &Posture) -> Vec<Capsule> {
+        let (_, axes) = self.laid_out(manipulator, position, posture);
+        let members = self.places().filter(|place| *place < MEMBERS);
+        members.map(|place| self.capsule(&axes, place)).collect()
+    }
+
+    fn laid_out<L: Leg>(
+        &self,
+        manipulator: &Manipulator<L>,
+        position: DVec2,
+        posture: &Posture,
+    ) -> ([Members<f64>; LEGS], Axes<f64>) {
+        let arms = posture.arms.map(Planar::from);
+        let distals = posture.legs.map(|leg| DistalLanes {
+            tangent: leg.chain.distal.direction.into(),
+            offset: leg.chain.distal.offset,
+        });
+        let members = members(&manipulator.legs, position.into(), &arms, &distals);
+        let axes = self.axes(&members, position.into(), &arms);
+        (members, axes)
+    }
+
+    fn capsule(&self, axes: &Axes<f64>, place: usize) -> Capsule {
+        Capsule {
+            member: self.member(place),
+            from: self.lift(axes[place].from, place),
+            to: self.lift(axes[place].to(), place),
+            radius: self.radii[place / LEGS],
+        }
+    }
+
+    fn member(&self, place: usize) -> MemberId {
+        match place.checked_sub(MEMBERS) {
+            Some(joint) => {
+                let (upright, _) = self.uprights[joint];
+                MemberId {
+                    leg: upright.leg,
+                    kind: upright.kind,
+                }
+            }
+            None => MemberId {
+                leg: place % LEGS,
+                kind: self.kinds[place / LEGS].expect("legs of this type have this member"),
+            },
+        }
+    }
+
+    fn lift(&self, at: Planar<f64>, place: usize) -> DVec3 {
+        DVec3::new(at.x, at.y, self.heights[place])
+    }
+}
