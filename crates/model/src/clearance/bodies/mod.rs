@@ -263,7 +263,7 @@ impl Bodies {
 
     /// Returns the smallest clearance at several poses at once where it is below `limit`, otherwise `limit` \[m\].
     ///
-    /// `distals` are the distal bars of the legs; `arms` is as in [`Manipulator::arms`]. Pairs are skipped if
+    /// `distals` are the distal bars of the legs; `arms` is as in [`Manipulator::arms`](crate::mechanism::Manipulator::arms). Pairs are skipped if
     /// their layers or the circles around their axes show that they cannot be nearer than the smallest clearance found
     /// so far.
     #[inline(always)]
