@@ -7,8 +7,7 @@ use kinefront_model::evaluation::{Evaluation, Quantity};
 use kinefront_model::mechanism::Design;
 use kinefront_recording::record_prices;
 use kinefront_study::{
-    AlongJson, Column, DesignProblem, Drivers, DriversAlong, DriversOptions, PreparedStudy, PriceJson, Row, Study,
-    TableRow,
+    AlongJson, Column, DesignProblem, Drivers, DriversAlong, DriversOptions, PriceJson, Row, Study, TableRow,
 };
 use miette::miette;
 
@@ -106,8 +105,7 @@ fn along_front(arguments: &PricesArguments) -> Result<Ending, Failure> {
     let evaluations = problem.evaluate_on_fine_grid(&designs);
     let along = problem.drivers_along(&evaluations);
     if let Some(path) = &arguments.record {
-        let prepared = PreparedStudy::new(study.clone()).map_err(Failure::runtime)?;
-        record_prices(path, &prepared, &evaluations, &ids, &along).map_err(Failure::runtime)?;
+        record_prices(path, &study.name, problem.model(), &evaluations, &ids, &along).map_err(Failure::runtime)?;
         let _ = writeln!(std::io::stderr(), "wrote {}", path.display());
     }
     let mut out = std::io::stdout().lock();

@@ -6,11 +6,11 @@ use super::design::{record_step, write_new};
 use super::price_curves::record_curves;
 use super::writer::{ALWAYS, RecordingError, RecordingWriter};
 use super::{blueprint, paths, timelines};
-use kinefront_model::evaluation::Evaluation;
+use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::mechanism::Architecture;
-use kinefront_study::{DriversAlong, PreparedStudy};
+use kinefront_study::DriversAlong;
 
-/// Records the prices of the designs of a front to a file. `ids` are those of the designs, and `along` holds their prices.
+/// Records the prices of the designs of a front to a file. `name` is that of the study, `ids` are those of the designs, and `along` holds their prices.
 ///
 /// The timeline `front` counts the designs that have prices in the order of the quantity along the front.
 ///
@@ -18,13 +18,14 @@ use kinefront_study::{DriversAlong, PreparedStudy};
 /// [`RecordingError::Write`] when the file exists or cannot be written; [`RecordingError::Encode`] otherwise.
 pub fn record_prices(
     path: &Path,
-    study: &PreparedStudy,
+    name: &str,
+    model: &Model,
     evaluations: &[Evaluation],
     ids: &[usize],
     along: &[DriversAlong],
 ) -> Result<(), RecordingError> {
     write_new(path, |part| {
-        let writer = RecordingWriter::create(part, &format!("prices of {}", study.study().name))?;
+        let writer = RecordingWriter::create(part, &format!("prices of {name}"))?;
         let fronts: Vec<&DriversAlong> = along.iter().filter(|along| !along.designs.is_empty()).collect();
         let architectures: Vec<Architecture> = fronts.iter().map(|along| along.architecture).collect();
         let extent = evaluations.iter().map(|evaluation| evaluation.design.base_radius());
@@ -47,7 +48,7 @@ pub fn record_prices(
             record_step(
                 &writer,
                 &[(timelines::FRONT, step)],
-                study.model(),
+                model,
                 evaluation,
                 None,
                 Some(drivers),

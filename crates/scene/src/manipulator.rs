@@ -34,7 +34,7 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
         nearest: Some(nearest(model, design, &bodies, &clearance)),
         ..Scene::default()
     };
-    let sizes = Sizes::new(model, design);
+    let sizes = Sizes::in_stack(model, design, *bodies.stack());
 
     // The base triangle lies at the height of the members that are attached to it.
     let chain = design.architecture().chain();
@@ -134,12 +134,17 @@ pub(super) struct Sizes<'a> {
 
 impl<'a> Sizes<'a> {
     pub(super) fn new(model: &'a Model, design: &'a Design) -> Self {
+        Self::in_stack(model, design, model.stack_of(design))
+    }
+
+    /// Does the same with the layers that are known: choosing them takes longer than all else.
+    fn in_stack(model: &'a Model, design: &'a Design, stack: Stack) -> Self {
         Self {
             bodies: &model.settings().bodies,
             sections: &model.settings().sections,
             design,
             joints: &model.settings().joint_sizes,
-            stack: model.stack_of(design),
+            stack,
         }
     }
 

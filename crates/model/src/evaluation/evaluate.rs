@@ -31,7 +31,7 @@ fn evaluate<L: Leg>(
     design: &Design,
     sampling: &WorkspaceSampling,
 ) -> Evaluation {
-    let symmetric = model.is_symmetric_in(design, checker.bodies.order());
+    let symmetric = model.is_symmetric_in(design, checker.bodies.stack().order);
     let (found, worst) = match sampling.spec().region {
         Region::Largest => (search(checker, sampling, design.base_radius(), symmetric), None),
         _ => {

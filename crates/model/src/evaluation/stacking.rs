@@ -3,9 +3,8 @@
 use glam::DVec2;
 
 use super::{Model, PoseScalar};
-use crate::clearance::{Bodies, Stack, Stacking};
-use crate::lanes::Planar;
-use crate::mechanism::{AnyLeg, Design, DistalLanes, Manipulator, Posture};
+use crate::clearance::{Stack, Stacking};
+use crate::mechanism::{AnyLeg, Design, Manipulator, Posture};
 use crate::pose::PoseChecker;
 use crate::spatial::{Rotation, unit};
 
@@ -53,7 +52,10 @@ impl Model {
             let bodies = self.bodies_in(design, stack);
             let of_orientation = |postures: &Postures| {
                 let (sign, postures) = postures.as_ref()?;
-                Some((*sign, least_clearance(&bodies, &manipulator, postures)))
+                let least = postures.iter().fold(f64::INFINITY, |least, (position, posture)| {
+                    bodies.clearance_up_to(&manipulator, *position, posture, least)
+                });
+                Some((*sign, least))
             };
             let least: Vec<Option<(f64, f64)>> = postures.iter().map(of_orientation).collect();
             best_window(&least, half_window)
@@ -110,19 +112,6 @@ impl Model {
         }
         positions.into_iter().map(|position| spec.centre + position).collect()
     }
-}
-
-/// Returns the least clearance at some postures \[m\].
-fn least_clearance(bodies: &Bodies, manipulator: &Manipulator<AnyLeg>, postures: &[(DVec2, Posture)]) -> f64 {
-    postures.iter().fold(f64::INFINITY, |least, (position, posture)| {
-        let distals = posture.legs.map(|leg| DistalLanes {
-            tangent: leg.chain.distal.direction.into(),
-            offset: leg.chain.distal.offset,
-        });
-        let arms = posture.arms.map(Planar::from);
-        let position = Planar::from(*position);
-        bodies.compute_clearance_up_to(&manipulator.legs, position, &arms, &distals, least)
-    })
 }
 
 /// Returns the largest of the least clearances within half a window on each side of an orientation, around the full turn, or that of all

@@ -133,6 +133,18 @@ impl Bodies {
         members.map(|place| self.capsule(&axes, place)).collect()
     }
 
+    /// Returns the smallest clearance at a posture with `P` at `position` where it is below `limit`, otherwise `limit` \[m\].
+    pub(crate) fn clearance_up_to<L: Leg>(
+        &self,
+        manipulator: &Manipulator<L>,
+        position: DVec2,
+        posture: &Posture,
+        limit: f64,
+    ) -> f64 {
+        let arms = posture.arms.map(Planar::from);
+        self.compute_clearance_up_to(&manipulator.legs, position.into(), &arms, &distals(posture), limit)
+    }
+
     fn laid_out<L: Leg>(
         &self,
         manipulator: &Manipulator<L>,
@@ -140,11 +152,7 @@ impl Bodies {
         posture: &Posture,
     ) -> ([Members<f64>; LEGS], Axes<f64>) {
         let arms = posture.arms.map(Planar::from);
-        let distals = posture.legs.map(|leg| DistalLanes {
-            tangent: leg.chain.distal.direction.into(),
-            offset: leg.chain.distal.offset,
-        });
-        let members = members(&manipulator.legs, position.into(), &arms, &distals);
+        let members = members(&manipulator.legs, position.into(), &arms, &distals(posture));
         let axes = self.axes(&members, position.into(), &arms);
         (members, axes)
     }
@@ -177,4 +185,12 @@ impl Bodies {
     fn lift(&self, at: Planar<f64>, place: usize) -> DVec3 {
         DVec3::new(at.x, at.y, self.heights[place])
     }
+}
+
+/// Returns the distal bars of the legs at a posture.
+fn distals(posture: &Posture) -> [DistalLanes<f64>; LEGS] {
+    posture.legs.map(|leg| DistalLanes {
+        tangent: leg.chain.distal.direction.into(),
+        offset: leg.chain.distal.offset,
+    })
 }

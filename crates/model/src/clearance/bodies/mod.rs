@@ -9,7 +9,7 @@ use glam::DVec2;
 use super::distance::{may_be_nearer, squared};
 use super::layers::BodySettings;
 use super::places::{MEMBERS, PLATFORM, PROXIMAL, ROWS, kinds, pairs_not_joined};
-use super::stack::{Stack, StackOrder, Upright, pairs_of_joints, thickness};
+use super::stack::{Stack, Upright, pairs_of_joints, thickness};
 use super::surroundings::{Barrier, BodySize};
 use crate::lanes::{Planar, Real};
 use crate::mechanism::{
@@ -38,7 +38,7 @@ struct Pair {
 /// The members of a design, with the pairs of them that are not joined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bodies {
-    order: StackOrder,
+    stack: Stack,
     kinds: [Option<MemberKind>; ROWS],
     radii: [f64; ROWS],
     /// Heights of the members, indexed by `LEGS · row + leg` \[m\].
@@ -101,7 +101,7 @@ impl Bodies {
         let half_length = settings.slider_half_length(design).min(NUMBER_LIMIT);
         let geometry = &basis.legs.geometry;
         let mut bodies = Self {
-            order: stack.order,
+            stack: *stack,
             kinds,
             radii,
             heights,
@@ -120,9 +120,9 @@ impl Bodies {
         bodies
     }
 
-    /// Returns the order in which the legs are stacked.
-    pub(crate) fn order(&self) -> StackOrder {
-        self.order
+    /// Returns the layers in which the members are.
+    pub fn stack(&self) -> &Stack {
+        &self.stack
     }
 
     /// Fills in the pairs of bodies that are not joined.

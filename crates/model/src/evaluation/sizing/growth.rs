@@ -57,7 +57,7 @@ impl<'a, L: Leg> Growth<'a, L> {
         // What depends on the bars is left to sizing.
         checker.drop_limits(|scalar| scalar.entry().is_of_bars);
         let orientation_grid = *sampling.orientation_grid();
-        let symmetric = model.is_symmetric_in(design, checker.bodies.order());
+        let symmetric = model.is_symmetric_in(design, checker.bodies.stack().order);
         Self {
             orientation_grid,
             margins: RegionMargins::new(checker, sampling, design.base_radius(), symmetric),

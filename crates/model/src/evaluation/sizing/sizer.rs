@@ -54,7 +54,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
             model,
             design: *design,
             ranges,
-            sectors: match model.is_symmetric_in(design, checker.bodies.order()) {
+            sectors: match model.is_symmetric_in(design, checker.bodies.stack().order) {
                 true => 1,
                 false => LEGS,
             },
