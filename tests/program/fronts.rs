@@ -1,4 +1,4 @@
-//! Reported fronts: without gaps, and with the best designs at their ends.
+//! Reported fronts: without gaps, with the best designs at their ends, and with every family of designs.
 
 use std::fs;
 use std::path::Path;
@@ -74,4 +74,28 @@ fn the_ends_of_a_front_are_the_best_designs() {
     assert_ne!(alone, both);
     let of_mass = lightest("mass", &alone, "1000");
     assert!(of_both < 1.001 * of_mass, "{of_both} kg, and {of_mass} kg");
+}
+
+/// The 3-PRR with rails at any angle has two families of designs. This search settles on the one that is two to five times as heavy at small radii
+/// and finds no design of the other.
+#[test]
+fn a_front_has_the_family_that_the_search_has_given_up() {
+    let folder = folder();
+    let out = folder.path().join("run");
+    let settings = [
+        "--architectures",
+        "3-PRR",
+        "--evaluations",
+        "800",
+        "--seed",
+        "3",
+        "--no-recording",
+    ];
+    optimize(Path::new("all-planar-architectures"), &out, &settings);
+    let found = front(&out);
+    for (radius, mass) in [(0.5, 4.5), (0.9, 14.0), (1.3, 31.0)] {
+        let large = found.iter().filter(|entry| entry.row.workspace_radius() >= radius);
+        let lightest = large.map(|entry| entry.row.mass()).fold(f64::INFINITY, f64::min);
+        assert!(lightest < mass, "{lightest} kg at {radius} m");
+    }
 }

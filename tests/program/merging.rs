@@ -121,7 +121,10 @@ fn runs_of_several_seeds_become_one_whose_front_is_no_worse() {
     let thin: serde_json::Value =
         serde_json::from_slice(&fs::read(place("thin").join("run.json")).expect("run.json")).expect("JSON");
     assert!(thin["evaluations"].as_u64().expect("a number") < 300);
-    assert_eq!(thin["verified_hypervolume_kg_m"], merged["verified_hypervolume_kg_m"]);
+    // All designs of the front are kept, but not all of those from which optima are sought that the search has missed.
+    let hypervolume = |run: &serde_json::Value| run["verified_hypervolume_kg_m"].as_f64().expect("a number");
+    let lost = 1.0 - hypervolume(&thin) / hypervolume(&merged);
+    assert!(lost.abs() < 1e-3, "{lost}");
     check(&place("thin")).code(0);
 }
 

@@ -361,6 +361,16 @@ impl DesignProblem {
         dimensions.chain(further).collect()
     }
 
+    /// Returns the largest difference of two designs of one architecture in a free variable other than a bar, as a share of its range.
+    pub(super) fn largest_difference(&self, a: &Design, b: &Design) -> f64 {
+        let free = self.free_variables(a.architecture()).into_iter();
+        let shares = free.filter(|free| !BARS.contains(&free.variable)).map(|free| {
+            let [lower, upper] = free.range;
+            (a.value(free.variable) - b.value(free.variable)).abs() / (upper - lower)
+        });
+        shares.fold(0.0, f64::max)
+    }
+
     /// Returns the dimensions that follow a dimension, each with its factor.
     pub(super) fn tied_to(&self, variable: DesignVariable) -> Vec<(DesignVariable, f64)> {
         let ties = DESIGN_VARIABLES.into_iter().zip(&self.ties);

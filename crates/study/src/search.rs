@@ -200,6 +200,12 @@ struct Generation {
 /// Largest number of designs that are verified when there is one objective.
 const RUNNERS_UP: usize = 24;
 
+/// Number of first designs of an architecture on the front that are followed for each one of another architecture.
+const FAVOURED: usize = 2;
+
+/// Number of first designs that are kept of each architecture.
+const FIRST_DESIGNS: usize = 24;
+
 /// Relative excess of the first runner-up over the best objective; that of each further one is at least twice as large. A search
 /// that has converged ends with many copies of the best design, all of which may miss a constraint on the fine grid.
 const LEAST_EXCESS: f64 = 1e-7;
@@ -212,8 +218,10 @@ pub(super) struct Found {
     front: Vec<Arc<TableRow>>,
     /// With one objective, the best design and others ever farther from it; otherwise empty.
     runners_up: Vec<Arc<TableRow>>,
-    /// With one objective, the best design of each architecture, in the order in which they were found first; otherwise empty.
+    /// The design of each architecture that is best in the first objective, in the order in which they were found first.
     best_of_architectures: Vec<Arc<TableRow>>,
+    /// The first feasible designs of each architecture, in the order in which they were found.
+    first_designs: Vec<Arc<TableRow>>,
     pub history: Vec<GenerationSummary>,
     pub evaluated: usize,
     feasible: usize,
@@ -228,6 +236,7 @@ impl Found {
             front: Vec::new(),
             runners_up: Vec::new(),
             best_of_architectures: Vec::new(),
+            first_designs: Vec::new(),
             history: Vec::new(),
             evaluated: 0,
             feasible: 0,
@@ -247,6 +256,7 @@ impl Found {
             self.update_front(first_id, &rows);
         }
         self.keep_runners_up(first_id, &rows);
+        self.keep_first_designs(first_id, &rows);
         self.evaluated += rows.len();
         send(Event::Evaluated(Batch {
             generation,
@@ -287,7 +297,7 @@ impl Found {
         self.front.iter().chain(runners_up).cloned().collect()
     }
 
-    /// With one objective, the best designs of the architectures other than that of the best design.
+    /// The designs that are best in the first objective, of the architectures that are not on the front.
     pub fn best_of_other_architectures(&self) -> Vec<Arc<TableRow>> {
         let is_other = |entry: &&Arc<TableRow>| {
             let architecture = entry.row.design.architecture();
@@ -298,11 +308,36 @@ impl Found {
         self.best_of_architectures.iter().filter(is_other).cloned().collect()
     }
 
-    /// Keeps the best design of a search with one objective, runners-up, and the best design of each architecture.
-    fn keep_runners_up(&mut self, first_id: usize, rows: &[Row]) {
-        if self.reference.len() > 1 {
-            return;
+    /// Returns the designs with which the search began, at most as many as stated: of each architecture in turn, and of those on the front
+    /// [`FAVOURED`] times as many.
+    pub fn first_designs(&self, most: usize) -> Vec<Arc<TableRow>> {
+        let architecture = |entry: &Arc<TableRow>| entry.row.design.architecture();
+        let turn = |place: usize| {
+            let own = architecture(&self.first_designs[place]);
+            let before = self.first_designs[..place]
+                .iter()
+                .filter(|other| architecture(other) == own);
+            let is_leading = self.front.iter().any(|best| architecture(best) == own);
+            before.count() / if is_leading { FAVOURED } else { 1 }
+        };
+        let mut places: Vec<usize> = (0..self.first_designs.len()).collect();
+        places.sort_by_key(|place| turn(*place));
+        let chosen = places.into_iter().take(most);
+        chosen.map(|place| Arc::clone(&self.first_designs[place])).collect()
+    }
+
+    fn keep_first_designs(&mut self, first_id: usize, rows: &[Row]) {
+        for (id, row) in (first_id..).zip(rows).filter(|(_, row)| row.is_feasible()) {
+            let architecture = row.design.architecture();
+            let is_own = |other: &&Arc<TableRow>| other.row.design.architecture() == architecture;
+            if self.first_designs.iter().filter(is_own).count() < FIRST_DESIGNS {
+                self.first_designs.push(Arc::new(TableRow::new(id, *row)));
+            }
         }
+    }
+
+    /// Keeps the best design of each architecture, and with one objective the best design of all and runners-up.
+    fn keep_runners_up(&mut self, first_id: usize, rows: &[Row]) {
         let entries = (first_id..)
             .zip(rows)
             .filter(|(_, row)| row.is_feasible())
@@ -315,7 +350,9 @@ impl Found {
                 Some(best) => *best = Arc::clone(&entry),
                 None => self.best_of_architectures.push(Arc::clone(&entry)),
             }
-            self.runners_up.push(entry);
+            if self.reference.len() == 1 {
+                self.runners_up.push(entry);
+            }
         }
         keep_runners_up(&mut self.runners_up, |entry| entry.row.objectives[0]);
     }

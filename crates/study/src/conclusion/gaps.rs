@@ -3,7 +3,7 @@
 use kinefront_model::evaluation::{Better, Evaluation, Quantity};
 use kinefront_optimize::{Archive, Objectives, added_share, gaps, halfway};
 
-use super::Settling;
+use super::{Keep, Settling};
 use crate::local::Aim;
 use crate::{DesignProblem, Event, RunTimes};
 
@@ -29,42 +29,71 @@ impl Settling<'_> {
     /// Fills the gaps of a front of two or three objectives, and improves its ends; `None` if the run was abandoned.
     ///
     /// The search leaves gaps where the designs that it found end at the same optimum, and its ends are seldom the best designs. Beside a
-    /// gap there is an optimum, from which another one with a value in the gap is a short way. No more designs are looked for than are
+    /// gap there is an optimum, from which another one with a value in the gap is a short way. Where no gap is left, families of designs are
+    /// followed across the boundaries between them, which may leave further gaps. No more designs are looked for than are
     /// reported, and no more than a third of the evaluations.
     pub(super) fn fill_gaps(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
-        let mut tried: Vec<[usize; 2]> = Vec::new();
+        let (mut tried, mut crossed): (Vec<[usize; 2]>, Vec<[usize; 2]>) = (Vec::new(), Vec::new());
         let mut ends: Vec<Option<usize>> = vec![None; self.search.found.reference.len()];
-        let most = self.search.study().optimizer.front_designs;
-        let mut left = most.min(self.search.found.evaluated / EVALUATIONS);
+        let [mut left, mut left_across] = [self.most_wanted(); 2];
         loop {
             let standing = self.standing();
             let mut wanted = self.wanted_at_ends(&standing, &mut ends);
             wanted.extend(self.wanted_between(&standing, &mut tried));
             wanted.truncate(left);
+            left -= wanted.len();
+            if wanted.is_empty() {
+                wanted = self.wanted_across(&standing, &mut crossed);
+                wanted.truncate(left_across);
+                left_across -= wanted.len();
+            }
             if wanted.is_empty() {
                 break;
             }
-            left -= wanted.len();
-            let start = |(near, aim): (usize, Aim)| {
-                let (place, proved) = &self.held[near];
-                Some((*place, (proved.reported()?.evaluation.clone(), aim)))
-            };
-            let starts: Vec<(usize, (Evaluation, Aim))> = wanted.into_iter().filter_map(start).collect();
-            let problem = &self.search.problem;
-            let points = objectives(&standing);
-            // Beyond the ends, a design adds something only as the study's own reference point shows it.
-            let references = [self.reference_near(&points), self.search.found.reference];
-            let adds = |found: &Evaluation| {
-                let found = DesignProblem::outcome(found).objectives;
-                let mut shares = references
-                    .iter()
-                    .map(|reference| added_share(&points, reference, &found));
-                shares.any(|share| share * most as f64 > KEPT)
-            };
-            let verify = |(near, aim): &(Evaluation, Aim)| problem.verify_toward(near, aim).filter(adds);
-            self.verify_and_prove(&starts, verify, times, send)?;
+            self.verify_wanted(&standing, wanted, times, send)?;
         }
         Some(())
+    }
+
+    /// Number of designs that are looked for at most: no more than are reported, and no more than a third of the evaluations.
+    pub(super) fn most_wanted(&self) -> usize {
+        let most = self.search.study().optimizer.front_designs;
+        most.min(self.search.found.evaluated / EVALUATIONS)
+    }
+
+    /// Verifies and proves the optima for some aims, each with the design to start from as a place in `held`, that add something to the
+    /// front; `None` if the run was abandoned.
+    pub(super) fn verify_wanted(
+        &mut self,
+        standing: &Archive,
+        wanted: Vec<(usize, Aim)>,
+        times: &mut RunTimes,
+        send: &mut dyn FnMut(Event),
+    ) -> Option<()> {
+        let start = |(near, aim): (usize, Aim)| {
+            let (place, proved) = &self.held[near];
+            Some((*place, (proved.reported()?.evaluation.clone(), aim)))
+        };
+        let starts: Vec<(usize, (Evaluation, Aim))> = wanted.into_iter().filter_map(start).collect();
+        let adds = self.adds_to(standing, KEPT);
+        let problem = &self.search.problem;
+        let verify = |(near, aim): &(Evaluation, Aim)| problem.verify_toward(near, aim).filter(&adds);
+        self.verify_and_prove(&starts, verify, Keep::Proved, times, send)
+    }
+
+    /// Returns whether a design adds more to the front that stands than `least` designs of a mean share, as a function of its evaluation.
+    pub(super) fn adds_to(&self, standing: &Archive, least: f64) -> impl Fn(&Evaluation) -> bool + Sync + use<> {
+        let points = objectives(standing);
+        // Beyond the ends, a design adds something only as the study's own reference point shows it.
+        let references = [self.reference_near(&points), self.search.found.reference];
+        let most = self.search.study().optimizer.front_designs;
+        move |found| {
+            let found = DesignProblem::outcome(found).objectives;
+            let mut shares = references
+                .iter()
+                .map(|reference| added_share(&points, reference, &found));
+            shares.any(|share| share * most as f64 > least)
+        }
     }
 
     /// Returns the designs that are wanted in the largest gaps: each the design to start from, as a place in `held`, and the aim. `tried` are the pairs of neighbours between which a design was looked for already, once for each
@@ -123,7 +152,7 @@ impl Settling<'_> {
     }
 
     /// Returns the reference point, no farther from a front than a tenth of its extent: where it is far away, no gap would matter.
-    fn reference_near(&self, points: &[Objectives]) -> Objectives {
+    pub(super) fn reference_near(&self, points: &[Objectives]) -> Objectives {
         let stated = self.search.found.reference.iter().enumerate();
         Objectives::new(stated.map(|(place, stated)| {
             let values = || points.iter().map(|point| point[place]);
@@ -136,7 +165,7 @@ impl Settling<'_> {
     }
 
     /// Returns the aim to improve an objective while the others are no worse than some minimised values.
-    fn aim(&self, improved: usize, minimised: &Objectives) -> Aim {
+    pub(super) fn aim(&self, improved: usize, minimised: &Objectives) -> Aim {
         let objectives = &self.search.problem.model().settings().objectives;
         let held = objectives.iter().zip(minimised.iter()).enumerate();
         let held = held.filter(|(place, _)| *place != improved);
@@ -154,6 +183,6 @@ impl Settling<'_> {
     }
 }
 
-fn objectives(standing: &Archive) -> Vec<Objectives> {
+pub(super) fn objectives(standing: &Archive) -> Vec<Objectives> {
     standing.iter().map(|member| member.objectives).collect()
 }

@@ -9,6 +9,8 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+mod families;
+mod first_designs;
 mod gaps;
 
 use super::prove::{FrontProver, ProvedMember, proved_front};
@@ -89,6 +91,15 @@ fn summary(search: StudySearch, outcome: EndReason, reported: Reported) -> RunSu
     }
 }
 
+/// Which designs are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Keep {
+    /// Those that hold on the fine grid.
+    All,
+    /// Those of them whose proof is not left open, if they are proved at all: the search has found other designs.
+    Proved,
+}
+
 /// The designs of a search that are being verified and proved.
 struct Settling<'a> {
     search: &'a StudySearch,
@@ -125,7 +136,7 @@ impl<'a> Settling<'a> {
         let most = study.optimizer.front_designs;
         if study.objectives.len() == 1 {
             self.settle_best(times, send)?;
-            self.settle_other_architectures(times, send)?;
+            self.settle_promising(times, send)?;
         } else {
             let objectives: Vec<Objectives> = self.candidates.iter().map(|entry| entry.row.objectives).collect();
             let points = scaled(&objectives);
@@ -139,6 +150,7 @@ impl<'a> Settling<'a> {
                 }
                 self.settle(&replacements, times, send)?;
             }
+            self.follow_first_designs(times, send)?;
             self.fill_gaps(times, send)?;
         }
         Some(self.reported(most))
@@ -166,46 +178,13 @@ impl<'a> Settling<'a> {
         Some(())
     }
 
-    /// Verifies the best designs of the other architectures whose local optimum is better than what holds: a search that has settled on one
-    /// architecture leaves the others far from their optima. Returns `None` if the run was abandoned.
-    fn settle_other_architectures(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
-        let verifying = Instant::now();
-        let (control, problem) = (self.control, &self.search.problem);
-        let others = self.search.found.best_of_other_architectures();
-        let promise = |entry: &Arc<TableRow>| {
-            let is_wanted = !control.is_abandoned();
-            is_wanted.then(|| problem.objective_near(&entry.row.design)).flatten()
-        };
-        let promises: Vec<Option<f64>> = self.search.pool.install(|| others.par_iter().map(promise).collect());
-        times.verification_s += verifying.elapsed().as_secs_f64();
-        if control.is_abandoned() {
-            return None;
-        }
-        let mut promising: Vec<(f64, Arc<TableRow>)> = promises
-            .into_iter()
-            .zip(others)
-            .filter_map(|(promise, entry)| Some((promise?, entry)))
-            .collect();
-        promising.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (promise, entry) in promising {
-            let mut held = self.held.iter().filter_map(|(_, proved)| proved.reported());
-            if held.any(|member| member.objectives()[0] <= promise) {
-                break;
-            }
-            let place = self.candidates.len();
-            self.candidates.push(entry);
-            self.is_tried.push(false);
-            self.settle(&[place], times, send)?;
-        }
-        Some(())
-    }
-
     /// Verifies some candidates and proves those that hold; `None` if the run was abandoned.
     fn settle(&mut self, places: &[usize], times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
         let problem = &self.search.problem;
         let design = |&place: &usize| (place, self.candidates[place].row.design);
         let designs: Vec<(usize, Design)> = places.iter().map(design).collect();
-        self.verify_and_prove(&designs, |design| Some(problem.verify_improved(design)), times, send)?;
+        let verify = |design: &Design| Some(problem.verify_improved(design));
+        self.verify_and_prove(&designs, verify, Keep::All, times, send)?;
         places.iter().for_each(|&place| self.is_tried[place] = true);
         Some(())
     }
@@ -216,6 +195,7 @@ impl<'a> Settling<'a> {
         &mut self,
         tasks: &[(usize, T)],
         verify: impl Fn(&T) -> Option<Evaluation> + Sync,
+        keep: Keep,
         times: &mut RunTimes,
         send: &mut dyn FnMut(Event),
     ) -> Option<()> {
@@ -238,7 +218,7 @@ impl<'a> Settling<'a> {
                 }
             }
             times.verification_s += verifying.elapsed().as_secs_f64();
-            self.prove(members, &prover, times);
+            self.prove(members, &prover, keep, times);
             if !goes_on() {
                 return None;
             }
@@ -248,7 +228,7 @@ impl<'a> Settling<'a> {
     }
 
     /// Proves designs, each with the place of its candidate, and keeps those that repeat no other one.
-    fn prove(&mut self, members: Vec<(usize, FrontMember)>, prover: &FrontProver, times: &mut RunTimes) {
+    fn prove(&mut self, members: Vec<(usize, FrontMember)>, prover: &FrontProver, keep: Keep, times: &mut RunTimes) {
         let proving = Instant::now();
         let (places, members): (Vec<usize>, Vec<FrontMember>) = members.into_iter().unzip();
         let proved = if self.search.study().workspace.certify {
@@ -257,7 +237,10 @@ impl<'a> Settling<'a> {
             members.into_iter().map(ProvedMember::unproved).collect()
         };
         for (place, proved) in places.into_iter().zip(proved) {
-            if !self.repeats(&proved) {
+            let certified = proved.reported().and_then(|member| member.certified);
+            let is_open = certified.is_some_and(|certified| !certified.is_proved);
+            let is_left_out = is_open && keep == Keep::Proved;
+            if !is_left_out && !self.repeats(&proved) {
                 self.held.push((place, proved));
             }
         }

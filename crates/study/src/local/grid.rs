@@ -156,7 +156,12 @@ impl DesignProblem {
                 false => LocalProblem::new(question.clone(), design),
             };
             let problem = problem.ok()?;
-            let polished = problem.polish(design, home)?;
+            // A similar design has the radius that is aimed at, unless bounds are in the way.
+            let scaled = problem.scaled(design, local.scale).filter(|scaled| scaled != design);
+            let of_scaled = scaled.and_then(|scaled| problem.polish(&scaled, home));
+            let polished = of_scaled
+                .filter(Polished::is_feasible)
+                .or_else(|| problem.polish(design, home))?;
             Some(LocalAnswer {
                 polished,
                 problem,
