@@ -29,7 +29,7 @@ pub(super) struct Prepared<'a> {
     pub(super) pose: Pose,
     pub(super) linkage: Linkage,
     pub(super) scene: Scene,
-    /// The fixed parts (base triangle and rails) as solids.
+    /// The fixed parts (base triangle, rails, and motors on the base) as solids.
     pub(super) base: Vec<Solid>,
     pub(super) cylinder: Option<RegularCylinder>,
     /// Corners of the workspace if the study prescribes a polygon, in the base frame \[m\].
@@ -57,8 +57,12 @@ impl<'a> Prepared<'a> {
             model,
             evaluation,
             pose,
+            base: [
+                scene.base_bars(design.base_radius(), model.rails_of(design)),
+                linkage.base_motors.clone(),
+            ]
+            .concat(),
             linkage,
-            base: scene.base_bars(design.base_radius(), model.rails_of(design)),
             scene,
             corners: cylinder.and_then(|_| region_corners(model)),
             cylinder,

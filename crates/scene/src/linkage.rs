@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::Solid;
-use super::manipulator::Sizes;
+use super::manipulator::{Sizes, motor};
 use kinefront_model::dynamics::Payload;
 use kinefront_model::evaluation::{Model, Unreachable};
 use kinefront_model::mechanism::{
@@ -153,6 +153,8 @@ pub struct Linkage {
     pub bodies: Vec<Body>,
     /// The connections at `C_1`, `C_2`, `C_3`.
     pub closures: [Closure; LEGS],
+    /// The motors that stand on the base and to which the study gives a size, in the base frame.
+    pub base_motors: Vec<Solid>,
 }
 
 impl Linkage {
@@ -183,14 +185,16 @@ pub fn linkage(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage, U
     let posture = manipulator
         .posture(pose)
         .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
-    let sizes = Sizes::new(model, design);
+    let arranged = model.bodies_of(design);
+    let sizes = Sizes::in_stack(model, design, *arranged.stack());
     let description = design.architecture().chain();
     // A motor at the platform turns a mount, on which the platform is fixed.
     let has_mounts = design.architecture().driven() == 2 && description.joints[2] == JointKind::Revolute;
     let mut bodies: Vec<Body> = Vec::new();
-    let mut last = [0; LEGS];
+    let (mut first_of_leg, mut last) = ([0; LEGS], [0; LEGS]);
     for (index, (leg, state)) in manipulator.legs.iter().zip(&posture.legs).enumerate() {
         let first = bodies.len();
+        first_of_leg[index] = first;
         for (depth, body) in leg.bodies(state).iter().enumerate() {
             last[index] = bodies.len();
             let parent = (depth > 0).then(|| bodies.len() - 1);
@@ -223,7 +227,24 @@ pub fn linkage(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage, U
             angle: bodies[last[index]].frame.angle - pose.phi,
         }
     });
-    Ok(Linkage { bodies, closures })
+    let mut base_motors = Vec::new();
+    let uprights = arranged.joints(&manipulator, pose.position, &posture).into_iter();
+    for upright in uprights.filter(|upright| upright.member.kind == MemberKind::Motor) {
+        let motor = motor(&upright);
+        // A motor moves with the body before its joint.
+        match design.architecture().driven().checked_sub(1) {
+            Some(before) => {
+                let body = &mut bodies[first_of_leg[upright.member.leg] + before];
+                body.solids.push(motor.seen_from(body.frame.origin, body.frame.angle));
+            }
+            None => base_motors.push(motor),
+        }
+    }
+    Ok(Linkage {
+        bodies,
+        closures,
+        base_motors,
+    })
 }
 
 /// A body of leg `index`; `parent` is the place of the body that it hangs on, or `None` for the base.

@@ -138,7 +138,7 @@ impl<'a> Sizes<'a> {
     }
 
     /// Does the same with the layers that are known: choosing them takes longer than all else.
-    fn in_stack(model: &'a Model, design: &'a Design, stack: Stack) -> Self {
+    pub(super) fn in_stack(model: &'a Model, design: &'a Design, stack: Stack) -> Self {
         Self {
             bodies: &model.settings().bodies,
             sections: &model.settings().sections,
@@ -282,7 +282,7 @@ impl<'a> Sizes<'a> {
 }
 
 /// Returns the motor of a revolute joint.
-fn motor(body: &UprightBody) -> Solid {
+pub(super) fn motor(body: &UprightBody) -> Solid {
     Solid {
         part: Part::ActuatedJoint,
         leg: Some(body.member.leg),

@@ -596,6 +596,61 @@ fn the_linkage_has_the_masses_of_joints_and_motors() {
     }
 }
 
+/// A motor with a size stands on the base, or moves with the body before its joint: it is where the manipulator shows it at every pose.
+#[test]
+fn the_linkage_has_the_motors_that_have_a_size() {
+    let motor = CylinderSize {
+        radius: 0.0413,
+        height: 0.1,
+    };
+    let settings = ModelSettings {
+        joint_sizes: JointSizes {
+            motor,
+            ..JointSizes::default()
+        },
+        ..ModelSettings::default()
+    };
+    let model = Model::new(settings).expect("the grids fit");
+    let motors = |solids: &mut dyn Iterator<Item = Solid>| -> Vec<[DVec3; 2]> {
+        let ends = solids.filter_map(|solid| match solid.shape {
+            SolidShape::Bar { from, to, radius, .. } if radius == motor.radius => Some([from, to]),
+            _ => None,
+        });
+        ends.collect()
+    };
+    for &architecture in Architecture::ALL {
+        let design = Design::new(architecture, WorkingMode::ALL_PLUS, [1.0, 0.3, 1.1, 0.02, 0.02]).expect("a design");
+        let poses = (0..72).map(|k| Pose::new(0.02, 0.01, (5.0 * f64::from(k)).to_radians()));
+        let mut reached = poses.filter_map(|pose| Some((pose, linkage(&model, &design, &pose).ok()?)));
+        let (pose, found) = reached.next().expect("a pose in reach");
+        let scene = manipulator(&model, &design, &pose).expect("reachable");
+        let shown = motors(&mut scene.solids.into_iter());
+        let of_bodies = found.bodies.iter().flat_map(|body| {
+            // Back from the frame of the body to the base frame.
+            let origin = DVec2::from_angle(-body.frame.angle).rotate(-body.frame.origin);
+            body.solids
+                .iter()
+                .map(move |solid| solid.seen_from(origin, -body.frame.angle))
+        });
+        let built = motors(&mut of_bodies.chain(found.base_motors.clone()));
+        let chain = architecture.chain();
+        let is_turned = chain.joints[architecture.driven()] == JointKind::Revolute;
+        assert_eq!(
+            (shown.len(), built.len()),
+            if is_turned { (3, 3) } else { (0, 0) },
+            "{architecture}"
+        );
+        assert_eq!(
+            found.base_motors.len(),
+            if is_turned && architecture.driven() == 0 { 3 } else { 0 }
+        );
+        for ends in &shown {
+            let is_there = |other: &&[DVec3; 2]| (0..2).all(|end| other[end].distance(ends[end]) < 1e-12);
+            assert!(built.iter().any(|other| is_there(&other)), "{architecture}: {ends:?}");
+        }
+    }
+}
+
 /// The linkage has the mass given by the model, its loops close, and its bodies look like the manipulator.
 #[test]
 fn the_linkage_is_the_manipulator_in_bodies() {
