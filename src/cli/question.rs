@@ -233,6 +233,8 @@ fn machine(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut String)
     let clearance = dialogue.optional("Smallest clearance between members that are not joined, in m", "0.005")?;
     if let Some(clearance) = clearance {
         let _ = writeln!(text, "\n[requirements]\nclearance_min_m = {clearance}");
+        // Legs that would collide in common layers are in layers of their own.
+        let _ = writeln!(text, "\n[bodies]\nstacking = \"chosen\"");
     }
     let names: Vec<&str> = MATERIALS.iter().map(|builtin| builtin.name).collect();
     let material = dialogue.choose("Material", &names, names[0])?;
@@ -255,6 +257,8 @@ fn machine(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut String)
 
 #[cfg(test)]
 mod tests {
+    use kinefront_model::clearance::Stacking;
+
     use super::*;
 
     fn answer(lines: &str) -> io::Result<(String, String)> {
@@ -270,6 +274,7 @@ mod tests {
         assert_eq!(study.objectives(), Study::default().objectives());
         // But for members that do not collide.
         assert_eq!(study.requirements.clearance_min_m, Some(0.005));
+        assert_eq!(study.bodies.stacking, Stacking::Chosen);
         assert!(study.constraints.is_empty() && study.architectures.len() == Architecture::ALL.len());
     }
 

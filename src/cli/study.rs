@@ -29,7 +29,7 @@ enum StudyCommand {
         /// File to write, which must not exist; `-` writes to standard output.
         #[arg(default_value = "study.toml")]
         file: PathBuf,
-        /// Built-in study to copy [default: the paper's with a clearance between members].
+        /// Built-in study to copy [default: the paper's with a clearance between members, in layers chosen for each design].
         #[arg(long)]
         from: Option<String>,
         /// Ask questions on the terminal and write the study from the answers, instead of copying one.
@@ -53,9 +53,11 @@ fn builtin(name: &str) -> Result<Builtin, Failure> {
         .ok_or_else(|| Failure::Input(miette!("no study `{name}`; expected one of {}", Builtin::names())))
 }
 
-/// Returns the text of a study with the requirement of a clearance that it has as a comment: members of a machine do not collide.
+/// Returns the text of a study with the requirement of a clearance that it has as a comment, and with layers that are chosen for each design:
+/// members of a machine do not collide.
 fn with_clearance(text: &str) -> String {
-    text.replace("# clearance_min_m =", "clearance_min_m =")
+    let required = text.replace("# clearance_min_m =", "clearance_min_m =");
+    required.replace("stacking = \"common\"", "stacking = \"chosen\"")
 }
 
 pub fn run(arguments: &StudyArguments) -> Result<Ending, Failure> {

@@ -212,7 +212,9 @@ fn a_study_says_what_it_leaves_open_and_what_cannot_be_computed() {
     let new = folder.path().join("new.toml");
     kinefront().args(["study", "new"]).arg(&new).assert().success();
     let text = fs::read_to_string(&new).expect("a study");
-    assert!(text.contains("\nclearance_min_m = 0.005"), "{text}");
+    for line in ["\nclearance_min_m = 0.005", "\nstacking = \"chosen\""] {
+        assert!(text.contains(line), "{text}");
+    }
     let copy = folder.path().join("copy.toml");
     kinefront()
         .args(["study", "new", "--from", "paper"])
