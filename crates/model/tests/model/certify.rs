@@ -488,6 +488,51 @@ proptest! {
         }
     }
 
+    /// Where no form of the stiffness in the plane is open on a box, it is above its threshold at each of its poses. The middle of the box is
+    /// near the centre, where both eigenvalues of a symmetric manipulator are equal, and the threshold is near its stiffness there.
+    #[test]
+    fn a_box_without_open_forms_keeps_the_stiffness_in_the_plane(
+        design in design(0.005),
+        middle in (0.0..0.01f64, -3.0..3.0f64, -3.0..3.0f64),
+        exponent in 1.0..5.0f64,
+        below in 1.0..6.0f64,
+        is_compliance: bool,
+        places in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64), 20),
+    ) {
+        let definition = match is_compliance {
+            true => StiffnessDefinition::Compliance,
+            false => StiffnessDefinition::Stiffness,
+        };
+        let limited = |threshold: Option<f64>| model(|settings| {
+            settings.stiffness_definition = definition;
+            settings.thresholds.set(PoseScalar::StiffnessXy, threshold);
+        });
+        let Ok(at_centre) = limited(Some(1e6)).pose(&design, &Pose::new(0.0, 0.0, middle.2)) else {
+            return Err(TestCaseError::reject("the legs do not reach"));
+        };
+        let threshold = at_centre.values[PoseScalar::StiffnessXy] * (1.0 - 10.0_f64.powf(-below));
+        let model = limited(Some(threshold));
+        let (pose, widths) = polar_box(&design, middle, 10.0_f64.powf(-exponent));
+        let enclosed = model.enclose(&design, &pose).expect("values");
+        let is_open = |(scalar, value): &(PoseScalar, TaylorModel)| {
+            // A comparison with NaN is false: nothing is proved then.
+            let is_proved = value.range()[0] > 0.0;
+            *scalar == PoseScalar::StiffnessXy && !is_proved
+        };
+        let is_incomplete = enclosed.iter().all(|(scalar, _)| *scalar == PoseScalar::Reach)
+            || enclosed.iter().any(|(_, value)| value.range()[0].is_nan());
+        if is_incomplete || enclosed.iter().any(is_open) {
+            return Err(TestCaseError::reject("the stiffness is not proved"));
+        }
+        for (a, b, c) in places {
+            let at = middle.0 * design.base_radius() + a * widths[0];
+            let (theta, phi) = (middle.1 + b * widths[1], middle.2 + c * widths[2]);
+            let pose = Pose::new(at * theta.cos(), at * theta.sin(), phi);
+            let margin = model.margin_at(&design, &pose, PoseScalar::StiffnessXy);
+            prop_assert!(margin >= -1e-9, "{} {:?}: {}", design, pose, margin);
+        }
+    }
+
     /// Where the forms of a box are positive, the limits of a motion are kept at each of its poses.
     #[test]
     fn a_box_without_open_forms_keeps_the_limits_of_a_motion(
@@ -735,6 +780,31 @@ fn errors_of_the_position_are_proved_in_few_boxes() {
     let posed = tighter.posed(&design);
     let dynamics = posed.dynamics_at(&violation.pose).expect("reached").expect("stiff");
     assert!(dynamics.report().expect("regular").accuracy.worst_position > 3.5e-4);
+}
+
+/// The stiffness in the plane of this optimum is least in the centre, where the manipulator is symmetric and both its eigenvalues exceed the
+/// threshold by 2e-7 of it.
+#[test]
+fn a_stiffness_that_is_least_where_its_eigenvalues_are_equal_is_proved() {
+    let text = "3-P_RR R=4 r=0.14935859666382795 Lb=1.5514089061513892 rj=0.049725304654801086 rp=0.022790058118897446 alpha_deg=30";
+    let design: Design = text.parse().expect("a design");
+    let options = CertifyOptions {
+        claimed_radius: 1.5,
+        max_boxes: 150_000,
+        ..CertifyOptions::default()
+    };
+    let found = Model::default().certify(&design, &options).expect("a certificate");
+    assert_eq!(found.verdict, Verdict::Proved, "{found:?}");
+    // A threshold that the centre misses by as little is refuted.
+    let missed = model(|settings| {
+        let threshold = settings.thresholds.get(PoseScalar::StiffnessXy).expect("a threshold");
+        settings
+            .thresholds
+            .set(PoseScalar::StiffnessXy, Some(threshold * (1.0 + 1e-6)));
+    });
+    let found = missed.certify(&design, &options).expect("a certificate");
+    assert_eq!(found.verdict, Verdict::Refuted, "{found:?}");
+    assert_eq!(found.violation.expect("a pose").scalar, PoseScalar::StiffnessXy);
 }
 
 #[test]

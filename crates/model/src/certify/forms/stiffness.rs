@@ -70,8 +70,12 @@ impl Forms<'_> {
             let threshold = self.compliance.in_plane;
             let determinant = sum_of_legs(|i| along.one[i] * turn(legs, i).squared()) - sum.scaled(threshold)
                 + product.scaled(threshold.square());
-            found.push(PoseScalar::StiffnessXy, determinant);
-            found.push(PoseScalar::StiffnessXy, sum - product.times(2.0).scaled(threshold));
+            let excess = sum - product.times(2.0).scaled(threshold);
+            let tells = determinant.is_positive() && excess.is_positive();
+            if tells || !exceeds_deviator(&excess, |i| (along.pairs[i], legs[i].u)) {
+                found.push(PoseScalar::StiffnessXy, determinant);
+                found.push(PoseScalar::StiffnessXy, excess);
+            }
         }
         if self.is_required(PoseScalar::StiffnessPhiZ, found) {
             let moments = sum_of_legs(|i| legs[i].moment.squared() * along.pairs[i]);
@@ -99,11 +103,18 @@ impl Forms<'_> {
             along.one[i] * (a.moment.squared() + b.moment.squared() - mixed)
         });
         let whole = sum_of_legs(|i| legs[i].moment.squared() * along.pairs[i]);
-        found.push(
-            scalar,
-            square - trace.scaled(threshold) + whole.scaled(threshold.square()),
-        );
-        found.push(scalar, trace - whole.times(2.0).scaled(threshold));
+        let determinant = square - trace.scaled(threshold) + whole.scaled(threshold.square());
+        let excess = trace - whole.times(2.0).scaled(threshold);
+        let part = |i: usize| {
+            let [a, b] = others(i).map(|leg| legs[leg]);
+            let part = |k: usize| a.moment * b.u[k] - b.moment * a.u[k];
+            (along.one[i], [part(0), part(1)])
+        };
+        let tells = determinant.is_positive() && excess.is_positive();
+        if tells || !exceeds_deviator(&excess, part) {
+            found.push(scalar, determinant);
+            found.push(scalar, excess);
+        }
     }
 
     /// g4 and g6 for the reciprocals of entries of `K⁻¹`. That for the rotation is `r² D²/Σ γ_i w_i²`.
@@ -407,6 +418,30 @@ struct BentBar {
     length: TaylorModel,
     /// Tip, relative to `P`.
     tip: PlanarModel,
+}
+
+/// Whether the smaller eigenvalue of `Σ w_i v_i v_i^T` is above `T` on the whole box, where `excess` is the trace less `2T`: it is where the excess
+/// is above the norm of the deviator `Σ w_i (v_x² − v_y², 2 v_x v_y)`, the difference of the eigenvalues. Where both eigenvalues are near
+/// `T`, as in the centre of a symmetric manipulator, the determinant of the matrix less `T` is small of second order and decides nothing.
+fn exceeds_deviator(excess: &TaylorModel, part: impl Fn(usize) -> (TaylorModel, PlanarModel)) -> bool {
+    let [least, _] = excess.range();
+    // Neither does it decide anything where the excess is not positive or is no number.
+    if least.is_nan() || least <= 0.0 {
+        return false;
+    }
+    let zero = TaylorModel::exactly(0.0);
+    let mut deviator = [zero; 2];
+    for i in 0..LEGS {
+        let (weight, [x, y]) = part(i);
+        deviator[0] = deviator[0] + weight * (x.squared() - y.squared());
+        deviator[1] = deviator[1] + weight * (x * y).times(2.0);
+    }
+    let squares = deviator.map(|part| {
+        let [lower, upper] = part.range();
+        Interval::exactly(upper.max(-lower)).square()
+    });
+    let margin = Interval::exactly(least).square() - (squares[0] + squares[1]);
+    deviator.iter().all(|part| !part.range()[0].is_nan()) && margin.lower() > 0.0
 }
 
 /// Adds the compliance of a bar at `P`. The bending moment at the distance `s` from the tip, at `q`, due to a force `F` along z and
