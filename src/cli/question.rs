@@ -107,13 +107,22 @@ fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }
 
+/// Asks for the architectures: those of the paper by default, because a search of all takes several times as long.
 fn architectures(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut String) -> io::Result<()> {
     let all: Vec<&str> = Architecture::ALL
         .iter()
         .map(|architecture| architecture.name())
         .collect();
-    let all = all.join(" ");
-    let names = dialogue.ask("Architectures", &all, |answer| {
+    writeln!(dialogue.out, "Architectures: {}", all.join(" "))?;
+    let paper = Study::default()
+        .architectures
+        .iter()
+        .map(|architecture| architecture.name());
+    let paper: Vec<&str> = paper.collect();
+    let names = dialogue.ask("Architectures to search, or all", &paper.join(" "), |answer| {
+        if answer == "all" {
+            return Ok(Architecture::ALL.to_vec());
+        }
         let names: Result<Vec<Architecture>, _> = answer.split_whitespace().map(str::parse).collect();
         names.map_err(|error: kinefront_model::mechanism::TextError| error.to_string())
     })?;
@@ -275,7 +284,15 @@ mod tests {
         // But for members that do not collide.
         assert_eq!(study.requirements.clearance_min_m, Some(0.005));
         assert_eq!(study.bodies.stacking, Stacking::Chosen);
-        assert!(study.constraints.is_empty() && study.architectures.len() == Architecture::ALL.len());
+        assert!(study.constraints.is_empty() && study.architectures == Study::default().architectures);
+    }
+
+    #[test]
+    fn all_architectures_are_searched_if_asked_for() {
+        let (text, said) = answer(&format!("\nall\n{}", "\n".repeat(20))).expect("a study");
+        let study = Study::parse(&text, "answers").expect("a study");
+        assert_eq!(study.architectures, Architecture::ALL);
+        assert!(said.contains("3-_PPR"), "{said}");
     }
 
     #[test]
