@@ -149,7 +149,7 @@ fn runs_are_put_together_where_they_ask_for_the_same() {
     report(&[&first, &second], &out, &["--sensitivity", "0"]).success();
     let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
     assert!(page.contains("Pareto front of the 3-PRR.") && page.contains("Pareto front of the 3-RPR."));
-    assert!(!page.contains("Pareto front of the 3-RRR.") && !page.contains("Searched again"));
+    assert!(!page.contains("Pareto front of the 3-RRR.") && !page.contains("Repeated searches"));
 
     let text = std::fs::read_to_string(&study).expect("a study");
     let softer = folder.path().join("softer.toml");
@@ -159,7 +159,7 @@ fn runs_are_put_together_where_they_ask_for_the_same() {
     let beside = folder.path().join("beside");
     report(&[&first, &third], &beside, &["--sensitivity", "0"]).success();
     let page = std::fs::read_to_string(beside.join("index.html")).expect("a page");
-    assert!(page.contains("first beside third"));
+    assert!(page.contains("Kinefront comparison: first, third"));
     assert!(page.contains("The mass in motion of third differs from that of first by "));
     assert!(page.contains("material.youngs_modulus_pa") && page.contains("70000000000"));
     assert!(!page.contains("optimizer.evaluations"));

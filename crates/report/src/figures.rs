@@ -55,7 +55,7 @@ impl Figures {
         })?;
         let beyond = match chart.beyond {
             0 => String::new(),
-            count => format!(" Designs beyond an end of the axis: {count}."),
+            count => format!(" Designs outside the range of the axes: {count}."),
         };
         let caption = format!("{words}.{beyond}");
         self.0.push(Figure {
@@ -86,7 +86,7 @@ impl Figures {
         let x = ChartAxis::from_zero("evaluations", values(&series, 0));
         let y = ChartAxis::about(question.label(0), values(&series, 1));
         let words = format!(
-            "{} of the best design over the number of evaluations",
+            "{} of the best design against the number of evaluations",
             question.label(0)
         );
         let chart = Chart {
@@ -102,7 +102,7 @@ impl Figures {
         self.add(Topic::Fronts, "fronts".to_owned(), words, together(report, false))?;
         if report.question.objectives[0].quantity.entry().scale == Scale::Logarithmic {
             let words = format!(
-                "The same fronts over a logarithmic axis of the {}, which separates its small values",
+                "The same fronts with a logarithmic axis of the {}, which separates its small values",
                 report.question.name(0)
             );
             self.add(Topic::Fronts, "fronts-log".to_owned(), words, together(report, true))?;
@@ -156,7 +156,7 @@ impl Figures {
             for (kind, words, chart) in [
                 (
                     "prices-limits",
-                    "Prices of the limits, one on top of the other,",
+                    "Stacked prices of the limits (negative prices count as 0)",
                     prices(along, &[ParameterKind::Limit], Mark::Area),
                 ),
                 (
@@ -412,7 +412,7 @@ fn along(report: &Report, trends: &[&Trend]) -> Chart {
         points.map(move |point| point[axis])
     };
     let x = ChartAxis::from_zero_if_near(report.question.label(report.question.compared()), values(0));
-    let y = ChartAxis::from_zero("[m]", values(1));
+    let y = ChartAxis::from_zero("design variable [m]", values(1));
     let mut series = Vec::new();
     for (trend, color) in trends.iter().zip(palette::SERIES) {
         series.push(Series {

@@ -112,7 +112,7 @@ impl SideBySide {
                 name: name.to_owned(),
                 cause,
             })?;
-            let over = if decades { ", over a logarithmic axis" } else { "" };
+            let over = if decades { ", with a logarithmic axis" } else { "" };
             figures.push(Figure {
                 topic: Topic::Fronts,
                 name: name.to_owned(),

@@ -95,7 +95,7 @@ pub const ALTERNATIVES: [Alternative; 15] = [
     },
     Alternative {
         name: LARGER_PLATFORM,
-        meaning: "a lower bound of r of 0.5 m instead of the one of the study",
+        meaning: "a lower bound of 0.5 m for r instead of that of the study",
         effect: Effect::Search,
         change: |study| study.bounds.r_m[0] = study.bounds.r_m[0].max(0.5),
     },
@@ -130,7 +130,7 @@ pub const ALTERNATIVES: [Alternative; 15] = [
     },
     Alternative {
         name: "G − 7 %",
-        meaning: "a smaller shear modulus",
+        meaning: "a shear modulus smaller by 7 %",
         effect: Effect::Evaluation,
         change: |study| study.material.shear_modulus_pa *= 0.93,
     },

@@ -31,7 +31,7 @@ pub(super) fn clearance(report: &Report) -> Markup {
             caption { "Smallest clearance over the regular workspace of each drawn design, on the fine grid." }
             thead { tr {
                 th { "architecture" } th.number { "designs" } th.number { "designs with collisions" }
-                th.number { "smallest [mm]" } th.number { "median [mm]" } th.number { "largest [mm]" } th { "nearest pair of members of the worst design" }
+                th.number { "smallest [mm]" } th.number { "median [mm]" } th.number { "largest [mm]" } th { "nearest pair of members of the design with the smallest clearance" }
             } }
             tbody { @for (architecture, front) in &report.fronts.alone {
                 @let clearances = sorted(front);
@@ -81,7 +81,7 @@ fn price(report: &Report, cost: &ClearanceCost<'_>) -> Markup {
                     (architecture) ": best " (question.label(0)) " of the designs whose " (question.name(1)) " is " (question.bound(1))
                     " the given one. The best " (question.name(1)) " is " (number(best(without))) (question.unit(1)) " without and "
                     (number(best(with))) (question.unit(1)) " with the clearance (" (change(best(with) / best(without))) "). "
-                    "Of the " (without.shown.len()) " designs drawn of the front without it, " (sorted(without).iter().filter(|clearance| **clearance < 0.0).count()) " have collisions."
+                    "Of the " (without.shown.len()) " drawn designs of the front without the required clearance, " (sorted(without).iter().filter(|clearance| **clearance < 0.0).count()) " have collisions."
                 }
                 thead { tr { th { (question.label(1)) } @for level in &levels { th.number { (short(*level)) } } } }
                 tbody {

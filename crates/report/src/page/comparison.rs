@@ -43,14 +43,14 @@ pub(super) fn comparison(report: &Report) -> Markup {
             }
         }
         @if shown.len() < fractions.len() {
-            p { "The other " (fractions.len() - shown.len()) " architectures are nowhere the best." }
+            p { "The other architectures (" (fractions.len() - shown.len()) ") are not the best at any value of " (name) "." }
         }
         (rails(report, &fractions))
         (motors(report, &fractions))
         (notation(&fractions))
         @if intervals.len() <= 12 {
             p {
-                "The best architecture, from the worst " (name) " to the best: "
+                "The best architecture, in the order of improving " (name) ": "
                 @for (index, (architecture, [from, to])) in intervals.iter().enumerate() {
                     @if index > 0 { "; " }
                     (text::architecture(*architecture)) " from " (number(*from)) " to " (number(*to)) (unit)
@@ -61,7 +61,7 @@ pub(super) fn comparison(report: &Report) -> Markup {
         div.scroll { table {
             caption {
                 "Best " (question.label(0)) " of the designs found whose " (name) " is " (bound) " the given one, verified "
-                "on the fine grid. In brackets: its ratio to that of the best design of any architecture."
+                "on the fine grid. The number in brackets is the ratio to the best value of any architecture."
             }
             thead { tr {
                 th.number { (question.label(1)) }
@@ -103,10 +103,10 @@ fn rails(report: &Report, fractions: &[(Architecture, f64)]) -> Markup {
         @if let Some(on_rails) = on_rails {
             p {
                 @if report.model.settings().rails.is_none() {
-                    "Rails weigh nothing and do not yield in this study. This flatters the architectures whose "
+                    "Rails weigh nothing and do not bend in this study. This favours the architectures whose "
                     "first joint is prismatic (" (on_rails) ") in a comparison with the others."
                 } @else {
-                    "The mass contains the rails, which do not move, and the stiffness their bending (the architectures whose first "
+                    "The mass includes the rails although they do not move, and the stiffness includes their bending (architectures whose first "
                     "joint is prismatic: " (on_rails) ")."
                 }
             }
@@ -128,7 +128,7 @@ fn motors(report: &Report, fractions: &[(Architecture, f64)]) -> Markup {
     html! {
         @if let Some(moving) = moving {
             p {
-                "Motors weigh nothing in this study. This flatters the architectures whose motors move with the legs (" (moving)
+                "Motors weigh nothing in this study. This favours the architectures whose motors move with the legs (" (moving)
                 ") in a comparison with the others."
             }
         }

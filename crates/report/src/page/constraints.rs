@@ -14,16 +14,16 @@ pub(super) fn constraints(report: &Report) -> Markup {
     html! {
         p {
             @if is_prescribed {
-                "The active constraints are those whose margin at the weakest pose of the region is the smallest: they would have to be relaxed "
+                "The active constraints are those with the smallest margin over all poses of the region: they would have to be relaxed "
                 "for a better design."
             } @else {
                 "The active constraints are those that fail first just beyond R_w: they would have to be relaxed for the workspace to grow."
             }
-            @if !report.trends.is_empty() { " Dots above each other mark constraints that are active together." }
+            @if !report.trends.is_empty() { " Dots at the same abscissa mark constraints that are active at the same design." }
         }
         (figures(report, Topic::Active))
         div.scroll { table {
-            caption { "Percentage of the designs of each front that are drawn at which a constraint is active." }
+            caption { "Percentage of the drawn designs of each front at which each constraint is active." }
             thead { tr {
                 th { "architecture" } th.number { "designs" }
                 @for constraint in &required { th.number { (constraint.id()) } }

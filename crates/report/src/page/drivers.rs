@@ -29,9 +29,9 @@ pub(super) fn drivers(report: &Report) -> Markup {
     let objective = question.name(0);
     html! {
         p {
-            "The price of a parameter is the change of the " (objective) " in per cent for 1 % more of it, with the design optimized again and "
+            "The price of a parameter is the change of the " (objective) " in per cent if the parameter increases by 1 %, with the design optimized again and "
             @if question.objectives.len() > 1 { "the other objectives held at their values. " } @else { "the region held. " }
-            "Each design was first made the best one near it, with every pose of the region as a constraint. A bound or a limit that is not "
+            "Each design was first replaced by the local optimum near it, with every pose of the region as a constraint. A bound or a limit that is not "
             "active has no price."
         }
         @for along in &report.drivers { @if !along.designs.is_empty() {

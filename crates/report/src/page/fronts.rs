@@ -37,12 +37,15 @@ pub(super) fn fronts(report: &Report) -> Markup {
         (proofs(report))
         (figures(report, Topic::Fronts))
         div.scroll { table {
-            caption { "The best value of each objective that was found for each architecture" @if !is_single { ", and the hypervolume of its front" } "." }
+            caption { "The best value found of each objective for each architecture" @if !is_single { ", and the hypervolume of its front" } "." }
             thead { tr {
                 th { "architecture" }
                 @if !is_single { th.number { "designs" } }
                 @for k in objectives.clone() { th.number { (question.label(k)) } }
-                @if !is_single { th.number { "hypervolume" } }
+                @if !is_single {
+                    @let unit = report.study.hypervolume_unit();
+                    th.number { "hypervolume" @if !unit.is_empty() { " [" (unit) "]" } }
+                }
             } }
             tbody { @for (architecture, front) in &report.fronts.alone { tr {
                 td { (architecture) }
@@ -137,15 +140,16 @@ fn proofs(report: &Report) -> Markup {
     html! {
         @if !fronts.is_empty() {
             p {
-                "The workspaces of the designs drawn are proved: within the radius that is stated, every pose satisfies all constraints, "
-                "not only those of a grid. Where the fine grid had missed infeasible poses, the bars of the design were made thicker, or, "
-                "if that does not help, the radius is the one that is proved. The table states what these poses would have cost."
+                "In a workspace that is proved, every pose satisfies all constraints, not only the poses of a grid; the proofs of the other "
+                "workspaces are open. Where a proof found infeasible poses that the fine grid had missed, the design was strengthened: its bars "
+                "were made thicker or, for a prescribed region, its lengths were increased. Where that did not suffice, the proved radius replaces "
+                "that of the fine grid, or the design is left out. The table gives the loss of R_w that these poses would have caused."
             }
             div.scroll { table {
                 thead { tr {
-                    th { "front" } th.number { "workspaces proved" } th.number { "open" }
-                    th.number { "radius of the fine grid too large" } th.number { "of these with thicker bars" }
-                    th.number { "largest loss of R_w, at least" } th.number { "largest violation of a constraint" }
+                    th { "architecture" } th.number { "workspaces proved" } th.number { "workspaces open" }
+                    th.number { "result of the fine grid refuted" } th.number { "of these, strengthened" }
+                    th.number { "largest loss of R_w (lower bound)" } th.number { "largest relative violation of a constraint" }
                 } }
                 tbody {
                     @for (architecture, proofs) in &fronts {

@@ -35,7 +35,7 @@ pub(super) fn html(report: &Report) -> String {
 /// Returns the page of runs of different studies as text.
 pub(super) fn side_by_side(found: &SideBySide) -> String {
     let names: Vec<&str> = found.runs.iter().map(|run| run.name.as_str()).collect();
-    let title = format!("Kinefront: {}", names.join(" beside "));
+    let title = format!("Kinefront comparison: {}", names.join(", "));
     page(&title, "", &side_by_side::sections(found))
 }
 

@@ -13,27 +13,31 @@ pub(super) fn motion(report: &Report) -> Markup {
     let has_drives = !report.model.settings().drive_catalogue.is_empty();
     html! {
         p {
-            "Designs of the fronts follow the motion of the study. The shortest cycle is the one in which a design just keeps all limits of the motion, with the same path and the same rests; a \
-             shorter one would miss the limit that is named. A motion is proved if it is followed, with all its limits of speed, force and distance, at \
-             every moment and not only at its samples."
+            "The table lists designs of the fronts and what the motion of the study requires of their actuators. In the shortest cycle, a design just \
+             satisfies all limits of the motion, with the same path and the same rests; a shorter cycle would violate the limit of the limiting \
+             quantity. A motion is proved if the design follows it within all its limits of speed, force and distance at every moment, not only \
+             at its samples; it is refuted if this is wrong at some moment, and otherwise open."
         }
         @if let Some(sentence) = fastest(report) { p { (sentence) } }
         div.scroll { table {
-            caption { "Of the three actuators, the one that has to give most counts." }
+            caption {
+                "Speed, force and RMS force are the largest of the three actuators. Power is the largest force times the largest speed. "
+                "Energy is that of all three drives per cycle; they share the energy that they recover."
+            }
             thead { tr {
-                th { "design" }
+                th { "architecture" }
                 @for objective in 0..question.objectives.len() { th.number { (question.label(objective)) } }
                 th.number { "cycle [s]" } th.number { "speed" } th.number { "force" } th.number { "RMS force" }
                 th.number { "power [W]" } th.number { "energy [J]" }
                 @if has_drives { th { "drive" } }
-                th.number { "shortest cycle [s]" } th { "set by" } th { "at every moment" }
+                th.number { "shortest cycle [s]" } th { "limiting quantity" } th { "proof" }
             } }
             tbody { @for motion in &report.motions { tr {
                 td { (text::architecture(motion.architecture())) }
                 @for value in &motion.objectives { (cell(*value)) }
                 @match &motion.figures {
                     Some(figures) => (asked(motion, figures)),
-                    None => { td colspan="6" { "does not follow it" } }
+                    None => { td colspan="6" { "does not follow the motion" } }
                 }
                 @if has_drives { td { (motion.drive.as_deref().unwrap_or("none")) } }
                 (optional(motion.shortest.map(|shortest| shortest.time)))

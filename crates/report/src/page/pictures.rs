@@ -13,9 +13,9 @@ use kinefront_scene::text::number;
 pub(super) fn pictures(report: &Report) -> Markup {
     html! {
         p {
-            "The best design in each objective and the knee of each front at the home pose, with true bar radii and the regular workspace in green"
-            @if !report.references.is_empty() { "; then the reference designs" }
-            ". The pictures are rendered from the same solids as in the recordings and exports."
+            "The pictures show the best design in each objective and the knee of each front"
+            @if !report.references.is_empty() { ", and then the reference designs," }
+            " at the home pose, with true bar radii and the regular workspace in green. The solids are those of the recordings and exports."
         }
         div.figures.pictures { @for picture in &report.pictures {
             figure id={ "picture-" (picture.name) } {

@@ -14,14 +14,14 @@ pub(super) fn asked(report: &Report) -> Markup {
     html! {
         div.scroll { table {
             caption { "Objectives." }
-            thead { tr { th { "quantity" } th { "sought" } th { "meaning" } } }
+            thead { tr { th { "quantity" } th { "goal" } th { "meaning" } } }
             tbody { @for (k, objective) in question.objectives.iter().enumerate() { tr {
                 td { (question.label(k)) } td { (sought(objective)) } td { (objective.quantity.entry().meaning) }
             } } }
         } }
         @if study.limits().next().is_some() {
             div.scroll { table {
-                caption { "Limits that the study states besides the thresholds of its requirements." }
+                caption { "Limits of the study in addition to the thresholds of its requirements." }
                 thead { tr { th { "quantity" } th { "limit" } th { "meaning" } } }
                 tbody { @for limit in study.limits() {
                     @let entry = limit.quantity.entry();
@@ -53,11 +53,14 @@ fn region(report: &Report) -> String {
                 .iter()
                 .map(|corner| format!("({}, {})", short(corner.x), short(corner.y)))
                 .collect();
-            format!("the polygon with the corners {} m", corners.join(", "))
+            format!(
+                "the polygon with the corners {} m relative to the centre of the workspace",
+                corners.join(", ")
+            )
         }
     };
     format!(
-        "Region of positions: {of_region}, about ({}, {}) m; orientations: a range of {range}° about the home orientation.",
+        "The positions are those of {of_region}; the centre of the workspace is at ({}, {}) m. The orientations span {range}° in total, centred on the home orientation.",
         short(spec.centre.x),
         short(spec.centre.y)
     )

@@ -44,7 +44,7 @@ pub(super) fn references(report: &Report) -> Markup {
                     @for quantity in &quantities {
                         @let title = Column::Quantity(*quantity).title();
                         @if is_stated(quantity) { th.number { (title) ", stated" } }
-                        th.number { (title) ", reference grid" } th.number { "fine grid" }
+                        th.number { (title) ", reference grid" } th.number { (title) ", fine grid" }
                     }
                     th { "active constraints" }
                 }
@@ -63,15 +63,15 @@ fn better(report: &Report) -> Markup {
         h3 { "Better designs found" }
         div.scroll { table {
             caption {
-                "The design found with the best " (question.name(0))
-                @if count > 1 { " of those at least as good in the other objectives" }
-                " as each reference design (fine grid)."
+                "For each reference design, the design found with the best " (question.name(0))
+                @if count > 1 { " of those that are at least as good in the other objectives" }
+                " (fine grid). Lengths in m."
             }
             thead { tr {
                 th { "reference design" } th.number { (question.label(0)) } th { "" } th { "architecture" }
                 @for variable in DESIGN_VARIABLES { th.number { (variable.symbol()) } }
                 @for k in 0..count { th.number { (question.label(k)) } }
-                th.number { "ratio" }
+                th.number { "ratio of the " (question.name(0)) }
             } }
             tbody { @for reference in &report.references { tr {
                 @let of_reference = question.value(0, &reference.fine);

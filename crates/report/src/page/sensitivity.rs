@@ -23,15 +23,15 @@ fn nearby(report: &Report) -> Markup {
     let compared = question.compared();
     html! {
         p {
-            "Under each alternative assumption, designs of the fronts are optimized again near themselves, with every pose as a constraint"
+            "Under each alternative assumption, a local optimization starts from designs of the fronts, with every pose of the region as a constraint"
             @if question.objectives.len() > 1 { " and the other objectives held" }
-            ". The change of the " (objective) " owes nothing to chance; a design of another kind may be better under the alternative. Alternatives "
-            "that change nothing at an architecture are left out."
+            ". The change of the " (objective) " is not due to the random seed, but a distant design may be better under the alternative. Alternatives "
+            "that change none of these designs of an architecture are left out."
         }
         @for nearby in &report.nearby {
             h3 { (nearby.architecture) }
             div.scroll { table {
-                caption { "Change of the " (objective) " of the best design near each." }
+                caption { "Change of the " (objective) " of the local optimum near each design of the front." }
                 thead { tr {
                     th { "assumption" }
                     @for design in &nearby.designs {
@@ -49,7 +49,7 @@ fn nearby(report: &Report) -> Markup {
                         td { (alternative.name) }
                         @for (stated, found) in nearby.stated.iter().zip(found) { td.number { @match found {
                             Some(found) => (change(found / stated)),
-                            None => "no design near",
+                            None => "no optimum found",
                         } } }
                         td { (alternative.meaning) }
                     } }
@@ -72,7 +72,7 @@ fn searched(report: &Report) -> Markup {
         .map(|alternative| alternative.name)
         .collect();
     html! {
-        h3 { "Searched again" }
+        h3 { "Repeated searches" }
         p {
             "Under each alternative assumption, every architecture is searched again on its own with " (evaluations)
             " evaluations, and its front is verified on the fine grid. Searches with other random seeds show how "

@@ -15,7 +15,7 @@ pub(super) fn sections(found: &SideBySide) -> Vec<Section> {
         sections.push(section("fronts", "Fronts", fronts(found)));
     }
     if !found.levels.is_empty() {
-        sections.push(section("levels", "At equal values", levels(found)));
+        sections.push(section("levels", "Comparison of the best values", levels(found)));
     }
     sections.push(section("made", "How this page was made", made(found)));
     sections
@@ -26,10 +26,10 @@ fn differences(found: &SideBySide) -> Markup {
     html! {
         @for (other, differences) in others.iter().zip(&found.differences) {
             @if differences.is_empty() {
-                p { (first.name) " and " (other.name) " ask the same." }
+                p { (first.name) " and " (other.name) " state the same problem." }
             } @else {
                 div.scroll { table {
-                    caption { "Settings in which the studies differ, apart from how they are searched." }
+                    caption { "Settings in which the studies differ, apart from those of the search." }
                     thead { tr { th { "key" } th { (first.name) } th { (other.name) } } }
                     tbody { @for difference in differences { tr {
                         td { code { (difference.key) } }
@@ -63,7 +63,7 @@ fn levels(found: &SideBySide) -> Markup {
                     @let bound = match second.goal { Better::Lower => "at most", Better::Higher => "at least" };
                     " of the designs whose " (second.quantity.entry().label) " is " (bound) " the given one"
                 }
-                ", with the change from " (found.runs[0].name) "."
+                ", with the change relative to " (found.runs[0].name) "."
             }
             thead { tr {
                 @if let Some(second) = found.objectives.get(1) { th.number { (second.quantity.entry().label) " [" (second.quantity.entry().unit) "]" } }
@@ -120,7 +120,7 @@ fn made(found: &SideBySide) -> Markup {
     html! {
         p {
             "This page was made by Kinefront " (env!("CARGO_PKG_VERSION")) ". The fronts are those of " code { "front.csv" }
-            " of each run. Runs of one study are put together in a report instead."
+            " of each run. Runs of the same study are combined in one report instead."
         }
         pre { code { (found.command) } }
         div.scroll { table {

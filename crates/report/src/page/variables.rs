@@ -28,7 +28,7 @@ pub(super) fn variables(report: &Report) -> Markup {
     let along = report.question.name(report.question.compared());
     html! {
         p {
-            "Lengths and bar radii of the designs drawn above over their " (along) ", with least-squares fits: "
+            "Lengths and bar radii of the drawn designs, plotted against their " (along) ", with least-squares fits: "
             "straight lines, and a parabola for r_p. Designs at which a variable is within " (percent(AT_BOUND)) " of "
             "its range from one of its bounds are excluded from the fits of that variable, because the bound "
             "determines its value there. R² is the fraction of the variance that a fit explains; the rank correlation "

@@ -13,6 +13,9 @@ const AT_ONCE: usize = 16;
 /// Number of evaluations of the search for which one design is looked for, so that a short search has a short end.
 const EVALUATIONS: usize = 3;
 
+/// Number of designs that are looked for in gaps for one beyond the boundary of a family.
+const OF_GAPS: usize = 4;
+
 /// Gaps are left if as many of them as designs are reported would add less than this share to what the front covers.
 const WORTH: f64 = 0.02;
 
@@ -35,7 +38,8 @@ impl Settling<'_> {
     pub(super) fn fill_gaps(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
         let (mut tried, mut crossed): (Vec<[usize; 2]>, Vec<[usize; 2]>) = (Vec::new(), Vec::new());
         let mut ends: Vec<Option<usize>> = vec![None; self.search.found.reference.len()];
-        let [mut left, mut left_across] = [self.most_wanted(); 2];
+        let mut left = self.most_wanted();
+        let mut left_across = left / OF_GAPS;
         loop {
             let standing = self.standing();
             let mut wanted = self.wanted_at_ends(&standing, &mut ends);

@@ -194,14 +194,14 @@ impl DriversAlong {
         let limits = self.leading().into_iter().map(|part| {
             let (place, price) = (self.place(&part), part.median());
             format!(
-                "Among the limits, {} drives the {objective} {place}: an increase of 1 % costs {price:+.2} %.",
+                "Among the limits, {} drives the {objective} {place}: an increase of the limit by 1 % changes the {objective} by {price:+.2} %.",
                 part.label
             )
         });
         let bounds = self.in_the_way().into_iter().map(|part| {
             let (place, price) = (self.place(&part), part.median());
             format!(
-                "The {} restricts the {objective} {place}: an increase of 1 % changes it by {price:+.2} %.",
+                "The {} restricts the {objective} {place}: an increase of this value by 1 % changes the {objective} by {price:+.2} %.",
                 part.label
             )
         });
@@ -209,8 +209,8 @@ impl DriversAlong {
             let entry = self.along.entry();
             let ([before, after], [below, above]) = (crossing.architectures, crossing.prices);
             format!(
-                "The {after} takes over from the {before} at {} {:.4} {}: an increase of 1 % there changes the {objective} by {below:+.2} % below \
-                 and by {above:+.2} % above.",
+                "The {after} takes over from the {before} at {} {:.4} {}: an increase of this value by 1 % changes the {objective} by {below:+.2} % \
+                 just below it and by {above:+.2} % just above it.",
                 entry.short, crossing.at, entry.unit
             )
         });

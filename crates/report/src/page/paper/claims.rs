@@ -160,7 +160,7 @@ fn comparisons(report: &Report) -> Markup {
                     td { "not compared: at no radius do this architecture and the " (best) " both have a design" }
                 } @else {
                     @let class = if low > 1.0 { "holds" } else if high > 1.0 { "partly" } else { "fails" };
-                    (judged(class, format!("the {architecture} is {low:.2} to {high:.2} times as heavy at the radii of the first table")))
+                    (judged(class, format!("the {architecture} is {low:.2} to {high:.2} times as heavy at the radii of the table in “Comparison of the architectures”")))
                 }
             }
         }

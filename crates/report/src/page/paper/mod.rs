@@ -63,12 +63,12 @@ fn guide(report: &Report) -> Markup {
         ("Fig. 7, fronts of the three architectures", "fronts", "Designs found"),
         ("Fig. 8, CAD designs", "pictures", "Pictures of designs, ID-I to ID-III"),
         (
-            "Fig. 9, R, r and L_b over R_w",
+            "Fig. 9, R, r and L_b against R_w",
             "variables",
             "Design variables along the fronts",
         ),
         (
-            "Fig. 10, r_j and r_p over R_w",
+            "Fig. 10, r_j and r_p against R_w",
             "variables",
             "Design variables along the fronts",
         ),
@@ -80,8 +80,8 @@ fn guide(report: &Report) -> Markup {
             9,
             (
                 "Tab. 2, the parameters of the algorithm",
-                "made",
-                "How this report was made",
+                "paper",
+                "Comparison with the 2010 paper",
             ),
         );
     }
@@ -212,7 +212,7 @@ fn masses(report: &Report) -> Markup {
         @for (place, (reference, [low, high])) in ranges.iter().enumerate() {
             @if place > 0 { "; " }
             (reference.stated.name) " "
-            @if let Some(mass) = reference.stated.mass_kg { (number(mass)) " kg of " }
+            @if let Some(mass) = reference.stated.mass_kg { (number(mass)) " kg, range " }
             (number(*low)) " … " (number(*high)) " kg"
         }
         ". The mass of the platform is that of three bars: the printed equation has one, but the printed masses require three."
@@ -223,7 +223,7 @@ fn workspace(report: &Report, place: usize, reference: &EvaluatedReference, stat
     let found = reference.fine.workspace_radius();
     let ratio = found / stated;
     html! {
-        "Printed " (number(stated)) " m, here " (number(found)) " m (" (change(ratio)) "); "
+        "The paper prints a radius of " (number(stated)) " m; this model gives " (number(found)) " m (" (change(ratio)) "); "
         "the workspace is limited by " (active(&reference.fine)) ". "
         @if (ratio - 1.0).abs() > NEAR {
             @if let Some((variation, radius)) = nearest(report, place, stated) {
@@ -254,7 +254,7 @@ fn lighter(report: &Report) -> Markup {
             " of the hypervolume of the front of all architectures found here. "
             @for reference in &report.references {
                 @if let Some(found) = better(moga2_front, &reference.fine) {
-                    "With at least the workspace of " (reference.stated.name) ", it finds " (number(found.mass())) " kg. "
+                    "With at least the workspace of " (reference.stated.name) ", it finds a design of " (number(found.mass())) " kg. "
                 }
             }
             "Under this model, therefore, the search of the paper had not converged, or the model of the paper had requirements "
