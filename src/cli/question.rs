@@ -114,11 +114,11 @@ fn architectures(dialogue: &mut Dialogue<impl BufRead, impl Write>, text: &mut S
         .map(|architecture| architecture.name())
         .collect();
     writeln!(dialogue.out, "Architectures: {}", all.join(" "))?;
-    let paper = Study::default()
+    let paper: Vec<&str> = Study::default()
         .architectures
         .iter()
-        .map(|architecture| architecture.name());
-    let paper: Vec<&str> = paper.collect();
+        .map(|architecture| architecture.name())
+        .collect();
     let names = dialogue.ask("Architectures to search, or all", &paper.join(" "), |answer| {
         if answer == "all" {
             return Ok(Architecture::ALL.to_vec());
