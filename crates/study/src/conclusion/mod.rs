@@ -113,6 +113,8 @@ struct Settling<'a> {
     next_id: usize,
     tried: usize,
     planned: usize,
+    /// Number of designs that were looked for beside those of the search, and not found or not kept.
+    in_vain: usize,
 }
 
 impl<'a> Settling<'a> {
@@ -127,6 +129,7 @@ impl<'a> Settling<'a> {
             next_id: search.found.evaluated,
             tried: 0,
             planned: 0,
+            in_vain: 0,
         }
     }
 
@@ -218,7 +221,11 @@ impl<'a> Settling<'a> {
                 }
             }
             times.verification_s += verifying.elapsed().as_secs_f64();
+            let held = self.held.len();
             self.prove(members, &prover, keep, times);
+            if keep == Keep::Proved {
+                self.in_vain += part.len() - (self.held.len() - held);
+            }
             if !goes_on() {
                 return None;
             }
@@ -336,7 +343,7 @@ impl<'a> Settling<'a> {
         let (front, proofs) = proved_front(proved, self.next_id, reference, most);
         Reported {
             verified,
-            dropped: self.tried - verified,
+            dropped: self.tried - self.in_vain - verified,
             hypervolume: whole,
             front,
             proofs: self.search.study().workspace.certify.then_some(proofs),
