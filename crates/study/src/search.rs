@@ -204,7 +204,7 @@ const RUNNERS_UP: usize = 24;
 const FAVOURED: usize = 2;
 
 /// Number of first designs that are kept of each architecture.
-const FIRST_DESIGNS: usize = 24;
+pub(super) const FIRST_DESIGNS: usize = 24;
 
 /// Relative excess of the first runner-up over the best objective; that of each further one is at least twice as large. A search
 /// that has converged ends with many copies of the best design, all of which may miss a constraint on the fine grid.
@@ -338,20 +338,17 @@ impl Found {
 
     /// Keeps the best design of each architecture, and with one objective the best design of all and runners-up.
     fn keep_runners_up(&mut self, first_id: usize, rows: &[Row]) {
-        let entries = (first_id..)
-            .zip(rows)
-            .filter(|(_, row)| row.is_feasible())
-            .map(|(id, row)| Arc::new(TableRow::new(id, *row)));
-        for entry in entries {
-            let architecture = entry.row.design.architecture();
+        for (id, row) in (first_id..).zip(rows).filter(|(_, row)| row.is_feasible()) {
+            let entry = || Arc::new(TableRow::new(id, *row));
+            let architecture = row.design.architecture();
             let is_own = |other: &&mut Arc<TableRow>| other.row.design.architecture() == architecture;
             match self.best_of_architectures.iter_mut().find(is_own) {
-                Some(best) if best.row.objectives[0] <= entry.row.objectives[0] => {}
-                Some(best) => *best = Arc::clone(&entry),
-                None => self.best_of_architectures.push(Arc::clone(&entry)),
+                Some(best) if best.row.objectives[0] <= row.objectives[0] => {}
+                Some(best) => *best = entry(),
+                None => self.best_of_architectures.push(entry()),
             }
             if self.reference.len() == 1 {
-                self.runners_up.push(entry);
+                self.runners_up.push(entry());
             }
         }
         keep_runners_up(&mut self.runners_up, |entry| entry.row.objectives[0]);

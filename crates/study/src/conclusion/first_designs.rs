@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::gaps::objectives;
 use super::{Keep, Settling};
 use crate::local::Aim;
+use crate::search::FIRST_DESIGNS;
 use crate::{Event, RunTimes, TableRow};
 
 /// Number of evaluations of the search for which one of its first designs is followed, so that a short search has a short end.
@@ -19,10 +20,7 @@ const EVALUATIONS: usize = 200;
 /// Number of designs of a mean share that an optimum has to add to a front, so that it is one of another family rather than of a gap.
 const FAMILY: f64 = 0.1;
 
-/// Largest number of first designs that are followed.
-const MOST: usize = 24;
-
-/// The same for each architecture of a study that has many.
+/// Number of first designs of each architecture that may be followed; of few architectures, [`FIRST_DESIGNS`] in all may be.
 const OF_EACH: usize = 3;
 
 impl Settling<'_> {
@@ -85,7 +83,7 @@ impl Settling<'_> {
     /// Returns the first designs of the search that are followed.
     fn first_designs(&self) -> Vec<Arc<TableRow>> {
         let found = &self.search.found;
-        let most = MOST.max(OF_EACH * self.search.study().architectures.len());
+        let most = FIRST_DESIGNS.max(OF_EACH * self.search.study().architectures.len());
         found.first_designs((found.evaluated / EVALUATIONS).min(most))
     }
 

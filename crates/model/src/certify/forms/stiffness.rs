@@ -71,11 +71,8 @@ impl Forms<'_> {
             let determinant = sum_of_legs(|i| along.one[i] * turn(legs, i).squared()) - sum.scaled(threshold)
                 + product.scaled(threshold.square());
             let excess = sum - product.times(2.0).scaled(threshold);
-            let tells = determinant.is_positive() && excess.is_positive();
-            if tells || !exceeds_deviator(&excess, |i| (along.pairs[i], legs[i].u)) {
-                found.push(PoseScalar::StiffnessXy, determinant);
-                found.push(PoseScalar::StiffnessXy, excess);
-            }
+            let part = |i: usize| (along.pairs[i], legs[i].u);
+            push_smaller_eigenvalue(found, PoseScalar::StiffnessXy, [determinant, excess], part);
         }
         if self.is_required(PoseScalar::StiffnessPhiZ, found) {
             let moments = sum_of_legs(|i| legs[i].moment.squared() * along.pairs[i]);
@@ -110,11 +107,7 @@ impl Forms<'_> {
             let part = |k: usize| a.moment * b.u[k] - b.moment * a.u[k];
             (along.one[i], [part(0), part(1)])
         };
-        let tells = determinant.is_positive() && excess.is_positive();
-        if tells || !exceeds_deviator(&excess, part) {
-            found.push(scalar, determinant);
-            found.push(scalar, excess);
-        }
+        push_smaller_eigenvalue(found, scalar, [determinant, excess], part);
     }
 
     /// g4 and g6 for the reciprocals of entries of `K⁻¹`. That for the rotation is `r² D²/Σ γ_i w_i²`.
@@ -420,12 +413,27 @@ struct BentBar {
     tip: PlanarModel,
 }
 
+/// Adds the forms of a limit `T` of the smaller eigenvalue of `Σ w_i v_i v_i^T`: the determinant of the matrix less `T`, and the trace less
+/// `2T`. Neither is needed where the deviator proves the limit and the forms do not.
+fn push_smaller_eigenvalue(
+    found: &mut Enclosures,
+    scalar: PoseScalar,
+    [determinant, excess]: [TaylorModel; 2],
+    part: impl Fn(usize) -> (TaylorModel, PlanarModel),
+) {
+    let is_proved = determinant.is_positive() && excess.is_positive();
+    if is_proved || !exceeds_deviator(&excess, part) {
+        found.push(scalar, determinant);
+        found.push(scalar, excess);
+    }
+}
+
 /// Whether the smaller eigenvalue of `Σ w_i v_i v_i^T` is above `T` on the whole box, where `excess` is the trace less `2T`: it is where the excess
 /// is above the norm of the deviator `Σ w_i (v_x² − v_y², 2 v_x v_y)`, the difference of the eigenvalues. Where both eigenvalues are near
 /// `T`, as in the centre of a symmetric manipulator, the determinant of the matrix less `T` is small of second order and decides nothing.
 fn exceeds_deviator(excess: &TaylorModel, part: impl Fn(usize) -> (TaylorModel, PlanarModel)) -> bool {
     let [least, _] = excess.range();
-    // Neither does it decide anything where the excess is not positive or is no number.
+    // Where the excess is not positive, or is not a number, the deviator proves nothing.
     if least.is_nan() || least <= 0.0 {
         return false;
     }
